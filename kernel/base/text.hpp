@@ -1,0 +1,69 @@
+// Text that lives in constant expressions: a sentence built piece by piece, and a text that may be a template argument.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+/// A sentence of at most `capacity` characters, built piece by piece; what does not fit is cut, visibly.
+struct Sentence {
+    static constexpr std::size_t capacity = 480;
+    char letters[capacity + 1] = {};
+    std::size_t length = 0;
+
+    constexpr Sentence() = default;
+    template <class... Pieces>
+    explicit constexpr Sentence(const Pieces&... pieces) {
+        (add(pieces), ...);
+    }
+    constexpr Sentence& add(std::string_view piece) noexcept {
+        for (char letter : piece) {
+            if (length == capacity) {
+                letters[capacity - 1] = letters[capacity - 2] = letters[capacity - 3] = '.';
+                return *this;
+            }
+            letters[length++] = letter;
+        }
+        return *this;
+    }
+    constexpr Sentence& add(const char* piece) noexcept { return add(std::string_view{piece}); }
+    constexpr Sentence& add(const Sentence& other) noexcept { return add(other.view()); }
+    constexpr Sentence& add(std::int64_t number) noexcept {
+        char digits[21] = {};
+        std::size_t n = 0;
+        const bool negative = number < 0;
+        auto rest = negative ? ~static_cast<std::uint64_t>(number) + 1 : static_cast<std::uint64_t>(number);
+        do digits[n++] = static_cast<char>('0' + rest % 10);
+        while (rest /= 10);
+        if (negative) digits[n++] = '-';
+        std::reverse(digits, digits + n);
+        return add(std::string_view{digits, n});
+    }
+    constexpr Sentence& add(int number) noexcept { return add(static_cast<std::int64_t>(number)); }
+    constexpr Sentence& add(std::size_t number) noexcept { return add(static_cast<std::int64_t>(number)); }
+    constexpr Sentence& add(unsigned number) noexcept { return add(static_cast<std::int64_t>(number)); }
+
+    [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters, length}; }
+    [[nodiscard]] constexpr bool empty() const noexcept { return length == 0; }
+    // What static_assert(ok, message) asks of a message object.
+    [[nodiscard]] constexpr std::size_t size() const noexcept { return length; }
+    [[nodiscard]] constexpr const char* data() const noexcept { return letters; }
+};
+
+/// A text of exactly N characters as a template argument: a compiler that cannot print a message object prints this.
+template <std::size_t N>
+struct text {
+    char letters[N + 1] = {};
+    constexpr text() = default;
+    explicit constexpr text(std::string_view from) { std::copy_n(from.data(), N, letters); }
+    // NOLINTNEXTLINE: a literal is a text
+    constexpr text(const char (&from)[N + 1]) { std::copy_n(from, N, letters); }
+    [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters, N}; }
+};
+template <std::size_t M>
+text(const char (&)[M]) -> text<M - 1>;
+
+} // namespace tappet
