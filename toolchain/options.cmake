@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# The language all our code is written in: same standard, same arithmetic, same limits with both compilers.
+include_guard(GLOBAL)
+
+set(CMAKE_CXX_STANDARD 23)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+add_library(tappet_options INTERFACE)
+
+# One seed gives one run, bit for bit, with both compilers: the baseline instruction set, and no a*b+c folded into
+# one rounding where one compiler sees the chance and the other does not.
+target_compile_options(tappet_options INTERFACE -march=x86-64 -ffp-contract=off)
+
+# A machine is checked in constant expressions; the compilers' own limits are meant for smaller ones.
+target_compile_options(
+    tappet_options
+    INTERFACE
+        "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fconstexpr-ops-limit=2000000000;-fconstexpr-loop-limit=10000000;-fconstexpr-depth=2000>"
+        "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:-fconstexpr-steps=2000000000;-fconstexpr-depth=2000>")

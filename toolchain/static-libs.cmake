@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+# A firmware is one static binary, so what it stands on must be there as archives:
+#   tappet::libgpiod   Debian's own libgpiod.a, version 2
+#   tappet::libmodbus  built here from Debian's source package (with its security patches): no package has the archive
+include_guard(GLOBAL)
+include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
+
+# --- libgpiod -----------------------------------------------------------------------------------------------------
+find_path(TAPPET_GPIOD_INCLUDE gpiod.h)
+find_library(TAPPET_GPIOD_ARCHIVE libgpiod.a)
+if(NOT TAPPET_GPIOD_INCLUDE OR NOT TAPPET_GPIOD_ARCHIVE)
+    message(FATAL_ERROR "gpiod.h and libgpiod.a are not installed; run ci/setup once as root")
+endif()
+file(STRINGS "${TAPPET_GPIOD_INCLUDE}/gpiod.h" tappet_gpiod_v2 REGEX "gpiod_line_settings_new" LIMIT_COUNT 1)
+if(NOT tappet_gpiod_v2)
+    message(FATAL_ERROR "${TAPPET_GPIOD_INCLUDE}/gpiod.h is version 1, version 2 is needed; run ci/setup once as root")
+endif()
+
+add_library(tappet_libgpiod STATIC IMPORTED GLOBAL)
+set_target_properties(tappet_libgpiod PROPERTIES IMPORTED_LOCATION "${TAPPET_GPIOD_ARCHIVE}")
+add_library(tappet::libgpiod ALIAS tappet_libgpiod)
+
+# --- libmodbus ----------------------------------------------------------------------------------------------------
+set(tappet_modbus_source "${TAPPET_CACHE}/libmodbus")
+if(NOT EXISTS "${tappet_modbus_source}/src/modbus.c")
+    message(FATAL_ERROR "${tappet_modbus_source} does not hold the source of libmodbus; run ci/setup once as root")
+endif()
+
+# Its configure script would do no more than this on the one system we build for.
+foreach(part IN ITEMS major minor micro)
+    file(STRINGS "${tappet_modbus_source}/configure.ac" line REGEX "m4_define\\(\\[libmodbus_version_${part}\\]")
+    string(REGEX REPLACE ".*\\[([0-9]+)\\].*" "\\1" number "${line}")
+    string(TOUPPER "LIBMODBUS_VERSION_${part}" name)
+    set(${name} "${number}")
+endforeach()
+set(LIBMODBUS_VERSION "${LIBMODBUS_VERSION_MAJOR}.${LIBMODBUS_VERSION_MINOR}.${LIBMODBUS_VERSION_MICRO}")
+set(tappet_modbus_generated "${CMAKE_BINARY_DIR}/libmodbus")
+configure_file("${tappet_modbus_source}/src/modbus-version.h.in" "${tappet_modbus_generated}/modbus/modbus-version.h" @ONLY)
+configure_file("${tappet_modbus_source}/src/modbus.h" "${tappet_modbus_generated}/modbus/modbus.h" COPYONLY)
+configure_file("${tappet_modbus_source}/src/modbus-tcp.h" "${tappet_modbus_generated}/modbus/modbus-tcp.h" COPYONLY)
+configure_file("${tappet_modbus_source}/src/modbus-rtu.h" "${tappet_modbus_generated}/modbus/modbus-rtu.h" COPYONLY)
+
+add_library(
+    tappet_libmodbus STATIC
+    "${tappet_modbus_source}/src/modbus.c"
+    "${tappet_modbus_source}/src/modbus-data.c"
+    "${tappet_modbus_source}/src/modbus-rtu.c"
+    "${tappet_modbus_source}/src/modbus-tcp.c")
+target_include_directories(
+    tappet_libmodbus SYSTEM
+    PUBLIC "${tappet_modbus_generated}" "${tappet_modbus_generated}/modbus"
+    PRIVATE "${tappet_modbus_source}/src")
+target_compile_options(
+    tappet_libmodbus
+    PRIVATE -w -O2 -D_GNU_SOURCE -DHAVE_CONFIG_H -include "${CMAKE_CURRENT_LIST_DIR}/libmodbus/config.h"
+            "-I${CMAKE_CURRENT_LIST_DIR}/libmodbus")
+add_library(tappet::libmodbus ALIAS tappet_libmodbus)
