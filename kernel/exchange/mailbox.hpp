@@ -1,0 +1,98 @@
+// Messages into an engine: one ring and one bit for each activity that sends to it, so that a sender's order is
+// kept, senders are served in order of priority, and what arrives is bounded by the rows (thesis 4.4.4, 4.2.3).
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/exchange/ring.hpp"
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tappet {
+
+/// A call to be made by the receiver, with a copy of its arguments.
+struct Message {
+    using Run = void (*)(void* object, const std::byte* arguments) noexcept TAPPET_REALTIME;
+
+    Run run = nullptr;
+    void* object = nullptr;
+    std::uint32_t id = 0; ///< the receiver's: a row, an epoch, a command slot
+    alignas(8) std::array<std::byte, 48> arguments{};
+};
+static_assert(sizeof(Message) == 72, "with its number in the ring a message takes 80 bytes, two lines and no third");
+
+using Mailbox = Ring<Message>;
+
+/// The receiving end of up to 64 mailboxes, each with one sending activity: index 0 is served first. Posting is one
+/// push and one atomic OR; waking the receiver's thread is its activity's business.
+class Inbox {
+public:
+    static constexpr std::size_t max_senders = 64;
+    static_assert(max_senders == 8 * sizeof(std::uint64_t), "one bit for each sender in one atomic word");
+
+    constexpr Inbox() = default;
+    /// The mailboxes are placed with Overflow::reject and outlive the inbox; those beyond max_senders are not used.
+    explicit constexpr Inbox(std::span<Mailbox> mailboxes) noexcept { place(mailboxes); }
+    Inbox(const Inbox&) = delete;
+    Inbox& operator=(const Inbox&) = delete;
+
+    /// As the constructor; before anybody posts.
+    constexpr void place(std::span<Mailbox> mailboxes) noexcept {
+        mailboxes_ = mailboxes.first(mailboxes.size() < max_senders ? mailboxes.size() : max_senders);
+    }
+
+    /// The sending activity's thread only, real-time. False: no such sender, or its mailbox is full and counts the loss.
+    [[nodiscard]] bool post(std::size_t sender, const Message& message) noexcept TAPPET_REALTIME {
+        if (sender >= mailboxes_.size() || !mailboxes_[sender].push(message)) return false;
+        // The result stays unused: with it both compilers would emit a loop of compare-and-exchange.
+        pending_.fetch_or(std::uint64_t{1} << sender, std::memory_order_release);
+        return true;
+    }
+
+    /// Any thread, real-time: whether serve() would find something.
+    [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME {
+        return pending_.load(std::memory_order_acquire) != 0;
+    }
+
+    /// The receiver's thread only, real-time if visit(const Message&) is. Serves from each mailbox what is in it when
+    /// its turn comes, so a message posted by a visited one may wait for the next call: pending() then says so.
+    /// Returns how many were served.
+    template <class Visit>
+    std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
+        std::uint64_t waiting = pending_.exchange(0, std::memory_order_acquire);
+        std::uint64_t left = 0;
+        std::size_t served = 0;
+        for (std::size_t turn = 0; turn < max_senders && waiting != 0; ++turn) {
+            const auto sender = static_cast<std::size_t>(std::countr_zero(waiting));
+            waiting &= waiting - 1;
+            Mailbox& mailbox = mailboxes_[sender];
+            const std::size_t batch = mailbox.size();
+            for (std::size_t i = 0; i < batch; ++i) {
+                Message message;
+                if (!mailbox.pop(message)) break;
+                visit(static_cast<const Message&>(message));
+                ++served;
+            }
+            if (!mailbox.empty()) left |= std::uint64_t{1} << sender;
+        }
+        if (left != 0) pending_.fetch_or(left, std::memory_order_relaxed);
+        return served;
+    }
+
+    /// serve(), each message making its call.
+    std::size_t run_all() noexcept TAPPET_REALTIME {
+        return serve([](const Message& message) noexcept TAPPET_REALTIME {
+            if (message.run != nullptr) message.run(message.object, message.arguments.data());
+        });
+    }
+
+private:
+    std::span<Mailbox> mailboxes_{};
+    alignas(line_pair_bytes) std::atomic<std::uint64_t> pending_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,207 @@
+// A queue from one thread to one other, in storage that the machine's planner provides: wait-free on both sides,
+// in order, and full in one of two ways: it refuses the newest, or it gives up the oldest (thesis 4.4: the buffer).
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/exchange/words.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+
+namespace tappet {
+
+/// What a full ring does with one more.
+enum class Overflow : std::uint8_t {
+    reject,      ///< push returns false, the ring is as it was
+    drop_oldest, ///< push always succeeds, the oldest is lost
+};
+
+/// Any capacity from 1. Each index lies with its owner's private state far from what the other side polls, and an
+/// index of the other side is loaded only when the copy kept of it no longer suffices.
+template <Exchangeable T, template <class> class Atomic = std::atomic>
+class Ring {
+    using Value = Words<T, Atomic>;
+    struct CellLayout {
+        Atomic<std::uint64_t> number;
+        Value value;
+    };
+    // Cells smaller than a line share it without straddling two; larger ones begin on their own.
+    struct alignas(std::min<std::size_t>(64, std::bit_ceil(sizeof(CellLayout)))) Cell {
+        Atomic<std::uint64_t> number{}; // of the value in it, from 1; 0: none, or being written
+        Value value{};
+    };
+
+    // When it drops, the producer writes this far behind the oldest value that the consumer may still take, so that
+    // an attempt to take it fails only if the producer pushes as often within that one copy.
+    static constexpr std::size_t spare_cells = 2;
+    static constexpr std::size_t attempts = 3;
+    static_assert(spare_cells >= 1, "with none the producer writes into the very value being taken");
+    static_assert(attempts >= 2, "an attempt that was overtaken skips what was lost; the next one may then succeed");
+
+public:
+    static constexpr std::size_t alignment = alignof(Cell);
+    [[nodiscard]] static constexpr std::size_t bytes_for(std::size_t capacity) noexcept {
+        return (capacity + spare_cells) * sizeof(Cell);
+    }
+
+    /// Holds nothing and refuses everything until it is placed.
+    constexpr Ring() = default;
+    /// `storage`: bytes_for(capacity) bytes at `alignment`, outliving the ring.
+    Ring(std::byte* storage, std::size_t capacity, Overflow overflow) noexcept { place(storage, capacity, overflow); }
+    Ring(const Ring&) = delete;
+    Ring& operator=(const Ring&) = delete;
+
+    /// As the constructor; before either side uses the ring.
+    void place(std::byte* storage, std::size_t capacity, Overflow overflow) noexcept {
+        const std::size_t cells = capacity + (overflow == Overflow::drop_oldest ? spare_cells : 0);
+        Cell* first = nullptr;
+        for (std::size_t i = 0; i < cells; ++i) {
+            Cell* cell = ::new (static_cast<void*>(storage + i * sizeof(Cell))) Cell{};
+            if (i == 0) first = cell;
+        }
+        producer_.place = {first, cells, capacity, overflow};
+        consumer_.place = producer_.place;
+    }
+
+    /// Producer only. One copy. False: full, and refused.
+    [[nodiscard]] bool push(const T& value) noexcept TAPPET_REALTIME {
+        Producer& my = producer_;
+        if (my.place.overflow == Overflow::reject && my.position - my.consumed == my.place.capacity) {
+            my.consumed = head_.load(std::memory_order_acquire);
+            if (my.position - my.consumed == my.place.capacity) {
+                my.refused.store(my.refused.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+                return false;
+            }
+        }
+        Cell& cell = my.place.cells[my.cell];
+        cell.number.store(0, std::memory_order_relaxed);
+        cell.value.store(value);
+        cell.number.store(my.position + 1, std::memory_order_release);
+        ++my.position;
+        my.cell = my.cell + 1 == my.place.count ? 0 : my.cell + 1;
+        tail_.store(my.position, std::memory_order_release);
+        raise_mark();
+        return true;
+    }
+
+    /// Consumer only. At most `attempts` copies, without overflow exactly one. False, `into` untouched: empty; or,
+    /// when dropping, the producer overtook every attempt, and the next call goes on behind what was lost.
+    [[nodiscard]] bool pop(T& into) noexcept TAPPET_REALTIME {
+        return consumer_.place.overflow == Overflow::reject ? pop_next(into) : pop_oldest_left(into);
+    }
+
+    /// Values inside. Exact for either side as far as its own doing goes; any other thread sees a recent value.
+    [[nodiscard]] std::size_t size() const noexcept TAPPET_REALTIME {
+        const std::uint64_t head = head_.load(std::memory_order_acquire);
+        const std::uint64_t tail = tail_.load(std::memory_order_acquire);
+        return static_cast<std::size_t>(std::min<std::uint64_t>(tail - head, consumer_.place.capacity));
+    }
+    [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return size() == 0; }
+    [[nodiscard]] std::size_t capacity() const noexcept TAPPET_REALTIME { return consumer_.place.capacity; }
+    /// The most that ever were inside; capacity() less this was never needed. Any thread.
+    [[nodiscard]] std::size_t high_water() const noexcept TAPPET_REALTIME {
+        return static_cast<std::size_t>(producer_.high_water.load(std::memory_order_relaxed));
+    }
+    /// Values pushed that will never be popped, by either policy. Any thread: exact while the other side rests,
+    /// otherwise behind by what it is just doing.
+    [[nodiscard]] std::uint64_t lost() const noexcept TAPPET_REALTIME {
+        const std::uint64_t refused = producer_.refused.load(std::memory_order_relaxed);
+        // Skipped before head: the consumer stores them the other way round, so nothing counts twice.
+        const std::uint64_t skipped = consumer_.skipped.load(std::memory_order_acquire);
+        const std::uint64_t head = head_.load(std::memory_order_acquire);
+        const std::uint64_t fill = tail_.load(std::memory_order_acquire) - head;
+        const std::uint64_t capacity = consumer_.place.capacity;
+        return refused + skipped + (fill > capacity ? fill - capacity : 0);
+    }
+
+private:
+    struct Place {
+        Cell* cells = nullptr;
+        std::uint64_t count = 0;
+        std::uint64_t capacity = 0;
+        Overflow overflow = Overflow::reject;
+    };
+    struct alignas(line_pair_bytes) Producer {
+        Place place{};
+        std::uint64_t position = 0; // values pushed
+        std::uint64_t cell = 0;     // position % count
+        std::uint64_t consumed = 0; // head_ when last loaded
+        Atomic<std::uint64_t> high_water{};
+        Atomic<std::uint64_t> refused{};
+    };
+    struct alignas(line_pair_bytes) Consumer {
+        Place place{};
+        std::uint64_t position = 0; // values popped or skipped
+        std::uint64_t cell = 0;     // position % count
+        std::uint64_t produced = 0; // tail_ when last loaded
+        Atomic<std::uint64_t> skipped{};
+    };
+
+    // The other side's index is loaded only when the fill could be a new maximum, so the mark is exact and yet
+    // costs nothing once it stands.
+    void raise_mark() noexcept TAPPET_REALTIME {
+        Producer& my = producer_;
+        const std::uint64_t mark = my.high_water.load(std::memory_order_relaxed);
+        if (mark == my.place.capacity || my.position - my.consumed <= mark) return;
+        my.consumed = head_.load(std::memory_order_acquire);
+        const std::uint64_t fill = std::min(my.position - my.consumed, my.place.capacity);
+        if (fill > mark) my.high_water.store(fill, std::memory_order_relaxed);
+    }
+
+    bool pop_next(T& into) noexcept TAPPET_REALTIME {
+        Consumer& my = consumer_;
+        if (my.position == my.produced) {
+            my.produced = tail_.load(std::memory_order_acquire);
+            if (my.position == my.produced) return false;
+        }
+        typename Value::Copy copy;
+        my.place.cells[my.cell].value.load(copy);
+        Value::unpack(copy, into);
+        advance();
+        return true;
+    }
+
+    bool pop_oldest_left(T& into) noexcept TAPPET_REALTIME {
+        Consumer& my = consumer_;
+        for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
+            my.produced = tail_.load(std::memory_order_acquire);
+            if (my.position == my.produced) return false;
+            if (my.produced - my.position > my.place.capacity) skip_to(my.produced - my.place.capacity);
+            const Cell& cell = my.place.cells[my.cell];
+            typename Value::Copy copy;
+            cell.value.load(copy);
+            if (cell.number.load(std::memory_order_relaxed) != my.position + 1) continue;
+            Value::unpack(copy, into);
+            advance();
+            return true;
+        }
+        return false;
+    }
+
+    void advance() noexcept TAPPET_REALTIME {
+        Consumer& my = consumer_;
+        ++my.position;
+        my.cell = my.cell + 1 == my.place.count ? 0 : my.cell + 1;
+        head_.store(my.position, std::memory_order_release);
+    }
+
+    void skip_to(std::uint64_t position) noexcept TAPPET_REALTIME {
+        Consumer& my = consumer_;
+        const std::uint64_t skipped = position - my.position;
+        my.position = position;
+        my.cell = position % my.place.count;
+        head_.store(position, std::memory_order_release);
+        my.skipped.store(my.skipped.load(std::memory_order_relaxed) + skipped, std::memory_order_release);
+    }
+
+    Producer producer_{};
+    alignas(line_pair_bytes) Atomic<std::uint64_t> tail_{}; // values pushed, for the consumer
+    Consumer consumer_{};
+    alignas(line_pair_bytes) Atomic<std::uint64_t> head_{}; // values popped or skipped, for the producer
+};
+
+} // namespace tappet
