@@ -1,0 +1,268 @@
+// The checks of a state machine: the first fault as one sentence that names the row, the fault and the cure. The same
+// code runs in the C++ compiler for tables and compiled scripts, and on the target for loaded ones.
+#pragma once
+
+#include "kernel/base/nearest.hpp"
+#include "kernel/base/text.hpp"
+#include "kernel/statechart/hierarchy.hpp"
+
+namespace tappet {
+
+namespace statechart {
+
+class Checker {
+public:
+    explicit constexpr Checker(const StateMachineTable& table) : table_{table}, names_{table} {}
+
+    constexpr Sentence check() {
+        if (check_states() && check_nesting() && check_roles() && check_transitions() && check_all_taken() &&
+            check_all_left() && check_all_reached())
+            static_cast<void>(check_waits());
+        return fault_;
+    }
+
+private:
+    // ---- each row by itself
+
+    constexpr bool check_states() {
+        if (table_.states.empty()) return fail("it has no state; give it an initial and a final one");
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            const StateRow& row = table_.states[i];
+            const Sentence who = state_text(i);
+            if (row.name.empty()) return fail("state ", i + 1, " has no name; give it one");
+            if (find_state(table_, row.name) != i) return fail(who, " is there twice; rename or drop one");
+            if (!row.twice.empty()) return fail_twice(who, row.twice);
+            if (!is_own(row.component)) return fail_foreign(who, row.component);
+            if (!row.parent.empty() && names_.parent[i] == no_state)
+                return fail(who, " is in an unknown state \"", row.parent, "\"; ", cure_for(row.parent));
+        }
+        return true;
+    }
+
+    constexpr bool check_nesting() {
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            if (names_.depth[i] != 0) continue;
+            std::size_t hops = 0;
+            StateIndex outer = names_.parent[i];
+            while (outer != no_state && outer != i && hops++ < names_.states()) outer = names_.parent[outer];
+            if (outer == i) return fail(state_text(i), " is inside itself; take one in(...) out of the ring");
+        }
+        for (std::size_t i = 0; i < names_.states(); ++i)
+            if (names_.depth[i] == 0)
+                return fail(state_text(i), " is more than ", max_state_depth, " levels deep; flatten the hierarchy");
+        return true;
+    }
+
+    constexpr bool check_roles() {
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            const StateRow& row = table_.states[i];
+            const StateIndex outer = names_.parent[i];
+            const StateIndex first = outer == no_state ? names_.initial_top : names_.initial_inside[outer];
+            if (row.initial && first != i)
+                return fail(state_text(i), " is a second initial state ", where(outer), " beside \"", name(first),
+                            "\"; keep one");
+            if (row.final && names_.final_state != i)
+                return fail(state_text(i), " is a second final state beside \"", name(names_.final_state),
+                            "\"; keep one, the safe state that a request leads to from everywhere");
+            if (row.final && outer != no_state)
+                return fail(state_text(i), " is final inside \"", name(outer),
+                            "\"; the final state is safe for the whole machine: take it out of every composite");
+            if (row.final && names_.composite[i])
+                return fail(state_text(i), " is final and has states inside; the safe state is a plain one");
+        }
+        if (names_.initial_top == no_state) return fail("no top state is initial; mark the one to start in");
+        for (std::size_t i = 0; i < names_.states(); ++i)
+            if (names_.composite[i] && names_.initial_inside[i] == no_state)
+                return fail(state_text(i), " is composite and none of its states is initial; mark the one to enter");
+        if (names_.final_state == no_state)
+            return fail("no state is final; mark the safe state that the machine may be brought to from everywhere");
+        return true;
+    }
+
+    constexpr bool check_transitions() {
+        for (std::size_t t = 0; t < names_.transitions(); ++t) {
+            const TransitionRow& row = table_.transitions[t];
+            const Sentence who = transition_text(t);
+            if (names_.from[t] == no_state)
+                return fail(who, " leaves an unknown state \"", row.from, "\"; ", cure_for(row.from));
+            if (!row.to.empty() && names_.to[t] == no_state)
+                return fail(who, " leads to an unknown state \"", row.to, "\"; ", cure_for(row.to));
+            if (!row.twice.empty()) return fail_twice(who, row.twice);
+            if (!is_own(row.component)) return fail_foreign(who, row.component);
+            if (row.on_event && row.event.empty())
+                return fail(who, " waits for an event without a name; write on(\"component.event\")");
+            if (row.on_event && row.timed)
+                return fail(who, " has both on(...) and after(...); make two transitions of it");
+            if (row.timed && row.after <= Duration{})
+                return fail(who, " has a time-out that is not positive; write a time, or leave after(...) out");
+            if (row.to.empty() && !row.on_event)
+                return fail(who, " is internal and has no event, so it would fire in every step; use run<> of the state");
+            if (row.to.empty() && row.then == nullptr)
+                return fail(who, " is internal and does nothing; give it then<>, or drop it");
+        }
+        return true;
+    }
+
+    // ---- the rows together
+
+    // One row takes away everything from the other when it comes first and holds whenever the other could.
+    [[nodiscard]] constexpr bool blocks(std::size_t first, std::size_t second) const {
+        const TransitionRow& a = table_.transitions[first];
+        const TransitionRow& b = table_.transitions[second];
+        if (a.guard != nullptr || names_.trigger[first] != names_.trigger[second]) return false;
+        if (!a.timed) return true;
+        return b.timed && names_.from[first] == names_.from[second] && a.after <= b.after;
+    }
+
+    // The transition that comes before `wanted` in `leaf` and blocks it, or the number of transitions.
+    [[nodiscard]] constexpr std::size_t blocker_in(StateIndex leaf, std::size_t wanted) const {
+        for (StateIndex source = leaf; source != no_state; source = names_.parent[source])
+            for (std::size_t t = 0; t < names_.transitions(); ++t) {
+                if (names_.from[t] != source) continue;
+                if (t == wanted) return names_.transitions();
+                if (blocks(t, wanted)) return t;
+            }
+        return names_.transitions();
+    }
+
+    constexpr bool check_all_taken() {
+        for (std::size_t t = 0; t < names_.transitions(); ++t) {
+            std::size_t blocker = names_.transitions();
+            bool open = false;
+            for (std::size_t i = 0; i < names_.states() && !open; ++i) {
+                const auto leaf = static_cast<StateIndex>(i);
+                if (names_.composite[i] || !names_.is_inside(leaf, names_.from[t])) continue;
+                const std::size_t b = blocker_in(leaf, t);
+                open = b == names_.transitions();
+                if (!open) blocker = b;
+            }
+            if (!open)
+                return fail(transition_text(t), " can never be taken, ", transition_text(blocker),
+                            " always comes first; give that one a guard<>, put this one before it, or drop it");
+        }
+        return true;
+    }
+
+    [[nodiscard]] constexpr bool leaves(StateIndex leaf, std::size_t t) const {
+        return names_.to[t] != no_state && names_.is_inside(leaf, names_.from[t]);
+    }
+
+    constexpr bool check_all_left() {
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            if (names_.composite[i] || table_.states[i].final) continue;
+            const auto leaf = static_cast<StateIndex>(i);
+            bool left = false;
+            for (std::size_t t = 0; t < names_.transitions() && !left; ++t)
+                left = leaves(leaf, t) && names_.initial_leaf(names_.to[t]) != leaf;
+            if (!left) return fail(state_text(i), " has no way out; give it a transition, or mark it final");
+        }
+        return true;
+    }
+
+    constexpr bool check_all_reached() {
+        std::array<bool, max_states> reached{};
+        std::array<StateIndex, max_states> open{};
+        std::size_t waiting = 0;
+        const auto reach = [&](StateIndex state) {
+            const StateIndex leaf = names_.initial_leaf(state);
+            if (reached[leaf]) return;
+            open[waiting++] = leaf;
+            for (StateIndex s = leaf; s != no_state; s = names_.parent[s]) reached[s] = true;
+        };
+        reach(names_.initial_top);
+        reach(names_.final_state); // always valid by request
+        while (waiting > 0) {
+            const StateIndex leaf = open[--waiting];
+            for (std::size_t t = 0; t < names_.transitions(); ++t)
+                if (leaves(leaf, t)) reach(names_.to[t]);
+        }
+        for (std::size_t i = 0; i < names_.states(); ++i)
+            if (!reached[i])
+                return fail(state_text(i), " is never entered; lead a transition to it, make it initial, or drop it");
+        return true;
+    }
+
+    // Follows the transitions that need nothing to be taken; coming back to a state means that no step would end.
+    constexpr bool check_waits() {
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            if (names_.composite[i]) continue;
+            auto leaf = static_cast<StateIndex>(i);
+            for (std::size_t hops = 0; hops <= names_.states(); ++hops) {
+                const std::size_t t = free_transition_of(leaf);
+                if (t == names_.transitions()) break;
+                leaf = names_.initial_leaf(names_.to[t]);
+                if (leaf == i)
+                    return fail(state_text(i), " comes back to itself without waiting, by ", transition_text(t),
+                                "; give one transition of the ring on(...), after(...) or guard<>");
+            }
+        }
+        return true;
+    }
+    [[nodiscard]] constexpr std::size_t free_transition_of(StateIndex leaf) const {
+        for (StateIndex source = leaf; source != no_state; source = names_.parent[source])
+            for (std::size_t t = 0; t < names_.transitions(); ++t) {
+                const TransitionRow& row = table_.transitions[t];
+                if (names_.from[t] == source && !row.on_event && !row.timed && row.guard == nullptr) return t;
+            }
+        return names_.transitions();
+    }
+
+    // ---- sentences
+
+    template <class... Pieces>
+    constexpr bool fail(const Pieces&... pieces) {
+        fault_ = Sentence{"state machine \"", table_.name, "\": ", pieces...};
+        return false;
+    }
+    constexpr bool fail_twice(const Sentence& who, std::string_view part) {
+        if (part == "component type") return fail(who, " has programs of two component types; use those of one");
+        return fail(who, " is given ", part, " twice; keep one");
+    }
+    constexpr bool fail_foreign(const Sentence& who, TypeId component) {
+        return fail(who, " has a program of ", component->name, ", and the machine is one of ",
+                    table_.component == nullptr ? "no component" : table_.component->name,
+                    "; use member functions that this component itself declares");
+    }
+    [[nodiscard]] constexpr bool is_own(TypeId component) const {
+        return component == nullptr || component == table_.component;
+    }
+    [[nodiscard]] constexpr std::string_view name(StateIndex state) const { return table_.states[state].name; }
+    [[nodiscard]] constexpr Sentence state_text(std::size_t i) const {
+        return Sentence{"state \"", table_.states[i].name, "\""};
+    }
+    [[nodiscard]] constexpr Sentence where(StateIndex outer) const {
+        return outer == no_state ? Sentence{"at the top"} : Sentence{"in \"", name(outer), "\""};
+    }
+    [[nodiscard]] constexpr Sentence transition_text(std::size_t t) const {
+        const TransitionRow& row = table_.transitions[t];
+        Sentence text{"transition ", t + 1, " (\"", row.from, "\""};
+        if (!row.to.empty()) text.add(" to \"").add(row.to).add("\"");
+        if (row.on_event) text.add(" on \"").add(row.event).add("\"");
+        return text.add(")");
+    }
+    [[nodiscard]] constexpr Sentence cure_for(std::string_view written) const {
+        Nearest nearest{written};
+        for (const StateRow& row : table_.states) nearest.consider(row.name);
+        if (nearest.best().empty()) return Sentence{"name one of the machine's states, or add this one"};
+        return Sentence{"did you mean \"", nearest.best(), "\"?"};
+    }
+
+    const StateMachineTable& table_;
+    StateHierarchy names_;
+    Sentence fault_;
+};
+
+} // namespace statechart
+
+/// Empty when the machine is good. Bounded, without heap; not for real-time threads.
+constexpr Sentence check(const StateMachineTable& table) {
+    if (table.states.size() > max_states)
+        return Sentence{"state machine \"", table.name, "\": it has ", table.states.size(), " states and may have ",
+                        max_states, "; split it over components"};
+    if (table.transitions.size() > max_transitions)
+        return Sentence{"state machine \"", table.name, "\": it has ", table.transitions.size(),
+                        " transitions and may have ", max_transitions, "; split it over components"};
+    return statechart::Checker{table}.check();
+}
+
+} // namespace tappet

@@ -1,0 +1,205 @@
+// How a state machine is spelled in C++. Each word gives a plain struct; member functions become function pointers.
+//
+//     constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
+//         states(
+//             state("idle", initial, entry<&Loom::all_off>),
+//             state("working"),
+//             state("run_up", in("working"), initial, entry<&Loom::begin>, run<&Loom::hold_speed>),
+//             state("weave", in("working"), run<&Loom::check>, exit<&Loom::stop_weft>),
+//             state("safe", final, entry<&Loom::safe>)),
+//         transitions(
+//             transition("idle", "run_up", on("panel.start"), guard<&Loom::ready>, then<&Loom::count_start>),
+//             transition("run_up", "weave", guard<&Loom::at_speed>),
+//             transition("run_up", "safe", after(5s), because("the run-up took too long")),
+//             transition("working", "safe", on("panel.emergency")),
+//             internal("weave", on("panel.mark"), then<&Loom::mark>)));
+//     static_assert(check(loom_cycle.view()).empty());
+#pragma once
+
+#include "kernel/statechart/table.hpp"
+
+#include <array>
+#include <type_traits>
+
+namespace tappet {
+
+namespace statechart {
+
+template <class>
+struct Member {
+    static constexpr bool real_time = false;
+};
+template <class R, class C>
+struct Member<R (C::*)() noexcept TAPPET_REALTIME> {
+    static constexpr bool real_time = true;
+    using Result = R;
+    using Component = C;
+    using Object = C;
+};
+template <class R, class C>
+struct Member<R (C::*)() const noexcept TAPPET_REALTIME> {
+    static constexpr bool real_time = true;
+    using Result = R;
+    using Component = C;
+    using Object = const C;
+};
+
+template <auto Function, class Result>
+Result call(void* component) noexcept TAPPET_REALTIME {
+    return (static_cast<typename Member<decltype(Function)>::Object*>(component)->*Function)();
+}
+
+template <class Pointer>
+struct Bound {
+    Pointer call = nullptr;
+    TypeId component = nullptr;
+};
+
+template <auto Function, class Result>
+consteval auto bind() {
+    using Of = Member<decltype(Function)>;
+    static_assert(Of::real_time, "a program or guard of a state machine is a member function without arguments, "
+                                 "declared noexcept TAPPET_REALTIME: it runs in the real-time activity");
+    static_assert(std::is_same_v<typename Of::Result, Result>,
+                  "a guard returns bool; an entry, exit, run or transition program returns void");
+    return Bound<Result (*)(void*) noexcept TAPPET_REALTIME>{&call<Function, Result>, type_id<typename Of::Component>};
+}
+
+struct Entry : Bound<StateProgram> {};
+struct Exit : Bound<StateProgram> {};
+struct Run : Bound<StateProgram> {};
+struct Then : Bound<StateProgram> {};
+struct When : Bound<StateGuard> {};
+struct In {
+    std::string_view state;
+};
+struct On {
+    std::string_view event;
+};
+struct After {
+    Duration time;
+};
+struct Because {
+    std::string_view reason;
+};
+
+// A row takes each part once and belongs to one component type; what is against that is kept for the check to report.
+template <class Row>
+constexpr void give(Row& row, std::string_view part, bool is_given) {
+    if (is_given && row.twice.empty()) row.twice = part;
+}
+template <class Row, class Pointer>
+constexpr void give(Row& row, std::string_view part, Pointer& place, const Bound<Pointer>& bound) {
+    give(row, part, place != nullptr);
+    place = bound.call;
+    if (row.component == nullptr) row.component = bound.component;
+    else if (row.component != bound.component) give(row, "component type", true);
+}
+
+} // namespace statechart
+
+/// The role of a state.
+enum StateRole : std::uint8_t { initial, final };
+
+template <auto Function>
+inline constexpr statechart::Entry entry{statechart::bind<Function, void>()};
+template <auto Function>
+inline constexpr statechart::Exit exit{statechart::bind<Function, void>()};
+template <auto Function>
+inline constexpr statechart::Run run{statechart::bind<Function, void>()};
+/// The transition program.
+template <auto Function>
+inline constexpr statechart::Then then{statechart::bind<Function, void>()};
+template <auto Function>
+inline constexpr statechart::When guard{statechart::bind<Function, bool>()};
+/// The composite state around this one.
+constexpr statechart::In in(std::string_view state) { return {state}; }
+/// An event transition: "component.event", or "event" of the own component.
+constexpr statechart::On on(std::string_view event) { return {event}; }
+/// A time-out: time since the transition's source was entered.
+constexpr statechart::After after(Duration time) { return {time}; }
+/// What the operator is told when the transition is taken.
+constexpr statechart::Because because(std::string_view reason) { return {reason}; }
+
+namespace statechart {
+
+constexpr void apply(StateRow& row, StateRole role) {
+    bool& place = role == tappet::initial ? row.initial : row.final;
+    give(row, role == tappet::initial ? "initial" : "final", place);
+    place = true;
+}
+constexpr void apply(StateRow& row, In part) {
+    give(row, "in", !row.parent.empty());
+    row.parent = part.state;
+}
+constexpr void apply(StateRow& row, const Entry& part) { give(row, "entry", row.entry, part); }
+constexpr void apply(StateRow& row, const Exit& part) { give(row, "exit", row.exit, part); }
+constexpr void apply(StateRow& row, const Run& part) { give(row, "run", row.run, part); }
+
+constexpr void apply(TransitionRow& row, On part) {
+    give(row, "on", row.on_event);
+    row.on_event = true;
+    row.event = part.event;
+}
+constexpr void apply(TransitionRow& row, After part) {
+    give(row, "after", row.timed);
+    row.timed = true;
+    row.after = part.time;
+}
+constexpr void apply(TransitionRow& row, Because part) {
+    give(row, "because", !row.because.empty());
+    row.because = part.reason;
+}
+constexpr void apply(TransitionRow& row, const When& part) { give(row, "guard", row.guard, part); }
+constexpr void apply(TransitionRow& row, const Then& part) { give(row, "then", row.then, part); }
+
+} // namespace statechart
+
+template <class... Parts>
+constexpr StateRow state(std::string_view name, const Parts&... parts) {
+    StateRow row{.name = name};
+    (statechart::apply(row, parts), ...);
+    return row;
+}
+
+template <class... Parts>
+constexpr TransitionRow transition(std::string_view from, std::string_view to, const Parts&... parts) {
+    TransitionRow row{.from = from, .to = to};
+    (statechart::apply(row, parts), ...);
+    return row;
+}
+
+/// A reaction to an event that leaves and enters no state.
+template <class... Parts>
+constexpr TransitionRow internal(std::string_view state, const Parts&... parts) {
+    return transition(state, {}, parts...);
+}
+
+template <class... Rows>
+constexpr std::array<StateRow, sizeof...(Rows)> states(const Rows&... rows) {
+    return {rows...};
+}
+
+template <class... Rows>
+constexpr std::array<TransitionRow, sizeof...(Rows)> transitions(const Rows&... rows) {
+    return {rows...};
+}
+
+/// S states, T transitions.
+template <std::size_t S, std::size_t T>
+struct StateMachine {
+    std::string_view name;
+    TypeId component;
+    std::array<StateRow, S> states;
+    std::array<TransitionRow, T> transitions;
+
+    [[nodiscard]] constexpr StateMachineTable view() const { return {name, states, transitions, component}; }
+};
+
+template <class Component, std::size_t S, std::size_t T>
+constexpr StateMachine<S, T> state_machine(std::string_view name, const std::array<StateRow, S>& states,
+                                           const std::array<TransitionRow, T>& transitions = {}) {
+    return {name, type_id<Component>, states, transitions};
+}
+
+} // namespace tappet
