@@ -1,0 +1,198 @@
+#include "kernel/exchange/mailbox.hpp"
+
+#include "tests/kernel/exchange/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+/// An inbox with mailboxes and their storage.
+class Post {
+public:
+    Post(std::size_t senders, std::size_t capacity)
+        : capacity_bytes_(Mailbox::bytes_for(capacity)),
+          storage_((senders * capacity_bytes_ + sizeof(Line) - 1) / sizeof(Line)), boxes(senders) {
+        for (std::size_t i = 0; i < senders; ++i) {
+            const std::size_t offset = i * capacity_bytes_;
+            boxes[i].place(storage_[offset / sizeof(Line)].bytes, capacity, Overflow::reject);
+        }
+        inbox.place(boxes);
+    }
+
+private:
+    struct alignas(64) Line {
+        std::byte bytes[64];
+    };
+    static_assert(Mailbox::alignment == sizeof(Line) && Mailbox::bytes_for(1) % sizeof(Line) == 0);
+
+    std::size_t capacity_bytes_;
+    std::vector<Line> storage_;
+
+public:
+    std::vector<Mailbox> boxes;
+    Inbox inbox;
+};
+
+Message numbered(std::uint32_t id) {
+    Message message;
+    message.id = id;
+    return message;
+}
+
+/// The ids served, in place: a visitor is real-time.
+struct Served {
+    std::array<std::uint32_t, 256> ids{};
+    std::size_t count = 0;
+    void operator()(const Message& message) noexcept TAPPET_REALTIME { ids[count++ % ids.size()] = message.id; }
+    [[nodiscard]] std::vector<std::uint32_t> list() const {
+        return {ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count)};
+    }
+};
+
+TEST(Inbox, has_nothing_at_first) {
+    Post post{3, 4};
+    Served served;
+    EXPECT_FALSE(post.inbox.pending());
+    EXPECT_EQ(post.inbox.serve(served), 0u);
+}
+
+TEST(Inbox, serves_senders_in_their_order_and_each_in_the_order_it_sent) {
+    Post post{3, 4};
+    EXPECT_TRUE(post.inbox.post(2, numbered(20)));
+    EXPECT_TRUE(post.inbox.post(0, numbered(1)));
+    EXPECT_TRUE(post.inbox.post(2, numbered(21)));
+    EXPECT_TRUE(post.inbox.post(1, numbered(10)));
+    EXPECT_TRUE(post.inbox.post(0, numbered(2)));
+    EXPECT_TRUE(post.inbox.pending());
+    Served served;
+    EXPECT_EQ(post.inbox.serve(served), 5u);
+    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{1, 2, 10, 20, 21}));
+    EXPECT_FALSE(post.inbox.pending());
+}
+
+TEST(Inbox, takes_64_senders_and_no_65th) {
+    Post post{65, 1};
+    EXPECT_TRUE(post.inbox.post(63, numbered(63)));
+    EXPECT_TRUE(post.inbox.post(0, numbered(0)));
+    EXPECT_FALSE(post.inbox.post(64, numbered(64)));
+    EXPECT_FALSE(post.inbox.post(1000, numbered(64)));
+    Served served;
+    EXPECT_EQ(post.inbox.serve(served), 2u);
+    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{0, 63}));
+}
+
+TEST(Inbox, without_mailboxes_refuses_every_post) {
+    Inbox inbox;
+    EXPECT_FALSE(inbox.post(0, numbered(1)));
+    EXPECT_FALSE(inbox.pending());
+}
+
+TEST(Inbox, refuses_a_message_when_the_senders_mailbox_is_full_and_counts_it) {
+    Post post{2, 2};
+    EXPECT_TRUE(post.inbox.post(1, numbered(1)));
+    EXPECT_TRUE(post.inbox.post(1, numbered(2)));
+    EXPECT_FALSE(post.inbox.post(1, numbered(3)));
+    EXPECT_TRUE(post.inbox.post(0, numbered(4))) << "the other senders have room of their own";
+    EXPECT_EQ(post.boxes[1].lost(), 1u);
+    EXPECT_EQ(post.boxes[0].lost(), 0u);
+    Served served;
+    post.inbox.serve(served);
+    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{4, 1, 2}));
+}
+
+TEST(Inbox, leaves_what_is_posted_while_it_serves_a_mailbox_for_the_next_call) {
+    Post post{1, 8};
+    EXPECT_TRUE(post.inbox.post(0, numbered(1)));
+    EXPECT_TRUE(post.inbox.post(0, numbered(2)));
+    std::size_t calls = 0;
+    const auto answering = [&](const Message& message) noexcept TAPPET_REALTIME {
+        ++calls;
+        static_cast<void>(post.inbox.post(0, numbered(message.id + 10)));
+    };
+    EXPECT_EQ(post.inbox.serve(answering), 2u) << "a chain of messages cannot hold the engine";
+    EXPECT_TRUE(post.inbox.pending());
+    Served served;
+    EXPECT_EQ(post.inbox.serve(served), 2u);
+    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{11, 12}));
+    EXPECT_FALSE(post.inbox.pending());
+    EXPECT_EQ(calls, 2u);
+}
+
+TEST(Inbox, runs_each_message_with_its_object_and_its_arguments) {
+    Post post{1, 4};
+    double sum = 0;
+    Message message;
+    message.object = &sum;
+    message.run = [](void* object, const std::byte* arguments) noexcept TAPPET_REALTIME {
+        double addend = 0;
+        __builtin_memcpy(&addend, arguments, sizeof addend);
+        *static_cast<double*>(object) += addend;
+    };
+    for (const double addend : {1.5, 2.0}) {
+        std::memcpy(message.arguments.data(), &addend, sizeof addend);
+        EXPECT_TRUE(post.inbox.post(0, message));
+    }
+    EXPECT_TRUE(post.inbox.post(0, Message{})) << "a message without a call is served and does nothing";
+    EXPECT_EQ(post.inbox.run_all(), 3u);
+    EXPECT_EQ(sum, 3.5);
+}
+
+TEST(Message, keeps_its_arguments_aligned_for_any_number) {
+    EXPECT_EQ(offsetof(Message, arguments) % alignof(std::uint64_t), 0u);
+    EXPECT_EQ(Message{}.arguments.size(), 48u);
+}
+
+// Several senders and one receiver that sleeps unless pending() says there is something: no message may be forgotten.
+TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
+    constexpr std::size_t senders = 4;
+    constexpr std::uint32_t last = 10'000;
+    Post post{senders, 7};
+    std::array<std::uint32_t, senders> seen{};
+    bool ordered = true;
+
+    std::vector<std::thread> threads;
+    for (std::size_t sender = 0; sender < senders; ++sender) {
+        threads.emplace_back([&post, sender] {
+            Random random{stress_seed() * 100 + sender};
+            for (std::uint32_t number = 1; number <= last;) {
+                Message message = numbered(number);
+                message.arguments.fill(static_cast<std::byte>(number));
+                message.arguments[0] = static_cast<std::byte>(sender);
+                if (post.inbox.post(sender, message)) ++number;
+                else std::this_thread::yield();
+                dither(random);
+            }
+        });
+    }
+    Random random{stress_seed()};
+    const auto visit = [&](const Message& message) noexcept TAPPET_REALTIME {
+        const auto sender = static_cast<std::size_t>(message.arguments[0]);
+        for (std::size_t i = 1; i < message.arguments.size(); ++i) {
+            ordered = ordered && message.arguments[i] == static_cast<std::byte>(message.id);
+        }
+        ordered = ordered && message.id == seen[sender] + 1;
+        seen[sender] = message.id;
+    };
+    std::uint64_t served = 0;
+    while (served < senders * last) {
+        if (post.inbox.pending()) served += post.inbox.serve(visit);
+        else std::this_thread::yield();
+        dither(random);
+    }
+    for (auto& thread : threads) thread.join();
+    EXPECT_TRUE(ordered);
+    for (const std::uint32_t number : seen) EXPECT_EQ(number, last);
+    EXPECT_FALSE(post.inbox.pending());
+}
+
+} // namespace

@@ -1,0 +1,360 @@
+#include "kernel/exchange/ring.hpp"
+
+#include "tests/kernel/exchange/preemption.hpp"
+#include "tests/kernel/exchange/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <thread>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+/// A ring with the storage it asks for.
+template <class T, template <class> class Atomic = std::atomic>
+struct Placed {
+    using Queue = Ring<T, Atomic>;
+    struct alignas(64) Line {
+        std::byte bytes[64];
+    };
+    static_assert(Queue::alignment <= alignof(Line));
+
+    Placed(std::size_t capacity, Overflow overflow)
+        : storage((Queue::bytes_for(capacity) + sizeof(Line) - 1) / sizeof(Line)),
+          ring(storage.front().bytes, capacity, overflow) {}
+
+    std::vector<Line> storage;
+    Queue ring;
+};
+
+TEST(Ring, refuses_everything_until_it_is_placed) {
+    Ring<int> ring;
+    int value = 7;
+    EXPECT_FALSE(ring.push(1));
+    EXPECT_FALSE(ring.pop(value));
+    EXPECT_EQ(value, 7);
+    EXPECT_EQ(ring.lost(), 1u);
+    EXPECT_EQ(ring.capacity(), 0u);
+}
+
+TEST(Ring, gives_back_in_order) {
+    Placed<int> placed{5, Overflow::reject};
+    for (int round = 0; round < 4; ++round) {
+        for (int i = 0; i < 5; ++i) EXPECT_TRUE(placed.ring.push(10 * round + i));
+        for (int i = 0; i < 5; ++i) {
+            int value = -1;
+            EXPECT_TRUE(placed.ring.pop(value));
+            EXPECT_EQ(value, 10 * round + i);
+        }
+    }
+    EXPECT_EQ(placed.ring.lost(), 0u);
+}
+
+TEST(Ring, refuses_a_push_when_full_and_counts_it) {
+    Placed<int> placed{2, Overflow::reject};
+    EXPECT_TRUE(placed.ring.push(1));
+    EXPECT_TRUE(placed.ring.push(2));
+    EXPECT_FALSE(placed.ring.push(3));
+    EXPECT_EQ(placed.ring.lost(), 1u);
+    int value = 0;
+    EXPECT_TRUE(placed.ring.pop(value));
+    EXPECT_EQ(value, 1);
+    EXPECT_TRUE(placed.ring.push(4));
+    EXPECT_TRUE(placed.ring.pop(value));
+    EXPECT_EQ(value, 2);
+}
+
+TEST(Ring, gives_up_the_oldest_when_full_and_counts_it) {
+    Placed<int> placed{3, Overflow::drop_oldest};
+    for (int i = 1; i <= 20; ++i) EXPECT_TRUE(placed.ring.push(i));
+    EXPECT_EQ(placed.ring.size(), 3u);
+    EXPECT_EQ(placed.ring.lost(), 17u) << "seen before the consumer has noticed";
+    for (int i = 18; i <= 20; ++i) {
+        int value = 0;
+        EXPECT_TRUE(placed.ring.pop(value));
+        EXPECT_EQ(value, i);
+    }
+    int value = 0;
+    EXPECT_FALSE(placed.ring.pop(value));
+    EXPECT_EQ(placed.ring.lost(), 17u);
+}
+
+TEST(Ring, of_one_element_works_in_both_ways) {
+    Placed<int> rejecting{1, Overflow::reject};
+    Placed<int> dropping{1, Overflow::drop_oldest};
+    int value = 0;
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_EQ(rejecting.ring.push(i), i == 0);
+        EXPECT_TRUE(dropping.ring.push(i));
+    }
+    EXPECT_TRUE(rejecting.ring.pop(value));
+    EXPECT_EQ(value, 0);
+    EXPECT_TRUE(dropping.ring.pop(value));
+    EXPECT_EQ(value, 4);
+}
+
+TEST(Ring, leaves_the_callers_value_when_empty) {
+    Placed<int> placed{2, Overflow::drop_oldest};
+    int value = 42;
+    EXPECT_FALSE(placed.ring.pop(value));
+    EXPECT_EQ(value, 42);
+    EXPECT_TRUE(placed.ring.empty());
+}
+
+TEST(Ring, remembers_the_most_that_were_ever_inside) {
+    for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
+        Placed<int> placed{8, overflow};
+        int value = 0;
+        EXPECT_EQ(placed.ring.high_water(), 0u);
+        for (int i = 0; i < 100; ++i) {
+            EXPECT_TRUE(placed.ring.push(i));
+            EXPECT_TRUE(placed.ring.pop(value));
+        }
+        EXPECT_EQ(placed.ring.high_water(), 1u) << "many passed, one at a time";
+        for (int i = 0; i < 5; ++i) EXPECT_TRUE(placed.ring.push(i));
+        for (int i = 0; i < 5; ++i) EXPECT_TRUE(placed.ring.pop(value));
+        EXPECT_EQ(placed.ring.high_water(), 5u);
+        for (int i = 0; i < 20; ++i) static_cast<void>(placed.ring.push(i));
+        EXPECT_EQ(placed.ring.high_water(), 8u) << "never more than the capacity";
+    }
+}
+
+TEST(Ring, is_empty_again_after_it_is_placed_anew_in_a_machine_that_restarts) {
+    Placed<int> placed{4, Overflow::reject};
+    EXPECT_TRUE(placed.ring.push(1));
+    Ring<int> again{placed.storage.front().bytes, 4, Overflow::drop_oldest};
+    int value = 0;
+    EXPECT_FALSE(again.pop(value));
+}
+
+// Any sequence of pushes and pops does what a plain queue with the same rule does.
+TEST(Ring, agrees_with_a_plain_queue_on_random_sequences) {
+    Random random{stress_seed()};
+    for (int round = 0; round < 200; ++round) {
+        const auto capacity = static_cast<std::size_t>(random.between(1, 9));
+        const Overflow overflow = random.one_in(2) ? Overflow::reject : Overflow::drop_oldest;
+        const std::uint64_t bias = 2 + random.below(4);
+        Placed<Sealed<40>> placed{capacity, overflow};
+        std::deque<std::uint64_t> model;
+        std::uint64_t lost = 0;
+        std::size_t mark = 0;
+        for (std::uint64_t step = 0; step < 300; ++step) {
+            if (random.below(bias) != 0) {
+                const bool full = model.size() == capacity;
+                const bool taken = !full || overflow == Overflow::drop_oldest;
+                ASSERT_EQ(placed.ring.push(Sealed<40>::of(step)), taken);
+                if (full) ++lost;
+                if (full && taken) model.pop_front();
+                if (taken) model.push_back(step);
+                mark = std::max(mark, model.size());
+            } else {
+                Sealed<40> value;
+                ASSERT_EQ(placed.ring.pop(value), !model.empty());
+                if (!model.empty()) {
+                    ASSERT_TRUE(value.whole());
+                    ASSERT_EQ(value.number(), model.front());
+                    model.pop_front();
+                }
+            }
+            ASSERT_EQ(placed.ring.size(), model.size());
+            ASSERT_EQ(placed.ring.lost(), lost);
+            ASSERT_EQ(placed.ring.high_water(), mark);
+        }
+    }
+}
+
+// What every schedule must keep, checked at the end of one: whole values in order, and each value pushed either
+// popped, lost or still inside.
+struct Ledger {
+    std::uint64_t pushed = 0;
+    std::uint64_t popped = 0;
+    std::uint64_t last = 0;
+    bool whole = true;
+    bool ordered = true;
+
+    template <class Queue>
+    void push(Queue& ring) {
+        ++pushed;
+        static_cast<void>(ring.push(Sealed<16>::of(pushed)));
+    }
+    template <class Queue>
+    bool pop(Queue& ring) {
+        Sealed<16> value{};
+        if (!ring.pop(value)) return false;
+        ++popped;
+        whole = whole && value.whole();
+        ordered = ordered && value.number() > last;
+        last = value.number();
+        return true;
+    }
+    template <class Queue>
+    void settle(Queue& ring) {
+        EXPECT_TRUE(whole);
+        EXPECT_TRUE(ordered);
+        EXPECT_EQ(pushed, popped + ring.lost() + ring.size());
+        while (pop(ring)) {}
+        EXPECT_EQ(pushed, popped + ring.lost());
+        EXPECT_TRUE(whole);
+        EXPECT_TRUE(ordered);
+    }
+};
+
+TEST(Ring, withstands_any_burst_of_pushes_at_any_point_of_a_pop) {
+    for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
+        for (std::size_t before = 0; before < 8; ++before) {
+            for (std::size_t burst = 0; burst < 12; ++burst) {
+                std::size_t accesses = 1;
+                for (std::size_t at = 0; at < accesses; ++at) {
+                    SCOPED_TRACE(testing::Message() << "filled " << before << " burst " << burst << " at " << at);
+                    Placed<Sealed<16>, Preemptible> placed{3, overflow};
+                    Ledger ledger;
+                    for (std::size_t i = 0; i < before; ++i) ledger.push(placed.ring);
+                    bool taken = false;
+                    const auto intruder = [&] {
+                        for (std::size_t i = 0; i < burst; ++i) ledger.push(placed.ring);
+                    };
+                    accesses = Preemption::here().run(at, intruder, [&] { taken = ledger.pop(placed.ring); });
+                    EXPECT_TRUE(taken || before == 0) << "one burst costs one attempt";
+                    ledger.settle(placed.ring);
+                }
+            }
+        }
+    }
+}
+
+TEST(Ring, withstands_any_burst_of_pops_at_any_point_of_a_push) {
+    for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
+        for (std::size_t before = 0; before < 8; ++before) {
+            for (std::size_t burst = 0; burst < 6; ++burst) {
+                std::size_t accesses = 1;
+                for (std::size_t at = 0; at < accesses; ++at) {
+                    SCOPED_TRACE(testing::Message() << "filled " << before << " burst " << burst << " at " << at);
+                    Placed<Sealed<16>, Preemptible> placed{3, overflow};
+                    Ledger ledger;
+                    for (std::size_t i = 0; i < before; ++i) ledger.push(placed.ring);
+                    const auto intruder = [&] {
+                        for (std::size_t i = 0; i < burst; ++i) ledger.pop(placed.ring);
+                    };
+                    accesses = Preemption::here().run(at, intruder, [&] { ledger.push(placed.ring); });
+                    ledger.settle(placed.ring);
+                }
+            }
+        }
+    }
+}
+
+TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_behind_what_was_lost) {
+    Placed<Sealed<16>, Preemptible> placed{2, Overflow::drop_oldest};
+    Ledger ledger;
+    ledger.push(placed.ring);
+    bool taken = true;
+    const std::size_t accesses = Preemption::here().run_always(
+        [&](std::size_t) {
+            for (int i = 0; i < 5; ++i) ledger.push(placed.ring);
+        },
+        [&] { taken = ledger.pop(placed.ring); });
+    EXPECT_FALSE(taken);
+    EXPECT_LE(accesses, 3u * (1 + 3 + 2 + 1)) << "counted: tail, three stores of a skip, two words and a number";
+    EXPECT_TRUE(ledger.pop(placed.ring));
+    ledger.settle(placed.ring);
+}
+
+TEST(Ring, makes_a_bounded_number_of_accesses_in_a_push_however_the_consumer_lags) {
+    Placed<Sealed<16>, Preemptible> placed{2, Overflow::drop_oldest};
+    for (int i = 0; i < 10; ++i) {
+        const std::size_t accesses =
+            Preemption::here().run(~std::size_t{0}, [] {}, [&] { static_cast<void>(placed.ring.push({})); });
+        EXPECT_LE(accesses, 2u + 2u + 4u);
+    }
+}
+
+class RingAcrossThreads : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Capacities, RingAcrossThreads, testing::Values(1, 2, 7, 64));
+
+TEST_P(RingAcrossThreads, keeps_every_value_in_order_when_the_producer_waits_for_room) {
+    constexpr std::uint64_t last = 30'000;
+    Placed<Sealed<160>> placed{GetParam(), Overflow::reject};
+    std::uint64_t refused = 0;
+    std::thread producer([&] {
+        Random random{stress_seed()};
+        for (std::uint64_t number = 1; number <= last;) {
+            if (placed.ring.push(Sealed<160>::of(number))) ++number;
+            else {
+                ++refused;
+                std::this_thread::yield();
+            }
+            dither(random);
+        }
+    });
+    Random random{stress_seed() + 1};
+    bool whole = true;
+    bool next = true;
+    for (std::uint64_t expected = 1; expected <= last;) {
+        Sealed<160> value;
+        if (placed.ring.pop(value)) {
+            whole = whole && value.whole();
+            next = next && value.number() == expected;
+            ++expected;
+        } else {
+            std::this_thread::yield();
+        }
+        dither(random);
+    }
+    producer.join();
+    EXPECT_TRUE(whole);
+    EXPECT_TRUE(next);
+    EXPECT_EQ(placed.ring.lost(), refused);
+    EXPECT_LE(placed.ring.high_water(), GetParam());
+}
+
+TEST_P(RingAcrossThreads, loses_exactly_what_it_counts_when_it_drops) {
+    constexpr std::uint64_t last = 30'000;
+    Placed<Sealed<160>> placed{GetParam(), Overflow::drop_oldest};
+    std::atomic<bool> done{false};
+    bool plausible = true;
+    std::thread producer([&] {
+        Random random{stress_seed()};
+        for (std::uint64_t number = 1; number <= last; ++number) {
+            static_cast<void>(placed.ring.push(Sealed<160>::of(number)));
+            if (placed.ring.lost() > number) plausible = false;
+            dither(random);
+        }
+        done = true;
+    });
+    Random random{stress_seed() + 1};
+    std::uint64_t popped = 0;
+    std::uint64_t before = 0;
+    bool whole = true;
+    bool ordered = true;
+    bool more = true;
+    while (more) {
+        const bool finished = done;
+        Sealed<160> value;
+        more = placed.ring.pop(value);
+        if (more) {
+            ++popped;
+            whole = whole && value.whole();
+            ordered = ordered && value.number() > before;
+            before = value.number();
+        } else {
+            more = !finished;
+            std::this_thread::yield();
+        }
+        dither(random);
+    }
+    producer.join();
+    EXPECT_TRUE(whole);
+    EXPECT_TRUE(ordered);
+    EXPECT_EQ(before, last) << "the newest is never the one given up";
+    EXPECT_EQ(popped + placed.ring.lost(), last);
+    EXPECT_TRUE(plausible) << "the producer may ask at any time and nothing counts twice";
+}
+
+} // namespace

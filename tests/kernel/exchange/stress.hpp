@@ -1,0 +1,43 @@
+// Values that show when they are torn, and threads that meet at random moments.
+#pragma once
+
+#include "kernel/base/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <thread>
+
+namespace tappet {
+
+/// Bytes / 8 words that all follow from the first: copies of two values mixed are seen.
+template <std::size_t Bytes>
+struct Sealed {
+    std::array<std::uint64_t, Bytes / 8> words{};
+
+    static Sealed of(std::uint64_t number) {
+        Sealed value;
+        for (std::size_t i = 0; i < value.words.size(); ++i) value.words[i] = number + i * 0x9e3779b97f4a7c15u;
+        return value;
+    }
+    [[nodiscard]] std::uint64_t number() const { return words[0]; }
+    [[nodiscard]] bool whole() const { return words == of(number()).words; }
+};
+
+/// What the environment gives, so that a failing seed can be repeated and many can be tried.
+inline std::uint64_t stress_seed() {
+    const char* const text = std::getenv("TAPPET_SEED");
+    return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
+}
+
+/// Lets others run, or does not, as the dice fall.
+inline void dither(Random& random) {
+    if (random.one_in(64)) std::this_thread::yield();
+    const std::uint64_t spins = random.below(32);
+    for (std::uint64_t i = 0; i < spins; ++i) asm volatile("" ::: "memory");
+}
+
+} // namespace tappet
