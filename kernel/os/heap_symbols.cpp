@@ -5,12 +5,10 @@
 
 #include <bit>
 #include <cerrno>
-#include <cstdarg>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 namespace {
@@ -34,9 +32,7 @@ void* give_or_end(std::size_t bytes, std::size_t align, std::uintptr_t caller) n
 
 } // namespace
 
-#if !(defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__))
 static_assert(!heap::sanitizer_owns_malloc, "a sanitizer's own malloc and this one cannot both be the program's");
-#endif
 
 extern "C" {
 
