@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guest's root file system: an archive in the "newc" format, which the kernel unpacks into memory.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace tappet::bench {
+
+// What is wrong with a scenario or its surroundings; the text names what, where and the cure.
+struct BenchError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+class Initramfs {
+public:
+    explicit Initramfs(const std::filesystem::path& archive);
+    ~Initramfs();
+    Initramfs(const Initramfs&) = delete;
+    Initramfs& operator=(const Initramfs&) = delete;
+
+    void add_folder(const std::string& guest);
+    void add_text(const std::string& guest, std::string_view text);
+    // A program brings the shared libraries it needs, to where its loader looks for them; a folder comes whole.
+    void add(const std::filesystem::path& host, const std::string& guest);
+    void finish();
+
+private:
+    void add_file(const std::filesystem::path& host, const std::string& guest);
+    void add_libraries(const std::filesystem::path& program);
+    void entry(const std::string& guest, unsigned mode, std::string_view content, unsigned major = 0,
+               unsigned minor = 0);
+
+    std::FILE* archive_;
+    std::set<std::string> present_;
+    unsigned next_inode_ = 1;
+};
+
+// Where a program of that name is on the host.
+std::filesystem::path find_program(const std::string& name);
+
+} // namespace tappet::bench
