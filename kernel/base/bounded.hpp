@@ -3,7 +3,9 @@
 
 #include "kernel/base/realtime.hpp"
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 namespace tappet {
@@ -31,7 +33,11 @@ struct Bounded {
     constexpr const T* begin() const noexcept TAPPET_REALTIME { return items.data(); }
     constexpr const T* end() const noexcept TAPPET_REALTIME { return items.data() + used; }
     constexpr const T* data() const noexcept TAPPET_REALTIME { return items.data(); }
-    constexpr bool operator==(const Bounded&) const = default;
+    friend constexpr bool operator==(const Bounded& a, const Bounded& b) noexcept
+        requires std::equality_comparable<T>
+    {
+        return std::equal(a.begin(), a.end(), b.begin(), b.end());
+    }
 };
 
 } // namespace tappet

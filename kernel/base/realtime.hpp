@@ -10,10 +10,13 @@
 #define TAPPET_REALTIME
 #endif
 
-#if defined(__clang__) && __has_feature(realtime_sanitizer)
+#if defined(__has_feature)
+#if __has_feature(realtime_sanitizer)
 #include <sanitizer/rtsan_interface.h>
 #define TAPPET_SANITIZER_PAUSE const __rtsan::ScopedDisabler tappet_sanitizer_pause
-#else
+#endif
+#endif
+#if !defined(TAPPET_SANITIZER_PAUSE)
 #define TAPPET_SANITIZER_PAUSE static_cast<void>(0)
 #endif
 

@@ -1,0 +1,139 @@
+#include "kernel/activity/engine.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+namespace {
+
+/// work() may block: it is called only in activities that are not real-time, which the table's check guarantees.
+void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
+    TAPPET_ESCAPE("this activity is not real-time", part.type->work(part.component, cycle));
+}
+
+} // namespace
+
+void Engine::start(Time now) noexcept TAPPET_REALTIME {
+    cycle_.now = cycle_.release = lap_ = ended_ = now;
+    if (plan_.periodic) next_release_ = now + plan_.period;
+    for (const EnginePart& part : plan_.parts)
+        if (part.type->start != nullptr) part.type->start(part.component, cycle_);
+    for (const Behaviour& each : plan_.behaviours) each.start(each.self, now);
+}
+
+void Engine::stop(Time now) noexcept TAPPET_REALTIME {
+    cycle_.now = cycle_.release = now;
+    for (const Behaviour& each : plan_.behaviours) each.stop(each.self, now);
+    for (const EnginePart& part : plan_.parts)
+        if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
+}
+
+Time Engine::next_wake() const noexcept TAPPET_REALTIME {
+    Time next = next_release_;
+    for (const EngineTimer& each : plan_.timers) next = std::min(next, each.timer->when());
+    for (const Behaviour& each : plan_.behaviours) next = std::min(next, each.next(each.self));
+    return next;
+}
+
+void Engine::run(bool woken) noexcept TAPPET_REALTIME {
+    const Time now = clock_->now();
+    Time release = now;
+    const bool due = plan_.periodic ? now >= next_release_ : woken;
+    if (due && plan_.periodic) release = next_release_;
+    for (const EngineTimer& each : plan_.timers) release = std::min(release, each.timer->when());
+    generation_.fetch_add(1, std::memory_order_acq_rel);
+    cycle_.now = lap_ = now;
+    cycle_.release = release;
+    worst_excess_ = Duration::zero();
+    worst_function_ = Miss::nobody;
+    watch_wakes();
+    run_timers();
+    if (due) run_components();
+    run_messages();
+    run_behaviours(due);
+    watch_inputs();
+    account();
+    generation_.fetch_add(1, std::memory_order_release);
+}
+
+void Engine::run_timers() noexcept TAPPET_REALTIME {
+    for (const EngineTimer& each : plan_.timers) {
+        const Time when = each.timer->when();
+        if (when > cycle_.now) continue;
+        each.timer->cancel();
+        Cycle at = cycle_;
+        at.release = when;
+        timed(each.part, FunctionKind::timers, [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component, at); });
+    }
+}
+
+void Engine::run_components() noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        const EnginePart& part = plan_.parts[i];
+        if (part.type->step != nullptr) timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { part.type->step(part.component, cycle_); });
+        else if (part.type->work != nullptr) timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { work(part, cycle_); });
+    }
+}
+
+void Engine::run_messages() noexcept TAPPET_REALTIME {
+    if (!inbox_.pending()) return;
+    statistics_.messages += inbox_.serve([this](const Message& message) noexcept TAPPET_REALTIME {
+        timed(message.id, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { message.run(message.object, message.arguments.data()); });
+    });
+}
+
+void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
+    for (const Behaviour& each : plan_.behaviours) {
+        if (!all && each.next(each.self) > cycle_.now) continue;
+        timed(each.part, FunctionKind::behaviour, [&]() noexcept TAPPET_REALTIME { each.step(each.self, cycle_.now); });
+    }
+}
+
+void Engine::watch_inputs() noexcept TAPPET_REALTIME {
+    for (GuardedInput& each : plan_.guarded) {
+        const Flow flow = each.flow(each.input);
+        if (flow == Flow::stale && each.was_valid) ask_stop(StopReason::stale_input, each.connection);
+        each.was_valid = flow == Flow::fresh || flow == Flow::old;
+    }
+}
+
+// Sporadic activities promised at most n wakes in a window: the analysis believed it, so a breach is counted.
+void Engine::watch_wakes() noexcept TAPPET_REALTIME {
+    if (plan_.periodic || plan_.at_most_per <= Duration::zero()) return;
+    const auto n = static_cast<std::uint64_t>(plan_.at_most_n);
+    Time& oldest = wakes_[wake_count_ % n];
+    if (wake_count_ >= n && cycle_.now - oldest < plan_.at_most_per) ++statistics_.wakes_too_many;
+    oldest = cycle_.now;
+    ++wake_count_;
+}
+
+void Engine::account() noexcept TAPPET_REALTIME {
+    const Time end = lap_;
+    const Duration response = end - cycle_.release;
+    const Duration lateness = cycle_.now - cycle_.release;
+    ++statistics_.cycles;
+    if (statistics_.cycles > 1) { // the first cycle warms caches: it is run, and counted as no maximum
+        statistics_.longest_response = std::max(statistics_.longest_response, response);
+        statistics_.longest_lateness = std::max(statistics_.longest_lateness, lateness);
+        statistics_.longest_busy = std::max(statistics_.longest_busy, end - cycle_.now);
+    }
+    if (plan_.real_time && plan_.deadline > Duration::zero() && response > plan_.deadline) {
+        Miss miss{worst_function_, cycle_.release, response, worst_took_, worst_usual_};
+        // Begun later than any function exceeded its usual time: the delay is the culprit, no function is.
+        if (worst_function_ == Miss::nobody || lateness > worst_excess_) miss = {Miss::nobody, cycle_.release, response, lateness, Duration::zero()};
+        else ++plan_.functions[worst_function_].blamed;
+        statistics_.recent_misses[statistics_.misses % statistics_.recent_misses.size()] = miss;
+        ++statistics_.misses;
+        if (plan_.stop_when_late) ask_stop(StopReason::missed_deadline, miss.function);
+    }
+    if (!plan_.periodic) return;
+    if (cycle_.now < next_release_) return;
+    next_release_ += plan_.period;
+    if (next_release_ <= end) { // whole periods were lost: they are counted, not made up for
+        const auto lost = (end - next_release_) / plan_.period + 1;
+        statistics_.skipped_periods += static_cast<std::uint64_t>(lost);
+        next_release_ += lost * plan_.period;
+    }
+}
+
+} // namespace tappet

@@ -1,0 +1,169 @@
+// The execution engine (thesis 5.3): what one activity runs in each cycle, in a fixed order: due timers, the components
+// in data-flow order, then messages and behaviours. It knows no thread: a thread or a virtual world calls it.
+#pragma once
+
+#include "kernel/activity/timing.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/exchange/mailbox.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/waiter.hpp"
+
+#include <array>
+#include <atomic>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// What a behaviour (a state machine, later a program) looks like to its engine. Plain pointers, filled at start-up.
+struct Behaviour {
+    void* self = nullptr;
+    std::uint32_t part = 0; ///< of the component it drives
+    void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
+    void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
+    void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
+    Time (*next)(const void* self) noexcept TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened
+};
+
+/// What of a component is timed separately.
+enum class FunctionKind : std::uint8_t { step, timers, reactions, behaviour };
+inline constexpr std::uint32_t functions_per_part = 4;
+
+/// A component in its engine.
+struct EnginePart {
+    std::string_view name{};
+    void* component = nullptr;
+    const ComponentType* type = nullptr;
+};
+
+struct EngineTimer {
+    Timer* timer = nullptr;
+    void (*fire)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
+    std::uint32_t part = 0;
+};
+
+/// An input whose row says that a stale value stops the machine.
+struct GuardedInput {
+    void* input = nullptr;
+    Flow (*flow)(void*) noexcept TAPPET_REALTIME = nullptr;
+    std::size_t connection = 0; ///< its row
+    bool was_valid = false;     ///< only a value that was once good can become stale
+};
+
+/// Why an engine asks for the machine to stop.
+enum class StopReason : std::uint8_t { none, stale_input, missed_deadline, broken_contract, requested, behaviour };
+
+struct EnginePlan {
+    std::string_view name{};
+    bool periodic = false;
+    bool real_time = true;
+    Duration period{};
+    Duration deadline{};
+    std::int64_t at_most_n = 1;
+    Duration at_most_per{};
+    bool stop_when_late = false;
+    std::span<EnginePart> parts;               ///< in data-flow order
+    std::span<FunctionTiming> functions;       ///< functions_per_part for each part
+    std::span<EngineTimer> timers;
+    std::span<Behaviour> behaviours;
+    std::span<GuardedInput> guarded;
+};
+
+/// Counters that an observer may read while the machine runs; each is written by the engine alone.
+struct EngineStatistics {
+    std::uint64_t cycles = 0;
+    std::uint64_t messages = 0;
+    std::uint64_t misses = 0;
+    std::uint64_t skipped_periods = 0;
+    std::uint64_t wakes_too_many = 0; ///< more than at_most(n, per) promised
+    Duration longest_response{};
+    Duration longest_lateness{}; ///< from release to the beginning
+    Duration longest_busy{};     ///< from the beginning to the end: what the budget promised
+    std::array<Miss, 8> recent_misses{};
+};
+
+class Engine {
+public:
+    static constexpr std::int64_t max_wakes_watched = 16;
+
+    /// Asked to stop the machine; the first call wins. Real-time, any thread.
+    using StopCall = void (*)(void* context, StopReason, std::uint64_t detail, const Engine& from) noexcept TAPPET_REALTIME;
+
+    /// Before start. Spans outlive the engine.
+    void place(const EnginePlan& plan, os::Clock& clock) noexcept {
+        plan_ = plan;
+        clock_ = &clock;
+        cycle_.period = plan.period;
+    }
+    void on_stop(StopCall call, void* context) noexcept { stop_call_ = call, stop_context_ = context; }
+
+    /// In its own thread, before the first cycle: components, then behaviours start.
+    void start(Time now) noexcept TAPPET_REALTIME;
+    /// One cycle. `woken`: by a message, a connection or the device; otherwise by time.
+    void run(bool woken) noexcept TAPPET_REALTIME;
+    /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values, in
+    /// data-flow order, so that what a source writes last reaches the driver behind it.
+    void stop(Time now) noexcept TAPPET_REALTIME;
+
+    /// When it wants to run although nothing wakes it.
+    [[nodiscard]] Time next_wake() const noexcept TAPPET_REALTIME;
+
+    [[nodiscard]] std::string_view name() const noexcept TAPPET_REALTIME { return plan_.name; }
+    [[nodiscard]] const EnginePlan& plan() const noexcept TAPPET_REALTIME { return plan_; }
+    [[nodiscard]] os::Waiter& waiter() noexcept TAPPET_REALTIME { return waiter_; }
+    [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
+    [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
+    [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
+    [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
+    /// Odd while a cycle runs: an observer whose two readings differ, or are odd, reads again.
+    [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME { return generation_.load(std::memory_order_acquire); }
+
+private:
+    [[nodiscard]] FunctionTiming& function(std::uint32_t part, FunctionKind kind) noexcept TAPPET_REALTIME {
+        return plan_.functions[part * functions_per_part + static_cast<std::uint32_t>(kind)];
+    }
+    /// Runs one function and times it. The end of one is the beginning of the next: one clock reading each.
+    template <class F>
+    void timed(std::uint32_t part, FunctionKind kind, F&& body) noexcept TAPPET_REALTIME {
+        body();
+        const Time end = clock_->now();
+        const std::uint32_t index = part * functions_per_part + static_cast<std::uint32_t>(kind);
+        const Duration took = end - lap_;
+        FunctionTiming& timing = plan_.functions[index];
+        const Duration excess = took - timing.usual();
+        if (excess > worst_excess_) worst_excess_ = excess, worst_function_ = index, worst_took_ = took, worst_usual_ = timing.usual();
+        timing.add(took);
+        lap_ = end;
+    }
+    void run_timers() noexcept TAPPET_REALTIME;
+    void run_components() noexcept TAPPET_REALTIME;
+    void run_messages() noexcept TAPPET_REALTIME;
+    void run_behaviours(bool all) noexcept TAPPET_REALTIME;
+    void watch_inputs() noexcept TAPPET_REALTIME;
+    void watch_wakes() noexcept TAPPET_REALTIME;
+    void account() noexcept TAPPET_REALTIME;
+    void ask_stop(StopReason reason, std::uint64_t detail) const noexcept TAPPET_REALTIME {
+        if (stop_call_ != nullptr) stop_call_(stop_context_, reason, detail, *this);
+    }
+
+    EnginePlan plan_{};
+    os::Clock* clock_ = nullptr;
+    Cycle cycle_{};
+    Time next_release_ = never;
+    Time lap_{};
+    Time ended_{};
+    Duration worst_excess_{};
+    Duration worst_took_{};
+    Duration worst_usual_{};
+    std::uint32_t worst_function_ = Miss::nobody;
+    std::array<Time, max_wakes_watched> wakes_{};
+    std::uint64_t wake_count_ = 0;
+    StopCall stop_call_ = nullptr;
+    void* stop_context_ = nullptr;
+    EngineStatistics statistics_{};
+    std::atomic<std::uint64_t> generation_{0};
+    os::Waiter waiter_{};
+    Inbox inbox_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,42 @@
+// How long functions take: every function of an activity is timed in every cycle, always.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <cstdint>
+
+namespace tappet {
+
+/// Wall time of one function, preemption included. The first pass, which fills caches and touches memory, is left out
+/// so that it does not stand as the maximum for ever.
+struct FunctionTiming {
+    std::uint64_t passes = 0;
+    Duration last{};
+    Duration longest{};
+    Duration total{};
+    std::uint64_t blamed = 0; ///< missed deadlines of which this function was the culprit
+
+    void add(Duration took) noexcept TAPPET_REALTIME {
+        last = took;
+        if (passes++ == 0) return;
+        total += took;
+        if (took > longest) longest = took;
+    }
+    /// The mean of all passes but the first.
+    [[nodiscard]] Duration usual() const noexcept TAPPET_REALTIME {
+        return passes > 1 ? total / static_cast<std::int64_t>(passes - 1) : last;
+    }
+};
+
+/// One missed deadline.
+struct Miss {
+    static constexpr std::uint32_t nobody = 0xffffffffu;
+    std::uint32_t function = nobody; ///< index into the engine's functions; nobody: the activity itself began late
+    Time release{};
+    Duration response{}; ///< from release to the end of the cycle
+    Duration took{};     ///< by the culprit, or the delay of the beginning
+    Duration usual{};
+};
+
+} // namespace tappet

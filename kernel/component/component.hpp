@@ -1,0 +1,71 @@
+// What the framework knows of a component type: its size, its interface and the functions of its life, as plain data.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/text.hpp"
+#include "kernel/component/interface.hpp"
+#include "kernel/component/setup.hpp"
+
+#include <new>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// A component is a plain struct. What it has of the following is used, in this order of its life:
+///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty sentence is consent
+///     void start(const Cycle&) noexcept TAPPET_REALTIME   once, in its activity, before the first step
+///     void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity
+///     void work(const Cycle&)                             instead of step: may block; for activities that are not_real_time
+///     void stop(const Cycle&) noexcept TAPPET_REALTIME    once, last: leaves safe values behind
+struct ComponentType {
+    TypeId tag = nullptr;
+    std::size_t size = 0;
+    std::size_t align = 0;
+    std::span<const Facet> facets{};
+    std::string_view device_kind{};                  ///< of the device it drives, "" for none
+    std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
+    bool behaviour_required = false;
+    void (*construct)(void* memory) = nullptr;
+    Sentence (*configure)(void* component, Setup&) = nullptr;
+    void (*start)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
+    void (*step)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
+    void (*work)(void* component, const Cycle&) = nullptr;
+    void (*stop)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
+};
+
+namespace detail {
+
+template <class T>
+inline constexpr auto facets_of = T::interface();
+
+template <class T>
+constexpr ComponentType describe() {
+    ComponentType type;
+    type.tag = type_id<T>;
+    type.size = sizeof(T);
+    type.align = alignof(T);
+    type.facets = facets_of<T>;
+    type.construct = [](void* memory) { new (memory) T{}; };
+    if constexpr (requires { T::device_kind; }) type.device_kind = T::device_kind;
+    if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
+    if constexpr (requires { T::behaviour_required; }) type.behaviour_required = T::behaviour_required;
+    if constexpr (requires(T& t, Setup& s) { t.configure(s); })
+        type.configure = [](void* c, Setup& s) { return static_cast<T*>(c)->configure(s); };
+    if constexpr (requires(T& t, const Cycle& c) { t.start(c); })
+        type.start = [](void* c, const Cycle& cycle) noexcept TAPPET_REALTIME { static_cast<T*>(c)->start(cycle); };
+    if constexpr (requires(T& t, const Cycle& c) { t.step(c); })
+        type.step = [](void* c, const Cycle& cycle) noexcept TAPPET_REALTIME { static_cast<T*>(c)->step(cycle); };
+    if constexpr (requires(T& t, const Cycle& c) { t.work(c); })
+        type.work = [](void* c, const Cycle& cycle) { static_cast<T*>(c)->work(cycle); };
+    if constexpr (requires(T& t, const Cycle& c) { t.stop(c); })
+        type.stop = [](void* c, const Cycle& cycle) noexcept TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
+    return type;
+}
+
+} // namespace detail
+
+template <class T>
+inline constexpr ComponentType component_type = detail::describe<T>();
+
+} // namespace tappet

@@ -1,0 +1,154 @@
+// A facet: one named thing in a component's interface (thesis 4.1.2), as plain data. Rows of the machine table name
+// facets; the checks read this data, and the start-up wires through the function pointers in it.
+#pragma once
+
+#include "kernel/base/type_tag.hpp"
+#include "kernel/component/buffer_port.hpp"
+#include "kernel/component/cycle.hpp"
+#include "kernel/component/event.hpp"
+#include "kernel/component/operation.hpp"
+#include "kernel/component/port.hpp"
+#include "kernel/component/property.hpp"
+#include "kernel/component/timer.hpp"
+
+#include <cstdint>
+#include <new>
+#include <string_view>
+
+namespace tappet {
+
+enum class FacetKind : std::uint8_t { input, output, buffer_input, buffer_output, event, operation, property, timer };
+
+/// What start-up does with data and buffer ports of one value type.
+struct PortOperations {
+    std::size_t shared_bytes;
+    std::size_t shared_align;
+    void (*place_shared)(void* output, void* memory);
+    void (*link_local)(void* input, const void* output);
+    void (*link_shared)(void* input, const void* output);
+    void (*set_clock)(void* port, bool is_input, const Time* now);
+    void (*set_waker)(void* output, Waker waker);
+    void (*set_policy)(void* input, Duration max_age, WhenStale, double substitute);
+    Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
+};
+
+struct BufferOperations {
+    std::size_t (*ring_bytes)(std::size_t capacity);
+    std::size_t ring_align;
+    void (*link)(void* output, void* input, std::byte* memory, std::size_t capacity, Overflow);
+    void (*set_waker)(void* output, Waker waker);
+    std::size_t (*lost)(const void* memory);
+};
+
+struct EventOperations {
+    std::size_t subscriber_bytes; ///< of one subscriber
+    void (*give_storage)(void* event, void* subscribers);
+    void (*subscribe)(void* event, const void* call, void* context); ///< `call` points at a typed function pointer
+    const void* post;                                                ///< of the asynchronous reaction, likewise
+};
+
+struct OperationOperations {
+    const void* call; ///< points at a `void (*const)(void*, A...)`
+    void (*run)(void* component, const std::byte* packed) noexcept TAPPET_REALTIME;
+};
+
+struct PropertyOperations {
+    PropertySetting::Kind kind;
+    void (*set)(void* property, const PropertySetting&);
+    PropertySetting (*get)(const void* property);
+};
+
+struct TimerOperations {
+    void (*fire)(void* component, const Cycle&) noexcept TAPPET_REALTIME;
+};
+
+struct Facet {
+    std::string_view name{};
+    std::string_view unit{};
+    std::string_view doc{};
+    FacetKind kind = FacetKind::input;
+    TypeId type = nullptr;     ///< of the value, or of the argument list
+    bool required = false;     ///< an input that must be connected, an operation that a reaction must name
+    bool any_thread = false;   ///< an operation that any activity may call
+    Range range{};             ///< of a property
+    std::size_t index = 0;     ///< within a member that is an array
+    void* (*at)(void* component, std::size_t index) noexcept = nullptr;
+    // One of these, by kind.
+    const PortOperations* port = nullptr;
+    const BufferOperations* buffer = nullptr;
+    const EventOperations* event = nullptr;
+    const OperationOperations* operation = nullptr;
+    const PropertyOperations* property = nullptr;
+    const TimerOperations* timer = nullptr;
+};
+
+constexpr std::string_view to_text(FacetKind kind) noexcept {
+    switch (kind) {
+    case FacetKind::input: return "an input";
+    case FacetKind::output: return "an output";
+    case FacetKind::buffer_input: return "a buffered input";
+    case FacetKind::buffer_output: return "a buffered output";
+    case FacetKind::event: return "an event";
+    case FacetKind::operation: return "an operation";
+    case FacetKind::property: return "a property";
+    case FacetKind::timer: return "a timer";
+    }
+    return "a facet";
+}
+
+/// What only the start-up may do with a port.
+struct PortAccess {
+    template <class T>
+    static constexpr PortOperations data{
+        .shared_bytes = sizeof(DataObject<Sample<T>>),
+        .shared_align = alignof(DataObject<Sample<T>>),
+        .place_shared = [](void* output, void* memory) { static_cast<Output<T>*>(output)->shared_ = new (memory) DataObject<Sample<T>>; },
+        .link_local = [](void* input, const void* output) { static_cast<Input<T>*>(input)->local_ = static_cast<const Output<T>*>(output); },
+        .link_shared = [](void* input, const void* output) { static_cast<Input<T>*>(input)->shared_ = static_cast<const Output<T>*>(output)->shared_; },
+        .set_clock =
+            [](void* port, bool is_input, const Time* now) {
+                if (is_input) static_cast<Input<T>*>(port)->now_ = now;
+                else static_cast<Output<T>*>(port)->now_ = now;
+            },
+        .set_waker = [](void* output, Waker waker) { static_cast<Output<T>*>(output)->waker_ = waker; },
+        .set_policy =
+            [](void* input, Duration max_age, WhenStale when_stale, double substitute) {
+                auto& in = *static_cast<Input<T>*>(input);
+                in.max_age_ = max_age;
+                in.when_stale_ = when_stale;
+                if constexpr (std::is_arithmetic_v<T>) in.substitute_ = static_cast<T>(substitute);
+            },
+        .flow = [](void* input) noexcept TAPPET_REALTIME { return static_cast<Input<T>*>(input)->flow(); },
+    };
+
+    template <class T>
+    static constexpr BufferOperations buffer{
+        .ring_bytes = [](std::size_t capacity) { return sizeof(Ring<T>) + Ring<T>::bytes_for(capacity); },
+        .ring_align = alignof(Ring<T>),
+        .link =
+            [](void* output, void* input, std::byte* memory, std::size_t capacity, Overflow overflow) {
+                auto* ring = new (memory) Ring<T>(memory + sizeof(Ring<T>), capacity, overflow);
+                static_cast<void>(static_cast<BufferOutput<T>*>(output)->rings_.push(ring));
+                static_cast<void>(static_cast<BufferInput<T>*>(input)->rings_.push(ring));
+            },
+        .set_waker = [](void* output, Waker waker) { static_cast<BufferOutput<T>*>(output)->waker_ = waker; },
+        .lost = [](const void* memory) { return static_cast<std::size_t>(static_cast<const Ring<T>*>(memory)->lost()); },
+    };
+
+    template <class... A>
+    static constexpr void (*post)(void*, A...) noexcept TAPPET_REALTIME = &detail::post<A...>;
+
+    template <class... A>
+    static constexpr EventOperations event{
+        .subscriber_bytes = sizeof(Subscriber<A...>),
+        .give_storage = [](void* event, void* memory) { static_cast<Event<A...>*>(event)->subscribers_ = static_cast<Subscriber<A...>*>(memory); },
+        .subscribe =
+            [](void* event, const void* call, void* context) {
+                auto& target = *static_cast<Event<A...>*>(event);
+                target.subscribers_[target.count_++] = {*static_cast<void (*const*)(void*, A...) noexcept TAPPET_REALTIME>(call), context};
+            },
+        .post = &post<A...>,
+    };
+};
+
+} // namespace tappet

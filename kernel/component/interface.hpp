@@ -1,0 +1,151 @@
+// How a component spells its interface: one constexpr list, next to its members.
+//
+//     struct MainShaft {
+//         Input<double> measured;
+//         Event<> pick_window;
+//         void step(const Cycle&) noexcept TAPPET_REALTIME;
+//         static constexpr auto interface() {
+//             return facets(input<&MainShaft::measured>("measured", "deg", "angle of the last sample"),
+//                           event<&MainShaft::pick_window>("pick_window", "the weft may be released"));
+//         }
+//     };
+#pragma once
+
+#include "kernel/component/facet.hpp"
+
+#include <array>
+#include <type_traits>
+
+namespace tappet {
+
+/// Marks an input that may stay unconnected, and says what any_thread says of operations: callable from any activity.
+struct Optional {};
+inline constexpr Optional optional{};
+struct AnyThread {};
+inline constexpr AnyThread any_thread{};
+/// Marks an operation that at least one reaction of the table must name.
+struct Required {};
+inline constexpr Required required{};
+
+constexpr Range range(double low, double high) noexcept { return {low, high}; }
+
+namespace detail {
+
+template <auto Member>
+struct MemberOf;
+template <class C, class M, M C::*Member>
+struct MemberOf<Member> {
+    using Component = C;
+    using Type = M;
+    static void* at(void* component, std::size_t) noexcept { return &(static_cast<C*>(component)->*Member); }
+};
+
+template <class>
+struct EventArguments;
+template <class... A>
+struct EventArguments<Event<A...>> {
+    using Signature = Arguments<A...>;
+    static constexpr const EventOperations* operations = &PortAccess::event<A...>;
+};
+
+template <auto Method>
+inline constexpr OperationOperations operation_of = {&operation_call<Method>, &OperationCall<Method>::run};
+
+template <auto Method>
+struct TimerCall;
+template <class Component, void (Component::*Method)(const Cycle&) noexcept>
+struct TimerCall<Method> {
+    static constexpr TimerOperations operations{[](void* component, const Cycle& cycle) noexcept TAPPET_REALTIME {
+        (static_cast<Component*>(component)->*Method)(cycle);
+    }};
+};
+
+template <PropertyValue T>
+inline constexpr PropertyOperations property_of{
+    .kind = std::same_as<T, double>         ? PropertySetting::Kind::real
+            : std::same_as<T, bool>         ? PropertySetting::Kind::truth
+            : std::same_as<T, Duration>     ? PropertySetting::Kind::duration
+                                            : PropertySetting::Kind::whole,
+    .set =
+        [](void* property, const PropertySetting& setting) {
+            auto& target = *static_cast<Property<T>*>(property);
+            if constexpr (std::same_as<T, double>) target.set(setting.kind == PropertySetting::Kind::real ? setting.real : static_cast<double>(setting.whole));
+            else if constexpr (std::same_as<T, bool>) target.set(setting.whole != 0);
+            else target.set(T{setting.whole});
+        },
+    .get =
+        [](const void* property) {
+            const T& value = static_cast<const Property<T>*>(property)->get();
+            if constexpr (std::same_as<T, double>) return PropertySetting{PropertySetting::Kind::real, value, 0};
+            else if constexpr (std::same_as<T, bool>) return PropertySetting{PropertySetting::Kind::truth, 0, value ? 1 : 0};
+            else if constexpr (std::same_as<T, Duration>) return PropertySetting{PropertySetting::Kind::duration, 0, value.count()};
+            else return PropertySetting{PropertySetting::Kind::whole, 0, value};
+        },
+};
+
+constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; }
+constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
+constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
+constexpr void apply(Facet& facet, Range within) noexcept { facet.range = within; }
+
+template <class... Options>
+constexpr Facet with(Facet facet, Options... options) noexcept {
+    (apply(facet, options), ...);
+    return facet;
+}
+
+} // namespace detail
+
+/// An input port; it must be connected unless `optional`.
+template <auto Member, class... Options>
+constexpr Facet input(std::string_view name, std::string_view unit, std::string_view doc, Options... options) {
+    using M = detail::MemberOf<Member>;
+    using T = typename M::Type::Value;
+    if constexpr (std::same_as<typename M::Type, BufferInput<T>>)
+        return detail::with({.name = name, .unit = unit, .doc = doc, .kind = FacetKind::buffer_input, .type = type_id<T>, .required = true, .at = &M::at, .buffer = &PortAccess::buffer<T>}, options...);
+    else
+        return detail::with({.name = name, .unit = unit, .doc = doc, .kind = FacetKind::input, .type = type_id<T>, .required = true, .at = &M::at, .port = &PortAccess::data<T>}, options...);
+}
+
+template <auto Member>
+constexpr Facet output(std::string_view name, std::string_view unit, std::string_view doc) {
+    using M = detail::MemberOf<Member>;
+    using T = typename M::Type::Value;
+    if constexpr (std::same_as<typename M::Type, BufferOutput<T>>)
+        return {.name = name, .unit = unit, .doc = doc, .kind = FacetKind::buffer_output, .type = type_id<T>, .at = &M::at, .buffer = &PortAccess::buffer<T>};
+    else
+        return {.name = name, .unit = unit, .doc = doc, .kind = FacetKind::output, .type = type_id<T>, .at = &M::at, .port = &PortAccess::data<T>};
+}
+
+template <auto Member>
+constexpr Facet event(std::string_view name, std::string_view doc) {
+    using M = detail::MemberOf<Member>;
+    using E = detail::EventArguments<typename M::Type>;
+    return {.name = name, .doc = doc, .kind = FacetKind::event, .type = type_id<typename E::Signature>, .at = &M::at, .event = E::operations};
+}
+
+/// A member function `void f(A...) noexcept TAPPET_REALTIME`.
+template <auto Method, class... Options>
+constexpr Facet operation(std::string_view name, std::string_view doc, Options... options) {
+    return detail::with({.name = name, .doc = doc, .kind = FacetKind::operation, .type = type_id<typename OperationCall<Method>::Signature>, .operation = &detail::operation_of<Method>}, options...);
+}
+
+template <auto Member, class... Options>
+constexpr Facet property(std::string_view name, std::string_view unit, std::string_view doc, Options... options) {
+    using M = detail::MemberOf<Member>;
+    using T = typename M::Type::Value;
+    return detail::with({.name = name, .unit = unit, .doc = doc, .kind = FacetKind::property, .type = type_id<T>, .at = &M::at, .property = &detail::property_of<T>}, options...);
+}
+
+/// A timer and the member function it runs: `void f(const Cycle&) noexcept TAPPET_REALTIME`.
+template <auto Member, auto Method>
+constexpr Facet timer(std::string_view name, std::string_view doc) {
+    return {.name = name, .doc = doc, .kind = FacetKind::timer, .type = type_id<Arguments<>>, .at = &detail::MemberOf<Member>::at, .timer = &detail::TimerCall<Method>::operations};
+}
+
+template <class... F>
+constexpr std::array<Facet, sizeof...(F)> facets(const F&... each) {
+    return {each...};
+}
+
+} // namespace tappet

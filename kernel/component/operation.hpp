@@ -1,0 +1,46 @@
+// Operations (thesis 4.5) as function pointers: how a reaction row calls a member function of a component, at once or
+// from a message.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/type_tag.hpp"
+#include "kernel/component/event.hpp"
+
+#include <cstddef>
+
+namespace tappet {
+
+/// `Method` is a `void (Component::*)(A...) noexcept TAPPET_REALTIME`.
+template <auto Method>
+struct OperationCall;
+
+template <class Component, class... A, void (Component::*Method)(A...) noexcept>
+struct OperationCall<Method> {
+    using Signature = Arguments<A...>;
+    static constexpr std::size_t packed_bytes = detail::packed_bytes<A...>;
+    /// Names the signature as plain data: the element type is what a Subscriber<A...> takes.
+    using Call = void (*)(void*, A...) noexcept TAPPET_REALTIME;
+
+    static void call(void* component, A... arguments) noexcept TAPPET_REALTIME {
+        (static_cast<Component*>(component)->*Method)(arguments...);
+    }
+    static void run(void* component, const std::byte* packed) noexcept TAPPET_REALTIME {
+        [[maybe_unused]] const std::byte* at = packed;
+        // A braced list is evaluated from left to right.
+        struct Caller {
+            void* component;
+            Caller(void* c, A... arguments) noexcept TAPPET_REALTIME : component{c} { call(component, arguments...); }
+        };
+        [[maybe_unused]] const Caller caller{component, detail::unpack_one<A>(at)...};
+    }
+};
+
+namespace detail {
+
+/// The call as an object, whose address is plain data and names the whole signature to whoever knows it.
+template <auto Method>
+inline constexpr typename OperationCall<Method>::Call operation_call = &OperationCall<Method>::call;
+
+} // namespace detail
+
+} // namespace tappet

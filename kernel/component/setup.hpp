@@ -1,0 +1,42 @@
+// What a component may ask for while it is configured: the devices of this world and what its activity sleeps on.
+#pragma once
+
+#include "kernel/base/text.hpp"
+#include "kernel/base/type_tag.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/waiter.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// A device as this world has it: the real one, or its twin. `type` is the abstract device class.
+struct ProvidedDevice {
+    TypeId type = nullptr;
+    std::string_view name{}; ///< the logical name, as in the board and in the machine table
+    void* device = nullptr;
+};
+
+struct Setup {
+    std::string_view component{};
+    std::string_view device_name{};
+    std::span<const ProvidedDevice> devices;
+    os::Clock* clock = nullptr;
+    os::Waiter* waiter = nullptr;
+
+    /// The row's device, or null when this world has none of that name and class.
+    template <class Device>
+    [[nodiscard]] Device* device() const {
+        for (const auto& each : devices)
+            if (each.type == type_id<Device> && each.name == device_name) return static_cast<Device*>(each.device);
+        return nullptr;
+    }
+    /// What configure() answers when device() found nothing.
+    [[nodiscard]] Sentence no_device() const {
+        return Sentence{"component \"", component, "\": this world provides no device \"", device_name,
+                        "\" of the class it drives: give it to the start-up, or name another device in its row"};
+    }
+};
+
+} // namespace tappet

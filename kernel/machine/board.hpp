@@ -1,0 +1,55 @@
+// A board: what one kind of box calls the devices that a machine table names, and what the box can do. One binary is
+// one machine on one board.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/time.hpp"
+
+#include <cstddef>
+#include <string_view>
+
+namespace tappet {
+
+/// A line of a GPIO chip: the logical name of the machine, the offset on this box.
+struct BoardLine {
+    std::string_view name{};
+    unsigned offset = 0;
+};
+
+struct BoardDevice {
+    std::string_view name{};         ///< logical: what the machine table says
+    std::string_view kind{};         ///< "can", "gpio", "modbus": of the component that may drive it
+    std::string_view address{};      ///< "can0", "/dev/gpiochip0", "192.168.7.2:502", "/dev/ttyS1:19200:8E1"
+    Bounded<BoardLine, 64> lines{};
+};
+
+/// The processor an activity is bound to, by the activity's name.
+struct BoardPlacement {
+    std::string_view activity{};
+    int processor = 0;
+};
+
+struct Board {
+    std::string_view name{};
+    std::string_view world{}; ///< "host", "bench" or "box"
+    std::size_t memory_budget_bytes = 0; ///< of all static memory, the heap's arena and the stacks included
+    std::size_t heap_bytes = 0;          ///< the arena that configuring may use before arming
+    int processors = 1;
+    int highest_priority = 80;           ///< SCHED_FIFO; interrupt threads stay above it
+    int default_processor = 0;
+    Bounded<BoardPlacement, 32> placement{};
+    Bounded<BoardDevice, 16> devices{};
+    Bounded<std::string_view, 16> only_warned{}; ///< arming checks that this development board downgrades to warnings
+    std::string_view kernel_command_line{};
+};
+
+template <class... Lines>
+constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address, Lines... lines) {
+    BoardDevice device{name, kind, address, {}};
+    (static_cast<void>(device.lines.push(lines)), ...);
+    return device;
+}
+
+constexpr BoardLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
+
+} // namespace tappet

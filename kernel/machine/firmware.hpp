@@ -1,0 +1,112 @@
+// A machine on a board: the table checked, planned and given its memory, all by the compiler. A table that cannot work
+// does not compile; the first error is one sentence that names the row, the fault and the cure.
+#pragma once
+
+#include "kernel/machine/check.hpp"
+#include "kernel/machine/plan.hpp"
+
+#include <type_traits>
+
+namespace tappet {
+
+/// The verdict on a table: the sentence, and what was found out on the way.
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t R>
+struct Verdict {
+    TableIndex<C, A, X, R> index{};
+    Sentence refusal{};
+};
+
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
+constexpr Verdict<C, A, X, R> judge(const Machine<C, A, X, R, B>& table, const Board& board) {
+    Verdict<C, A, X, R> verdict;
+    verdict.refusal = check(table.view(), board, verdict.index.view());
+    return verdict;
+}
+
+/// Never defined: a compiler that prints no message objects prints the sentence as the argument of this name.
+template <text sentence>
+struct machine_table;
+
+template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
+constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, const Board& board, TableIndex<C, A, X, R> index) {
+    Plan<C, A, X, S, B> plan;
+    PlanView view = plan.view();
+    make_plan(table.view(), board, index.view(), view);
+    plan.take_sizes(view);
+    return plan;
+}
+
+constexpr Sentence over_budget(const MachineView& m, const Board& board, std::size_t bytes) {
+    if (bytes <= board.memory_budget_bytes) return {};
+    return Sentence{m.name, ": board \"", board.name, "\": the machine takes ", bytes, " bytes of static memory but the board's budget is ", board.memory_budget_bytes,
+                    "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
+}
+
+/// A machine that was accepted.
+struct AcceptedMachine {
+    MachineView table;
+    const Board* board;
+    TableIndexView index;
+    PlanView plan;
+    std::span<std::byte> memory;
+};
+
+namespace detail {
+
+template <const auto& refusal>
+constexpr bool accept() {
+#if defined(__clang__)
+    static_assert(refusal.empty(), refusal);
+#else
+    if constexpr (!refusal.empty()) return sizeof(machine_table<text<refusal.size()>{refusal.view()}>) != 0;
+#endif
+    return refusal.empty();
+}
+
+template <const auto& table, const Board& board>
+struct Judged {
+    static constexpr auto verdict = judge(table, board);
+};
+
+template <const auto& table, const Board& board, bool good>
+struct Planned {
+    static constexpr Sentence refusal = Judged<table, board>::verdict.refusal;
+};
+
+template <const auto& table, const Board& board>
+struct Planned<table, board, true> {
+    static constexpr auto& verdict = Judged<table, board>::verdict;
+    static constexpr auto plan = plan_for<count_subscriptions(table.view())>(table, board, verdict.index);
+    static constexpr Sentence refusal = over_budget(table.view(), board, plan.bytes + board.heap_bytes);
+};
+
+template <const auto& table, const Board& board, bool good>
+struct Instance {
+    static AcceptedMachine machine() { return {}; }
+};
+
+template <const auto& table, const Board& board>
+struct Instance<table, board, true> {
+    using From = Planned<table, board, true>;
+    // Start-up reads these through spans of mutable elements and does not write them.
+    static inline constinit auto index = From::verdict.index;
+    static inline constinit auto plan = From::plan;
+    [[gnu::section("tappet_instance")]] alignas(4096) static inline constinit std::byte memory[From::plan.bytes]{};
+
+    static AcceptedMachine machine() { return {table.view(), &board, index.view(), plan.view(), memory}; }
+};
+
+} // namespace detail
+
+/// `table` and `board` are constexpr variables at namespace scope:
+///     using LoomFirmware = tappet::Firmware<carpet_loom, board>;
+template <const auto& table, const Board& board>
+struct Firmware {
+    static constexpr bool sound = detail::Judged<table, board>::verdict.refusal.empty();
+    using Planned = detail::Planned<table, board, sound>;
+    static constexpr bool accepted = detail::accept<Planned::refusal>();
+
+    static AcceptedMachine machine() { return detail::Instance<table, board, accepted>::machine(); }
+};
+
+} // namespace tappet

@@ -1,0 +1,254 @@
+// Where everything of a machine lies: one block of static memory, laid out by the compiler from the table. Start-up
+// places objects at these offsets, an observer finds them there; nothing is allocated.
+#pragma once
+
+#include "kernel/activity/engine.hpp"
+#include "kernel/machine/subscription.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace tappet {
+
+/// The places that belong to one activity.
+struct ActivityPlan {
+    std::size_t parts_at = 0;
+    std::size_t part_count = 0;
+    std::size_t functions_at = 0;
+    std::size_t timers_at = 0;
+    std::size_t timer_count = 0;
+    std::size_t behaviours_at = 0;
+    std::size_t behaviour_count = 0;
+    std::size_t guarded_at = 0;
+    std::size_t guarded_count = 0;
+    std::size_t mailboxes_at = 0;
+    std::size_t sender_count = 0;
+    std::size_t stack_at = 0;
+    std::size_t stack_bytes = 0;
+    int priority = 0;  ///< SCHED_FIFO; 0: not real-time
+    int processor = 0;
+};
+
+/// A connection row's memory: a shared data object, a ring, or nothing; and what it takes to wake the reader.
+struct ConnectionPlan {
+    std::size_t memory_at = nowhere;
+    bool shared = false;         ///< across activities
+    bool first_of_output = true; ///< the row that places the shared data object
+    std::size_t waker_at = nowhere;
+};
+
+struct SubscriptionPlan {
+    std::size_t subscribers_at = nowhere; ///< of the event's first subscription: the place of the whole array
+    std::size_t async_at = nowhere;
+    std::size_t binding_at = nowhere; ///< of a trigger
+};
+
+struct BehaviourPlan {
+    std::size_t execution_at = nowhere;
+    ResolvedSizes sizes{};
+    std::size_t plans_at = 0, triggers_at = 0, cells_at = 0, arcs_at = 0, programs_at = 0;
+    std::size_t slot_at = nowhere;
+    std::size_t slot_bytes = 0;
+};
+
+/// A mailbox from one activity to another: its ring's storage, and its index at the receiver.
+struct MailPlan {
+    std::size_t storage_at = nowhere;
+    std::uint32_t capacity = 0;
+    std::size_t sender_index = 0;
+};
+
+struct PlanView {
+    std::span<std::size_t> component_at;
+    std::span<std::uint32_t> part_of; ///< the component's index in its engine
+    std::span<ActivityPlan> activities;
+    std::span<ConnectionPlan> connections;
+    std::span<Subscription> subscriptions;
+    std::span<SubscriptionPlan> subscription_at;
+    std::span<BehaviourPlan> behaviours;
+    std::span<MailPlan> mail; ///< [sender * activities + receiver]
+    std::size_t engines_at = 0;
+    std::size_t bytes = 0;       ///< of everything below
+    std::size_t stack_bytes = 0; ///< of these, stacks
+};
+
+/// Runs a state machine's trigger out of a message.
+struct TriggerBinding {
+    StateMachineExecution* execution;
+    Engine* engine;
+    std::size_t trigger;
+};
+
+/// One waker in the chain of an output that wakes several activities.
+struct WakerNode {
+    Waker waker;
+    WakerNode* next;
+};
+
+namespace detail {
+
+class Ground {
+public:
+    constexpr std::size_t take(std::size_t bytes, std::size_t align) noexcept {
+        at_ = (at_ + align - 1) / align * align;
+        const std::size_t here = at_;
+        at_ += bytes;
+        return here;
+    }
+    template <class T>
+    constexpr std::size_t take(std::size_t count = 1) noexcept {
+        return take(count * sizeof(T), alignof(T));
+    }
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
+
+private:
+    std::size_t at_ = 0;
+};
+
+constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    // Activity by activity, so that what runs together lies together, each on lines of its own.
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        ActivityPlan& activity = p.activities[a];
+        ground.take(0, line_pair_bytes);
+        for (std::size_t position = 0; position < m.activities[a].runs.size(); ++position)
+            for (std::size_t c = 0; c < m.components.size(); ++c) {
+                if (r.activity[c] != a || r.position[c] != position) continue;
+                p.component_at[c] = ground.take(m.components[c].type->size, m.components[c].type->align);
+                p.part_of[c] = static_cast<std::uint32_t>(position);
+                for (const auto& facet : m.components[c].type->facets) activity.timer_count += facet.kind == FacetKind::timer;
+            }
+        activity.part_count = m.activities[a].runs.size();
+        activity.parts_at = ground.take<EnginePart>(activity.part_count);
+        activity.functions_at = ground.take<FunctionTiming>(activity.part_count * functions_per_part);
+        activity.timers_at = ground.take<EngineTimer>(activity.timer_count);
+    }
+}
+
+constexpr void plan_connections(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    for (std::size_t x = 0; x < m.connections.size(); ++x) {
+        const ConnectionRow& row = m.connections[x];
+        const Link& link = r.connections[x];
+        const std::size_t writer = r.activity[link.from.component];
+        const std::size_t reader = r.activity[link.to.component];
+        ConnectionPlan& plan = p.connections[x];
+        plan.shared = writer != reader;
+        const Facet& from = facet_at(m, link.from);
+        if (row.buffered) {
+            const auto& buffer = *from.buffer;
+            plan.memory_at = ground.take(buffer.ring_bytes(row.capacity), buffer.ring_align);
+        } else if (plan.shared) {
+            for (std::size_t j = 0; j < x; ++j)
+                if (r.connections[j].from == link.from && p.connections[j].shared) plan.memory_at = p.connections[j].memory_at, plan.first_of_output = false;
+            const auto& port = *from.port;
+            if (plan.first_of_output) plan.memory_at = ground.take(port.shared_bytes, port.shared_align);
+        }
+        if (row.wakes_reader) plan.waker_at = ground.take<WakerNode>();
+        if (row.when_stale == WhenStale::stop) ++p.activities[reader].guarded_count;
+    }
+    for (auto& activity : p.activities) activity.guarded_at = ground.take<GuardedInput>(activity.guarded_count);
+}
+
+constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    list_subscriptions(m, r, p.subscriptions);
+    for (std::size_t s = 0; s < p.subscriptions.size(); ++s) {
+        const Subscription& row = p.subscriptions[s];
+        bool first = true;
+        std::size_t listeners = 0;
+        for (std::size_t j = 0; j < p.subscriptions.size(); ++j) {
+            if (!(p.subscriptions[j].event == row.event)) continue;
+            ++listeners;
+            if (j < s) first = false;
+        }
+        if (first) p.subscription_at[s].subscribers_at = ground.take(listeners * facet_at(m, row.event).event->subscriber_bytes, alignof(std::max_align_t));
+        if (row.synchronous) continue;
+        p.subscription_at[s].async_at = ground.take<AsyncReaction>();
+        if (row.behaviour != nowhere) p.subscription_at[s].binding_at = ground.take<TriggerBinding>();
+        p.mail[row.sender * m.activities.size() + row.receiver].capacity += row.quota;
+    }
+    // At each receiver the senders stand in order of their urgency.
+    const std::size_t n = m.activities.size();
+    for (std::size_t receiver = 0; receiver < n; ++receiver) {
+        ActivityPlan& activity = p.activities[receiver];
+        for (std::size_t rank = 0; rank < n; ++rank)
+            for (std::size_t sender = 0; sender < n; ++sender) {
+                MailPlan& mail = p.mail[sender * n + receiver];
+                if (r.rank[sender] != rank || mail.capacity == 0) continue;
+                mail.sender_index = activity.sender_count++;
+                mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+            }
+        activity.mailboxes_at = ground.take<Mailbox>(activity.sender_count);
+    }
+}
+
+constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
+        const BehaviourRow& row = m.behaviours[b];
+        BehaviourPlan& plan = p.behaviours[b];
+        if (row.is_slot()) {
+            // A node is one action or condition with its operands, a level of depth one saved node; both are one word.
+            constexpr std::size_t node_bytes = 32, level_bytes = 8;
+            plan.slot_bytes = row.slot.nodes * node_bytes + row.slot.depth * level_bytes + row.slot.data_bytes +
+                              row.slot.command_slots * sizeof(Message) + row.slot.timers * sizeof(Timer) +
+                              row.slot.events.size() * sizeof(AsyncReaction);
+            plan.slot_at = ground.take(plan.slot_bytes, alignof(AsyncReaction));
+            continue;
+        }
+        plan.sizes = measure(row.machine);
+        plan.execution_at = ground.take<StateMachineExecution>();
+        plan.plans_at = ground.take<StatePlan>(plan.sizes.states);
+        plan.triggers_at = ground.take<std::string_view>(plan.sizes.triggers);
+        plan.cells_at = ground.take<StateSlice>(plan.sizes.states * plan.sizes.triggers);
+        plan.arcs_at = ground.take<StateArc>(plan.sizes.arcs);
+        plan.programs_at = ground.take<StateProgram>(plan.sizes.programs);
+        ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
+    }
+    for (auto& activity : p.activities) activity.behaviours_at = ground.take<Behaviour>(activity.behaviour_count);
+}
+
+} // namespace detail
+
+/// Plans a checked table for a board.
+constexpr void make_plan(const MachineView& m, const Board& board, const TableIndexView& r, PlanView& p) {
+    detail::Ground ground;
+    detail::plan_components(m, r, p, ground);
+    detail::plan_connections(m, r, p, ground);
+    detail::plan_subscriptions(m, r, p, ground);
+    detail::plan_behaviours(m, r, p, ground);
+    p.engines_at = ground.take<Engine>(m.activities.size());
+    const std::size_t before_stacks = ground.used();
+    constexpr std::size_t page = 4096;
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        ActivityPlan& plan = p.activities[a];
+        const ActivityRow& row = m.activities[a];
+        plan.stack_bytes = (row.stack + page - 1) / page * page;
+        plan.stack_at = ground.take(plan.stack_bytes, page);
+        plan.priority = row.real_time ? board.highest_priority - static_cast<int>(r.rank[a]) : 0;
+        plan.processor = checks::processor_of(board, row.name);
+    }
+    p.bytes = (ground.used() + page - 1) / page * page;
+    p.stack_bytes = ground.used() - before_stacks;
+}
+
+/// The storage of a plan, of the table's own sizes.
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t S, std::size_t B>
+struct Plan {
+    std::array<std::size_t, C> component_at{};
+    std::array<std::uint32_t, C> part_of{};
+    std::array<ActivityPlan, A> activities{};
+    std::array<ConnectionPlan, X> connections{};
+    std::array<Subscription, S> subscriptions{};
+    std::array<SubscriptionPlan, S> subscription_at{};
+    std::array<BehaviourPlan, B> behaviours{};
+    std::array<MailPlan, A * A> mail{};
+    std::size_t engines_at = 0;
+    std::size_t bytes = 0;
+    std::size_t stack_bytes = 0;
+
+    constexpr PlanView view() noexcept {
+        return {component_at, part_of, activities, connections, subscriptions, subscription_at, behaviours, mail, engines_at, bytes, stack_bytes};
+    }
+    constexpr void take_sizes(const PlanView& v) noexcept { engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes; }
+};
+
+} // namespace tappet

@@ -1,0 +1,22 @@
+#include "kernel/os/clock.hpp"
+
+#include <ctime>
+
+namespace tappet::os {
+
+Time Clock::monotonic() noexcept TAPPET_REALTIME {
+    timespec now{};
+    TAPPET_ESCAPE("the vDSO reads the clock without a system call", clock_gettime(CLOCK_MONOTONIC, &now));
+    return at_ns(static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec);
+}
+
+void Clock::consume(Duration load) noexcept TAPPET_REALTIME {
+    if (virtual_) {
+        virtual_now_ += load;
+        return;
+    }
+    const Time end = monotonic() + load;
+    while (monotonic() < end) {}
+}
+
+} // namespace tappet::os

@@ -1,0 +1,75 @@
+#include "kernel/os/thread.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <sched.h>
+
+namespace tappet::os {
+
+namespace {
+
+void* enter(void* context) noexcept {
+    const auto& plan = *static_cast<const ThreadPlan*>(context);
+    char name[16] = {};
+    std::memcpy(name, plan.name.data(), std::min<std::size_t>(plan.name.size(), sizeof name - 1));
+    pthread_setname_np(pthread_self(), name);
+    plan.body(plan.context);
+    return nullptr;
+}
+
+Sentence refusal(const ThreadPlan& plan, int error) {
+    Sentence text{"activity \"", plan.name, "\": the kernel refuses its thread (", std::strerror(error), "): "};
+    if (error == EPERM) text.add("run as root or grant CAP_SYS_NICE, or raise RLIMIT_RTPRIO");
+    else if (error == EINVAL)
+        text.add("processor ").add(plan.processor).add(" or the stack of ").add(plan.stack.size()).add(
+            " bytes does not exist here: correct the board's processor plan or the activity's stack");
+    else text.add("free memory or threads on this box");
+    return text;
+}
+
+} // namespace
+
+std::expected<void, Sentence> Thread::start(const ThreadPlan& plan) {
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    int error = plan.stack.empty() ? 0 : pthread_attr_setstack(&attributes, plan.stack.data(), plan.stack.size());
+    if (error == 0) {
+        pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+        pthread_attr_setschedpolicy(&attributes, plan.fifo_priority > 0 ? SCHED_FIFO : SCHED_OTHER);
+        sched_param parameter{};
+        parameter.sched_priority = plan.fifo_priority;
+        pthread_attr_setschedparam(&attributes, &parameter);
+        if (plan.processor >= 0) {
+            cpu_set_t set;
+            CPU_ZERO(&set);
+            CPU_SET(static_cast<std::size_t>(plan.processor), &set);
+            pthread_attr_setaffinity_np(&attributes, sizeof set, &set);
+        }
+        error = pthread_create(&handle_, &attributes, enter, const_cast<ThreadPlan*>(&plan));
+    }
+    pthread_attr_destroy(&attributes);
+    if (error != 0) return std::unexpected(refusal(plan, error));
+    started_ = true;
+    return {};
+}
+
+void Thread::join() noexcept {
+    if (!started_) return;
+    pthread_join(handle_, nullptr);
+    started_ = false;
+}
+
+bool Thread::join_within(int milliseconds) noexcept {
+    if (!started_) return true;
+    timespec end{};
+    clock_gettime(CLOCK_REALTIME, &end);
+    end.tv_nsec += static_cast<long>(milliseconds % 1000) * 1'000'000;
+    end.tv_sec += milliseconds / 1000 + end.tv_nsec / 1'000'000'000;
+    end.tv_nsec %= 1'000'000'000;
+    if (pthread_timedjoin_np(handle_, nullptr, &end) != 0) return false;
+    started_ = false;
+    return true;
+}
+
+} // namespace tappet::os

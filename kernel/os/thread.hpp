@@ -1,0 +1,45 @@
+// A thread with everything decided beforehand: stack, processor, priority, name.
+#pragma once
+
+#include "kernel/base/text.hpp"
+
+#include <cstddef>
+#include <expected>
+#include <span>
+#include <string_view>
+
+#include <pthread.h>
+
+namespace tappet::os {
+
+struct ThreadPlan {
+    std::string_view name;            ///< at most 15 characters are shown by the kernel
+    int fifo_priority = 0;            ///< 1..99 SCHED_FIFO; 0 is SCHED_OTHER
+    int processor = -1;               ///< -1: any
+    std::span<std::byte> stack{};     ///< 16 kB at least, aligned to 64
+    void (*body)(void*) noexcept = nullptr;
+    void* context = nullptr;
+};
+
+/// Not real-time: threads are started before arming and joined after the stop.
+class Thread {
+public:
+    Thread() = default;
+    Thread(const Thread&) = delete;
+    Thread& operator=(const Thread&) = delete;
+    ~Thread() { join(); }
+
+    /// An error says what was refused and what cures it. `plan` must outlive the thread.
+    std::expected<void, Sentence> start(const ThreadPlan& plan);
+    /// True when it ended; waits for it.
+    void join() noexcept;
+    /// Waits at most `milliseconds`; false when it still runs.
+    [[nodiscard]] bool join_within(int milliseconds) noexcept;
+    [[nodiscard]] bool running() const noexcept { return started_; }
+
+private:
+    pthread_t handle_{};
+    bool started_ = false;
+};
+
+} // namespace tappet::os

@@ -1,0 +1,76 @@
+#include "kernel/os/waiter.hpp"
+
+#include "kernel/os/clock.hpp"
+
+#include <linux/futex.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <ctime>
+
+namespace tappet::os {
+
+namespace {
+
+timespec to_timespec(std::int64_t ns) noexcept TAPPET_REALTIME {
+    return {static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+}
+
+} // namespace
+
+Waiter::~Waiter() {
+    if (wake_descriptor_ >= 0) close(wake_descriptor_);
+}
+
+bool Waiter::watch(int descriptor) noexcept {
+    if (wake_descriptor_ < 0) wake_descriptor_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    return wake_descriptor_ >= 0 && devices_.push(descriptor);
+}
+
+void Waiter::wake() noexcept TAPPET_REALTIME {
+    if (state_.exchange(woken, std::memory_order_acq_rel) != asleep) return;
+    if (wake_descriptor_ >= 0) {
+        const std::uint64_t one = 1;
+        TAPPET_ESCAPE("waking another activity", [[maybe_unused]] auto n = write(wake_descriptor_, &one, sizeof one));
+    } else {
+        TAPPET_ESCAPE("waking another activity", syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0));
+    }
+}
+
+bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
+    if (take()) return true;
+    if (devices_.size() != 0) return wait_on_devices(until);
+    std::uint32_t expected = idle;
+    if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
+        const timespec end = to_timespec(to_ns(until));
+        // Returns on a wake, at the end, on a signal, or at once when a wake came in between: all are looked at below.
+        TAPPET_ESCAPE("the activity's own wait", syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, asleep,
+                                                         until == never ? nullptr : &end, nullptr,
+                                                         FUTEX_BITSET_MATCH_ANY));
+    }
+    return take();
+}
+
+bool Waiter::wait_on_devices(Time until) noexcept TAPPET_REALTIME {
+    pollfd polled[max_devices + 1] = {};
+    for (std::size_t i = 0; i < devices_.size(); ++i) polled[i] = {devices_[i], POLLIN, 0};
+    polled[devices_.size()] = {wake_descriptor_, POLLIN, 0};
+    std::uint32_t expected = idle;
+    if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
+        const std::int64_t left = until == never ? 0 : (until - Clock::monotonic()).count();
+        const timespec timeout = to_timespec(left > 0 ? left : 0);
+        TAPPET_ESCAPE("the activity's own wait",
+                      ppoll(polled, devices_.size() + 1, until == never ? nullptr : &timeout, nullptr));
+    }
+    bool ready = take();
+    for (std::size_t i = 0; i < devices_.size(); ++i) ready |= polled[i].revents != 0;
+    if (polled[devices_.size()].revents != 0) {
+        std::uint64_t count = 0;
+        TAPPET_ESCAPE("taking the wake", [[maybe_unused]] auto n = read(wake_descriptor_, &count, sizeof count));
+    }
+    return ready;
+}
+
+} // namespace tappet::os

@@ -1,0 +1,52 @@
+// What an activity sleeps on: a time, a wake from another activity, or a device. One thread waits, any thread wakes.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <atomic>
+#include <cstdint>
+
+namespace tappet::os {
+
+/// Waking is one atomic exchange and, only when the waiter sleeps, one system call. No wake is lost: a wake before the
+/// wait makes the wait return at once.
+class Waiter {
+public:
+    static constexpr std::size_t max_devices = 8;
+
+    Waiter() = default;
+    Waiter(const Waiter&) = delete;
+    Waiter& operator=(const Waiter&) = delete;
+    ~Waiter();
+
+    /// Sleep on this file descriptor too. Not real-time; before the first wait. False when there are too many.
+    [[nodiscard]] bool watch(int descriptor) noexcept;
+
+    /// Wakes the waiting thread, or the next wait. Real-time, from any thread.
+    void wake() noexcept TAPPET_REALTIME;
+    static void wake_thunk(void* waiter) noexcept TAPPET_REALTIME { static_cast<Waiter*>(waiter)->wake(); }
+
+    /// True when woken since the last call; takes the wake. For worlds that do not sleep.
+    [[nodiscard]] bool take() noexcept TAPPET_REALTIME {
+        return (state_.exchange(idle, std::memory_order_acquire) & woken) != 0;
+    }
+    [[nodiscard]] bool is_woken() const noexcept TAPPET_REALTIME {
+        return (state_.load(std::memory_order_acquire) & woken) != 0;
+    }
+
+    /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is ready.
+    bool wait(Time until) noexcept TAPPET_REALTIME;
+
+private:
+    static constexpr std::uint32_t idle = 0, woken = 1, asleep = 2;
+
+    bool wait_on_devices(Time until) noexcept TAPPET_REALTIME;
+
+    alignas(64) std::atomic<std::uint32_t> state_{idle};
+    Bounded<int, max_devices> devices_{};
+    int wake_descriptor_ = -1; // an eventfd, made when the first device is watched
+};
+
+} // namespace tappet::os
