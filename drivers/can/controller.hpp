@@ -1,0 +1,85 @@
+// What a controller of either world knows of its bus: state, faults, restarts, and through them what may be
+// sent.
+#pragma once
+
+#include "drivers/can/recovery.hpp"
+#include "drivers/can/transmitter.hpp"
+
+namespace tappet::can {
+
+/// The owner's calls are real-time; `recovery` is also used by restart().
+class Controller {
+public:
+    void configure(const Settings& settings) noexcept {
+        transmitter_.configure(settings);
+        transmit_ = settings.transmit;
+        recovery.allow(settings.restarts_allowed);
+    }
+    Send accept(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
+        if (faulted(state_)) return refuse(Send::refused_fault);
+        if (!ours(frame)) return refuse(Send::refused_invalid);
+        return transmitter_.push(frame, keep, count);
+    }
+    /// Takes a finished restart into use, notices missing acknowledgements, drops what is too old.
+    /// True when a restart was taken into use.
+    bool tick(Time now) noexcept TAPPET_REALTIME {
+        const bool restarted = recovery.taken_up();
+        if (restarted) {
+            transmitter_.restarted(now, count);
+            state_ = State::active;
+            ++count.restarts;
+        }
+        if (!faulted(state_) && transmitter_.unacknowledged(now)) fault(State::unacknowledged);
+        return restarted;
+    }
+    /// The frame to hand over now, or nothing.
+    const Frame* next(Time now) noexcept TAPPET_REALTIME {
+        return faulted(state_) ? nullptr : transmitter_.next(now, count);
+    }
+    void handed_over(Time now) noexcept TAPPET_REALTIME { transmitter_.handed_over(now); }
+    void confirmed(Time now) noexcept TAPPET_REALTIME { transmitter_.confirmed(now, count); }
+
+    void report(const BusError& error) noexcept TAPPET_REALTIME {
+        ++count.error_frames;
+        if (faulted(error.state))
+            fault(error.state);
+        else if (!faulted(state_))
+            state_ = error.state; // out of a fault only by a restart
+    }
+    void fault(State kind) noexcept TAPPET_REALTIME {
+        if (faulted(state_)) {
+            if (kind > state_) state_ = kind; // unacknowledged may end in bus-off
+            return;
+        }
+        state_ = kind;
+        ++count.faults;
+        transmitter_.purge(count);
+        recovery.fault();
+    }
+    void purge() noexcept TAPPET_REALTIME { transmitter_.purge(count); }
+
+    /// Whether the frame's identifier is one of those that this device sends.
+    [[nodiscard]] bool ours(const Frame& frame) const noexcept TAPPET_REALTIME {
+        for (const Identifier& one : transmit_)
+            if (one.id == frame.id && one.extended == frame.extended) return true;
+        return false;
+    }
+    [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
+    [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME {
+        return faulted(state_) ? never : transmitter_.next_timeout();
+    }
+
+    Counters count{};
+    Recovery recovery{};
+
+private:
+    Send refuse(Send why) noexcept TAPPET_REALTIME {
+        ++count.refused;
+        return why;
+    }
+    Transmitter transmitter_{};
+    std::span<const Identifier> transmit_{};
+    State state_ = State::active;
+};
+
+} // namespace tappet::can

@@ -1,0 +1,105 @@
+// A CAN controller as drivers' components see it; the kernel's sockets and the in-process twin stand behind
+// it.
+#pragma once
+
+#include "drivers/can/frame.hpp"
+#include "kernel/base/realtime.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace tappet::can {
+
+enum class Received : std::uint8_t { none, frame, error_frame };
+
+struct Receive {
+    Received what = Received::none;
+    std::uint32_t lost = 0; ///< frames lost just before this one: buffers were full
+};
+
+enum class Send : std::uint8_t {
+    queued,          ///< it goes out in the order of identifiers unless it grows too old first
+    replaced,        ///< it took the place of an older frame of the same identifier
+    refused_full,    ///< the queue is full
+    refused_fault,   ///< the bus is faulted: nothing is sent before restart()
+    refused_stale,   ///< made before the last restart, or older than max_age
+    refused_invalid, ///< identifier or length out of range
+};
+
+/// What happens to an older frame of the same identifier that still waits.
+enum class Keep : std::uint8_t {
+    latest, ///< cyclic contents: the newer replaces the older
+    every,  ///< commands: all go out, in their order
+};
+
+enum class Restart : std::uint8_t {
+    done,       ///< the controller was restarted; the next service() takes it into use
+    not_needed, ///< the bus is not faulted, or a restart is already under way
+    exhausted,  ///< all allowed restarts are used up: somebody must look at the bus
+    failed,     ///< the interface could not be brought back
+};
+
+struct Counters {
+    std::uint64_t received = 0;
+    std::uint64_t sent = 0;           ///< confirmed by the controller: somebody acknowledged
+    std::uint64_t lost_in_kernel = 0; ///< arrived and dropped for want of room
+    std::uint64_t error_frames = 0;
+    std::uint64_t malformed = 0;     ///< not a classic frame; never handed on
+    std::uint64_t impostors = 0;     ///< others sent an identifier that is ours to send
+    std::uint64_t refused = 0;       ///< sends not accepted
+    std::uint64_t replaced = 0;      ///< sends that overtook their predecessor
+    std::uint64_t dropped_stale = 0; ///< accepted, never sent: too old or purged at a fault
+    std::uint64_t sent_late = 0;     ///< confirmed only after max_age: they were in the controller already
+    std::uint64_t back_pressure = 0; ///< the kernel had no room; the frame stayed in our queue
+    std::uint64_t faults = 0;        ///< bus-off, unacknowledged, down
+    std::uint64_t restarts = 0;
+    bool operator==(const Counters&) const = default;
+};
+
+struct Settings {
+    std::string_view interface{};           ///< named by the board
+    std::span<const Identifier> receive{};  ///< exactly these are let through
+    std::span<const Identifier> transmit{}; ///< exactly these may be sent
+    std::uint32_t in_flight = 4;    ///< frames handed over and not confirmed; the kernel's queue holds 10
+    Duration max_age = 20ms;        ///< a frame older than this is not sent any more
+    Duration confirm_within = 50ms; ///< an unconfirmed frame older than this is a fault
+    std::uint32_t restarts_allowed = 3;
+    std::uint32_t bit_rate = 0;         ///< what the controller must be set to; 0: not checked
+    int receive_buffer_bytes = 1 << 20; ///< the default of Linux holds 278 frames
+};
+
+/// All calls belong to one activity and are real-time, except restart(): it blocks, and belongs to a
+/// background activity. A faulted bus is silent: its device wakes nobody until it is restarted.
+class Device {
+public:
+    Device() = default;
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+    virtual ~Device() = default;
+
+    /// The next frame that arrived. `frame` is written unless the answer is `none`.
+    virtual Receive receive(Frame& frame) noexcept TAPPET_REALTIME = 0;
+    /// Accepts a frame whose contents were made at frame.stamp.
+    virtual Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME = 0;
+    Send send(const Frame& frame) noexcept TAPPET_REALTIME { return send(frame, Keep::latest); }
+    /// Once per activation, after the sends: hands frames over, drops old ones, notices time-outs and
+    /// restarts.
+    virtual void service(Time now) noexcept TAPPET_REALTIME = 0;
+    /// When service() has something to do even if nothing arrives: the next time-out of a frame, or never.
+    [[nodiscard]] virtual Time next_service() const noexcept TAPPET_REALTIME = 0;
+
+    [[nodiscard]] virtual State state() const noexcept TAPPET_REALTIME = 0;
+    [[nodiscard]] virtual Counters counters() const noexcept TAPPET_REALTIME = 0;
+    /// Drops everything that waits to be sent: an emergency stop calls this.
+    virtual void purge() noexcept TAPPET_REALTIME = 0;
+    /// Not real-time. Brings a faulted controller back, with everything it still held dropped.
+    virtual Restart restart() noexcept = 0;
+
+    /// The descriptor to wait on; -1 for a twin, which calls its listener instead.
+    [[nodiscard]] virtual int wait_handle() const noexcept TAPPET_REALTIME = 0;
+    using Listener = void (*)(void*) noexcept TAPPET_REALTIME;
+    virtual void set_listener(Listener ready, void* context) noexcept = 0;
+};
+
+} // namespace tappet::can

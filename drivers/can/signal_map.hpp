@@ -1,0 +1,197 @@
+// The signals of a CAN bus as one constexpr table, and what the compiler finds wrong with it.
+#pragma once
+
+#include "drivers/can/frame.hpp"
+#include "drivers/can/signal.hpp"
+#include "kernel/base/text.hpp"
+
+#include <cstddef>
+
+namespace tappet::can {
+
+enum class Direction : std::uint8_t { receive, transmit };
+
+/// A row of the table.
+struct FrameRow {
+    Identifier identifier{};
+    std::string_view name{};
+    Direction direction = Direction::receive;
+    std::uint8_t length = 0;
+    Duration stale_after{}; ///< receive: older contents are stale; 0: never
+    Duration every{};       ///< transmit: the period; 0: sent on demand, and all of them in order
+    std::size_t first = 0;  ///< its signals in the map's array
+    std::size_t signals = 0;
+};
+
+/// A row together with its signals, before the map flattens them.
+template <std::size_t N> struct FrameWithSignals {
+    FrameRow row{};
+    std::array<Signal, N> signals{};
+};
+
+/// The identifier of a row: standard(0x181), extended(0x18FF0102).
+constexpr Identifier standard(std::uint32_t id) noexcept { return {id, false}; }
+constexpr Identifier extended(std::uint32_t id) noexcept { return {id, true}; }
+
+struct Bytes {
+    std::uint8_t count = 0;
+};
+constexpr Bytes bytes(std::uint8_t count) noexcept { return {count}; }
+struct StaleAfter {
+    Duration age{};
+};
+constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
+struct Every {
+    Duration period{};
+};
+constexpr Every every(Duration period) noexcept { return {period}; }
+inline constexpr Every on_demand{};
+
+/// receive(standard(0x181), "main_drive", bytes(6), stale_after(5ms), signal("statusword", 0, 16), ...)
+template <class... Signals>
+constexpr auto receive(Identifier id, std::string_view name, Bytes length, StaleAfter age,
+                       const Signals&... signals) noexcept {
+    return FrameWithSignals<sizeof...(Signals)>{
+        {id, name, Direction::receive, length.count, age.age, {}, 0, sizeof...(Signals)}, {signals...}};
+}
+/// transmit(standard(0x201), "main_drive_command", bytes(6), every(1ms), signal("controlword", 0, 16), ...)
+template <class... Signals>
+constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Every period,
+                        const Signals&... signals) noexcept {
+    return FrameWithSignals<sizeof...(Signals)>{
+        {id, name, Direction::transmit, length.count, {}, period.period, 0, sizeof...(Signals)},
+        {signals...}};
+}
+
+inline constexpr std::size_t no_such = ~std::size_t{0};
+
+template <std::size_t F, std::size_t S> struct SignalMap {
+    std::array<FrameRow, F> frames{};
+    std::array<Signal, S> signals{};
+    std::array<std::size_t, S> frame_of{}; ///< the frame that holds a signal
+    std::array<Identifier, F>
+        received{}; ///< the first `received_count` are valid: what a filter lets through
+    std::array<Identifier, F> transmitted{};
+    std::size_t received_count = 0;
+    std::size_t transmitted_count = 0;
+    Sentence fault{}; ///< empty when the table is right
+
+    [[nodiscard]] constexpr std::size_t frame(Identifier id) const noexcept TAPPET_REALTIME {
+        for (std::size_t f = 0; f < F; ++f)
+            if (frames[f].identifier == id) return f;
+        return no_such;
+    }
+    [[nodiscard]] constexpr std::size_t frame(std::string_view name) const noexcept {
+        for (std::size_t f = 0; f < F; ++f)
+            if (frames[f].name == name) return f;
+        return no_such;
+    }
+    /// By "frame.signal".
+    [[nodiscard]] constexpr std::size_t signal(std::string_view path) const noexcept {
+        for (std::size_t s = 0; s < S; ++s) {
+            const std::string_view owner = frames[frame_of[s]].name;
+            if (path.size() == owner.size() + 1 + signals[s].name.size() && path.starts_with(owner) &&
+                path[owner.size()] == '.' && path.ends_with(signals[s].name))
+                return s;
+        }
+        return no_such;
+    }
+};
+
+namespace detail {
+
+constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept {
+    const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
+    if (s.name.empty()) return Sentence{"frame \"", frame.name, "\" has a signal without a name: name it"};
+    if (s.bits == 0 || s.bits > 64) return Sentence{who, " has ", unsigned{s.bits}, " bits: give it 1 to 64"};
+    if (s.kind == Kind::float32 && s.bits != 32)
+        return Sentence{who, " is a float of ", unsigned{s.bits}, " bits: give it 32 or 64"};
+    if (s.factor == 0 || s.factor != s.factor)
+        return Sentence{who, " has the factor 0: every value would be the offset; give it another"};
+    const unsigned end = 8u * frame.length;
+    const unsigned low = bit_place(s, 0);
+    const unsigned high = bit_place(s, s.bits - 1u);
+    if (s.start >= end || low >= end || high >= end)
+        return Sentence{who,
+                        " reaches outside its frame of ",
+                        unsigned{frame.length},
+                        " bytes: it starts at bit ",
+                        unsigned{s.start},
+                        s.order == Order::intel ? " (its lowest) and goes up "
+                                                : " (its highest) and goes down ",
+                        unsigned{s.bits},
+                        " bits; move it or lengthen the frame"};
+    return {};
+}
+
+template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const SignalMap<F, S>& map) noexcept {
+    for (std::size_t f = 0; f < F; ++f) {
+        const FrameRow& row = map.frames[f];
+        const Sentence who{"frame \"", row.name, "\""};
+        if (row.name.empty()) return Sentence{"frame ", f + 1, " has no name: name it"};
+        if (!valid(row.identifier))
+            return Sentence{who, " has the identifier ", row.identifier.id,
+                            ": a standard one ends at 2047, an extended one at 536870911"};
+        if (row.length > 8)
+            return Sentence{who, " has ", unsigned{row.length}, " bytes: a classic frame holds 8 at most"};
+        for (std::size_t other = 0; other < f; ++other) {
+            if (map.frames[other].name == row.name)
+                return Sentence{who, " is there twice: rename one of them"};
+            if (map.frames[other].identifier == row.identifier)
+                return Sentence{who, " has the identifier of \"", map.frames[other].name,
+                                "\": give it its own"};
+        }
+        std::array<std::size_t, 64> owner{};
+        owner.fill(no_such);
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            if (const Sentence fault = signal_fault(row, map.signals[s]); !fault.empty()) return fault;
+            for (std::size_t other = row.first; other < s; ++other)
+                if (map.signals[other].name == map.signals[s].name)
+                    return Sentence{who, " has two signals \"", map.signals[s].name,
+                                    "\": rename one of them"};
+            for (unsigned i = 0; i < map.signals[s].bits; ++i) {
+                const unsigned place = bit_place(map.signals[s], i);
+                if (owner[place] != no_such)
+                    return Sentence{"signal \"",
+                                    row.name,
+                                    ".",
+                                    map.signals[s].name,
+                                    "\" overlaps \"",
+                                    map.signals[owner[place]].name,
+                                    "\" at bit ",
+                                    place,
+                                    ": move one of them"};
+                owner[place] = s;
+            }
+        }
+    }
+    return {};
+}
+
+} // namespace detail
+
+/// Flattens the rows and checks them: static_assert(map.fault.empty(), map.fault).
+template <std::size_t... N> constexpr auto signal_map(const FrameWithSignals<N>&... rows) noexcept {
+    SignalMap<sizeof...(N), (N + ... + 0)> map;
+    std::size_t f = 0;
+    std::size_t s = 0;
+    const auto flatten = [&](const auto& row) {
+        map.frames[f] = row.row;
+        map.frames[f].first = s;
+        for (const Signal& one : row.signals) {
+            map.signals[s] = one;
+            map.frame_of[s] = f;
+            ++s;
+        }
+        if (row.row.direction == Direction::receive)
+            map.received[map.received_count++] = row.row.identifier;
+        else
+            map.transmitted[map.transmitted_count++] = row.row.identifier;
+        ++f;
+    };
+    (flatten(rows), ...);
+    map.fault = detail::map_fault(map);
+    return map;
+}
+
+} // namespace tappet::can

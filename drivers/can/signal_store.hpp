@@ -1,0 +1,96 @@
+// The values of a bus's signals: decoded from frames that fit the map, encoded into frames that go out.
+#pragma once
+
+#include "drivers/can/signal_map.hpp"
+
+namespace tappet::can {
+
+enum class Decoded : std::uint8_t { yes, unknown_identifier, wrong_length };
+
+struct DecodeCounters {
+    std::uint64_t decoded = 0;
+    std::uint64_t unknown_identifiers = 0; ///< never decoded
+    std::uint64_t wrong_lengths = 0;       ///< never decoded
+    std::uint64_t saturated = 0;           ///< values to send that were out of their signal's range
+    std::uint64_t refused = 0;             ///< values to send that were no numbers; the value before stays
+    bool operator==(const DecodeCounters&) const = default;
+};
+
+/// All calls but the constructor are real-time. `map` outlives the store; its signals are meant by their
+/// index.
+template <std::size_t F, std::size_t S> class SignalStore {
+public:
+    explicit constexpr SignalStore(const SignalMap<F, S>& map) noexcept : map_{&map} {
+        stamp_.fill(Time::min());
+    }
+
+    /// Takes a received frame in, whole or not at all. `which` becomes its row.
+    constexpr Decoded decode(const Frame& frame, std::size_t& which) noexcept TAPPET_REALTIME {
+        const std::size_t f = map_->frame(Identifier{frame.id, frame.extended});
+        if (f == no_such || map_->frames[f].direction != Direction::receive || frame.remote) {
+            ++count.unknown_identifiers;
+            return Decoded::unknown_identifier;
+        }
+        const FrameRow& row = map_->frames[f];
+        if (frame.length != row.length) {
+            ++count.wrong_lengths;
+            return Decoded::wrong_length;
+        }
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+            raw_[s] = extract(frame.data, map_->signals[s]);
+        stamp_[f] = frame.stamp;
+        ++count.decoded;
+        which = f;
+        return Decoded::yes;
+    }
+    constexpr Decoded decode(const Frame& frame) noexcept TAPPET_REALTIME {
+        std::size_t which = no_such;
+        return decode(frame, which);
+    }
+    /// The frame of a row with the values as they are; its stamp is `now`.
+    [[nodiscard]] constexpr Frame encode(std::size_t f, Time now) const noexcept TAPPET_REALTIME {
+        const FrameRow& row = map_->frames[f];
+        Frame frame;
+        frame.id = row.identifier.id;
+        frame.extended = row.identifier.extended;
+        frame.length = row.length;
+        frame.stamp = now;
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+            insert(frame.data, map_->signals[s], raw_[s]);
+        return frame;
+    }
+    [[nodiscard]] constexpr double physical(std::size_t s) const noexcept TAPPET_REALTIME {
+        return to_physical(map_->signals[s], raw_[s]);
+    }
+    /// The whole number before factor and offset: status words and counters.
+    [[nodiscard]] constexpr std::int64_t integer(std::size_t s) const noexcept TAPPET_REALTIME {
+        return to_integer(map_->signals[s], raw_[s]);
+    }
+    constexpr void set_physical(std::size_t s, double value) noexcept TAPPET_REALTIME {
+        const Raw raw = to_raw(map_->signals[s], value);
+        if (raw.refused)
+            ++count.refused;
+        else
+            raw_[s] = raw.bits;
+        if (raw.saturated) ++count.saturated;
+    }
+    /// Bits beyond the signal's width are cut: for control words, which are sets of bits.
+    constexpr void set_bits(std::size_t s, std::uint64_t bits) noexcept TAPPET_REALTIME { raw_[s] = bits; }
+
+    /// When the frame last came; Time::min() if never.
+    [[nodiscard]] constexpr Time stamp(std::size_t f) const noexcept TAPPET_REALTIME { return stamp_[f]; }
+    [[nodiscard]] constexpr bool stale(std::size_t f, Time now) const noexcept TAPPET_REALTIME {
+        const Duration limit = map_->frames[f].stale_after;
+        return stamp_[f] == Time::min() || (limit > 0ns && now - stamp_[f] > limit);
+    }
+    [[nodiscard]] constexpr const SignalMap<F, S>& map() const noexcept TAPPET_REALTIME { return *map_; }
+
+    DecodeCounters count{};
+
+private:
+    const SignalMap<F, S>* map_;
+    std::array<std::uint64_t, S> raw_{};
+    std::array<Time, F> stamp_{};
+};
+
+} // namespace tappet::can

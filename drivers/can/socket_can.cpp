@@ -1,0 +1,249 @@
+// SocketCAN without blocking: one recvmsg per frame, a bounded number of frames handed over, faults taken as
+// values.
+#include "drivers/can/socket_can.hpp"
+
+#include "drivers/can/wire.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <linux/errqueue.h>
+#include <linux/net_tstamp.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+namespace tappet::can {
+namespace {
+
+Time read(clockid_t clock) noexcept TAPPET_REALTIME {
+    timespec t{};
+    TAPPET_ESCAPE("the vDSO reads the clock without entering the kernel", ::clock_gettime(clock, &t));
+    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+}
+
+/// The kernel stamps frames by the wall clock; the machine counts on CLOCK_MONOTONIC. A stamp from the future
+/// or from long ago shows a wall clock that was set in between: then the frame counts as arrived now.
+Time to_machine_time(const timespec& wall) noexcept TAPPET_REALTIME {
+    const Time now = read(CLOCK_MONOTONIC);
+    if (wall.tv_sec == 0 && wall.tv_nsec == 0) return now;
+    const Time wall_now = read(CLOCK_REALTIME);
+    const Duration age = wall_now - at_ns(std::int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec);
+    return age < 0ns || age > 1s ? now : now - age;
+}
+
+Sentence failure(std::string_view interface, std::string_view what, std::string_view cure) {
+    return Sentence{"CAN interface \"", interface, "\": ", what, ": ", strerrordesc_np(errno), "; ", cure};
+}
+
+} // namespace
+
+struct SocketCan::Raw {
+    can_frame frame{};
+    ssize_t bytes = -1;
+    int error = 0;
+    int flags = 0;
+    bool stamped = false;
+    timespec stamp{};
+    bool drops_known = false;
+    std::uint32_t drops = 0;
+
+    /// Reads one frame and what the kernel says about it.
+    void read_from(int fd) noexcept {
+        alignas(cmsghdr) char control[256];
+        iovec part{&frame, sizeof frame};
+        msghdr message{};
+        message.msg_iov = &part;
+        message.msg_iovlen = 1;
+        message.msg_control = control;
+        message.msg_controllen = sizeof control;
+        bytes = ::recvmsg(fd, &message, MSG_DONTWAIT | MSG_TRUNC);
+        error = bytes < 0 ? errno : 0;
+        flags = message.msg_flags;
+        if (bytes < 0) return;
+        for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+            if (c->cmsg_level != SOL_SOCKET) continue;
+            if (c->cmsg_type == SO_RXQ_OVFL) {
+                std::memcpy(&drops, CMSG_DATA(c), sizeof drops);
+                drops_known = true;
+            } else if (c->cmsg_type == SCM_TIMESTAMPING) {
+                std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+                stamped = true;
+            }
+        }
+    }
+};
+
+std::expected<void, Sentence> SocketCan::open(const Settings& settings) {
+    close();
+    const auto link = find_link(settings.interface);
+    if (!link) return std::unexpected{link.error()};
+    const std::string_view name = settings.interface;
+    if (!link->up)
+        return std::unexpected{Sentence{"CAN interface \"", name, "\" is down: set it up (ip link set ", name,
+                                        " up", link->is_virtual ? "" : ", after its bitrate is set", ")"}};
+    if (link->restart_ms != 0)
+        return std::unexpected{
+            Sentence{"CAN interface \"", name, "\" restarts by itself ", link->restart_ms,
+                     " ms after bus-off, and a machine restarts it deliberately: set restart-ms 0"}};
+    if (settings.bit_rate != 0 && !link->is_virtual && link->bit_rate != settings.bit_rate)
+        return std::unexpected{Sentence{
+            "CAN interface \"", name, "\" runs at ", link->bit_rate, " bit/s, the board says ",
+            settings.bit_rate, ": correct one of them (ip link set ", name, " type can bitrate ...)"}};
+    fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
+    if (fd_ < 0)
+        return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
+    link_ = *link;
+    drops_seen_ = 0;
+    controller_.configure(settings);
+    auto done = set_options(settings);
+    if (done) {
+        sockaddr_can address{};
+        address.can_family = AF_CAN;
+        address.can_ifindex = link_.index;
+        if (::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+            done = std::unexpected{failure(name, "cannot be bound to", "is it up and a CAN interface?")};
+    }
+    if (!done) close();
+    return done;
+}
+
+std::expected<void, Sentence> SocketCan::set_options(const Settings& settings) {
+    const auto set = [&](int level, int option, const void* value, std::size_t size) {
+        return ::setsockopt(fd_, level, option, value, static_cast<socklen_t>(size)) == 0;
+    };
+    const auto set_int = [&](int level, int option, int value) {
+        return set(level, option, &value, sizeof value);
+    };
+
+    std::array<can_filter, CAN_RAW_FILTER_MAX> filters{};
+    std::size_t used = 0;
+    for (const auto list : {settings.receive, settings.transmit}) // ours come back as confirmations
+        for (const Identifier& one : list) {
+            if (!valid(one) || used == filters.size())
+                return std::unexpected{Sentence{"CAN interface \"", settings.interface, "\": identifier ",
+                                                one.id,
+                                                valid(one) ? " is one too many: 512 fit" : " is out of range",
+                                                "; correct the signal map"}};
+            filters[used++] = wire::exactly(one);
+        }
+    // No filter at all would mean "everything" to no filter call, and "nothing" to an empty one: the latter
+    // is wanted.
+    bool ok =
+        set(SOL_CAN_RAW, CAN_RAW_FILTER, used == 0 ? nullptr : filters.data(), used * sizeof(can_filter));
+    ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, static_cast<int>(wire::error_mask));
+    ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1);
+    ok = ok && set_int(SOL_SOCKET, SO_RXQ_OVFL, 1);
+    ok = ok &&
+         set_int(SOL_SOCKET, SO_SNDBUF, 0); // the kernel raises it to its least: EAGAIN comes before ENOBUFS
+    if (!ok)
+        return std::unexpected{
+            failure(settings.interface, "a socket option is refused", "is the kernel 5.10 or newer?")};
+    // Without these the machine still works: frames count as arrived when read, and the buffer is Linux's
+    // default.
+    set_int(SOL_SOCKET, SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE);
+    if (!set_int(SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes))
+        set_int(SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes);
+    return {};
+}
+
+void SocketCan::close() noexcept {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+    controller_.purge();
+}
+
+Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
+    if (fd_ < 0) return {};
+    // A confirmation, an impostor's or a malformed frame is no answer, so reading goes on; as many as can be
+    // in flight suffice, and the bound keeps a flood from holding the caller.
+    for (std::uint32_t i = 0; i <= Transmitter::most_in_flight; ++i) {
+        Raw raw;
+        TAPPET_ESCAPE("the driver's own read, which does not block", raw.read_from(fd_));
+        if (raw.bytes < 0) {
+            const bool gone = raw.error == ENETDOWN || raw.error == ENODEV || raw.error == ENXIO;
+            if (gone && controller_.recovery.running()) controller_.fault(State::down);
+            return {};
+        }
+        const Receive answer = judge(raw, frame);
+        if (answer.what != Received::none || answer.lost != 0) return answer;
+    }
+    return {};
+}
+
+Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME {
+    Receive answer;
+    if (raw.drops_known) { // the kernel's count is cumulative and may wrap
+        answer.lost = raw.drops - drops_seen_;
+        drops_seen_ = raw.drops;
+        controller_.count.lost_in_kernel += answer.lost;
+    }
+    const Time arrived = to_machine_time(raw.stamped ? raw.stamp : timespec{});
+    Frame candidate;
+    if (raw.bytes != CAN_MTU || !wire::decode(raw.frame, controller_.state(), candidate)) {
+        ++controller_.count.malformed;
+        return answer;
+    }
+    candidate.stamp = arrived;
+    if ((raw.frame.can_id & CAN_ERR_FLAG) != 0) {
+        controller_.report(candidate.error);
+        answer.what = Received::error_frame;
+    } else if ((raw.flags & MSG_CONFIRM) != 0) {
+        controller_.confirmed(arrived);
+        hand_over(arrived);
+        return answer;
+    } else if (controller_.ours(candidate)) {
+        ++controller_.count.impostors;
+        return answer;
+    } else {
+        ++controller_.count.received;
+        answer.what = Received::frame;
+    }
+    frame = candidate;
+    return answer;
+}
+
+Send SocketCan::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
+    return controller_.accept(frame, keep);
+}
+
+void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
+    if (controller_.tick(now)) {
+        int told = 0; // the interface was down in between, and the socket remembers it as an error
+        socklen_t size = sizeof told;
+        TAPPET_ESCAPE("reads a field of the socket", ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &told, &size));
+    }
+    hand_over(now);
+}
+
+void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < Transmitter::most_in_flight && fd_ >= 0; ++i) {
+        const Frame* frame = controller_.next(now);
+        if (frame == nullptr) return;
+        const can_frame raw = wire::encode(*frame);
+        ssize_t written = 0;
+        int error = 0;
+        TAPPET_ESCAPE("the driver's own write, which does not block",
+                      written = ::write(fd_, &raw, sizeof raw);
+                      error = errno);
+        if (written == static_cast<ssize_t>(sizeof raw)) {
+            controller_.handed_over(now);
+            continue;
+        }
+        if (error == EAGAIN || error == ENOBUFS || error == EINTR)
+            ++controller_.count.back_pressure;
+        else
+            controller_.fault(State::down);
+        return;
+    }
+}
+
+Restart SocketCan::restart() noexcept {
+    const Restart begun = controller_.recovery.begin();
+    if (begun != Restart::done) return begun;
+    return controller_.recovery.end(restart_link(link_).has_value());
+}
+
+} // namespace tappet::can

@@ -1,0 +1,48 @@
+// The CAN controller behind a Linux network interface (SocketCAN, a raw socket).
+#pragma once
+
+#include "drivers/can/controller.hpp"
+#include "drivers/can/link.hpp"
+
+#include <expected>
+
+namespace tappet::can {
+
+class SocketCan final : public Device {
+public:
+    SocketCan() = default;
+    ~SocketCan() override { close(); }
+
+    /// Not real-time. The spans in `settings` must outlive the device. On failure nothing stays open, and the
+    /// error says what is wrong and how to cure it.
+    std::expected<void, Sentence> open(const Settings& settings);
+    /// Not real-time. Drops what waits and leaves the bus.
+    void close() noexcept;
+
+    using Device::send;
+    Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
+    Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
+    void service(Time now) noexcept TAPPET_REALTIME override;
+    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
+        return controller_.next_timeout();
+    }
+    [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return controller_.state(); }
+    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return controller_.count; }
+    void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
+    Restart restart() noexcept override;
+    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return fd_; }
+    void set_listener(Listener, void*) noexcept override {} // the descriptor says it
+
+private:
+    struct Raw; // what one recvmsg brought
+    Receive judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME;
+    void hand_over(Time now) noexcept TAPPET_REALTIME;
+    std::expected<void, Sentence> set_options(const Settings& settings);
+
+    int fd_ = -1;
+    Link link_{};
+    std::uint32_t drops_seen_ = 0;
+    Controller controller_{};
+};
+
+} // namespace tappet::can

@@ -1,0 +1,88 @@
+// The discipline of sending, the same for the real controller and its twin: few frames in flight, none of
+// them stale.
+#pragma once
+
+#include "drivers/can/transmit_queue.hpp"
+
+#include <algorithm>
+
+namespace tappet::can {
+
+/// Frames wait here, not in the kernel: what the kernel or the controller holds cannot be taken back, so at
+/// most `in_flight` of them are handed over before one is confirmed (a frame on the wire that somebody
+/// acknowledged).
+class Transmitter {
+public:
+    static constexpr std::uint32_t most_in_flight = 8; // the kernel's own queue refuses the eleventh
+
+    constexpr void configure(const Settings& settings) noexcept {
+        in_flight_limit_ = std::clamp(settings.in_flight, 1u, most_in_flight);
+        max_age_ = settings.max_age;
+        confirm_within_ = settings.confirm_within;
+    }
+    /// Takes a frame whose contents were made at frame.stamp; what was made before the last restart stays
+    /// out.
+    constexpr Send push(const Frame& frame, Keep keep, Counters& count) noexcept TAPPET_REALTIME {
+        Send answer = Send::refused_invalid;
+        if (valid(frame)) {
+            const bool fresh = frame.stamp > restarted_at_ && frame.stamp >= now_ - max_age_;
+            answer = fresh ? queue_.push(frame, keep) : Send::refused_stale;
+        }
+        if (answer == Send::replaced) ++count.replaced;
+        if (answer != Send::queued && answer != Send::replaced) ++count.refused;
+        return answer;
+    }
+    /// The frame to hand over now, or nothing.
+    constexpr const Frame* next(Time now, Counters& count) noexcept TAPPET_REALTIME {
+        now_ = now;
+        count.dropped_stale += queue_.drop_older(now - max_age_);
+        return in_flight_.size() < in_flight_limit_ ? queue_.front() : nullptr;
+    }
+    constexpr void handed_over(Time now) noexcept TAPPET_REALTIME {
+        const Frame* frame = queue_.front();
+        if (frame == nullptr) return;
+        if (in_flight_.push({frame->stamp, now})) queue_.pop();
+    }
+    /// At `now` the controller confirmed the oldest frame in flight.
+    constexpr void confirmed(Time now, Counters& count) noexcept TAPPET_REALTIME {
+        if (in_flight_.empty() || now <= restarted_at_) return; // of a frame before the restart
+        ++count.sent;
+        if (now - in_flight_[0].made > max_age_) ++count.sent_late;
+        for (std::size_t i = 1; i < in_flight_.size(); ++i) in_flight_[i - 1] = in_flight_[i];
+        --in_flight_.used;
+    }
+    [[nodiscard]] constexpr bool unacknowledged(Time now) const noexcept TAPPET_REALTIME {
+        return !in_flight_.empty() && now - in_flight_[0].handed_over > confirm_within_;
+    }
+    [[nodiscard]] constexpr Time next_timeout() const noexcept TAPPET_REALTIME {
+        return in_flight_.empty() ? never : in_flight_[0].handed_over + confirm_within_ + 1ns;
+    }
+    constexpr void purge(Counters& count) noexcept TAPPET_REALTIME { count.dropped_stale += queue_.purge(); }
+    /// The controller forgot everything it held; so do we. What was made up to now is never sent.
+    constexpr void restarted(Time now, Counters& count) noexcept TAPPET_REALTIME {
+        purge(count);
+        count.dropped_stale += in_flight_.size();
+        in_flight_.clear();
+        restarted_at_ = now_ = now;
+    }
+    [[nodiscard]] constexpr std::size_t waiting() const noexcept TAPPET_REALTIME { return queue_.size(); }
+    [[nodiscard]] constexpr std::size_t in_flight() const noexcept TAPPET_REALTIME {
+        return in_flight_.size();
+    }
+
+private:
+    struct Flight {
+        Time made{};
+        Time handed_over{};
+        bool operator==(const Flight&) const = default;
+    };
+    TransmitQueue queue_{};
+    Bounded<Flight, most_in_flight> in_flight_{};
+    std::uint32_t in_flight_limit_ = 4;
+    Duration max_age_ = 20ms;
+    Duration confirm_within_ = 50ms;
+    Time restarted_at_ = Time::min();
+    Time now_{};
+};
+
+} // namespace tappet::can

@@ -1,0 +1,122 @@
+// The end's two sides: the owner's calls, and what the bus does with it.
+#include "drivers/can/twin.hpp"
+
+namespace tappet::can {
+
+std::expected<void, Sentence> Twin::open(const Settings& settings) noexcept {
+    for (const auto list : {settings.receive, settings.transmit})
+        for (const Identifier& one : list)
+            if (!valid(one))
+                return std::unexpected{Sentence{"CAN twin \"", settings.interface, "\": identifier ", one.id,
+                                                " is out of range; correct the signal map"}};
+    settings_ = settings;
+    controller_.configure(settings);
+    return {};
+}
+
+void Twin::set_listener(Listener ready, void* context) noexcept {
+    ready_ = ready;
+    context_ = context;
+}
+
+bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
+    if (frame.remote) return false;
+    for (const auto list : {settings_.receive, settings_.transmit})
+        for (const Identifier& one : list)
+            if (one.id == frame.id && one.extended == frame.extended) return true;
+    return false;
+}
+
+Receive Twin::receive(Frame& frame) noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i <= Transmitter::most_in_flight; ++i) { // confirmations are no answers
+        Arrival arrival;
+        if (!inbox_.pop(arrival)) return {};
+        Receive answer;
+        answer.lost = arrival.lost - lost_seen_;
+        lost_seen_ = arrival.lost;
+        controller_.count.lost_in_kernel += answer.lost;
+        switch (arrival.what) {
+        case Happened::confirmed:
+            controller_.confirmed(arrival.frame.stamp);
+            hand_over(arrival.frame.stamp);
+            if (answer.lost == 0) continue;
+            return answer;
+        case Happened::error:
+            controller_.report(arrival.frame.error);
+            answer.what = Received::error_frame;
+            break;
+        case Happened::frame:
+            if (!valid(arrival.frame)) {
+                ++controller_.count.malformed;
+                continue;
+            }
+            if (controller_.ours(arrival.frame)) {
+                ++controller_.count.impostors;
+                continue;
+            }
+            ++controller_.count.received;
+            answer.what = Received::frame;
+            break;
+        }
+        frame = arrival.frame;
+        return answer;
+    }
+    return {};
+}
+
+Send Twin::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
+    return controller_.accept(frame, keep);
+}
+
+void Twin::service(Time now) noexcept TAPPET_REALTIME {
+    controller_.tick(now);
+    hand_over(now);
+}
+
+void Twin::hand_over(Time now) noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < Transmitter::most_in_flight; ++i) {
+        const Frame* frame = controller_.next(now);
+        if (frame == nullptr) return;
+        if (!outbox_.push({*frame, now, generation_.load(std::memory_order_acquire)})) {
+            ++controller_.count.back_pressure;
+            return;
+        }
+        controller_.handed_over(now);
+    }
+}
+
+Restart Twin::restart() noexcept {
+    const Restart begun = controller_.recovery.begin();
+    if (begun != Restart::done) return begun;
+    if (restart_fails_.load(std::memory_order_relaxed)) return controller_.recovery.end(false);
+    generation_.fetch_add(1, std::memory_order_acq_rel);
+    off_bus_.store(false, std::memory_order_release);
+    return controller_.recovery.end(true);
+}
+
+void Twin::arrive(Happened what, const Frame& frame) noexcept TAPPET_REALTIME {
+    if (inbox_.push({what, frame, lost_}))
+        arrived_ = true;
+    else
+        ++lost_;
+}
+
+const Twin::Departure* Twin::head() noexcept TAPPET_REALTIME {
+    const std::uint32_t generation = generation_.load(std::memory_order_acquire);
+    const bool off = off_bus_.load(std::memory_order_acquire);
+    for (std::size_t i = 0; i <= outbox; ++i) {
+        const Departure* first = outbox_.front();
+        if (first == nullptr) return nullptr;
+        if (!off && first->generation == generation) return first;
+        Departure forgotten;
+        if (!outbox_.pop(forgotten)) return nullptr;
+    }
+    return nullptr;
+}
+
+void Twin::wake() noexcept TAPPET_REALTIME {
+    if (arrived_ && ready_ != nullptr) ready_(context_);
+    arrived_ = false;
+}
+
+} // namespace tappet::can

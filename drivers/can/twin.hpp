@@ -1,0 +1,79 @@
+// One end of an in-process CAN bus: what the machine, or its plant, has in place of a controller in the host
+// world.
+#pragma once
+
+#include "drivers/can/controller.hpp"
+#include "drivers/twin/ring.hpp"
+#include "kernel/base/text.hpp"
+
+#include <atomic>
+#include <expected>
+
+namespace tappet::can {
+
+/// Its owner uses it from one thread; the bus's thread may be another. Both sides meet in two rings only.
+class Twin final : public Device {
+public:
+    static constexpr std::size_t inbox = 256; // of the size of Linux's default socket buffer: 278 frames
+    static constexpr std::size_t outbox = 16;
+    static_assert(outbox >= Transmitter::most_in_flight, "what may be in flight fits");
+
+    /// Not real-time, before the bus runs. `interface` is a name for messages only.
+    std::expected<void, Sentence> open(const Settings& settings) noexcept;
+
+    using Device::send;
+    Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
+    Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
+    void service(Time now) noexcept TAPPET_REALTIME override;
+    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
+        return controller_.next_timeout();
+    }
+    [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return controller_.state(); }
+    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return controller_.count; }
+    void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
+    Restart restart() noexcept override;
+    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
+    /// `ready` is called by the bus's thread.
+    void set_listener(Listener ready, void* context) noexcept override;
+
+    /// Fault: restart() fails from now on (or works again).
+    void make_restarts_fail(bool fail) noexcept { restart_fails_.store(fail, std::memory_order_relaxed); }
+
+private:
+    friend class TwinBus;
+    enum class Happened : std::uint8_t { frame, confirmed, error };
+    struct Arrival {
+        Happened what = Happened::frame;
+        Frame frame{};
+        std::uint32_t lost = 0; // cumulative, as SO_RXQ_OVFL counts
+    };
+    struct Departure {
+        Frame frame{};
+        Time handed_over{};
+        std::uint32_t generation = 0;
+    };
+
+    [[nodiscard]] bool wants(const Frame& frame) const noexcept TAPPET_REALTIME;
+    void hand_over(Time now) noexcept TAPPET_REALTIME;
+    // The bus's side.
+    void arrive(Happened what, const Frame& frame) noexcept TAPPET_REALTIME;
+    const Departure* head() noexcept TAPPET_REALTIME;
+    void wake() noexcept TAPPET_REALTIME;
+
+    Settings settings_{};
+    Controller controller_{};
+    std::uint32_t lost_seen_ = 0;
+    twin::Ring<Arrival, inbox> inbox_{};
+    twin::Ring<Departure, outbox> outbox_{};
+    std::atomic<std::uint32_t> generation_{
+        0}; // rises with each restart: what was handed over before is forgotten
+    std::atomic<bool> off_bus_{false};
+    std::atomic<bool> restart_fails_{false};
+    std::uint32_t lost_ = 0; // the bus's: arrivals that found the inbox full
+    bool arrived_ = false;   // the bus's: the listener is to be called
+    bool starved_ = false;   // the bus's: it was told that nobody acknowledges
+    Listener ready_ = nullptr;
+    void* context_ = nullptr;
+};
+
+} // namespace tappet::can

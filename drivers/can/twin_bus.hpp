@@ -1,0 +1,89 @@
+// An in-process CAN bus: arbitration and bit times between twins, deterministic, with every fault of a bus on
+// demand.
+#pragma once
+
+#include "drivers/can/twin.hpp"
+#include "kernel/base/random.hpp"
+
+#include <optional>
+
+namespace tappet::can {
+
+/// How often a fault strikes: the next `next` frames, and one in `one_in` of the others (0: none).
+struct Chance {
+    std::uint32_t next = 0;
+    std::uint32_t one_in = 0;
+};
+
+struct BusFaults {
+    Chance lose{};           ///< acknowledged by another node, but it never reaches ours
+    Chance duplicate{};      ///< delivered twice: a sender that missed the last bit repeats
+    Chance corrupt_length{}; ///< arrives one byte short, or one byte long when empty
+    Chance delay{};
+    Duration delay_by = 5ms;
+    std::optional<Identifier> only{}; ///< strikes this identifier only
+};
+
+/// One thread, the bus's, calls deliver_until and the faults; it is real-time.
+class TwinBus {
+public:
+    /// bit_rate 0: frames take no time on the wire.
+    explicit TwinBus(std::uint64_t seed, std::uint32_t bit_rate = 0) noexcept
+        : random_{seed}, bit_rate_{bit_rate} {}
+
+    static constexpr std::size_t most_ends = 8;
+    /// Not real-time, before the bus runs. False when eight ends are there already.
+    [[nodiscard]] bool attach(Twin& end) noexcept { return ends_.push(&end); }
+
+    /// Everything that is on the wire by `now` arrives, in the order of arbitration; then the listeners are
+    /// called.
+    void deliver_until(Time now) noexcept TAPPET_REALTIME;
+
+    BusFaults faults{};
+    /// Nobody acknowledges: frames stay in the controllers, which turn error passive.
+    void set_acknowledged(bool acknowledged) noexcept TAPPET_REALTIME { acknowledged_ = acknowledged; }
+    /// The end's controller leaves the bus; `restart()` brings it back.
+    void bus_off(Twin& end) noexcept TAPPET_REALTIME;
+    void set_state(Twin& end, State state) noexcept TAPPET_REALTIME;
+    /// The next `frames` to this end find its buffer full.
+    void overflow(Twin& end, std::uint32_t frames) noexcept TAPPET_REALTIME { end.lost_ += frames; }
+    /// A node that does not stop sending: this frame, every `period` from `from` on; period 0 silences it.
+    void babble(const Frame& frame, Duration period, Time from) noexcept TAPPET_REALTIME;
+
+    [[nodiscard]] std::uint64_t frames_on_wire() const noexcept TAPPET_REALTIME { return frames_on_wire_; }
+    [[nodiscard]] std::uint64_t frames_lost() const noexcept TAPPET_REALTIME { return frames_lost_; }
+
+private:
+    struct Delayed {
+        Frame frame{};
+        Twin* from = nullptr;
+        bool operator==(const Delayed&) const = default;
+    };
+    struct Contender {
+        Twin* end = nullptr; // none: the babbler
+        Frame frame{};
+        Time start{};
+    };
+    [[nodiscard]] std::optional<Contender> arbitrate(Time now) noexcept TAPPET_REALTIME;
+    void transmit(const Contender& winner, Time finish) noexcept TAPPET_REALTIME;
+    void hand_out(const Frame& frame, const Twin* from) noexcept TAPPET_REALTIME;
+    void release_delayed(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool strikes(Chance& chance, const Frame& frame) noexcept TAPPET_REALTIME;
+    [[nodiscard]] Duration wire_time(const Frame& frame) const noexcept TAPPET_REALTIME;
+    void tell(Twin& end, const BusError& error, Time now) noexcept TAPPET_REALTIME;
+
+    Random random_;
+    std::uint32_t bit_rate_;
+    Bounded<Twin*, most_ends> ends_{};
+    Bounded<Delayed, 64> delayed_{};
+    bool acknowledged_ = true;
+    Time free_at_ = Time::min();
+    Time now_{};
+    Frame babble_{};
+    Duration babble_every_{};
+    Time next_babble_ = never;
+    std::uint64_t frames_on_wire_ = 0;
+    std::uint64_t frames_lost_ = 0;
+};
+
+} // namespace tappet::can

@@ -1,0 +1,273 @@
+// Signals in frames: bits and values against an independent decoder, and tables that must be refused.
+#include "drivers/can/signal_store.hpp"
+
+#include "kernel/base/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace tappet::can {
+namespace {
+
+struct Vector {
+    std::uint16_t start;
+    std::uint8_t bits;
+    Order order;
+    bool is_signed;
+    Payload data;
+    std::int64_t raw;
+};
+
+// Decoded by canmatrix 0.9.5 from random payloads; start bits as in a DBC file.
+constexpr Vector independent[] = {
+    {0, 16, Order::intel, false, {{0x60, 0xbe, 0x31, 0x20, 0x1e, 0x69, 0xfe, 0xda}}, 48736},
+    {16, 32, Order::intel, true, {{0xa0, 0xee, 0xe8, 0xb9, 0x99, 0x7f, 0x5c, 0x7c}}, 2140781032},
+    {7, 16, Order::motorola, false, {{0x29, 0x99, 0xfd, 0xaf, 0xe5, 0x93, 0x25, 0x3c}}, 10649},
+    {55, 12, Order::motorola, true, {{0xd6, 0x54, 0xaf, 0x4d, 0xfa, 0xd7, 0x14, 0x27}}, 322},
+    {3, 10, Order::intel, true, {{0xa0, 0xae, 0xb3, 0xfe, 0xe9, 0x23, 0x2f, 0x8a}}, 468},
+    {12, 33, Order::intel, false, {{0xf2, 0x21, 0x1f, 0x9e, 0xe4, 0x91, 0xc5, 0xb1}}, 4803125746},
+    {2, 5, Order::motorola, false, {{0x0b, 0xec, 0xb5, 0x56, 0x3b, 0xfc, 0x1e, 0x6f}}, 15},
+    {10, 40, Order::motorola, true, {{0x93, 0x42, 0x7e, 0xcb, 0xc8, 0xfe, 0x29, 0x55}}, 342951010245},
+    {0, 64, Order::intel, true, {{0xe5, 0xcd, 0x8e, 0x46, 0xdc, 0x8e, 0xd4, 0xb7}}, -5200374592978367003},
+    {7, 64, Order::motorola, true, {{0xc2, 0x76, 0x4d, 0x2a, 0x5a, 0x4d, 0x76, 0x77}}, -4434271938800683401},
+    {63, 1, Order::intel, false, {{0x06, 0xf8, 0x5d, 0x86, 0x90, 0x02, 0x4a, 0xd6}}, 1},
+    {60, 3, Order::motorola, true, {{0xbd, 0xa3, 0x40, 0x1b, 0xe9, 0xc8, 0xcb, 0xcc}}, 3},
+};
+
+Signal placed(std::uint16_t start, std::uint8_t bits, Order order, bool is_signed) {
+    Signal s = signal("s", start, bits);
+    if (order == Order::motorola) s = s.big_endian();
+    return is_signed ? s.as_signed() : s;
+}
+
+TEST(Signals, decode_as_an_independent_decoder_does) {
+    for (const Vector& v : independent) {
+        const Signal s = placed(v.start, v.bits, v.order, v.is_signed);
+        EXPECT_EQ(to_integer(s, extract(v.data, s)), v.raw)
+            << "start " << v.start << ", bits " << int{v.bits};
+    }
+}
+
+TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
+    Random random{3};
+    for (int round = 0; round < 2000; ++round) {
+        const auto bits = static_cast<std::uint8_t>(random.between(1, 64));
+        const bool motorola = random.one_in(2);
+        const auto lowest = static_cast<unsigned>(random.between(0, 64 - bits));
+        // Motorola: `lowest` counts from the left end of the payload to the most significant bit.
+        const unsigned start = motorola ? 8 * (lowest / 8) + 7 - lowest % 8 : lowest;
+        const Signal s =
+            placed(static_cast<std::uint16_t>(start), bits, motorola ? Order::motorola : Order::intel, false);
+        const std::uint64_t raw = random.next() >> (64 - bits);
+        Payload zeros{}, ones{};
+        ones.fill(0xFF);
+        insert(zeros, s, raw);
+        insert(ones, s, raw);
+        EXPECT_EQ(extract(zeros, s), raw);
+        EXPECT_EQ(extract(ones, s), raw);
+        int set = 0;
+        for (std::size_t i = 0; i < 8; ++i) set += std::popcount(static_cast<unsigned>(zeros[i] ^ ones[i]));
+        EXPECT_EQ(set, 64 - bits);
+    }
+}
+
+TEST(Signals, apply_the_sign_before_factor_and_offset) {
+    const Signal s = signal("t", 0, 8).as_signed().times(0.5).plus(10);
+    EXPECT_EQ(to_physical(s, 0xFF), 9.5);
+    EXPECT_EQ(to_raw(s, 9.5).bits, 0xFFu);
+}
+
+TEST(Signals, carry_floats) {
+    const Signal f = signal("f", 0, 32).as_float();
+    const Signal d = signal("d", 0, 64).as_float();
+    EXPECT_EQ(to_physical(f, 0x3FC00000), 1.5);
+    EXPECT_EQ(to_raw(f, -2.25).bits, 0xC0100000u);
+    EXPECT_EQ(to_physical(d, to_raw(d, 0.1).bits), 0.1);
+    EXPECT_TRUE(to_raw(f, 1e300).saturated);
+}
+
+TEST(Signals, saturate_and_never_wrap) {
+    const Signal s = signal("v", 0, 16).as_signed();
+    const Signal u = signal("v", 0, 16);
+    EXPECT_EQ(to_raw(s, 40000).bits, 0x7FFFu);
+    EXPECT_TRUE(to_raw(s, 40000).saturated);
+    EXPECT_EQ(to_raw(s, -40000).bits, 0x8000u);
+    EXPECT_TRUE(to_raw(s, -40000).saturated);
+    EXPECT_EQ(to_raw(s, -32768).bits, 0x8000u);
+    EXPECT_FALSE(to_raw(s, -32768).saturated);
+    EXPECT_EQ(to_raw(s, 32767.4).bits, 0x7FFFu);
+    EXPECT_FALSE(to_raw(s, 32767.4).saturated);
+    EXPECT_EQ(to_raw(u, -1).bits, 0u);
+    EXPECT_TRUE(to_raw(u, -1).saturated);
+    EXPECT_FALSE(to_raw(u, -0.4).saturated);
+    EXPECT_EQ(to_raw(u, 65535.6).bits, 0xFFFFu);
+    EXPECT_TRUE(to_raw(signal("w", 0, 64), 1e20).saturated);
+    EXPECT_EQ(to_raw(signal("w", 0, 64), 1e20).bits, ~std::uint64_t{0});
+    EXPECT_EQ(to_raw(signal("w", 0, 64).as_signed(), -1e20).bits, std::uint64_t{1} << 63);
+    EXPECT_EQ(to_raw(signal("b", 0, 1).as_signed(), 1).bits, 0u) << "one signed bit holds -1 and 0";
+    EXPECT_EQ(to_raw(signal("b", 0, 1).as_signed(), -1).bits, 1u);
+    EXPECT_EQ(to_raw(signal("w", 0, 53), 9007199254740991.0).bits, 9007199254740991u);
+}
+
+TEST(Signals, refuse_what_is_no_number) {
+    EXPECT_TRUE(to_raw(signal("v", 0, 16), std::numeric_limits<double>::quiet_NaN()).refused);
+}
+
+TEST(Signals, round_to_the_nearest) {
+    const Signal s = signal("v", 0, 16).as_signed();
+    EXPECT_EQ(to_raw(s, 2.5).bits, 3u);
+    EXPECT_EQ(to_raw(s, -2.5).bits, 0xFFFDu);
+    EXPECT_EQ(to_raw(s, 2.4).bits, 2u);
+}
+
+constexpr auto map =
+    signal_map(receive(standard(0x181), "drive", bytes(6), stale_after(5ms), signal("statusword", 0, 16),
+                       signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+               receive(extended(0x18FF0102), "climate", bytes(2), stale_after(0ms),
+                       signal("temperature", 7, 16).big_endian().times(0.01).plus(-40)),
+               transmit(standard(0x201), "command", bytes(6), every(1ms), signal("controlword", 0, 16),
+                        signal("target", 16, 32).as_signed().times(0.1)));
+static_assert(map.fault.empty());
+static_assert(map.received_count == 2 && map.transmitted_count == 1);
+static_assert(map.signal("drive.velocity") == 1 && map.signal("drive.torque") == no_such);
+static_assert(map.frame("command") == 2 && map.frame(standard(0x201)) == 2 &&
+              map.frame(extended(0x201)) == no_such);
+
+Frame drive_frame(std::uint8_t length = 6) {
+    Frame f;
+    f.id = 0x181;
+    f.length = length;
+    f.data = {0x27, 0x06, 0x18, 0xFC, 0xFF, 0xFF};
+    f.stamp = Time{10ms};
+    return f;
+}
+
+TEST(SignalStore, decodes_a_frame_that_fits) {
+    SignalStore store{map};
+    EXPECT_TRUE(store.stale(0, Time{10ms})) << "nothing came yet";
+    EXPECT_EQ(store.decode(drive_frame()), Decoded::yes);
+    EXPECT_EQ(store.integer(map.signal("drive.statusword")), 0x627);
+    EXPECT_EQ(store.physical(map.signal("drive.velocity")), -100.0);
+    EXPECT_FALSE(store.stale(0, Time{15ms}));
+    EXPECT_TRUE(store.stale(0, Time{15ms + 1ns}));
+}
+
+TEST(SignalStore, counts_wrong_lengths_and_unknown_identifiers_and_decodes_neither) {
+    SignalStore store{map};
+    for (const std::uint8_t length : {std::uint8_t{0}, std::uint8_t{5}, std::uint8_t{7}, std::uint8_t{8}})
+        EXPECT_EQ(store.decode(drive_frame(length)), Decoded::wrong_length);
+    Frame other = drive_frame();
+    other.id = 0x182;
+    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier);
+    other = drive_frame();
+    other.extended = true;
+    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier);
+    other = drive_frame();
+    other.remote = true;
+    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier);
+    other = drive_frame();
+    other.id = 0x201;
+    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier) << "ours to send, not to receive";
+    EXPECT_EQ(store.count.wrong_lengths, 4u);
+    EXPECT_EQ(store.count.unknown_identifiers, 4u);
+    EXPECT_EQ(store.count.decoded, 0u);
+    EXPECT_EQ(store.physical(1), 0.0);
+    EXPECT_EQ(store.stamp(0), Time::min());
+}
+
+TEST(SignalStore, encodes_a_row) {
+    SignalStore store{map};
+    store.set_bits(map.signal("command.controlword"), 0x0F);
+    store.set_physical(map.signal("command.target"), -100.0);
+    const Frame f = store.encode(map.frame("command"), Time{3ms});
+    EXPECT_EQ(f.id, 0x201u);
+    EXPECT_EQ(f.length, 6);
+    EXPECT_EQ(f.stamp, Time{3ms});
+    EXPECT_EQ(f.data, (Payload{0x0F, 0x00, 0x18, 0xFC, 0xFF, 0xFF, 0x00, 0x00}));
+}
+
+TEST(SignalStore, keeps_the_value_before_when_given_no_number_and_counts_saturation) {
+    SignalStore store{map};
+    const std::size_t target = map.signal("command.target");
+    store.set_physical(target, 50);
+    store.set_physical(target, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(store.physical(target), 50.0);
+    EXPECT_EQ(store.count.refused, 1u);
+    store.set_physical(target, 1e12);
+    EXPECT_EQ(store.integer(target), 2147483647);
+    EXPECT_EQ(store.count.saturated, 1u);
+}
+
+TEST(SignalStore, survives_random_frames) {
+    SignalStore store{map};
+    Random random{9};
+    for (int i = 0; i < 20000; ++i) {
+        Frame f;
+        f.id = random.one_in(3) ? 0x181u : static_cast<std::uint32_t>(random.below(0x800));
+        f.extended = random.one_in(5);
+        f.remote = random.one_in(9);
+        f.length = static_cast<std::uint8_t>(random.below(16));
+        for (auto& byte : f.data) byte = static_cast<std::uint8_t>(random.next());
+        store.decode(f);
+    }
+    EXPECT_EQ(store.count.decoded + store.count.unknown_identifiers + store.count.wrong_lengths, 20000u);
+}
+
+template <class... Rows> std::string_view fault(const Rows&... rows) {
+    static Sentence kept;
+    kept = signal_map(rows...).fault;
+    return kept.view();
+}
+
+TEST(SignalMap, refuses_overlapping_signals) {
+    EXPECT_EQ(
+        fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 16), signal("b", 15, 8))),
+        "signal \"f.b\" overlaps \"a\" at bit 15: move one of them");
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 7, 16).big_endian(),
+                            signal("b", 8, 8))),
+              "signal \"f.b\" overlaps \"a\" at bit 8: move one of them");
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 7, 16).big_endian(),
+                            signal("b", 16, 8))),
+              "");
+}
+
+TEST(SignalMap, refuses_signals_outside_their_frame) {
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), stale_after(1ms), signal("a", 8, 9))),
+              "signal \"f.a\" reaches outside its frame of 2 bytes: it starts at bit 8 (its lowest) and goes "
+              "up 9 bits; move it or "
+              "lengthen the frame");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(2), stale_after(1ms), signal("a", 15, 9).big_endian())),
+              "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 60000, 9))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 65))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 0))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(9), stale_after(1ms), signal("a", 0, 8))), "");
+}
+
+TEST(SignalMap, refuses_doubled_names_and_identifiers) {
+    const auto row = [](std::uint32_t id, std::string_view name) {
+        return receive(standard(id), name, bytes(8), stale_after(1ms), signal("a", 0, 8));
+    };
+    EXPECT_EQ(fault(row(1, "f"), row(2, "f")), "frame \"f\" is there twice: rename one of them");
+    EXPECT_EQ(fault(row(1, "f"), row(1, "g")), "frame \"g\" has the identifier of \"f\": give it its own");
+    EXPECT_EQ(fault(row(1, "f"), receive(extended(1), "g", bytes(0), stale_after(1ms))), "")
+        << "another format, another identifier";
+    EXPECT_EQ(
+        fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 8), signal("a", 8, 8))),
+        "frame \"f\" has two signals \"a\": rename one of them");
+    EXPECT_EQ(
+        fault(row(0x800, "f")),
+        "frame \"f\" has the identifier 2048: a standard one ends at 2047, an extended one at 536870911");
+    EXPECT_EQ(fault(row(1, "")), "frame 1 has no name: name it");
+}
+
+TEST(SignalMap, refuses_a_factor_of_zero_and_odd_floats) {
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 8).times(0))),
+              "signal \"f.a\" has the factor 0: every value would be the offset; give it another");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 16).as_float())),
+              "");
+}
+
+} // namespace
+} // namespace tappet::can

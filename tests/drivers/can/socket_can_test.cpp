@@ -1,0 +1,48 @@
+// Opening a CAN interface that cannot work: each refusal names what, where and the cure. The rest is on the
+// bench.
+#include "drivers/can/socket_can.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace tappet::can {
+namespace {
+
+std::string refusal(std::string_view interface) {
+    SocketCan can;
+    const auto opened = can.open({.interface = interface});
+    EXPECT_FALSE(opened) << interface;
+    EXPECT_EQ(can.wait_handle(), -1);
+    return opened ? "" : std::string{opened.error().view()};
+}
+
+TEST(SocketCan, refuses_an_interface_that_does_not_exist_and_says_how_to_make_it) {
+    EXPECT_EQ(refusal("can77"),
+              "CAN interface \"can77\" does not exist: create it (ip link add dev can77 type vcan, or load "
+              "its controller's driver) or name another in the board");
+}
+
+TEST(SocketCan, refuses_names_that_no_interface_can_have) {
+    EXPECT_NE(refusal("").find("1 to 15 letters"), std::string::npos);
+    EXPECT_NE(refusal("can-with-a-long-name").find("1 to 15 letters"), std::string::npos);
+}
+
+TEST(SocketCan, refuses_an_interface_that_is_no_can_bus) {
+    EXPECT_EQ(refusal("lo"),
+              "CAN interface \"lo\" is no CAN interface; name another in the board (ip link show type can)");
+}
+
+TEST(SocketCan, does_nothing_while_it_is_closed) {
+    constexpr std::array sends{Identifier{1, false}};
+    SocketCan can;
+    EXPECT_FALSE(can.open({.interface = "can77", .transmit = sends}));
+    Frame f;
+    EXPECT_EQ(can.receive(f).what, Received::none);
+    can.service(Time{1ms});
+    EXPECT_EQ(can.counters().sent, 0u);
+    EXPECT_EQ(can.restart(), Restart::not_needed);
+}
+
+} // namespace
+} // namespace tappet::can

@@ -1,0 +1,342 @@
+// The bus of the host world: who wins, what it costs, and every fault of it.
+#include "drivers/can/signal_map.hpp"
+#include "drivers/can/twin_bus.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tappet::can {
+namespace {
+
+constexpr std::array machine_sends{standard(0x201), standard(0x202), standard(0x203), standard(0x204),
+                                   standard(0x205)};
+constexpr std::array plant_sends{standard(0x181), standard(0x182)};
+
+struct TwinBusTest : testing::Test {
+    TwinBusTest() {
+        Settings settings{.interface = "machine", .receive = plant_sends, .transmit = machine_sends};
+        settings.in_flight = 2;
+        settings.restarts_allowed = 2;
+        EXPECT_TRUE(machine.open(settings));
+        EXPECT_TRUE(plant.open({.interface = "plant", .receive = machine_sends, .transmit = plant_sends}));
+        EXPECT_TRUE(bus.attach(machine));
+        EXPECT_TRUE(bus.attach(plant));
+    }
+    static Frame frame(std::uint32_t id, Time made, std::uint8_t length = 8) {
+        Frame f;
+        f.id = id;
+        f.length = length;
+        f.stamp = made;
+        return f;
+    }
+    /// One period: the machine serves, the bus carries, both ends read.
+    void step(Time now) {
+        machine.service(now);
+        plant.service(now);
+        bus.deliver_until(now);
+    }
+    static std::vector<Frame> drain(Device& end) {
+        std::vector<Frame> all;
+        Frame f;
+        for (int i = 0; i < 2000; ++i)
+            if (end.receive(f).what == Received::frame) all.push_back(f);
+        return all;
+    }
+    TwinBus bus{1};
+    Twin machine;
+    Twin plant;
+};
+
+TEST_F(TwinBusTest, carries_a_frame_and_confirms_it) {
+    Frame sent = frame(0x201, Time{1ms});
+    sent.data[3] = 42;
+    EXPECT_EQ(machine.send(sent), Send::queued);
+    step(Time{1ms});
+    const auto arrived = drain(plant);
+    ASSERT_EQ(arrived.size(), 1u);
+    EXPECT_EQ(arrived[0].data, sent.data);
+    EXPECT_EQ(arrived[0].stamp, Time{1ms});
+    EXPECT_TRUE(drain(machine).empty()) << "a confirmation is no frame";
+    EXPECT_EQ(machine.counters().sent, 1u);
+    EXPECT_EQ(plant.counters().received, 1u);
+}
+
+TEST_F(TwinBusTest, lets_nothing_through_that_the_filter_does_not_name) {
+    Twin stranger;
+    constexpr std::array others{standard(0x777), extended(0x181)};
+    ASSERT_TRUE(stranger.open({.interface = "stranger", .transmit = others}));
+    ASSERT_TRUE(bus.attach(stranger));
+    EXPECT_EQ(stranger.send(frame(0x777, Time{1ms})), Send::queued);
+    Frame long_one = frame(0x181, Time{1ms});
+    long_one.extended = true;
+    EXPECT_EQ(stranger.send(long_one), Send::queued);
+    stranger.service(Time{1ms});
+    step(Time{1ms});
+    EXPECT_EQ(bus.frames_on_wire(), 2u);
+    EXPECT_TRUE(drain(machine).empty());
+}
+
+TEST_F(TwinBusTest, refuses_to_send_an_identifier_that_is_not_ours) {
+    EXPECT_EQ(machine.send(frame(0x181, Time{1ms})), Send::refused_invalid);
+    EXPECT_EQ(machine.counters().refused, 1u);
+}
+
+TEST_F(TwinBusTest, counts_an_impostor_and_hands_it_to_nobody) {
+    Twin impostor;
+    ASSERT_TRUE(impostor.open({.interface = "impostor", .transmit = machine_sends}));
+    ASSERT_TRUE(bus.attach(impostor));
+    EXPECT_EQ(impostor.send(frame(0x201, Time{1ms})), Send::queued);
+    impostor.service(Time{1ms});
+    step(Time{1ms});
+    EXPECT_TRUE(drain(machine).empty());
+    EXPECT_EQ(machine.counters().impostors, 1u);
+}
+
+TEST_F(TwinBusTest, takes_bit_times_and_serves_the_lower_identifier_first) {
+    TwinBus slow{1, 1'000'000};
+    Twin a, b;
+    constexpr std::array low{standard(0x100)};
+    constexpr std::array high{standard(0x200)};
+    ASSERT_TRUE(a.open({.interface = "a", .receive = low, .transmit = high}));
+    ASSERT_TRUE(b.open({.interface = "b", .receive = high, .transmit = low}));
+    ASSERT_TRUE(slow.attach(a) && slow.attach(b));
+    EXPECT_EQ(a.send(frame(0x200, Time{1ms})), Send::queued);
+    EXPECT_EQ(b.send(frame(0x100, Time{1ms})), Send::queued);
+    a.service(Time{1ms});
+    b.service(Time{1ms});
+    slow.deliver_until(Time{1ms + 134us});
+    EXPECT_TRUE(drain(a).empty()) << "135 bits take 135 us";
+    slow.deliver_until(Time{2ms});
+    const auto at_a = drain(a);
+    const auto at_b = drain(b);
+    ASSERT_EQ(at_a.size(), 1u);
+    ASSERT_EQ(at_b.size(), 1u);
+    EXPECT_EQ(at_a[0].stamp, Time{1ms + 135us});
+    EXPECT_EQ(at_b[0].stamp, Time{1ms + 270us});
+}
+
+TEST_F(TwinBusTest, loses_duplicates_and_delays_frames_on_demand) {
+    bus.faults.lose.next = 1;
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
+    step(Time{1ms});
+    EXPECT_TRUE(drain(plant).empty());
+    EXPECT_EQ(bus.frames_lost(), 1u);
+    drain(machine);
+    EXPECT_EQ(machine.counters().sent, 1u) << "another node acknowledged it";
+
+    bus.faults.duplicate.next = 1;
+    EXPECT_EQ(machine.send(frame(0x201, Time{2ms})), Send::queued);
+    step(Time{2ms});
+    EXPECT_EQ(drain(plant).size(), 2u);
+
+    bus.faults.delay.next = 1;
+    bus.faults.delay_by = 3ms;
+    EXPECT_EQ(machine.send(frame(0x201, Time{3ms})), Send::queued);
+    step(Time{3ms});
+    EXPECT_TRUE(drain(plant).empty());
+    step(Time{6ms});
+    const auto late = drain(plant);
+    ASSERT_EQ(late.size(), 1u);
+    EXPECT_EQ(late[0].stamp, Time{6ms});
+}
+
+TEST_F(TwinBusTest, corrupts_the_length_of_one_identifier_only) {
+    bus.faults.only = standard(0x202);
+    bus.faults.corrupt_length.next = 1;
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
+    EXPECT_EQ(machine.send(frame(0x202, Time{1ms})), Send::queued);
+    step(Time{1ms});
+    const auto arrived = drain(plant);
+    ASSERT_EQ(arrived.size(), 2u);
+    EXPECT_EQ(arrived[0].length, 8);
+    EXPECT_EQ(arrived[1].length, 7);
+}
+
+TEST_F(TwinBusTest, says_how_many_frames_were_lost_before_the_next_one) {
+    bus.overflow(machine, 7);
+    EXPECT_EQ(plant.send(frame(0x181, Time{1ms})), Send::queued);
+    step(Time{1ms});
+    Frame f;
+    const Receive answer = machine.receive(f);
+    EXPECT_EQ(answer.what, Received::frame);
+    EXPECT_EQ(answer.lost, 7u);
+    EXPECT_EQ(machine.counters().lost_in_kernel, 7u);
+}
+
+TEST_F(TwinBusTest, overflows_an_inbox_that_nobody_reads) {
+    std::uint64_t sent = 0;
+    for (Time now{1ms}; sent < 300; now += 1ms, ++sent) {
+        ASSERT_EQ(plant.send(frame(0x181, now)), Send::queued);
+        step(now);
+        drain(plant);
+    }
+    EXPECT_EQ(drain(machine).size(), Twin::inbox);
+    ASSERT_EQ(plant.send(frame(0x181, Time{1s})), Send::queued);
+    step(Time{1s});
+    Frame f;
+    EXPECT_EQ(machine.receive(f).lost, 300u - Twin::inbox);
+}
+
+TEST_F(TwinBusTest, goes_silent_at_bus_off_and_comes_back_only_when_restarted) {
+    EXPECT_EQ(machine.restart(), Restart::not_needed);
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
+    EXPECT_EQ(machine.send(frame(0x202, Time{1ms})), Send::queued);
+    EXPECT_EQ(machine.send(frame(0x203, Time{1ms})), Send::queued);
+    machine.service(Time{1ms}); // two are in the controller, one waits
+    bus.bus_off(machine);
+    Frame f;
+    ASSERT_EQ(machine.receive(f).what, Received::error_frame);
+    EXPECT_EQ(f.error.state, State::bus_off);
+    EXPECT_EQ(machine.state(), State::bus_off);
+    EXPECT_EQ(machine.send(frame(0x201, Time{2ms})), Send::refused_fault);
+    for (Time now{2ms}; now < Time{500ms}; now += 10ms) step(now);
+    EXPECT_TRUE(drain(plant).empty());
+    EXPECT_EQ(machine.state(), State::bus_off) << "it does not come back by itself";
+
+    EXPECT_EQ(machine.restart(), Restart::done);
+    step(Time{501ms});
+    EXPECT_EQ(machine.state(), State::active);
+    EXPECT_EQ(machine.send(frame(0x204, Time{500ms})), Send::refused_stale) << "made before the restart";
+    EXPECT_EQ(machine.send(frame(0x205, Time{502ms})), Send::queued);
+    step(Time{502ms});
+    const auto arrived = drain(plant);
+    ASSERT_EQ(arrived.size(), 1u) << "nothing from before the restart is ever sent";
+    EXPECT_EQ(arrived[0].id, 0x205u);
+    EXPECT_EQ(machine.counters().dropped_stale, 3u);
+}
+
+TEST_F(TwinBusTest, restarts_no_more_often_than_allowed) {
+    Time now{1ms};
+    for (int i = 0; i < 2; ++i, now += 1ms) {
+        bus.bus_off(machine);
+        drain(machine);
+        EXPECT_EQ(machine.restart(), Restart::done);
+        step(now);
+        EXPECT_EQ(machine.state(), State::active);
+    }
+    bus.bus_off(machine);
+    drain(machine);
+    EXPECT_EQ(machine.restart(), Restart::exhausted);
+    step(now);
+    EXPECT_EQ(machine.state(), State::bus_off);
+    EXPECT_EQ(machine.counters().restarts, 2u);
+}
+
+TEST_F(TwinBusTest, stays_faulted_when_the_restart_fails) {
+    machine.make_restarts_fail(true);
+    bus.bus_off(machine);
+    drain(machine);
+    EXPECT_EQ(machine.restart(), Restart::failed);
+    step(Time{1ms});
+    EXPECT_EQ(machine.state(), State::bus_off);
+    machine.make_restarts_fail(false);
+    EXPECT_EQ(machine.restart(), Restart::done);
+}
+
+TEST_F(TwinBusTest, takes_missing_acknowledgements_for_a_fault_and_sends_nothing_stale_afterwards) {
+    bus.set_acknowledged(false);
+    for (Time now{0ms}; now <= Time{60ms}; now += 1ms) {
+        machine.send(frame(0x201, now));
+        step(now);
+        drain(machine);
+        if (now == Time{10ms}) {
+            EXPECT_EQ(machine.state(), State::passive);
+        }
+    }
+    EXPECT_EQ(machine.state(), State::unacknowledged);
+    EXPECT_EQ(machine.counters().faults, 1u);
+    EXPECT_EQ(machine.restart(), Restart::done);
+    bus.set_acknowledged(true);
+    step(Time{100ms});
+    EXPECT_TRUE(drain(plant).empty());
+    EXPECT_EQ(machine.send(frame(0x201, Time{101ms})), Send::queued);
+    step(Time{101ms});
+    EXPECT_EQ(drain(plant).size(), 1u);
+}
+
+TEST_F(TwinBusTest, recovers_by_itself_from_error_passive) {
+    bus.set_state(machine, State::passive);
+    drain(machine);
+    EXPECT_EQ(machine.state(), State::passive);
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued) << "a passive controller still sends";
+    bus.set_state(machine, State::active);
+    drain(machine);
+    EXPECT_EQ(machine.state(), State::active);
+}
+
+TEST_F(TwinBusTest, starves_lower_priorities_when_a_node_babbles) {
+    TwinBus busy{1, 125'000};
+    Twin a, b;
+    constexpr std::array sends{standard(0x400)};
+    constexpr std::array nothing = std::array<Identifier, 0>{};
+    ASSERT_TRUE(a.open({.interface = "a", .receive = nothing, .transmit = sends}));
+    ASSERT_TRUE(b.open({.interface = "b", .receive = sends, .transmit = nothing}));
+    ASSERT_TRUE(busy.attach(a) && busy.attach(b));
+    busy.babble(frame(0, Time{}), 100us, Time{});
+    busy.deliver_until(Time{1ms});
+    EXPECT_EQ(a.send(frame(0x400, Time{1ms})), Send::queued);
+    a.service(Time{1ms});
+    busy.deliver_until(Time{60ms});
+    a.service(Time{60ms});
+    EXPECT_TRUE(drain(b).empty());
+    EXPECT_EQ(a.state(), State::unacknowledged) << "its frame never went out";
+    busy.babble({}, 0ns, Time{});
+}
+
+TEST_F(TwinBusTest, calls_the_listener_once_per_delivery) {
+    int calls = 0;
+    machine.set_listener([](void* n) noexcept TAPPET_REALTIME { ++*static_cast<int*>(n); }, &calls);
+    step(Time{1ms});
+    EXPECT_EQ(calls, 0);
+    EXPECT_EQ(plant.send(frame(0x181, Time{2ms})), Send::queued);
+    EXPECT_EQ(plant.send(frame(0x182, Time{2ms})), Send::queued);
+    step(Time{2ms});
+    EXPECT_EQ(calls, 1);
+    EXPECT_EQ(machine.wait_handle(), -1);
+}
+
+/// The identifiers that arrive under random faults, as one number.
+std::uint64_t run_of(std::uint64_t seed) {
+    TwinBus bus{seed, 1'000'000};
+    Twin a, b;
+    EXPECT_TRUE(a.open({.interface = "a", .transmit = machine_sends}));
+    EXPECT_TRUE(b.open({.interface = "b", .receive = machine_sends}));
+    EXPECT_TRUE(bus.attach(a) && bus.attach(b));
+    bus.faults.lose.one_in = 7;
+    bus.faults.duplicate.one_in = 5;
+    bus.faults.delay.one_in = 3;
+    bus.faults.corrupt_length.one_in = 11;
+    std::uint64_t digest = 0;
+    Random traffic{seed + 1};
+    for (Time now{1ms}; now < Time{2s}; now += 1ms) {
+        Frame f;
+        f.id = machine_sends[traffic.below(machine_sends.size())].id;
+        f.stamp = now;
+        a.send(f);
+        a.service(now);
+        bus.deliver_until(now);
+        while (b.receive(f).what != Received::none)
+            digest = digest * 31 + f.id * 16 + f.length + static_cast<std::uint64_t>(to_ns(f.stamp));
+        while (a.receive(f).what != Received::none) {
+        }
+    }
+    return digest;
+}
+
+TEST(TwinBusRuns, are_equal_for_equal_seeds_and_differ_for_others) {
+    EXPECT_EQ(run_of(5), run_of(5));
+    EXPECT_NE(run_of(5), run_of(6));
+}
+
+TEST(TwinOpen, refuses_an_identifier_out_of_range) {
+    Twin twin;
+    constexpr std::array wrong{standard(0x800)};
+    const auto opened = twin.open({.interface = "loom", .receive = wrong});
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().view(),
+              "CAN twin \"loom\": identifier 2048 is out of range; correct the signal map");
+}
+
+} // namespace
+} // namespace tappet::can

@@ -1,0 +1,83 @@
+// Linux's frames, filters and error frames, as the machine reads them.
+#include "drivers/can/wire.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::can {
+namespace {
+
+/// The kernel's own rule for a filter (net/can/af_can.c).
+bool passes(const can_filter& filter, std::uint32_t can_id) {
+    return (can_id & filter.can_mask) == (filter.can_id & filter.can_mask);
+}
+
+TEST(Filter, lets_exactly_one_standard_identifier_through) {
+    const can_filter filter = wire::exactly({0x181, false});
+    EXPECT_EQ(filter.can_mask, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK)
+        << "the mask of the kernel's fast path";
+    EXPECT_TRUE(passes(filter, 0x181));
+    EXPECT_FALSE(passes(filter, 0x182));
+    EXPECT_FALSE(passes(filter, 0x181 | CAN_EFF_FLAG));
+    EXPECT_FALSE(passes(filter, 0x181 | CAN_RTR_FLAG));
+    EXPECT_FALSE(passes(filter, 0x18FF'0181 | CAN_EFF_FLAG));
+}
+
+TEST(Filter, lets_exactly_one_extended_identifier_through) {
+    const can_filter filter = wire::exactly({0x18FF'0102, true});
+    EXPECT_TRUE(passes(filter, 0x18FF'0102 | CAN_EFF_FLAG));
+    EXPECT_FALSE(passes(filter, 0x102));
+    EXPECT_FALSE(passes(filter, 0x18FF'0102 | CAN_EFF_FLAG | CAN_RTR_FLAG));
+}
+
+TEST(Wire, carries_frames_both_ways) {
+    for (const bool is_extended : {false, true})
+        for (const bool is_remote : {false, true}) {
+            Frame f;
+            f.id = 0x123;
+            f.extended = is_extended;
+            f.remote = is_remote;
+            f.length = 8;
+            f.data = {1, 2, 3, 4, 5, 6, 7, 8};
+            Frame back;
+            ASSERT_TRUE(wire::decode(wire::encode(f), State::active, back));
+            EXPECT_EQ(back, f);
+        }
+}
+
+TEST(Wire, refuses_a_length_that_no_classic_frame_has) {
+    can_frame raw{};
+    raw.len = 9;
+    Frame f;
+    EXPECT_FALSE(wire::decode(raw, State::active, f));
+}
+
+TEST(ErrorFrame, says_bus_off) {
+    can_frame raw{};
+    raw.can_id = 0x2000'0040; // as vcan hands it on when it is injected
+    raw.len = 8;
+    EXPECT_EQ(wire::decode_error(raw, State::passive).state, State::bus_off);
+}
+
+TEST(ErrorFrame, says_how_bad_it_is_and_keeps_the_state_it_does_not_mention) {
+    can_frame raw{};
+    raw.can_id = CAN_ERR_FLAG | CAN_ERR_CRTL;
+    raw.len = 8;
+    raw.data[6] = 130;
+    EXPECT_EQ(wire::decode_error(raw, State::warning).state, State::warning);
+    raw.data[1] = CAN_ERR_CRTL_RX_WARNING;
+    EXPECT_EQ(wire::decode_error(raw, State::active).state, State::warning);
+    raw.data[1] = CAN_ERR_CRTL_TX_PASSIVE | CAN_ERR_CRTL_TX_WARNING;
+    EXPECT_EQ(wire::decode_error(raw, State::active).state, State::passive);
+    EXPECT_EQ(wire::decode_error(raw, State::active).transmit_errors, 130);
+    raw.data[1] = CAN_ERR_CRTL_ACTIVE;
+    EXPECT_EQ(wire::decode_error(raw, State::passive).state, State::active);
+    raw.data[1] = CAN_ERR_CRTL_RX_OVERFLOW;
+    EXPECT_TRUE(wire::decode_error(raw, State::active).overrun);
+}
+
+TEST(ErrorFrame, is_not_asked_for_per_bus_error) {
+    EXPECT_EQ(wire::error_mask & (CAN_ERR_BUSERROR | CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_LOSTARB), 0u);
+}
+
+} // namespace
+} // namespace tappet::can
