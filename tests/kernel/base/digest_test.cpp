@@ -1,0 +1,43 @@
+#include "kernel/base/digest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <set>
+
+namespace {
+
+using namespace tappet;
+
+constexpr Digest of(std::initializer_list<std::uint64_t> words) {
+    Digest digest;
+    for (const std::uint64_t word : words) digest.add(word);
+    return digest;
+}
+static_assert(of({1, 2, 3}) == of({1, 2, 3}));
+
+TEST(Digest, depends_on_the_order) { EXPECT_NE(of({1, 2}), of({2, 1})); }
+
+TEST(Digest, depends_on_how_many_zeros_were_added) { EXPECT_NE(of({0}), of({0, 0})); }
+
+TEST(Digest, takes_signed_words_as_their_bits) {
+    Digest digest;
+    digest.add(std::int64_t{-1});
+    EXPECT_EQ(digest, of({~std::uint64_t{0}}));
+}
+
+TEST(Digest, shows_every_single_bit_in_what_follows) {
+    std::set<std::uint64_t> values;
+    for (unsigned bit = 0; bit < 64; ++bit) values.insert(of({std::uint64_t{1} << bit, 5}).value());
+    EXPECT_EQ(values.size(), 64u);
+}
+
+TEST(Digest, carries_the_highest_bit_down) {
+    const std::uint64_t difference = of({std::uint64_t{1} << 63}).value() ^ of({0}).value();
+    EXPECT_NE(difference << 16, 0u);
+}
+
+TEST(Digest, is_the_same_with_every_compiler) { EXPECT_EQ(of({1, 2, 3}).value(), 0x6da0eea95f45479eu); }
+
+} // namespace
