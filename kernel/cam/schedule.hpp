@@ -1,0 +1,329 @@
+// The cam table at work: from the shaft's motion, the time of the next firing; at that time, what is to be fired.
+// On a sample: estimator.sample(); schedule.update(estimator, now); arm a one-shot timer at schedule.next_due().
+// On the timer: schedule.advance(now, fire); arm it again.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+#include "kernel/cam/angle.hpp"
+#include "kernel/cam/estimator.hpp"
+#include "kernel/cam/motion.hpp"
+#include "kernel/cam/table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace tappet {
+
+enum class CamKind : std::uint8_t { point, enter, leave };
+
+/// What is handed to the caller's `fire`.
+struct CamEvent {
+    std::size_t row = 0;
+    CamKind kind = CamKind::point;
+    bool forward = true;
+    bool forced = false;    // left because the encoder was lost meanwhile and the shaft is elsewhere now
+    ShaftPosition target;   // the crossing: the row's angle in the turn it was fired for
+    ShaftPosition position; // of the shaft, at the firing
+    ShaftPosition effect;   // predicted, at the end of the dead time
+    double late_deg = 0.0;  // effect behind target in the direction of turning; negative: before it
+};
+
+struct CamProperties {
+    /// How far the shaft turns back before a crossing counts again: more than one step of the encoder.
+    Rotation hysteresis = Rotation::degrees(3.0);
+    Rotation late_from = Rotation::degrees(1.0); // counted as late from here on
+    Rotation skip_from = Rotation::degrees(90.0); // later than this, it is skipped and counted, not fired
+};
+
+struct CamCounters {
+    std::uint64_t fired = 0;
+    std::uint64_t late = 0;
+    std::uint64_t skipped_late = 0;  // beyond skip_from
+    std::uint64_t skipped_slow = 0;  // crossed below min_speed, or while coming to a stand
+    std::uint64_t skipped_reset = 0; // jumped over when the encoder started anew
+    std::uint64_t forced = 0;        // windows left because of that
+    double latest_deg = 0.0;
+    constexpr bool operator==(const CamCounters&) const = default;
+};
+
+/// The rows of one table at run time. Each crossing fires exactly once, in the order of the angles. All calls take
+/// time bounded by the number of rows; one activity owns it. A window in which the shaft stands at the beginning is
+/// not entered: events come from crossings only. Nothing is fired on a stale estimate: what has to be safe then is
+/// the machine's business.
+template <std::size_t N>
+class CamSchedule {
+public:
+    /// check(table.view()) is empty.
+    explicit constexpr CamSchedule(const CamTable<N>& table, const CamProperties& properties = {}) noexcept
+        : properties_(properties) {
+        for (std::size_t i = 0; i < N; ++i) {
+            const CamRow& row = table.rows[i];
+            if (row.is_window) {
+                // Forward, the beginning enters and the end leaves; backward, the end enters.
+                insert(row, i, End::begin, row.enter, row.dead_time, row.leave_dead_time);
+                insert(row, i, End::end, row.leave, row.leave_dead_time, row.dead_time);
+            } else {
+                insert(row, i, End::point, row.enter, row.dead_time, row.dead_time);
+            }
+        }
+    }
+
+    /// Takes the shaft's motion over and predicts every row anew. Fires nothing. Real-time, O(N).
+    void update(const ShaftEstimator& estimator, Time now) noexcept TAPPET_REALTIME {
+        next_due_ = never;
+        good_until_ = estimator.valid_until();
+        if (now > good_until_) return;
+        motion_ = estimator.motion().from(now);
+        const ShaftPosition here = motion_.state.position;
+        if (!started_ || estimator.epoch() != epoch_) jump_to(here);
+        epoch_ = estimator.epoch();
+        started_ = true;
+        for (std::size_t i = 0; i < used_; ++i) {
+            track(edges_[i], here);
+            plan(edges_[i]);
+            next_due_ = std::min(next_due_, edges_[i].due);
+        }
+    }
+
+    /// When to call advance() next: now or before now means at once; `never` until the next update. Real-time.
+    [[nodiscard]] Time next_due() const noexcept TAPPET_REALTIME { return next_due_; }
+
+    /// Calls fire(const CamEvent&) for every event that is due at `now`. Real-time when `fire` is, O(N).
+    template <class Fire>
+    void advance(Time now, Fire&& fire) noexcept TAPPET_REALTIME {
+        if (next_due_ > now) return;
+        if (now > good_until_) {
+            next_due_ = never;
+            return;
+        }
+        motion_ = motion_.from(now);
+        const bool forward = motion_.state.velocity_deg_s >= 0.0;
+        next_due_ = never;
+        std::size_t i = first_due(now, forward);
+        for (std::size_t n = 0; n < used_; ++n) {
+            if (edges_[i].due <= now) serve(edges_[i], fire);
+            i = forward ? (i + 1 == used_ ? 0 : i + 1) : (i == 0 ? used_ - 1 : i - 1);
+        }
+        for (std::size_t k = 0; k < used_; ++k) next_due_ = std::min(next_due_, edges_[k].due);
+    }
+
+    /// True between the entering and the leaving of a window. Real-time.
+    [[nodiscard]] bool inside(std::size_t row) const noexcept TAPPET_REALTIME { return inside_[row]; }
+    [[nodiscard]] const CamCounters& counters() const noexcept TAPPET_REALTIME { return counters_; }
+
+private:
+    enum class End : std::uint8_t { point, begin, end };
+    // After a crossing, the way back over it counts only once the shaft has turned `hysteresis` away from it.
+    enum class Closed : std::uint8_t { none, below, above };
+
+    // One angle of one row. The shaft is between `below` and one turn above it, both being at `angle`.
+    struct Edge {
+        Angle angle;
+        std::size_t row = 0;
+        End end = End::point;
+        Direction direction = Direction::forward;
+        double min_speed_deg_s = 0.0;
+        Angle begin;    // of the row's window
+        Rotation width;
+        Duration forward_dead = Duration::zero();
+        Duration backward_dead = Duration::zero();
+        ShaftPosition below{};
+        Closed closed = Closed::none;
+        ShaftPosition furthest{}; // since the crossing, but not beyond the angle: where turning back is measured from
+        std::int8_t side = 1;     // the crossing planned: 1 forward over the turn's end, -1 backward over `below`
+        bool must_leave = false;
+        Time due = never;
+    };
+
+    // By angle; at one angle what ends comes before what begins, so that neighbours are never open together.
+    constexpr void insert(const CamRow& row, std::size_t index, End end, Rotation angle, Duration forward_dead,
+                          Duration backward_dead) noexcept {
+        Edge edge;
+        edge.angle = angle;
+        edge.row = index;
+        edge.end = end;
+        edge.direction = row.direction;
+        edge.min_speed_deg_s = row.min_speed.in_deg_s();
+        edge.begin = row.enter;
+        edge.width = forward_way(row.enter, row.leave);
+        edge.forward_dead = forward_dead;
+        edge.backward_dead = backward_dead;
+        const auto rank = [](const Edge& e) {
+            return (std::uint64_t{e.angle.in_units()} << 1) | (e.end == End::end ? 0u : 1u);
+        };
+        std::size_t i = used_++;
+        for (; i > 0 && rank(edges_[i - 1]) > rank(edge); --i) edges_[i] = edges_[i - 1];
+        edges_[i] = edge;
+    }
+
+    static constexpr ShaftPosition above(const Edge& e) noexcept TAPPET_REALTIME {
+        return e.below + Rotation::turns(1);
+    }
+    static constexpr CamKind kind(const Edge& e, int side) noexcept TAPPET_REALTIME {
+        if (e.end == End::point) return CamKind::point;
+        return (e.end == End::begin) == (side > 0) ? CamKind::enter : CamKind::leave;
+    }
+    static constexpr bool allows(const Edge& e, int side) noexcept TAPPET_REALTIME {
+        return e.direction == Direction::both || (e.direction == Direction::forward) == (side > 0);
+    }
+    static constexpr Duration dead(const Edge& e) noexcept TAPPET_REALTIME {
+        return e.side > 0 ? e.forward_dead : e.backward_dead;
+    }
+    [[nodiscard]] constexpr bool open_ahead(const Edge& e) const noexcept TAPPET_REALTIME {
+        return e.closed != (e.side > 0 ? Closed::above : Closed::below);
+    }
+
+    // Takes the place of an edge from the shaft's position alone: at the start and after the encoder started anew.
+    constexpr void jump_to(ShaftPosition here) noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < used_; ++i) {
+            Edge& e = edges_[i];
+            const ShaftPosition below = here - forward_way(e.angle, here.angle());
+            const std::int64_t turns = (below - e.below).in_units() >> 32;
+            const int side = turns > 0 ? 1 : -1;
+            if (started_ && turns != 0 && kind(e, side) != CamKind::leave && allows(e, side))
+                counters_.skipped_reset += static_cast<std::uint64_t>(turns > 0 ? turns : -turns);
+            e.below = below;
+            // Just over the angle: a tremble back over it is no crossing.
+            e.closed = here - below < properties_.hysteresis ? Closed::below : Closed::none;
+            e.furthest = below;
+            const bool within = forward_way(e.begin, here.angle()) < e.width;
+            e.must_leave = e.end == End::end && inside_[e.row] && !within;
+        }
+    }
+
+    // Reopens a crossing once the shaft is far enough from it.
+    constexpr void track(Edge& e, ShaftPosition here) noexcept TAPPET_REALTIME {
+        if (e.closed == Closed::below) {
+            if (here - e.below >= properties_.hysteresis) e.closed = Closed::none;
+            else if (here - e.furthest > Rotation{}) e.furthest = here - e.below > Rotation{} ? e.below : here;
+        } else if (e.closed == Closed::above) {
+            const ShaftPosition top = above(e);
+            if (top - here >= properties_.hysteresis) e.closed = Closed::none;
+            else if (e.furthest - here > Rotation{}) e.furthest = top - here > Rotation{} ? top : here;
+        }
+    }
+
+    // The next crossing of an edge and when it is due. A crossing nobody is told of is only noted.
+    void plan(Edge& e) noexcept TAPPET_REALTIME {
+        const ShaftPosition here = motion_.state.position;
+        const Time now = motion_.stamp;
+        e.due = never;
+        if (e.must_leave) {
+            e.due = now;
+            return;
+        }
+        const ShaftPosition up = e.closed == Closed::above ? e.furthest + properties_.hysteresis : above(e);
+        const ShaftPosition down = e.closed == Closed::below ? e.furthest - properties_.hysteresis : e.below;
+        const double v = motion_.state.velocity_deg_s;
+        const bool over = here - up >= Rotation{};
+        const bool under = down - here >= Rotation{};
+        if (!over && !under && v == 0.0) return;
+        e.side = over || (!under && v > 0.0) ? 1 : -1;
+        const bool passed = over || under;
+        const bool slow = v == 0.0 || (v < 0.0 ? -v : v) < e.min_speed_deg_s;
+        const CamKind what = kind(e, e.side);
+        // Leaving is always planned: its window may be entered before it comes.
+        if (what != CamKind::leave && (slow || !allows(e, e.side))) {
+            if (!passed) return;
+            if (allows(e, e.side)) ++counters_.skipped_slow;
+            cross(e, 1);
+        } else if (passed) {
+            e.due = now;
+        } else {
+            const Time crossing = motion_.when(e.side > 0 ? up : down);
+            // A crossing that is closed still is fired when the shaft is there, not ahead.
+            e.due = crossing == never || !open_ahead(e) ? crossing : crossing - dead(e);
+        }
+    }
+
+    void cross(Edge& e, std::int64_t turns) noexcept TAPPET_REALTIME {
+        const ShaftPosition here = motion_.state.position;
+        if (e.side > 0) {
+            e.below = e.below + Rotation::turns(turns);
+            e.closed = Closed::below;
+            e.furthest = here - e.below > Rotation{} ? e.below : here;
+        } else {
+            e.below = e.below - Rotation::turns(turns);
+            e.closed = Closed::above;
+            e.furthest = above(e) - here > Rotation{} ? above(e) : here;
+        }
+        track(e, here);
+    }
+
+    [[nodiscard]] std::size_t first_due(Time now, bool forward) const noexcept TAPPET_REALTIME {
+        const ShaftPosition here = motion_.state.position;
+        std::size_t first = 0;
+        Rotation least = Rotation::units(std::numeric_limits<std::int64_t>::max());
+        for (std::size_t i = 0; i < used_; ++i) {
+            const Edge& e = edges_[i];
+            if (e.due > now) continue;
+            const Rotation way = forward ? above(e) - here : here - e.below;
+            // At one angle the order of the edges holds, from the last to the first when turning backward.
+            if (way < least || (way == least && !forward)) {
+                least = way;
+                first = i;
+            }
+        }
+        return first;
+    }
+
+    template <class Fire>
+    void serve(Edge& e, Fire& fire) noexcept TAPPET_REALTIME {
+        CamEvent event;
+        event.row = e.row;
+        event.position = motion_.state.position;
+        if (e.must_leave) {
+            e.must_leave = false;
+            event.kind = CamKind::leave;
+            event.forced = true;
+            event.target = event.effect = event.position;
+            inside_[e.row] = false;
+            ++counters_.forced;
+            fire(std::as_const(event));
+            plan(e);
+            return;
+        }
+        event.kind = kind(e, e.side);
+        event.forward = e.side > 0;
+        event.target = e.side > 0 ? above(e) : e.below;
+        event.effect = motion_.at(motion_.stamp + dead(e)).position;
+        const Rotation behind = event.forward ? event.effect - event.target : event.target - event.effect;
+        event.late_deg = behind.in_degrees();
+        const std::int64_t turns = behind > Rotation{} ? 1 + (behind.in_units() >> 32) : 1;
+        cross(e, turns);
+        const bool leaving = event.kind == CamKind::leave;
+        if (!leaving && behind > properties_.skip_from) {
+            counters_.skipped_late += static_cast<std::uint64_t>(turns);
+        } else if (!leaving || inside_[e.row]) {
+            if (event.kind != CamKind::point) inside_[e.row] = !leaving;
+            ++counters_.fired;
+            if (behind >= properties_.late_from) ++counters_.late;
+            counters_.latest_deg = std::max(counters_.latest_deg, event.late_deg);
+            fire(std::as_const(event));
+        }
+        plan(e);
+    }
+
+    CamProperties properties_;
+    std::array<Edge, 2 * N> edges_{};
+    std::size_t used_ = 0;
+    std::array<bool, N> inside_{};
+    ShaftMotion motion_;
+    std::uint32_t epoch_ = 0;
+    Time next_due_ = never;
+    Time good_until_ = Time::min(); // of the motion
+    bool started_ = false;
+    CamCounters counters_;
+};
+
+template <std::size_t N>
+CamSchedule(const CamTable<N>&) -> CamSchedule<N>;
+template <std::size_t N>
+CamSchedule(const CamTable<N>&, const CamProperties&) -> CamSchedule<N>;
+
+} // namespace tappet
