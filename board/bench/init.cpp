@@ -121,15 +121,27 @@ void mount_at(const char* type, const std::string& path) {
 
 // --- devices ---------------------------------------------------------------------------------------------------------
 
-void load_module(const std::string& path) {
+bool load_module(const std::string& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {
-        give_up("open module " + path);
+        return false;
     }
-    if (::syscall(SYS_finit_module, descriptor, "", 0) != 0 && errno != EEXIST) {
-        give_up("load module " + path);
-    }
+    const bool loaded = ::syscall(SYS_finit_module, descriptor, "", 0) == 0 || errno == EEXIST;
+    const int error = errno;
     ::close(descriptor);
+    errno = error;
+    return loaded;
+}
+
+// A module fails as long as one that it needs is missing. Which needs which changes from kernel to kernel, so it is
+// tried again after the others.
+void load_modules(std::vector<std::string> modules) {
+    while (!modules.empty()) {
+        if (std::erase_if(modules, load_module) == 0) {
+            load_module(modules.front());
+            give_up("load module " + modules.front());
+        }
+    }
 }
 
 int open_port(const std::string& wanted) {
@@ -506,6 +518,7 @@ void hand_over(const std::string& path) {
     // A command that dies in the middle must not take PID 1 with it.
     ::signal(SIGPIPE, SIG_IGN);
 
+    std::vector<std::string> modules;
     std::vector<std::string> commands;
     std::vector<std::string> files;
     std::vector<std::pair<std::string, std::string>> devices;
@@ -515,7 +528,7 @@ void hand_over(const std::string& path) {
         const std::string kind = line.substr(0, blank);
         const std::string rest = blank == std::string::npos ? "" : line.substr(blank + 1);
         if (kind == "module") {
-            load_module(rest);
+            modules.push_back(rest);
         } else if (kind == "run") {
             commands.push_back(rest);
         } else if (kind == "collect") {
@@ -525,6 +538,7 @@ void hand_over(const std::string& path) {
         }
     }
 
+    load_modules(modules);
     console = open_port("tappet.console");
     results.open(open_port("tappet.results"));
     ::mount("configfs", "/sys/kernel/config", "configfs", 0, nullptr);
