@@ -22,19 +22,58 @@ public:
     }
 
 private:
+    // ---- sentences; fail() is a template and must be complete before a constant expression calls it
+
+    template <class... Pieces>
+    constexpr bool fail(const Pieces&... pieces) {
+        fault_ = Sentence{"state machine \"", table_.name, "\": ", pieces...};
+        return false;
+    }
+    constexpr bool fail_twice(const Sentence& who, std::string_view part) {
+        if (part == "component type") return fail(who, " has programs of two component types; use those of one");
+        return fail(who, " is given ", part, " twice; keep one");
+    }
+    constexpr bool fail_foreign(const Sentence& who, TypeId component) {
+        return fail(who, " has a program of ", component->name, ", and the machine is one of ",
+                    table_.component == nullptr ? "no component" : table_.component->name,
+                    "; use member functions that this component itself declares");
+    }
+    [[nodiscard]] constexpr bool is_own(TypeId component) const {
+        return component == nullptr || component == table_.component;
+    }
+    [[nodiscard]] constexpr std::string_view name(StateIndex state) const { return table_.states[state].name; }
+    [[nodiscard]] constexpr Sentence state_text(std::size_t i) const {
+        return Sentence{"state \"", table_.states[i].name, "\""};
+    }
+    [[nodiscard]] constexpr Sentence where(StateIndex outer) const {
+        return outer == no_state ? Sentence{"at the top"} : Sentence{"in \"", name(outer), "\""};
+    }
+    [[nodiscard]] constexpr Sentence transition_text(std::size_t t) const {
+        const TransitionRow& row = table_.transitions[t];
+        Sentence text{"transition ", t + 1, " (\"", row.from, "\""};
+        if (!row.to.empty()) text.add(" to \"").add(row.to).add("\"");
+        if (row.on_event) text.add(" on \"").add(row.event).add("\"");
+        return text.add(")");
+    }
+    [[nodiscard]] constexpr Sentence cure_for(std::string_view written) const {
+        Nearest nearest{written};
+        for (const StateRow& row : table_.states) nearest.consider(row.name);
+        if (nearest.best().empty()) return Sentence{"name one of the machine's states, or add this one"};
+        return Sentence{"did you mean \"", nearest.best(), "\"?"};
+    }
+
     // ---- each row by itself
 
     constexpr bool check_states() {
         if (table_.states.empty()) return fail("it has no state; give it an initial and a final one");
         for (std::size_t i = 0; i < names_.states(); ++i) {
             const StateRow& row = table_.states[i];
-            const Sentence who = state_text(i);
             if (row.name.empty()) return fail("state ", i + 1, " has no name; give it one");
-            if (find_state(table_, row.name) != i) return fail(who, " is there twice; rename or drop one");
-            if (!row.twice.empty()) return fail_twice(who, row.twice);
-            if (!is_own(row.component)) return fail_foreign(who, row.component);
+            if (find_state(table_, row.name) != i) return fail(state_text(i), " is there twice; rename or drop one");
+            if (!row.twice.empty()) return fail_twice(state_text(i), row.twice);
+            if (!is_own(row.component)) return fail_foreign(state_text(i), row.component);
             if (!row.parent.empty() && names_.parent[i] == no_state)
-                return fail(who, " is in an unknown state \"", row.parent, "\"; ", cure_for(row.parent));
+                return fail(state_text(i), " is in an unknown state \"", row.parent, "\"; ", cure_for(row.parent));
         }
         return true;
     }
@@ -82,23 +121,22 @@ private:
     constexpr bool check_transitions() {
         for (std::size_t t = 0; t < names_.transitions(); ++t) {
             const TransitionRow& row = table_.transitions[t];
-            const Sentence who = transition_text(t);
             if (names_.from[t] == no_state)
-                return fail(who, " leaves an unknown state \"", row.from, "\"; ", cure_for(row.from));
+                return fail(transition_text(t), " leaves an unknown state \"", row.from, "\"; ", cure_for(row.from));
             if (!row.to.empty() && names_.to[t] == no_state)
-                return fail(who, " leads to an unknown state \"", row.to, "\"; ", cure_for(row.to));
-            if (!row.twice.empty()) return fail_twice(who, row.twice);
-            if (!is_own(row.component)) return fail_foreign(who, row.component);
+                return fail(transition_text(t), " leads to an unknown state \"", row.to, "\"; ", cure_for(row.to));
+            if (!row.twice.empty()) return fail_twice(transition_text(t), row.twice);
+            if (!is_own(row.component)) return fail_foreign(transition_text(t), row.component);
             if (row.on_event && row.event.empty())
-                return fail(who, " waits for an event without a name; write on(\"component.event\")");
+                return fail(transition_text(t), " waits for an event without a name; write on(\"component.event\")");
             if (row.on_event && row.timed)
-                return fail(who, " has both on(...) and after(...); make two transitions of it");
+                return fail(transition_text(t), " has both on(...) and after(...); make two transitions of it");
             if (row.timed && row.after <= Duration{})
-                return fail(who, " has a time-out that is not positive; write a time, or leave after(...) out");
+                return fail(transition_text(t), " has a time-out that is not positive; write a time, or leave after(...) out");
             if (row.to.empty() && !row.on_event)
-                return fail(who, " is internal and has no event, so it would fire in every step; use run<> of the state");
+                return fail(transition_text(t), " is internal and has no event, so it would fire in every step; use run<> of the state");
             if (row.to.empty() && row.then == nullptr)
-                return fail(who, " is internal and does nothing; give it then<>, or drop it");
+                return fail(transition_text(t), " is internal and does nothing; give it then<>, or drop it");
         }
         return true;
     }
@@ -205,46 +243,6 @@ private:
                 if (names_.from[t] == source && !row.on_event && !row.timed && row.guard == nullptr) return t;
             }
         return names_.transitions();
-    }
-
-    // ---- sentences
-
-    template <class... Pieces>
-    constexpr bool fail(const Pieces&... pieces) {
-        fault_ = Sentence{"state machine \"", table_.name, "\": ", pieces...};
-        return false;
-    }
-    constexpr bool fail_twice(const Sentence& who, std::string_view part) {
-        if (part == "component type") return fail(who, " has programs of two component types; use those of one");
-        return fail(who, " is given ", part, " twice; keep one");
-    }
-    constexpr bool fail_foreign(const Sentence& who, TypeId component) {
-        return fail(who, " has a program of ", component->name, ", and the machine is one of ",
-                    table_.component == nullptr ? "no component" : table_.component->name,
-                    "; use member functions that this component itself declares");
-    }
-    [[nodiscard]] constexpr bool is_own(TypeId component) const {
-        return component == nullptr || component == table_.component;
-    }
-    [[nodiscard]] constexpr std::string_view name(StateIndex state) const { return table_.states[state].name; }
-    [[nodiscard]] constexpr Sentence state_text(std::size_t i) const {
-        return Sentence{"state \"", table_.states[i].name, "\""};
-    }
-    [[nodiscard]] constexpr Sentence where(StateIndex outer) const {
-        return outer == no_state ? Sentence{"at the top"} : Sentence{"in \"", name(outer), "\""};
-    }
-    [[nodiscard]] constexpr Sentence transition_text(std::size_t t) const {
-        const TransitionRow& row = table_.transitions[t];
-        Sentence text{"transition ", t + 1, " (\"", row.from, "\""};
-        if (!row.to.empty()) text.add(" to \"").add(row.to).add("\"");
-        if (row.on_event) text.add(" on \"").add(row.event).add("\"");
-        return text.add(")");
-    }
-    [[nodiscard]] constexpr Sentence cure_for(std::string_view written) const {
-        Nearest nearest{written};
-        for (const StateRow& row : table_.states) nearest.consider(row.name);
-        if (nearest.best().empty()) return Sentence{"name one of the machine's states, or add this one"};
-        return Sentence{"did you mean \"", nearest.best(), "\"?"};
     }
 
     const StateMachineTable& table_;

@@ -158,13 +158,13 @@ private:
 };
 
 inline void StateMachineExecution::take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME {
+    if (arc.gives_reason) give_reason(arc.transition, machine_.table.transitions[arc.transition].because, now);
     call(arc.programs);
     for (std::size_t level = arc.kept_levels; level < arc.target_levels; ++level) status_.entered_at[level] = now;
     status_.previous = status_.active;
     status_.active = arc.target;
     status_.last_transition = arc.transition;
     ++status_.transitions;
-    if (arc.gives_reason) give_reason(arc.transition, machine_.table.transitions[arc.transition].because, now);
     if (trace_ != nullptr) trace_(trace_context_, status_.previous, arc.target, arc.transition, now);
 }
 
