@@ -14,16 +14,19 @@ constexpr bool table_is_sound() {
     for (std::size_t i = 0; i < contract_texts.size(); ++i) {
         const ContractText& row = contract_texts[i];
         if (i > 0 && contract_texts[i - 1].id >= row.id) return false;
-        if (row.name.empty() || !row.sentence.ends_with('.') || values_of(row.id) > Breach::max_values) return false;
+        if (row.name.empty() || !row.sentence.ends_with('.') || values_of(row.id) > Breach::max_values)
+            return false;
         for (std::size_t j = 0; j < i; ++j)
             if (contract_texts[j].name == row.name) return false;
     }
     return true;
 }
-static_assert(table_is_sound(), "ids rise and names differ, so that a log names one contract; sentences end and fit a Breach");
+static_assert(table_is_sound(),
+              "ids rise and names differ, so that a log names one contract; sentences end and fit a Breach");
 
 constinit std::atomic<ContractHandler> installed{nullptr};
-static_assert(std::atomic<ContractHandler>::is_always_lock_free, "contracts are broken on real-time paths too");
+static_assert(std::atomic<ContractHandler>::is_always_lock_free,
+              "contracts are broken on real-time paths too");
 
 // A handler that itself breaks a contract cannot be trusted with a second one.
 constinit thread_local bool inside_handler = false;
@@ -61,8 +64,10 @@ Sentence describe(const Breach& breach) noexcept {
         text.add(rest.substr(0, hole));
         if (hole == rest.size()) break;
         const std::int64_t number = breach.values[std::min(value, Breach::max_values - 1)];
-        if (address) add_address(text, static_cast<std::uint64_t>(number));
-        else text.add(number);
+        if (address)
+            add_address(text, static_cast<std::uint64_t>(number));
+        else
+            text.add(number);
         rest.remove_prefix(hole + 2);
     }
     text.add(" [code at ");
@@ -78,7 +83,8 @@ void break_contract(const Breach& breach) noexcept TAPPET_REALTIME {
     const ContractHandler handler = installed.load(std::memory_order_acquire);
     bool nested = false;
     TAPPET_ESCAPE("constant-initialised and in the program's own block of thread storage: never allocated",
-                  nested = inside_handler; inside_handler = true);
+                  nested = inside_handler;
+                  inside_handler = true);
     if (handler != nullptr && !nested) {
         handler(breach);
         const ContractText* row = find_text(breach.id);

@@ -1,5 +1,6 @@
-// Broken contracts: faults of the program, never of the plant. Each has a number that stays, a sentence and its values,
-// and leads to the installed handler, which stops the machine safely. Operating errors are values, not contracts.
+// Broken contracts: faults of the program, never of the plant. Each has a number that stays, a sentence and
+// its values, and leads to the installed handler, which stops the machine safely. Operating errors are
+// values, not contracts.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -30,13 +31,14 @@ enum class Contract : std::uint16_t {
     heap_foreign_pointer = 204,
     heap_double_free = 205,
     heap_damaged = 206,
+    heap_lock_failed = 207,
     time_went_backwards = 301,
     step_limit_exceeded = 401,
     state_unknown = 402,
 };
 
-/// What follows once the handler returned. A thread that stops must not be let go on: its next step would use what the
-/// contract says does not hold.
+/// What follows once the handler returned. A thread that stops must not be let go on: its next step would use
+/// what the contract says does not hold.
 enum class AfterBreach : std::uint8_t { thread_stops, thread_goes_on };
 
 struct ContractText {
@@ -61,6 +63,7 @@ inline constexpr auto contract_texts = std::to_array<ContractText>({
     {Contract::heap_foreign_pointer,   "heap-foreign-pointer",   "Address {} was freed but never allocated."},
     {Contract::heap_double_free,       "heap-double-free",       "Address {} was freed twice."},
     {Contract::heap_damaged,           "heap-damaged",           "Memory before address {} was overwritten."},
+    {Contract::heap_lock_failed,       "heap-lock-failed",       "The heap's lock was refused with error {}: malloc inside a signal handler, or a kernel without PI futexes."},
     {Contract::time_went_backwards,    "time-went-backwards",    "The time went from {} ns back to {} ns."},
     {Contract::step_limit_exceeded,    "step-limit-exceeded",    "A bounded procedure of {} steps asked for step {}."},
     {Contract::state_unknown,          "state-unknown",          "State {} was entered in a machine of {} states."},
@@ -89,36 +92,42 @@ struct Breach {
     std::uint64_t address = 0; ///< the code that noticed; addr2line names it
 };
 
-/// The sentence with its values: "contract 101 ring-storage-too-small: A ring of 8 elements got storage for 4. [code at 0x...]".
+/// The sentence with its values: "contract 101 ring-storage-too-small: A ring of 8 elements got storage
+/// for 4. [code at 0x...]".
 Sentence describe(const Breach& breach) noexcept;
 
-/// Leads to the safe state. Called on the thread that broke the contract, possibly on several at once. For a contract
-/// after which the thread stops it does not return: when it does, the process is aborted. Real-time.
+/// Leads to the safe state. Called on the thread that broke the contract, possibly on several at once. For a
+/// contract after which the thread stops it does not return: when it does, the process is aborted. Real-time.
 using ContractHandler = void (*)(const Breach&) noexcept TAPPET_REALTIME;
 
-/// Returns the handler that was there; nullptr, as at the start, stands for: print on standard error and abort. Real-time.
+/// Returns the handler that was there; nullptr, as at the start, stands for: print on standard error and
+/// abort. Real-time.
 ContractHandler install_contract_handler(ContractHandler handler) noexcept TAPPET_REALTIME;
 
-/// Calls the handler. It returns only from contracts after which the thread goes on. Real-time until it aborts.
+/// Calls the handler. It returns only from contracts after which the thread goes on. Real-time until it
+/// aborts.
 void break_contract(const Breach& breach) noexcept TAPPET_REALTIME;
 
 template <class T>
 concept ContractValue = std::integral<T> || std::is_enum_v<T> || std::is_pointer_v<T> ||
                         requires(T t) { std::chrono::nanoseconds{t}.count(); };
 
-template <ContractValue T>
-std::int64_t contract_value(const T& value) noexcept TAPPET_REALTIME {
+template <ContractValue T> std::int64_t contract_value(const T& value) noexcept TAPPET_REALTIME {
     if constexpr (std::is_pointer_v<T>)
         return static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(value));
-    else if constexpr (std::integral<T> || std::is_enum_v<T>) return static_cast<std::int64_t>(value);
-    else return std::chrono::nanoseconds{value}.count();
+    else if constexpr (std::integral<T> || std::is_enum_v<T>)
+        return static_cast<std::int64_t>(value);
+    else
+        return std::chrono::nanoseconds{value}.count();
 }
 
-/// What TAPPET_CONTRACT calls. Not constexpr on purpose: a broken contract in a constant expression does not compile.
+/// What TAPPET_CONTRACT calls. Not constexpr on purpose: a broken contract in a constant expression does not
+/// compile.
 template <Contract id, ContractValue... Values>
 [[gnu::cold, gnu::noinline]] void contract_broken(const Values&... values) noexcept TAPPET_REALTIME {
     static_assert(find_text(id) != nullptr, "a contract has a row in contract_texts");
-    static_assert(sizeof...(Values) == values_of(id), "a contract gets one value for each {} of its sentence");
+    static_assert(sizeof...(Values) == values_of(id),
+                  "a contract gets one value for each {} of its sentence");
     const auto address = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0));
     break_contract(Breach{id, {contract_value(values)...}, address});
 }

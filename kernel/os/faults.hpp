@@ -1,5 +1,5 @@
-// Page faults of the calling thread. After arming a real-time thread has none: each is an access to memory that was not
-// there, and costs microseconds to milliseconds.
+// Page faults of the calling thread. After arming a real-time thread has none: each is an access to memory
+// that was not there, and costs microseconds to milliseconds.
 #pragma once
 
 #include "kernel/base/realtime.hpp"

@@ -19,16 +19,14 @@ namespace tappet::os::heap {
 
 namespace {
 
-// A priority-inheriting lock: a low-priority thread inside malloc must not keep the stopping one waiting behind
-// everything between them. pthread's needs an initialiser that runs; malloc is called before any does.
+// A priority-inheriting lock: a low-priority thread inside malloc must not keep the stopping one waiting
+// behind everything between them. pthread's needs an initialiser that runs; malloc is called before any does.
 class Lock {
 public:
     Lock() noexcept {
         auto nobody = std::uint32_t{0};
         const auto self = static_cast<std::uint32_t>(syscall(SYS_gettid));
-        if (!word_.compare_exchange_strong(nobody, self, std::memory_order_acquire))
-            while (syscall(SYS_futex, &word_, FUTEX_LOCK_PI_PRIVATE, 0, nullptr, nullptr, 0) != 0 && errno == EINTR) {
-            }
+        if (!word_.compare_exchange_strong(nobody, self, std::memory_order_acquire)) wait();
     }
     ~Lock() {
         auto self = static_cast<std::uint32_t>(syscall(SYS_gettid));
@@ -39,13 +37,23 @@ public:
     Lock& operator=(const Lock&) = delete;
 
 private:
+    static void wait() noexcept {
+        while (syscall(SYS_futex, &word_, FUTEX_LOCK_PI_PRIVATE, 0, nullptr, nullptr, 0) != 0) {
+            // A signal came, or the owner is just ending: ask again. Anything else would let two threads in.
+            const int error = errno;
+            TAPPET_CONTRACT(error == EINTR || error == EAGAIN, Contract::heap_lock_failed, error);
+        }
+    }
+
     static constinit std::atomic<std::uint32_t> word_;
-    static_assert(sizeof word_ == 4 && std::atomic<std::uint32_t>::is_always_lock_free, "the kernel's futex word");
+    static_assert(sizeof word_ == 4 && std::atomic<std::uint32_t>::is_always_lock_free,
+                  "the kernel's futex word");
 };
 constinit std::atomic<std::uint32_t> Lock::word_{0};
 
 constinit Allocator allocator;
 constinit std::atomic<State> now{State::open};
+constinit std::atomic<bool> counts{false};
 constinit std::atomic<std::uint64_t> allocations{0}, mappings{0}, releases{0}, refusals{0};
 constinit std::array<Record, max_records> records{};
 constinit std::atomic<std::size_t> claimed_records{0}, written_records{0};
@@ -94,7 +102,11 @@ void* obtain(const Arena& arena, std::size_t bytes, std::size_t align) noexcept 
 
 } // namespace
 
-void seal() noexcept { now.store(State::sealed, std::memory_order_release); }
+void seal() noexcept {
+    if (state() == State::sealed) return;
+    counts.store(owns_malloc(), std::memory_order_release);
+    now.store(State::sealed, std::memory_order_release);
+}
 void release() noexcept { now.store(State::released, std::memory_order_release); }
 State state() noexcept TAPPET_REALTIME { return now.load(std::memory_order_acquire); }
 
@@ -110,15 +122,25 @@ bool owns_malloc() noexcept {
     return ours;
 }
 
-std::uint64_t allocations_after_seal() noexcept TAPPET_REALTIME { return allocations.load(std::memory_order_relaxed); }
-std::uint64_t mappings_after_seal() noexcept TAPPET_REALTIME { return mappings.load(std::memory_order_relaxed); }
-std::uint64_t releases_after_seal() noexcept TAPPET_REALTIME { return releases.load(std::memory_order_relaxed); }
-std::uint64_t refused_allocations() noexcept TAPPET_REALTIME { return refusals.load(std::memory_order_relaxed); }
+bool seal_counts() noexcept TAPPET_REALTIME { return counts.load(std::memory_order_acquire); }
+
+std::uint64_t allocations_after_seal() noexcept TAPPET_REALTIME {
+    return allocations.load(std::memory_order_relaxed);
+}
+std::uint64_t mappings_after_seal() noexcept TAPPET_REALTIME {
+    return mappings.load(std::memory_order_relaxed);
+}
+std::uint64_t releases_after_seal() noexcept TAPPET_REALTIME {
+    return releases.load(std::memory_order_relaxed);
+}
+std::uint64_t refused_allocations() noexcept TAPPET_REALTIME {
+    return refusals.load(std::memory_order_relaxed);
+}
 
 Use use() noexcept {
     const Lock lock;
-    return {allocator.capacity_bytes(), allocator.used_bytes(), allocator.high_water_bytes(), allocator.free_bytes(),
-            allocator.largest_free_bytes()};
+    return {allocator.capacity_bytes(), allocator.used_bytes(), allocator.high_water_bytes(),
+            allocator.free_bytes(), allocator.largest_free_bytes()};
 }
 
 std::size_t used_bytes() noexcept {
@@ -159,7 +181,8 @@ void* reallocate(const Arena& arena, void* piece, std::size_t bytes, std::uintpt
 
 void deallocate(void* piece) noexcept {
     if (piece == nullptr) return;
-    if (now.load(std::memory_order_relaxed) == State::sealed) releases.fetch_add(1, std::memory_order_relaxed);
+    if (now.load(std::memory_order_relaxed) == State::sealed)
+        releases.fetch_add(1, std::memory_order_relaxed);
     auto found = Allocator::Piece::in_use;
     {
         const Lock lock;

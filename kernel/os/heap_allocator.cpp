@@ -1,5 +1,5 @@
-// Blocks lie back to back, each behind a header with its size and its lower neighbour; free ones hang in the list of
-// their class. A class is searched one size up, so that any block in it fits.
+// Blocks lie back to back, each behind a header with its size and its lower neighbour; free ones hang in the
+// list of their class. A class is searched one size up, so that any block in it fits.
 #include "kernel/os/heap_allocator.hpp"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace tappet::os::heap {
 
 struct Allocator::Block {
-    Block* below;            // the neighbour at the lower address; nullptr for the first
-    std::size_t size_state;  // payload bytes, a multiple of the alignment; bit 0: free
+    Block* below;           // the neighbour at the lower address; nullptr for the first
+    std::size_t size_state; // payload bytes, a multiple of the alignment; bit 0: free
     // Of the payload, while the block is free:
     Block* next;
     Block* before;
@@ -28,7 +28,9 @@ namespace {
 constexpr std::size_t payload_min = 2 * sizeof(void*);
 static_assert(payload_min % Allocator::alignment == 0, "the smallest payload keeps its neighbour aligned");
 
-constexpr std::size_t rounded(std::size_t bytes, std::size_t to) noexcept { return (bytes + to - 1) & ~(to - 1); }
+constexpr std::size_t rounded(std::size_t bytes, std::size_t to) noexcept {
+    return (bytes + to - 1) & ~(to - 1);
+}
 } // namespace
 
 void Allocator::open(std::span<std::byte> arena) noexcept {
@@ -64,7 +66,8 @@ Allocator::Block* Allocator::find_free(std::size_t bytes) const noexcept {
     if (first < first_count) {
         std::uint32_t seconds = seconds_[first] & (~std::uint32_t{0} << second);
         if (seconds == 0) {
-            const std::uint32_t firsts = firsts_ & static_cast<std::uint32_t>(~std::uint64_t{0} << (first + 1));
+            const std::uint32_t firsts =
+                firsts_ & static_cast<std::uint32_t>(~std::uint64_t{0} << (first + 1));
             if (firsts != 0) {
                 first = static_cast<unsigned>(std::countr_zero(firsts));
                 seconds = seconds_[first];
@@ -93,8 +96,10 @@ void Allocator::insert(Block* block) noexcept {
 void Allocator::remove(Block* block) noexcept {
     const auto [first, second] = class_of(block->size());
     if (block->next != nullptr) block->next->before = block->before;
-    if (block->before != nullptr) block->before->next = block->next;
-    else lists_[first][second] = block->next;
+    if (block->before != nullptr)
+        block->before->next = block->next;
+    else
+        lists_[first][second] = block->next;
     if (lists_[first][second] == nullptr) {
         seconds_[first] &= ~(1u << second);
         if (seconds_[first] == 0) firsts_ &= ~(1u << first);
@@ -201,7 +206,8 @@ Allocator::Piece Allocator::look_at(const void* piece) const noexcept {
     const auto left = static_cast<std::size_t>(reinterpret_cast<std::byte*>(end_) - block->payload());
     if (block->size() % alignment != 0 || block->size() > left) return Piece::damaged;
     if (block->above()->below != block) return Piece::damaged;
-    if (Block* below = block->below; below != nullptr && (!contains(below->payload()) || below->above() != block))
+    if (Block* below = block->below;
+        below != nullptr && (!contains(below->payload()) || below->above() != block))
         return Piece::damaged;
     return block->is_free() ? Piece::free : Piece::in_use;
 }
@@ -216,7 +222,8 @@ std::size_t Allocator::capacity_bytes() const noexcept {
 
 std::size_t Allocator::free_bytes() const noexcept {
     std::size_t sum = 0;
-    for (Block* block = begin_; block != end_; block = block->above()) sum += block->is_free() ? block->size() : 0;
+    for (Block* block = begin_; block != end_; block = block->above())
+        sum += block->is_free() ? block->size() : 0;
     return sum;
 }
 
@@ -235,8 +242,10 @@ bool Allocator::is_sound() const noexcept {
         if (block > end_ || block->below != below || block->size() < payload_min) return false;
         if (block->is_free() && free_below) return false;
         free_below = block->is_free();
-        if (free_below) ++free_blocks;
-        else used += header_bytes + block->size();
+        if (free_below)
+            ++free_blocks;
+        else
+            used += header_bytes + block->size();
     }
     if (is_open() && end_->below != below) return false;
     for (unsigned first = 0; first < first_count; ++first) {

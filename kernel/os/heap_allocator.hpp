@@ -1,5 +1,6 @@
-// The allocator behind the arena: two-level segregated fit (Masmano, Ripoll, Crespo, Real: TLSF, ECRTS 2004). Every
-// operation is a bounded number of steps, freed neighbours merge at once. One thread at a time; the caller locks.
+// The allocator behind the arena: two-level segregated fit (Masmano, Ripoll, Crespo, Real: TLSF, ECRTS 2004).
+// Every operation is a bounded number of steps, freed neighbours merge at once. One thread at a time; the
+// caller locks.
 #pragma once
 
 #include <array>
@@ -25,7 +26,8 @@ public:
     void open(std::span<std::byte> arena) noexcept;
     [[nodiscard]] bool is_open() const noexcept { return begin_ != nullptr; }
 
-    /// nullptr when no free piece is large enough. `align` is a power of two. Zero bytes get a piece of their own.
+    /// nullptr when no free piece is large enough. `align` is a power of two. Zero bytes get a piece of their
+    /// own.
     [[nodiscard]] void* allocate(std::size_t bytes, std::size_t align = alignment) noexcept;
     /// `piece` came from allocate and is in use.
     void release(void* piece) noexcept;
@@ -38,12 +40,13 @@ public:
     [[nodiscard]] Piece look_at(const void* piece) const noexcept;
     [[nodiscard]] std::size_t usable_bytes(const void* piece) const noexcept;
 
-    [[nodiscard]] std::size_t capacity_bytes() const noexcept;   ///< the largest piece an empty arena can give
+    [[nodiscard]] std::size_t capacity_bytes() const noexcept; ///< the largest piece an empty arena can give
     [[nodiscard]] std::size_t used_bytes() const noexcept { return used_; } ///< headers included
     [[nodiscard]] std::size_t high_water_bytes() const noexcept { return high_water_; }
-    [[nodiscard]] std::size_t free_bytes() const noexcept;       ///< walks the arena
+    [[nodiscard]] std::size_t free_bytes() const noexcept;         ///< walks the arena
     [[nodiscard]] std::size_t largest_free_bytes() const noexcept; ///< walks the arena
-    /// Walks everything: the chain of blocks, the free lists and the books agree, and no two free blocks touch.
+    /// Walks everything: the chain of blocks, the free lists and the books agree, and no two free blocks
+    /// touch.
     [[nodiscard]] bool is_sound() const noexcept;
 
 private:

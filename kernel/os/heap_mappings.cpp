@@ -1,4 +1,5 @@
-// Address space after sealing: every way to get some, glibc's internal ones included, asks here first. Linked with
+// Address space after sealing: every way to get some, glibc's internal ones included, asks here first. Linked
+// with
 // --wrap for each name below, into static programs only: a shared C library's own calls cannot be wrapped.
 #include "kernel/os/heap.hpp"
 

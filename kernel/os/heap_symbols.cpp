@@ -1,5 +1,6 @@
-// malloc and its whole family, and operator new, as this program's own: glibc then links none of its allocator, and what
-// the C and C++ libraries allocate comes here too. Address space is refused by --wrap, since glibc maps internally.
+// malloc and its whole family, and operator new, as this program's own: glibc then links none of its
+// allocator, and what the C and C++ libraries allocate comes here too. Address space is refused by --wrap,
+// since glibc maps internally.
 #include "kernel/os/heap.hpp"
 #include "kernel/os/heap_allocator.hpp"
 
@@ -23,7 +24,8 @@ void* give(std::size_t bytes, std::size_t align, std::uintptr_t caller) noexcept
 
 bool is_alignment(std::size_t align) noexcept { return std::has_single_bit(align); }
 
-// Without exceptions on any path there is nobody to catch bad_alloc: the contract heap_exhausted was broken already.
+// Without exceptions on any path there is nobody to catch bad_alloc: the contract heap_exhausted was broken
+// already.
 void* give_or_end(std::size_t bytes, std::size_t align, std::uintptr_t caller) noexcept {
     void* piece = give(bytes, align, caller);
     if (piece == nullptr) std::abort();
@@ -32,7 +34,8 @@ void* give_or_end(std::size_t bytes, std::size_t align, std::uintptr_t caller) n
 
 } // namespace
 
-static_assert(!heap::sanitizer_owns_malloc, "a sanitizer's own malloc and this one cannot both be the program's");
+static_assert(!heap::sanitizer_owns_malloc,
+              "a sanitizer's own malloc and this one cannot both be the program's");
 
 extern "C" {
 
@@ -105,8 +108,12 @@ std::size_t malloc_usable_size(void* piece) noexcept { return heap::usable_bytes
 
 } // extern "C"
 
-void* operator new(std::size_t bytes) { return give_or_end(bytes, heap::Allocator::alignment, TAPPET_CALLER); }
-void* operator new[](std::size_t bytes) { return give_or_end(bytes, heap::Allocator::alignment, TAPPET_CALLER); }
+void* operator new(std::size_t bytes) {
+    return give_or_end(bytes, heap::Allocator::alignment, TAPPET_CALLER);
+}
+void* operator new[](std::size_t bytes) {
+    return give_or_end(bytes, heap::Allocator::alignment, TAPPET_CALLER);
+}
 void* operator new(std::size_t bytes, std::align_val_t align) {
     return give_or_end(bytes, static_cast<std::size_t>(align), TAPPET_CALLER);
 }

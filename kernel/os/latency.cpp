@@ -17,7 +17,9 @@ namespace {
 constinit std::atomic<int> held{0};
 }
 
-CpuDmaLatency::CpuDmaLatency(int file) noexcept : file_{file} { held.fetch_add(1, std::memory_order_acq_rel); }
+CpuDmaLatency::CpuDmaLatency(int file) noexcept : file_{file} {
+    held.fetch_add(1, std::memory_order_acq_rel);
+}
 
 CpuDmaLatency::CpuDmaLatency(CpuDmaLatency&& other) noexcept : file_{std::exchange(other.file_, -1)} {}
 
@@ -35,10 +37,13 @@ CpuDmaLatency::~CpuDmaLatency() {
 std::expected<CpuDmaLatency, Sentence> hold_cpu_dma_latency(std::string_view root) noexcept {
     const Sentence path{root, "/dev/cpu_dma_latency"};
     const int file = open(path.letters, O_WRONLY | O_CLOEXEC);
-    if (file < 0)
-        return std::unexpected(Sentence{path, " cannot be opened (", std::strerror(errno), "): ",
-                                        errno == ENOENT ? "use a kernel with CONFIG_PM (its PM QoS makes the device)"
-                                                        : "run as root or let this user write to it"});
+    if (file < 0) {
+        const int error = errno;
+        return std::unexpected(Sentence{path, " cannot be opened (", std::strerror(error), "): ",
+                                        error == ENOENT
+                                            ? "use a kernel with CONFIG_PM (its PM QoS makes the device)"
+                                            : "run as root or let this user write to it"});
+    }
     const std::int32_t microseconds = 0;
     if (write(file, &microseconds, sizeof microseconds) != sizeof microseconds) {
         const int error = errno;

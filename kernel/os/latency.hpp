@@ -9,8 +9,8 @@
 
 namespace tappet::os {
 
-/// Holds /dev/cpu_dma_latency at 0 as long as it lives: processors stay out of deep sleep states. Waking another one is
-/// 14 times faster with it. The kernel lets go when the process ends, however it ends.
+/// Holds /dev/cpu_dma_latency at 0 as long as it lives: processors stay out of deep sleep states. Waking
+/// another one is 14 times faster with it. The kernel lets go when the process ends, however it ends.
 class CpuDmaLatency {
 public:
     CpuDmaLatency() = default;
@@ -31,8 +31,8 @@ std::expected<CpuDmaLatency, Sentence> hold_cpu_dma_latency(std::string_view roo
 /// True while any CpuDmaLatency of this process holds it.
 [[nodiscard]] bool cpu_dma_latency_is_held() noexcept TAPPET_REALTIME;
 
-/// Lets the calling thread's timers, and those of the threads it starts, fire when they are due: 1 ns instead of 50 us.
-/// Threads under SCHED_FIFO have no slack anyway. False when the kernel refuses.
+/// Lets the calling thread's timers, and those of the threads it starts, fire when they are due: 1 ns instead
+/// of 50 us. Threads under SCHED_FIFO have no slack anyway. False when the kernel refuses.
 bool minimise_timer_slack() noexcept;
 
 } // namespace tappet::os

@@ -40,9 +40,10 @@ std::expected<void, Sentence> lock_memory() noexcept {
     const int error = errno;
     return std::unexpected(Sentence{
         "the kernel refuses to lock this process' memory (", std::strerror(error), "): ",
-        error == ENOMEM ? "raise RLIMIT_MEMLOCK (ulimit -l unlimited) or run with CAP_IPC_LOCK, and see that the box "
-                          "has that much memory"
-                        : "run as root or grant CAP_IPC_LOCK"});
+        error == ENOMEM
+            ? "raise RLIMIT_MEMLOCK (ulimit -l unlimited) or run with CAP_IPC_LOCK, and see that the box "
+              "has that much memory"
+            : "run as root or grant CAP_IPC_LOCK"});
 }
 
 void unlock_memory() noexcept {

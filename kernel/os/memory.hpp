@@ -1,4 +1,5 @@
-// Memory that is there: locked, touched before arming, its stacks painted so that their depth can be read afterwards.
+// Memory that is there: locked, touched before arming, its stacks painted so that their depth can be read
+// afterwards.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -18,18 +19,19 @@ void unlock_memory() noexcept;
 
 std::size_t page_bytes() noexcept;
 
-/// Writes to every page what stands there already, so that each is mapped, private and writable. The range is writable
-/// and no other thread writes to it meanwhile. Not real-time.
+/// Writes to every page what stands there already, so that each is mapped, private and writable. The range is
+/// writable and no other thread writes to it meanwhile. Not real-time.
 void touch(std::span<std::byte> range) noexcept;
 
-/// Maps the calling thread's next `bytes` of stack. Less than its stack has left, a page apart. Not real-time.
+/// Maps the calling thread's next `bytes` of stack. Less than its stack has left, a page apart. Not
+/// real-time.
 void touch_stack(std::size_t bytes) noexcept;
 
-/// A stack given to a thread is painted before the thread starts; the paint that is gone shows how deep it went.
-/// Painting touches it too. Not real-time.
+/// A stack given to a thread is painted before the thread starts; the paint that is gone shows how deep it
+/// went. Painting touches it too. Not real-time.
 void paint_stack(std::span<std::byte> stack) noexcept;
-/// The deepest use in bytes, counted from the stack's top. What is found is at least what was used, less the odd word
-/// that happens to equal the paint. Takes time in proportion to what was not used: not real-time.
+/// The deepest use in bytes, counted from the stack's top. What is found is at least what was used, less the
+/// odd word that happens to equal the paint. Takes time in proportion to what was not used: not real-time.
 [[nodiscard]] std::size_t stack_high_water_bytes(std::span<const std::byte> stack) noexcept;
 
 /// Memory of this process that is present; 0 when /proc is not there. Not real-time.

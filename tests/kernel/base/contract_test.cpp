@@ -50,10 +50,11 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::heap_foreign_pointer), 204);
     EXPECT_EQ(static_cast<int>(Contract::heap_double_free), 205);
     EXPECT_EQ(static_cast<int>(Contract::heap_damaged), 206);
+    EXPECT_EQ(static_cast<int>(Contract::heap_lock_failed), 207);
     EXPECT_EQ(static_cast<int>(Contract::time_went_backwards), 301);
     EXPECT_EQ(static_cast<int>(Contract::step_limit_exceeded), 401);
     EXPECT_EQ(static_cast<int>(Contract::state_unknown), 402);
-    EXPECT_EQ(contract_texts.size(), 16u) << "a new contract gets its line here";
+    EXPECT_EQ(contract_texts.size(), 17u) << "a new contract gets its line here";
 }
 
 TEST(Contract, holds_in_a_constant_expression_or_does_not_compile) {
@@ -76,8 +77,9 @@ TEST(Contract, gives_the_handler_its_id_values_and_place) {
 
 TEST(Contract, is_described_with_every_value) {
     const Breach breach{Contract::ring_storage_too_small, {8, -4}, 0xbeef};
-    EXPECT_EQ(describe(breach).view(),
-              "contract 101 ring-storage-too-small: A ring of 8 elements got storage for -4. [code at 0xbeef]");
+    EXPECT_EQ(
+        describe(breach).view(),
+        "contract 101 ring-storage-too-small: A ring of 8 elements got storage for -4. [code at 0xbeef]");
     EXPECT_EQ(describe({Contract::heap_double_free, {0x10}, 0}).view(),
               "contract 205 heap-double-free: Address 0x10 was freed twice. [code at 0x0]");
     EXPECT_EQ(describe({static_cast<Contract>(9999), {}, 0}).view(),

@@ -36,7 +36,9 @@ bool holds_its_mark(const Piece& piece, std::size_t bytes) {
     return true;
 }
 
-bool is_aligned(const void* at, std::size_t align) { return reinterpret_cast<std::uintptr_t>(at) % align == 0; }
+bool is_aligned(const void* at, std::size_t align) {
+    return reinterpret_cast<std::uintptr_t>(at) % align == 0;
+}
 
 std::size_t drawn_size(Random& random) {
     const auto scale = random.below(14);
@@ -58,7 +60,8 @@ TEST_P(AllocatorSequence, keeps_pieces_aligned_apart_and_unchanged) {
         const auto choice = random.below(10);
         if (choice < 5) {
             const std::size_t bytes = drawn_size(random);
-            const std::size_t align = random.one_in(4) ? std::size_t{1} << random.below(13) : Allocator::alignment;
+            const std::size_t align =
+                random.one_in(4) ? std::size_t{1} << random.below(13) : Allocator::alignment;
             auto* at = static_cast<std::byte*>(heap.allocate(bytes, align));
             if (at == nullptr) {
                 ++refused;
@@ -83,7 +86,8 @@ TEST_P(AllocatorSequence, keeps_pieces_aligned_apart_and_unchanged) {
                 auto* moved = static_cast<std::byte*>(heap.resize(piece.at, bytes));
                 if (moved == nullptr) {
                     ++refused;
-                    ASSERT_TRUE(holds_its_mark(piece, piece.bytes)) << "a refused resize leaves the piece as it was";
+                    ASSERT_TRUE(holds_its_mark(piece, piece.bytes))
+                        << "a refused resize leaves the piece as it was";
                     continue;
                 }
                 piece.at = moved;

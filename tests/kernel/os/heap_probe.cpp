@@ -1,5 +1,6 @@
-// A small static firmware with a sealed heap, which does after sealing what its argument names and reports the counts.
-// Exit: 0 nothing broken, 3 a contract was broken and reported, 2 the heap is not the arena, 1 anything else.
+// A small static firmware with a sealed heap, which does after sealing what its argument names and reports
+// the counts. Exit: 0 nothing broken, 3 a contract was broken and reported, 2 the heap is not the arena, 1
+// anything else.
 #include "kernel/base/contract.hpp"
 #include "kernel/os/heap.hpp"
 
@@ -33,8 +34,7 @@ void stop_safely(const tappet::Breach& breach) noexcept TAPPET_REALTIME {
 }
 
 // What the compiler must not optimise away.
-template <class T>
-T* kept(T* pointer) {
+template <class T> T* kept(T* pointer) {
     asm volatile("" : "+r"(pointer) : : "memory");
     return pointer;
 }
@@ -58,7 +58,8 @@ void start_thread_with_new_stack() {
     pthread_attr_init(&attributes);
     pthread_attr_setstacksize(&attributes, std::size_t{64} << 20);
     pthread_t thread{};
-    if (pthread_create(&thread, &attributes, [](void*) -> void* { return nullptr; }, nullptr) == 0) std::exit(1);
+    if (pthread_create(&thread, &attributes, [](void*) -> void* { return nullptr; }, nullptr) == 0)
+        std::exit(1);
 }
 
 void print_on_the_stack() {
@@ -122,6 +123,7 @@ bool configures() {
 int after_sealing(const Action& action) {
     tappet::install_contract_handler(stop_safely);
     heap::seal();
+    if (!heap::seal_counts()) return 2;
     action.act();
     heap::release();
     std::printf("allocations %llu mappings %llu releases %llu contract %d\n",

@@ -1,4 +1,5 @@
-// The sealed heap, seen from outside: a static program that allocates after sealing is caught, whatever way it takes.
+// The sealed heap, seen from outside: a static program that allocates after sealing is caught, whatever way
+// it takes.
 #include "kernel/os/heap.hpp"
 
 #include <gtest/gtest.h>
@@ -51,8 +52,9 @@ TEST_P(AllocatesAfterSealing, is_counted_recorded_and_a_broken_contract) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, AllocatesAfterSealing,
-                         ::testing::Values("malloc", "calloc", "realloc", "aligned_alloc", "memalign", "posix_memalign",
-                                           "new", "new_array", "new_aligned", "string", "strdup", "fopen", "thread"),
+                         ::testing::Values("malloc", "calloc", "realloc", "aligned_alloc", "memalign",
+                                           "posix_memalign", "new", "new_array", "new_aligned", "string",
+                                           "strdup", "fopen", "thread"),
                          [](const auto& way) { return std::string{way.param}; });
 
 class MapsAfterSealing : public ::testing::TestWithParam<const char*> {};
@@ -70,7 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Ways, MapsAfterSealing, ::testing::Values("mmap", "sbrk
 TEST(SealedHeap, ends_a_program_without_a_handler) {
     const Ending ending = run_probe("unhandled");
     EXPECT_EQ(ending.exit_code, aborted);
-    EXPECT_NE(ending.output.find("contract 201 allocation-after-seal: 10 bytes were allocated"), std::string::npos)
+    EXPECT_NE(ending.output.find("contract 201 allocation-after-seal: 10 bytes were allocated"),
+              std::string::npos)
         << ending.output;
 }
 
@@ -93,6 +96,11 @@ TEST(Heap, refuses_a_second_free_and_a_foreign_pointer) {
 
 TEST(Heap, knows_that_a_program_does_not_use_it) {
     EXPECT_FALSE(owns_malloc()) << "this test is linked without tappet_sealed_heap";
+    seal();
+    EXPECT_EQ(state(), State::sealed);
+    EXPECT_FALSE(seal_counts());
+    release();
+    EXPECT_EQ(state(), State::released);
 }
 
 } // namespace

@@ -17,7 +17,8 @@ namespace {
 
 class FakeRoot {
 public:
-    FakeRoot() : path_{std::filesystem::temp_directory_path() / ("tappet_latency_" + std::to_string(getpid()))} {
+    FakeRoot()
+        : path_{std::filesystem::temp_directory_path() / ("tappet_latency_" + std::to_string(getpid()))} {
         std::filesystem::create_directories(path_ / "dev");
     }
     ~FakeRoot() { std::filesystem::remove_all(path_); }

@@ -1,4 +1,5 @@
-// Memory and page faults: what is touched is there, what is used leaves a trace, and the counters show the difference.
+// Memory and page faults: what is touched is there, what is used leaves a trace, and the counters show the
+// difference.
 #include "kernel/os/memory.hpp"
 
 #include "kernel/base/random.hpp"
@@ -162,7 +163,8 @@ TEST(Memory, is_locked_or_says_what_to_do) {
         EXPECT_LT((page_faults_of_this_thread() - before).minor, 5u);
         unlock_memory();
     } else {
-        EXPECT_NE(locked.error().view().find("CAP_IPC_LOCK"), std::string_view::npos) << locked.error().view();
+        EXPECT_NE(locked.error().view().find("CAP_IPC_LOCK"), std::string_view::npos)
+            << locked.error().view();
     }
     EXPECT_FALSE(memory_is_locked());
 }

@@ -1,0 +1,112 @@
+// Arming: the box and the process are looked at before the machine may move. What is not as it must be
+// refuses, with a reason and a cure; a development board may downgrade named checks to warnings, which stay
+// visible.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/text.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace tappet::os {
+
+enum class Severity : std::uint8_t { passed, warning, refused };
+
+struct Finding {
+    std::string_view name; ///< of the check; its letters outlive the report
+    Severity severity = Severity::passed;
+    Sentence finding;
+    Sentence cure;
+};
+
+/// Filled by check_system and by whoever has checks of its own: buses, boards, schedules. Some 60 kB; not
+/// real-time.
+class ArmingReport {
+public:
+    static constexpr std::size_t max_findings = 64;
+
+    /// `downgraded` names the checks whose faults only warn; it outlives the report.
+    explicit ArmingReport(std::span<const std::string_view> downgraded = {}) noexcept
+        : downgraded_{downgraded} {}
+
+    void passed(std::string_view name, const Sentence& finding) noexcept;
+    /// Refuses, unless `name` is downgraded.
+    void fault(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
+    /// A fault the machine can live with.
+    void warning(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
+
+    /// After the last check: a downgraded name that no check has is refused, with the nearest name that one
+    /// has. True when the machine may arm. Once; what is added later does not count.
+    [[nodiscard]] bool conclude() noexcept;
+    /// False before conclude().
+    [[nodiscard]] bool can_arm() const noexcept { return concluded_ && refused() == 0; }
+
+    [[nodiscard]] std::span<const Finding> findings() const noexcept {
+        return {findings_.begin(), findings_.end()};
+    }
+    [[nodiscard]] std::size_t refused() const noexcept { return count(Severity::refused) + lost_; }
+    [[nodiscard]] std::size_t warnings() const noexcept { return count(Severity::warning); }
+    /// Findings there was no room for; each refuses.
+    [[nodiscard]] std::size_t lost() const noexcept { return lost_; }
+
+private:
+    void add(const Finding& finding) noexcept;
+    [[nodiscard]] std::size_t count(Severity severity) const noexcept;
+    [[nodiscard]] bool has_check(std::string_view name) const noexcept;
+
+    std::span<const std::string_view> downgraded_;
+    Bounded<Finding, max_findings> findings_{};
+    std::size_t lost_ = 0;
+    bool concluded_ = false;
+};
+
+/// "cannot arm: 3 reasons" and a line for each finding that did not pass, with its cure. No heap.
+void print(const ArmingReport& report, int file) noexcept;
+
+/// What the machine and its board ask of the system.
+struct ArmingOptions {
+    std::string_view root = "";                                              ///< stands before /proc and /sys
+    std::span<const int> processors{};                                       ///< named by the board's plan
+    std::span<const std::string_view> clock_sources = trusted_clock_sources; ///< the accepted ones
+    int highest_priority = 1;                                                ///< SCHED_FIFO, 1..99
+    // A guest's clock (kvm-clock) or a slow one (hpet) is for the board to accept.
+    static constexpr std::string_view trusted_clock_sources[] = {"tsc", "arch_sys_counter"};
+};
+
+/// What no file shows: taken from the process itself. A test states its own.
+struct ProcessFacts {
+    std::int64_t clock_resolution_ns = 0;
+    int fifo_error = 0; ///< errno of setting the highest priority on this thread; 0: it could be set
+    std::uint64_t lockable_bytes = 0; ///< RLIMIT_MEMLOCK; all ones: no limit
+    bool memory_locked = false;
+    bool latency_held = false;
+    std::int64_t timer_slack_ns = 0; ///< of this thread
+    bool heap_sealed = false;
+    bool seal_counts = false; ///< heap::seal_counts()
+};
+ProcessFacts observe_process(int highest_priority) noexcept;
+
+/// One row of the table of checks.
+struct SystemCheck {
+    struct Verdict {
+        bool good;
+        Sentence finding;
+    };
+    std::string_view name;
+    std::string_view looks_at;
+    Severity severity; ///< of a fault that is not downgraded
+    std::string_view cure;
+    Verdict (*look)(const ArmingOptions&, const ProcessFacts&) noexcept;
+};
+std::span<const SystemCheck> system_checks() noexcept;
+
+/// Looks at everything in system_checks. Not real-time; no heap.
+void check_system(ArmingReport& report, const ArmingOptions& options, const ProcessFacts& facts) noexcept;
+inline void check_system(ArmingReport& report, const ArmingOptions& options) noexcept {
+    check_system(report, options, observe_process(options.highest_priority));
+}
+
+} // namespace tappet::os

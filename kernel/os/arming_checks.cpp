@@ -1,0 +1,274 @@
+// The table of checks, one function each: what a box must be like for a machine to keep its deadlines.
+#include "kernel/os/arming.hpp"
+
+#include "kernel/os/heap.hpp"
+#include "kernel/os/latency.hpp"
+#include "kernel/os/memory.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <ctime>
+#include <optional>
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace tappet::os {
+
+namespace {
+
+using Verdict = SystemCheck::Verdict;
+
+// The beginning of a file of /proc or /sys; the kernel's answers looked at here are shorter.
+struct SystemFile {
+    static constexpr std::size_t capacity = 4096;
+    char letters[capacity] = {};
+    std::size_t length = 0;
+    bool readable = false;
+
+    SystemFile(std::string_view root, const Sentence& path) noexcept {
+        const Sentence full{root, path};
+        const int file = open(full.letters, O_RDONLY | O_CLOEXEC);
+        if (file < 0) return;
+        for (;;) {
+            const auto got = read(file, letters + length, capacity - length);
+            if (got < 0) break;
+            readable = true;
+            if (got == 0 || (length += static_cast<std::size_t>(got)) == capacity) break;
+        }
+        close(file);
+    }
+    /// Without the line's end.
+    [[nodiscard]] std::string_view text() const noexcept {
+        std::string_view all{letters, length};
+        while (!all.empty() && (all.back() == '\n' || all.back() == ' ')) all.remove_suffix(1);
+        return all;
+    }
+};
+
+std::optional<std::uint64_t> number_after(std::string_view text, std::string_view key, int base) noexcept {
+    const std::size_t at = text.find(key);
+    if (at == std::string_view::npos) return std::nullopt;
+    text.remove_prefix(at + key.size());
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+    return error == std::errc{} ? std::optional{value} : std::nullopt;
+}
+
+// The kernel's lists: "0-3,6".
+bool list_has(std::string_view list, int wanted) noexcept {
+    const char* at = list.data();
+    const char* const end = at + list.size();
+    while (at < end) {
+        int low = 0;
+        const auto first = std::from_chars(at, end, low);
+        if (first.ec != std::errc{}) return false;
+        int high = low;
+        at = first.ptr;
+        if (at < end && *at == '-') {
+            const auto second = std::from_chars(at + 1, end, high);
+            if (second.ec != std::errc{}) return false;
+            at = second.ptr;
+        }
+        if (wanted >= low && wanted <= high) return true;
+        if (at < end && *at != ',') return false;
+        ++at;
+    }
+    return false;
+}
+
+// Kernels with the RT patches say it in /sys; since 6.12 the mainline's own PREEMPT_RT says it in its version
+// only.
+Verdict look_at_kernel(const ArmingOptions& options, const ProcessFacts&) noexcept {
+    const SystemFile flag{options.root, Sentence{"/sys/kernel/realtime"}};
+    const SystemFile version{options.root, Sentence{"/proc/sys/kernel/version"}};
+    const SystemFile release{options.root, Sentence{"/proc/sys/kernel/osrelease"}};
+    const Sentence name{"kernel ", release.readable ? release.text() : "of unknown release"};
+    if (flag.text() == "1" || version.text().find("PREEMPT_RT") != std::string_view::npos)
+        return {true, Sentence{name, " is PREEMPT_RT"}};
+    return {false, Sentence{name, " is not PREEMPT_RT"}};
+}
+
+Verdict look_at_clock_source(const ArmingOptions& options, const ProcessFacts&) noexcept {
+    const Sentence path{"/sys/devices/system/clocksource/clocksource0/current_clocksource"};
+    const SystemFile file{options.root, path};
+    if (!file.readable) return {false, Sentence{path, " cannot be read"}};
+    const bool good = std::find(options.clock_sources.begin(), options.clock_sources.end(), file.text()) !=
+                      options.clock_sources.end();
+    Sentence text{"the clock source is ", file.text()};
+    if (good) return {true, text};
+    text.add("; the board accepts");
+    for (const std::string_view name : options.clock_sources) text.add(" ").add(name);
+    return {false, text};
+}
+
+Verdict look_at_clock_resolution(const ArmingOptions&, const ProcessFacts& facts) noexcept {
+    return {facts.clock_resolution_ns == 1,
+            Sentence{"CLOCK_MONOTONIC has a resolution of ", facts.clock_resolution_ns, " ns"}};
+}
+
+Verdict look_at_priority(const ArmingOptions& options, const ProcessFacts& facts) noexcept {
+    if (facts.fifo_error == 0)
+        return {true, Sentence{"SCHED_FIFO priority ", options.highest_priority, " can be set"}};
+    return {false, Sentence{"SCHED_FIFO priority ", options.highest_priority, " cannot be set (",
+                            std::strerror(facts.fifo_error), ")"}};
+}
+
+Verdict look_at_throttling(const ArmingOptions& options, const ProcessFacts&) noexcept {
+    const SystemFile file{options.root, Sentence{"/proc/sys/kernel/sched_rt_runtime_us"}};
+    if (!file.readable) return {false, Sentence{"/proc/sys/kernel/sched_rt_runtime_us cannot be read"}};
+    if (file.text() == "-1") return {true, Sentence{"real-time threads are not throttled"}};
+    return {false, Sentence{"real-time threads are stopped after ", file.text(), " us of each period"}};
+}
+
+Verdict look_at_latency(const ArmingOptions&, const ProcessFacts& facts) noexcept {
+    if (facts.latency_held) return {true, Sentence{"/dev/cpu_dma_latency is held at 0"}};
+    return {false, Sentence{"/dev/cpu_dma_latency is not held: processors fall into deep sleep"}};
+}
+
+Verdict look_at_lock_limit(const ArmingOptions& options, const ProcessFacts& facts) noexcept {
+    constexpr std::uint64_t may_lock = std::uint64_t{1} << 14; // CAP_IPC_LOCK, linux/capability.h
+    const SystemFile status{options.root, Sentence{"/proc/self/status"}};
+    const auto capabilities = number_after(status.text(), "CapEff:", 16).value_or(0);
+    if ((capabilities & may_lock) != 0) return {true, Sentence{"the process has CAP_IPC_LOCK"}};
+    if (facts.lockable_bytes == ~std::uint64_t{0}) return {true, Sentence{"RLIMIT_MEMLOCK is unlimited"}};
+    return {false, Sentence{"the process may lock ", facts.lockable_bytes / 1024, " kB only"}};
+}
+
+Verdict look_at_lock(const ArmingOptions& options, const ProcessFacts& facts) noexcept {
+    const SystemFile status{options.root, Sentence{"/proc/self/status"}};
+    const auto locked_kb = number_after(status.text(), "VmLck:", 10).value_or(0);
+    if (!facts.memory_locked) return {false, Sentence{"memory is not locked: pages may be taken away"}};
+    if (locked_kb == 0) return {false, Sentence{"memory was locked, but the kernel shows 0 kB of it"}};
+    return {true, Sentence{locked_kb, " kB of memory are locked"}};
+}
+
+Verdict look_at_swap(const ArmingOptions& options, const ProcessFacts&) noexcept {
+    const SystemFile file{options.root, Sentence{"/proc/swaps"}};
+    const std::string_view lines = file.text(); // a heading, and a line for each swap
+    const std::size_t second = lines.find('\n');
+    if (second == std::string_view::npos) return {true, Sentence{"no swap is in use"}};
+    const std::string_view line = lines.substr(second + 1);
+    return {false, Sentence{"swap is in use on ", line.substr(0, line.find_first_of(" \t\n"))}};
+}
+
+Verdict look_at_processors(const ArmingOptions& options, const ProcessFacts&) noexcept {
+    const SystemFile online{options.root, Sentence{"/sys/devices/system/cpu/online"}};
+    if (!online.readable) return {false, Sentence{"/sys/devices/system/cpu/online cannot be read"}};
+    Sentence missing;
+    for (const int processor : options.processors)
+        if (!list_has(online.text(), processor)) missing.add(" ").add(processor);
+    if (missing.empty()) return {true, Sentence{"the plan's processors are online (", online.text(), ")"}};
+    return {false, Sentence{"the plan names processors that are not online:", missing, "; online are ",
+                            online.text()}};
+}
+
+Verdict look_at_governor(const ArmingOptions& options, const ProcessFacts&) noexcept {
+    bool scaled = false;
+    for (const int processor : options.processors) {
+        const SystemFile file{
+            options.root, Sentence{"/sys/devices/system/cpu/cpu", processor, "/cpufreq/scaling_governor"}};
+        if (!file.readable) continue;
+        scaled = true;
+        if (file.text() != "performance")
+            return {false, Sentence{"processor ", processor, " has the frequency governor ", file.text()}};
+    }
+    return {true, Sentence{scaled ? "the plan's processors keep their highest frequency"
+                                  : "the plan's processors have no frequency scaling here"}};
+}
+
+Verdict look_at_timer_slack(const ArmingOptions&, const ProcessFacts& facts) noexcept {
+    return {facts.timer_slack_ns <= 1,
+            Sentence{"timers of threads without SCHED_FIFO may be ", facts.timer_slack_ns, " ns late"}};
+}
+
+Verdict look_at_heap(const ArmingOptions&, const ProcessFacts& facts) noexcept {
+    if (!facts.heap_sealed) return {false, Sentence{"the heap is not sealed"}};
+    if (facts.seal_counts) return {true, Sentence{"the heap is sealed"}};
+    return {false, Sentence{heap::sanitizer_owns_malloc
+                                ? "a sanitizer owns malloc: the seal sees nothing"
+                                : "the program's malloc is not the arena's: the seal sees nothing"}};
+}
+
+// clang-format off
+constexpr SystemCheck checks[] = {
+    {"realtime-kernel", "/sys/kernel/realtime, the kernel's version", Severity::refused,
+     "boot a kernel built with PREEMPT_RT", look_at_kernel},
+    {"clock-source", "current_clocksource", Severity::refused,
+     "boot with clocksource=tsc (and tsc=reliable where the firmware's is), or let the board accept this one", look_at_clock_source},
+    {"clock-resolution", "CLOCK_MONOTONIC", Severity::refused,
+     "use a kernel with high-resolution timers (CONFIG_HIGH_RES_TIMERS) and boot without highres=off", look_at_clock_resolution},
+    {"fifo-priority", "SCHED_FIFO on this thread", Severity::refused,
+     "run as root, grant CAP_SYS_NICE or raise RLIMIT_RTPRIO", look_at_priority},
+    {"rt-throttling", "sched_rt_runtime_us", Severity::refused,
+     "write -1 to /proc/sys/kernel/sched_rt_runtime_us", look_at_throttling},
+    {"cpu-dma-latency", "/dev/cpu_dma_latency", Severity::refused,
+     "let the process write to /dev/cpu_dma_latency: run as root or change its owner", look_at_latency},
+    {"memory-lockable", "RLIMIT_MEMLOCK, CAP_IPC_LOCK", Severity::refused,
+     "run as root, grant CAP_IPC_LOCK or set RLIMIT_MEMLOCK to unlimited", look_at_lock_limit},
+    {"memory-locked", "mlockall, VmLck", Severity::refused,
+     "cure memory-lockable and see that the box has the memory", look_at_lock},
+    {"swap", "/proc/swaps", Severity::refused,
+     "run swapoff -a and take swap out of /etc/fstab", look_at_swap},
+    {"processors", "/sys/devices/system/cpu/online", Severity::refused,
+     "correct the processor plan of the board, or bring the processors online", look_at_processors},
+    {"cpu-governor", "scaling_governor", Severity::refused,
+     "write performance to each scaling_governor, or boot with cpufreq.default_governor=performance", look_at_governor},
+    {"timer-slack", "PR_GET_TIMERSLACK", Severity::warning,
+     "call minimise_timer_slack before the threads start", look_at_timer_slack},
+    {"heap-sealed", "the heap's state", Severity::refused,
+     "link tappet_sealed_heap, build without a sanitizer and seal before the checks", look_at_heap},
+};
+// clang-format on
+static_assert(std::size(checks) * 2 < ArmingReport::max_findings,
+              "other layers have room for as many findings");
+
+} // namespace
+
+std::span<const SystemCheck> system_checks() noexcept { return checks; }
+
+ProcessFacts observe_process(int highest_priority) noexcept {
+    ProcessFacts facts;
+    timespec resolution{};
+    if (clock_getres(CLOCK_MONOTONIC, &resolution) == 0)
+        facts.clock_resolution_ns = resolution.tv_sec * 1'000'000'000 + resolution.tv_nsec;
+
+    int policy = SCHED_OTHER;
+    sched_param before{};
+    pthread_getschedparam(pthread_self(), &policy, &before);
+    sched_param wanted{};
+    wanted.sched_priority = highest_priority;
+    facts.fifo_error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
+    if (facts.fifo_error == 0) pthread_setschedparam(pthread_self(), policy, &before);
+
+    rlimit limit{};
+    if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
+        facts.lockable_bytes = limit.rlim_cur == RLIM_INFINITY ? ~std::uint64_t{0} : limit.rlim_cur;
+    facts.memory_locked = memory_is_locked();
+    facts.latency_held = cpu_dma_latency_is_held();
+    facts.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
+    facts.heap_sealed = heap::state() == heap::State::sealed;
+    facts.seal_counts = heap::seal_counts();
+    return facts;
+}
+
+void check_system(ArmingReport& report, const ArmingOptions& options, const ProcessFacts& facts) noexcept {
+    for (const SystemCheck& check : checks) {
+        const Verdict verdict = check.look(options, facts);
+        if (verdict.good)
+            report.passed(check.name, verdict.finding);
+        else if (check.severity == Severity::refused)
+            report.fault(check.name, verdict.finding, Sentence{check.cure});
+        else
+            report.warning(check.name, verdict.finding, Sentence{check.cure});
+    }
+}
+
+} // namespace tappet::os
