@@ -30,7 +30,8 @@ namespace {
 // One instruction is 2^1 ns of guest time. A larger shift makes the box slower and the run longer.
 constexpr int instruction_shift = 1;
 
-// The guest's init sends it when everything else has been written.
+// The guest's init sends them before the first command, and when everything has been written.
+constexpr char start_of_output = '\x1d';
 constexpr char end_of_output = '\x1e';
 
 double seconds_since(SteadyTime start) {
@@ -284,7 +285,7 @@ Report read_results(const fs::path& path, const std::vector<File>& wanted) {
 enum class End { complete, emulator_gone, timeout };
 
 // Hands the guest's output on until it says that nothing more will come, then answers, upon which it switches off.
-End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output& output) {
+End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output& output, double& boot_wall_s) {
     std::array<char, 65536> piece{};
     for (;;) {
         const double left = timeout_s - seconds_since(start);
@@ -301,6 +302,10 @@ End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output&
             return End::emulator_gone;
         }
         std::string_view bytes(piece.data(), static_cast<std::size_t>(count));
+        if (boot_wall_s <= 0 && bytes.front() == start_of_output) {
+            boot_wall_s = seconds_since(start);
+            bytes.remove_prefix(1);
+        }
         const std::size_t end = bytes.find(end_of_output);
         if (!bytes.substr(0, end).empty()) {
             output(bytes.substr(0, end));
@@ -350,10 +355,9 @@ Outcome run_checked(const Scenario& scenario, const Output& output) {
     const auto start = std::chrono::steady_clock::now();
     Emulator emulator;
     emulator.start(emulator_arguments(scenario, kernel, work), work / "emulator.log");
-    const End end = stream(emulator, start, scenario.timeout_s, output);
-    const bool stopped = end == End::complete ? wait_for_end(emulator, 10) : end == End::emulator_gone;
-
     Outcome outcome;
+    const End end = stream(emulator, start, scenario.timeout_s, output, outcome.boot_wall_s);
+    const bool stopped = end == End::complete ? wait_for_end(emulator, 10) : end == End::emulator_gone;
     outcome.total_wall_s = seconds_since(start);
     const Report report = read_results(work / "results", scenario.collect);
     outcome.exit_code = report.exit_code;

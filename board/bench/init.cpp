@@ -68,6 +68,13 @@ private:
 
 Results results;
 int console = -1;
+
+// Marks in the stream of output, for the host's eyes only; the same in bench.cpp.
+constexpr char start_of_output = '\x1d';
+constexpr char end_of_output = '\x1e';
+
+bool say_to_host(char mark) { return ::write(console, &mark, 1) == 1; }
+
 std::vector<BackgroundCommand> background;
 
 [[noreturn]] void power_off() {
@@ -557,6 +564,7 @@ void hand_over(const std::string& path) {
         }
     }
     results.line("booted");
+    say_to_host(start_of_output);
 
     int code = 0;
     for (const std::string& command : commands) {
@@ -572,9 +580,8 @@ void hand_over(const std::string& path) {
     results.line("exit " + std::to_string(code));
 
     // The host answers when it has read everything; only then may the power go.
-    const char end_of_output = '\x1e';
     char answer = 0;
-    if (::write(console, &end_of_output, 1) == 1) {
+    if (say_to_host(end_of_output)) {
         while (::read(console, &answer, 1) < 0 && errno == EINTR) {
         }
     }

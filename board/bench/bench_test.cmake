@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# tappet_bench_test(NAME ARGUMENT...): a CTest that is one run of tappet-bench with these arguments.
+#
+#   EXPECT REGEX...  the output must match each of them, in any order
+#   EXIT CODE        the guest's exit code (default 0)
+#   TIMEOUT S        wall time (default 120)
+#   RUN ARGUMENT...  the arguments of tappet-bench; generator expressions are welcome
+#
+# Bench tests carry the label "bench" and run one at a time: each wants a processor for itself.
+include_guard(GLOBAL)
+
+function(tappet_bench_test name)
+    cmake_parse_arguments(PARSE_ARGV 1 test "" "EXIT;TIMEOUT" "EXPECT;RUN")
+    if(NOT test_RUN OR test_UNPARSED_ARGUMENTS)
+        message(FATAL_ERROR "tappet_bench_test(${name}): give the arguments of tappet-bench after RUN")
+    endif()
+    if(NOT DEFINED test_EXIT)
+        set(test_EXIT 0)
+    endif()
+    if(NOT DEFINED test_TIMEOUT)
+        set(test_TIMEOUT 120)
+    endif()
+    set(expectations)
+    foreach(regex IN LISTS test_EXPECT)
+        list(APPEND expectations --expect "${regex}")
+    endforeach()
+    add_test(NAME "bench.${name}"
+             COMMAND bench-expect --exit ${test_EXIT} ${expectations} --
+                     $<TARGET_FILE:tappet-bench> --verbose --timeout ${test_TIMEOUT} ${test_RUN})
+    math(EXPR hard_limit "${test_TIMEOUT} + 30")
+    set_tests_properties("bench.${name}" PROPERTIES LABELS bench RESOURCE_LOCK bench TIMEOUT ${hard_limit})
+endfunction()
