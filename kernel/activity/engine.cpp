@@ -1,6 +1,7 @@
 #include "kernel/activity/engine.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace tappet {
 
@@ -63,6 +64,7 @@ void Engine::run_timers() noexcept TAPPET_REALTIME {
         each.timer->cancel();
         Cycle at = cycle_;
         at.release = when;
+        note(each.part, when);
         timed(each.part, FunctionKind::timers, [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component, at); });
     }
 }
@@ -78,6 +80,12 @@ void Engine::run_components() noexcept TAPPET_REALTIME {
 void Engine::run_messages() noexcept TAPPET_REALTIME {
     if (!inbox_.pending()) return;
     statistics_.messages += inbox_.serve([this](const Message& message) noexcept TAPPET_REALTIME {
+        note(message.id, cycle_.now);
+        for (std::size_t at = 0; at < message.arguments.size(); at += sizeof(std::uint64_t)) {
+            std::uint64_t word = 0;
+            std::memcpy(&word, message.arguments.data() + at, sizeof word);
+            digest_.add(word);
+        }
         timed(message.id, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { message.run(message.object, message.arguments.data()); });
     });
 }

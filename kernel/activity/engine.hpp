@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/activity/timing.hpp"
+#include "kernel/base/digest.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/exchange/mailbox.hpp"
 #include "kernel/os/clock.hpp"
@@ -115,6 +116,13 @@ public:
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
     [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
+    /// Of what happened here: every message, timer and transition with its time. Equal in two runs that did the same.
+    [[nodiscard]] const Digest& digest() const noexcept TAPPET_REALTIME { return digest_; }
+    /// Adds a transition of a behaviour to the digest.
+    void note(std::uint64_t what, Time when) noexcept TAPPET_REALTIME {
+        digest_.add(to_ns(when));
+        digest_.add(what);
+    }
     /// Odd while a cycle runs: an observer whose two readings differ, or are odd, reads again.
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME { return generation_.load(std::memory_order_acquire); }
 
@@ -161,6 +169,7 @@ private:
     StopCall stop_call_ = nullptr;
     void* stop_context_ = nullptr;
     EngineStatistics statistics_{};
+    Digest digest_{};
     std::atomic<std::uint64_t> generation_{0};
     os::Waiter waiter_{};
     Inbox inbox_{};

@@ -44,22 +44,35 @@ struct AsyncReaction {
     Inbox* inbox = nullptr;
     std::size_t sender = 0;
     Waker waker{};
-    Message message{}; ///< everything but the arguments
+    Message::Run run = nullptr; ///< in the receiver: the operation, or the trigger of a behaviour
+    void* object = nullptr;
+    std::uint32_t part = 0; ///< the receiver's number for the component it is timed as
     std::uint32_t quota = 0;
     std::uint32_t posted = 0; ///< the sender's own count
     std::uint32_t lost = 0;
     std::uint32_t high_water = 0;
-    alignas(64) std::atomic<std::uint32_t> served{0};
+    alignas(64) std::atomic<std::uint32_t> served{0}; ///< the receiver's count
 
-    void post(const Message& filled) noexcept TAPPET_REALTIME {
+    void post(Message& message) noexcept TAPPET_REALTIME {
+        message.run = &serve;
+        message.object = this;
+        message.id = part;
         const std::uint32_t waiting = posted - served.load(std::memory_order_acquire);
-        if (waiting >= quota || !inbox->post(sender, filled)) {
+        if (waiting >= quota || !inbox->post(sender, message)) {
             ++lost;
             return;
         }
         ++posted;
         if (waiting + 1 > high_water) high_water = waiting + 1;
         waker();
+    }
+
+private:
+    static void serve(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
+        auto& row = *static_cast<AsyncReaction*>(self);
+        // Its place in the mailbox is free again, so one more may be posted while this one runs.
+        row.served.store(row.served.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+        row.run(row.object, arguments);
     }
 };
 
@@ -87,7 +100,7 @@ template <class... A>
 void post(void* reaction, A... arguments) noexcept TAPPET_REALTIME {
     static_assert(packed_bytes<A...> <= sizeof(Message::arguments), "the arguments of an asynchronous reaction fit one message");
     auto& row = *static_cast<AsyncReaction*>(reaction);
-    Message message = row.message;
+    Message message;
     pack(message.arguments.data(), arguments...);
     row.post(message);
 }

@@ -24,6 +24,9 @@ struct Sample {
     Time stamp{};
 };
 
+template <class T>
+inline constexpr bool copied_as_bytes<Sample<T>> = copied_as_bytes<T>;
+
 /// A place to wake: the engine of an activity that a connection row wakes.
 struct Waker {
     void (*wake)(void*) noexcept TAPPET_REALTIME = nullptr;
@@ -36,7 +39,7 @@ struct Waker {
 /// An output port. Written by its own component only, from its own activity. Real-time.
 template <class T>
 class Output {
-    static_assert(std::is_trivially_copyable_v<T>, "what flows between activities is copied word by word");
+    static_assert(Exchangeable<T>, "what flows between activities is copied word by word");
 
 public:
     using Value = T;

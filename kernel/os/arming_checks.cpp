@@ -4,85 +4,23 @@
 #include "kernel/os/heap.hpp"
 #include "kernel/os/latency.hpp"
 #include "kernel/os/memory.hpp"
+#include "kernel/os/system_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <ctime>
-#include <optional>
 
-#include <fcntl.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 namespace tappet::os {
 
 namespace {
 
 using Verdict = SystemCheck::Verdict;
-
-// The beginning of a file of /proc or /sys; the kernel's answers looked at here are shorter.
-struct SystemFile {
-    static constexpr std::size_t capacity = 4096;
-    char letters[capacity] = {};
-    std::size_t length = 0;
-    bool readable = false;
-
-    SystemFile(std::string_view root, const Sentence& path) noexcept {
-        const Sentence full{root, path};
-        const int file = open(full.letters, O_RDONLY | O_CLOEXEC);
-        if (file < 0) return;
-        for (;;) {
-            const auto got = read(file, letters + length, capacity - length);
-            if (got < 0) break;
-            readable = true;
-            if (got == 0 || (length += static_cast<std::size_t>(got)) == capacity) break;
-        }
-        close(file);
-    }
-    /// Without the line's end.
-    [[nodiscard]] std::string_view text() const noexcept {
-        std::string_view all{letters, length};
-        while (!all.empty() && (all.back() == '\n' || all.back() == ' ')) all.remove_suffix(1);
-        return all;
-    }
-};
-
-std::optional<std::uint64_t> number_after(std::string_view text, std::string_view key, int base) noexcept {
-    const std::size_t at = text.find(key);
-    if (at == std::string_view::npos) return std::nullopt;
-    text.remove_prefix(at + key.size());
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-    return error == std::errc{} ? std::optional{value} : std::nullopt;
-}
-
-// The kernel's lists: "0-3,6".
-bool list_has(std::string_view list, int wanted) noexcept {
-    const char* at = list.data();
-    const char* const end = at + list.size();
-    while (at < end) {
-        int low = 0;
-        const auto first = std::from_chars(at, end, low);
-        if (first.ec != std::errc{}) return false;
-        int high = low;
-        at = first.ptr;
-        if (at < end && *at == '-') {
-            const auto second = std::from_chars(at + 1, end, high);
-            if (second.ec != std::errc{}) return false;
-            at = second.ptr;
-        }
-        if (wanted >= low && wanted <= high) return true;
-        if (at < end && *at != ',') return false;
-        ++at;
-    }
-    return false;
-}
 
 // Kernels with the RT patches say it in /sys; since 6.12 the mainline's own PREEMPT_RT says it in its version
 // only.

@@ -1,0 +1,83 @@
+#include "kernel/activity/activity.hpp"
+
+#include "kernel/os/memory.hpp"
+#include "kernel/os/sleep.hpp"
+
+namespace tappet {
+
+namespace {
+
+thread_local Activity* current_activity = nullptr;
+
+} // namespace
+
+std::expected<void, Sentence> Activity::create(Engine& engine, const os::Clock& clock, int priority, int processor, std::span<std::byte> stack) {
+    engine_ = &engine;
+    clock_ = &clock;
+    os::paint_stack(stack);
+    plan_ = {engine.name(), priority, processor, stack, &Activity::enter, this};
+    return thread_.start(plan_);
+}
+
+bool Activity::wait_for(State wanted, int milliseconds) const noexcept {
+    for (int waited = 0; state() < wanted; ++waited) {
+        if (waited >= milliseconds) return false;
+        os::sleep_for(1ms);
+    }
+    return true;
+}
+
+bool Activity::release(int milliseconds) noexcept {
+    released_.store(true, std::memory_order_release);
+    engine_->waiter().wake();
+    return wait_for(State::waiting, milliseconds);
+}
+
+bool Activity::stop(int milliseconds) noexcept {
+    if (!thread_.running()) return true;
+    stop_asked_.store(true, std::memory_order_release);
+    engine_->waiter().wake();
+    return wait_for(State::stopped, milliseconds) && state() == State::stopped && thread_.join_within(milliseconds + 1);
+}
+
+std::size_t Activity::stack_high_water_bytes() const noexcept { return os::stack_high_water_bytes(plan_.stack); }
+
+Activity* Activity::current() noexcept TAPPET_REALTIME {
+    Activity* found = nullptr;
+    TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start", found = current_activity);
+    return found;
+}
+
+void Activity::enter(void* self) noexcept { static_cast<Activity*>(self)->live(); }
+
+void Activity::live() noexcept {
+    current_activity = this;
+    state_.store(State::starting, std::memory_order_release);
+    while (!released_.load(std::memory_order_acquire) && !stop_asked_.load(std::memory_order_acquire)) static_cast<void>(engine_->waiter().wait(never));
+    if (!stop_asked_.load(std::memory_order_acquire)) {
+        engine_->start(clock_->now());
+        const os::PageFaults before = os::page_faults_of_this_thread();
+        state_.store(State::waiting, std::memory_order_release);
+        cycles();
+        faults_ = os::page_faults_of_this_thread() - before;
+        engine_->stop(clock_->now());
+    }
+    state_.store(State::stopped, std::memory_order_release);
+}
+
+void Activity::cycles() noexcept TAPPET_REALTIME {
+    while (true) {
+        const bool woken = engine_->waiter().wait(engine_->next_wake());
+        if (stop_asked_.load(std::memory_order_acquire)) return;
+        state_.store(State::running, std::memory_order_relaxed);
+        engine_->run(woken);
+        state_.store(State::waiting, std::memory_order_relaxed);
+    }
+}
+
+void Activity::park() noexcept TAPPET_REALTIME {
+    state_.store(State::parked, std::memory_order_release);
+    while (true) TAPPET_ESCAPE("this thread must not go on: its contract is broken", os::sleep_for(1h));
+}
+
+} // namespace tappet

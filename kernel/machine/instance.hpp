@@ -1,0 +1,88 @@
+// A machine come to life in its static memory: components constructed at their planned places, wired as the rows say,
+// configured. It knows no thread; a world runs its engines.
+#pragma once
+
+#include "kernel/machine/firmware.hpp"
+
+#include <atomic>
+#include <expected>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// Why the machine was asked to stop: the first call wins.
+struct StopRequest {
+    StopReason reason = StopReason::none;
+    std::uint64_t detail = 0; ///< stale input: the connection row; missed deadline: the function
+    const Engine* from = nullptr;
+};
+
+/// Not real-time but for ask_stop(), stop_asked() and what is const. One machine has one instance at a time.
+class MachineInstance {
+public:
+    MachineInstance(const AcceptedMachine& machine, os::Clock& clock) noexcept : machine_{machine}, clock_{&clock} {}
+    MachineInstance(const MachineInstance&) = delete;
+    MachineInstance& operator=(const MachineInstance&) = delete;
+
+    /// Constructs, wires and configures. An error is the first component's refusal.
+    std::expected<void, Sentence> configure(std::span<const ProvidedDevice> devices);
+
+    /// In the order of the table's activities.
+    [[nodiscard]] std::span<Engine> engines() noexcept;
+    [[nodiscard]] std::span<const Engine> engines() const noexcept { return const_cast<MachineInstance*>(this)->engines(); }
+    [[nodiscard]] std::span<std::byte> stack_of(std::size_t activity) noexcept;
+    [[nodiscard]] const AcceptedMachine& machine() const noexcept { return machine_; }
+    [[nodiscard]] os::Clock& clock() noexcept { return *clock_; }
+
+    /// A component by name, for worlds and tests; null when there is none of that name and type.
+    template <class T>
+    [[nodiscard]] T* find(std::string_view name) noexcept {
+        const std::size_t c = find_component(machine_.table, name);
+        return c != nowhere && machine_.table.components[c].type->tag == type_id<T> ? static_cast<T*>(component(c)) : nullptr;
+    }
+    [[nodiscard]] void* component(std::size_t index) noexcept { return machine_.memory.data() + machine_.plan.component_at[index]; }
+    /// The state machine that drives a component; null when none does.
+    [[nodiscard]] const StateMachineExecution* state_machine_of(std::string_view component) const noexcept;
+
+    /// Asks the supervisor to stop the machine. Real-time, any thread.
+    void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME { return stop_asked_.load(std::memory_order_acquire) == 2; }
+    [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_; }
+    /// What a stop request says, as a sentence.
+    [[nodiscard]] Sentence describe_stop() const;
+    /// Woken when a stop is asked for.
+    [[nodiscard]] os::Waiter& supervisor() noexcept TAPPET_REALTIME { return supervisor_; }
+
+    /// Of every engine, in order: equal for two runs that did the same.
+    [[nodiscard]] std::uint64_t event_log_digest() const noexcept;
+    /// Emissions that found their queue full, over all rows.
+    [[nodiscard]] std::uint64_t lost_emissions() const noexcept;
+
+private:
+    template <class T>
+    [[nodiscard]] T* at(std::size_t offset) noexcept {
+        return reinterpret_cast<T*>(machine_.memory.data() + offset);
+    }
+    [[nodiscard]] void* facet(End end) noexcept;
+    [[nodiscard]] Waker waker_of(std::size_t activity) noexcept;
+
+    void construct();
+    void apply_settings(std::size_t component);
+    void place_engines();
+    void connect_clocks();
+    void connect_data();
+    void connect_row(std::size_t row);
+    void add_waker(std::size_t row);
+    void connect_events();
+    void place_mailboxes();
+    void place_behaviours();
+
+    AcceptedMachine machine_;
+    os::Clock* clock_;
+    os::Waiter supervisor_{};
+    std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
+    StopRequest stop_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,46 @@
+// The host world under virtual time: every engine and every simulated device in one thread, in an order that is the same
+// in every run. Nothing sleeps: time jumps to the next thing that happens.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/machine/instance.hpp"
+
+namespace tappet {
+
+/// Something beside the machine that lives in virtual time: a plant, a twin that delays frames.
+struct VirtualProcess {
+    void* self = nullptr;
+    Time (*next)(void* self) = nullptr;      ///< when it wants to run
+    void (*run)(void* self, Time now) = nullptr; ///< moves it to now; afterwards next() is later than now
+};
+
+class VirtualWorld {
+public:
+    /// The instance is configured and its clock is virtual.
+    explicit VirtualWorld(MachineInstance& instance) noexcept;
+
+    /// Before start. Processes of one instant run in the order they were added, before the engines.
+    void add(const VirtualProcess& process) noexcept { static_cast<void>(processes_.push(process)); }
+
+    void start();
+    /// Runs to `end`, or until a stop is asked for: then false.
+    bool run_until(Time end);
+    /// Engines stop, the last row of the table first.
+    void stop();
+
+    [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
+
+private:
+    /// Engines of one instant: a message wakes another, and so on, so many times at most.
+    static constexpr int max_rounds_per_instant = 1000;
+
+    [[nodiscard]] Time next_time() const;
+    void run_engines(Time now);
+
+    MachineInstance& instance_;
+    Bounded<VirtualProcess, 8> processes_{};
+    Bounded<std::size_t, checks::max_activities> by_urgency_{};
+    std::uint64_t steps_ = 0;
+};
+
+} // namespace tappet
