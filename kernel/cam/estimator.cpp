@@ -32,7 +32,7 @@ double clamp(double value, double limit) noexcept TAPPET_REALTIME {
 }
 
 // How many deviations away a sample shows that the shaft is being accelerated, and how many make it an outlier.
-constexpr double manoeuvre_deviations = 2.5;
+constexpr double manoeuvre_deviations = 3.0;
 constexpr double outlier_deviations = 6.0;
 static_assert(outlier_deviations > manoeuvre_deviations, "a manoeuvre is followed before a sample is refused");
 

@@ -1,0 +1,329 @@
+// The estimator against a simulated true shaft: how near it is, and what it does with bad samples.
+#include "kernel/cam/estimator.hpp"
+#include "tests/kernel/cam/true_shaft.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+namespace tappet::test {
+namespace {
+
+std::uint64_t any_seed() { return std::random_device{}(); }
+
+ShaftProperties properties_for(const Sampling& sampling) {
+    ShaftProperties p;
+    p.codes_per_turn = sampling.codes_per_turn;
+    p.stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)};
+    p.stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)};
+    return p;
+}
+
+// Follows the shaft and collects the angle's error between the samples (up to 0.9 ms behind one) from `from_s` on.
+void follow(const TrueShaft& shaft, const Sampling& sampling, double from_s, std::uint64_t seed, Errors& errors) {
+    Random random(seed);
+    ShaftEstimator estimator{properties_for(sampling)};
+    const double offset = random.unit() * 360.0;
+    double t = 0.0;
+    while (true) {
+        const double noise = random.unit() - 0.5;
+        t += sampling.period_s + noise * sampling.period_jitter_s;
+        if (t + 1e-3 > shaft.end_s()) break;
+        const double delay = random.unit() * sampling.stamp_delay_s;
+        if (random.one_in(sampling.missing_one_in)) continue;
+        estimator.sample(code_at(shaft.degrees(t) + offset, sampling.codes_per_turn), at_s(t + delay));
+        if (t < from_s) continue;
+        const double ahead = t + (0.1 + 0.8 * random.unit()) * sampling.period_s;
+        const double seen = estimator.at(at_s(ahead)).position.angle().in_degrees();
+        errors.add(apart(seen, shaft.degrees(ahead) + offset));
+    }
+    EXPECT_EQ(estimator.counters().implausible, 0u);
+    EXPECT_EQ(estimator.counters().resets, 0u);
+}
+
+struct Case {
+    const char* name;
+    TrueShaft shaft;
+    double from_s;
+    double most_speed_deg_s;
+    bool braking;
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    for (const int rpm : {60, 300, 600, 1350, 2000}) {
+        const char* name = rpm == 60 ? "60 rpm" : rpm == 300 ? "300 rpm" : rpm == 600 ? "600 rpm" : rpm == 1350 ? "1350 rpm" : "2000 rpm";
+        all.push_back({name, TrueShaft(0.0).jump(rpm * 6.0).hold(3.0), 0.2, rpm * 6.0, false});
+        if (rpm == 600) all.push_back({"-600 rpm", TrueShaft(0.0).jump(-3600.0).hold(3.0), 0.2, 3600.0, false});
+    }
+    all.push_back({"0 to 600 rpm in 0.5 s", TrueShaft(0.0).hold(0.1).ramp(3600.0, 0.5).hold(0.2), 0.05, 3600.0, true});
+    all.push_back({"600 rpm to 0 in 60 deg", TrueShaft(0.0).jump(3600.0).hold(0.3).brake(60.0).hold(0.1), 0.29, 3600.0, true});
+    all.push_back({"600 rpm to 0 in 100 deg", TrueShaft(0.0).jump(3600.0).hold(0.3).brake(100.0).hold(0.1), 0.29, 3600.0, true});
+    return all;
+}
+
+TEST(ShaftEstimator, is_near_the_true_angle_between_samples) {
+    for (const double delay_s : {0.0, 100e-6}) {
+        for (const std::uint32_t codes : {4096u, 180u}) {
+            for (const Case& one : cases()) {
+                Errors errors;
+                const std::uint64_t seed = any_seed();
+                SCOPED_TRACE("seed " + std::to_string(seed));
+                const Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = delay_s, .missing_one_in = 20};
+                for (std::uint64_t run = 0; run < 10; ++run) follow(one.shaft, sampling, one.from_s, seed + run, errors);
+                const std::string what = std::string(one.name) + ", " + std::to_string(codes) + " codes" +
+                                         (delay_s > 0.0 ? ", stamps late up to 100 us" : "");
+                errors.print(what.c_str());
+                const double step = 360.0 / codes;
+                const double late = one.most_speed_deg_s * delay_s * 0.29; // one deviation of the stamps
+                EXPECT_LT(errors.p50(), (one.braking ? 0.5 : 0.3) * step + late) << what;
+                EXPECT_LT(errors.p99(), (one.braking ? 1.5 : 0.7) * step + 3.5 * late) << what;
+                EXPECT_LT(errors.max(), (one.braking ? 2.0 : 1.2) * step + 6.0 * late + (one.braking ? 0.3 : 0.1)) << what;
+            }
+        }
+    }
+}
+
+// A shaft at an even speed and an estimator that has settled on it.
+struct Settled {
+    explicit Settled(double deg_s, const ShaftProperties& properties = {})
+        : speed(deg_s), codes(properties.codes_per_turn), estimator(properties) {
+        run(0.3);
+    }
+    void step() {
+        t += 1e-3;
+        estimator.sample(code(), at_s(t));
+    }
+    void run(double for_s) {
+        for (const double until = t + for_s; t < until;) step();
+    }
+    [[nodiscard]] std::uint32_t code() const { return code_at(speed * t + 10.0, codes); }
+    [[nodiscard]] double error() const {
+        return apart(estimator.at(at_s(t)).position.angle().in_degrees(), speed * t + 10.0);
+    }
+    double speed;
+    std::uint32_t codes;
+    double t = 0.0;
+    ShaftEstimator estimator;
+};
+
+TEST(ShaftEstimator, counts_turns_both_ways_over_the_wrap) {
+    for (const double speed : {3600.0, -3600.0}) {
+        Settled s(speed);
+        const ShaftPosition from = s.estimator.at(at_s(s.t)).position;
+        s.run(10.0);
+        EXPECT_NEAR((s.estimator.at(at_s(s.t)).position - from).in_degrees(), speed * 10.0, 0.2 + std::fabs(speed) * 2e-3);
+        EXPECT_NEAR(s.estimator.at(at_s(s.t)).velocity_deg_s, speed, 30.0);
+    }
+}
+
+TEST(ShaftEstimator, stands_with_speed_exactly_zero_and_does_not_creep) {
+    for (const std::uint32_t codes : {4096u, 180u}) {
+        ShaftProperties properties;
+        properties.codes_per_turn = codes;
+        ShaftEstimator estimator(properties);
+        const TrueShaft shaft = TrueShaft(0.0).jump(3600.0).hold(0.3).brake(80.0).hold(20.0);
+        const double stop = 0.3 + 160.0 / 3600.0;
+        double t = 0.0;
+        ShaftPosition stood;
+        for (; t < shaft.end_s(); t += 1e-3) {
+            estimator.sample(code_at(shaft.degrees(t), codes), at_s(t));
+            if (t < stop + 0.06) { // a slow last step, and standstill_after
+                stood = estimator.at(at_s(t)).position;
+                continue;
+            }
+            ASSERT_EQ(estimator.at(at_s(t)).velocity_deg_s, 0.0);
+            ASSERT_EQ(estimator.at(at_s(t)).position, stood);
+        }
+        EXPECT_TRUE(estimator.standing());
+        EXPECT_LE(std::fabs(apart(stood.angle().in_degrees(), shaft.degrees(t))), 360.0 / codes);
+    }
+}
+
+TEST(ShaftEstimator, stands_too_when_the_shaft_rests_on_the_edge_of_two_codes) {
+    Settled s(0.0);
+    Random random{any_seed()};
+    const std::uint32_t code = s.code();
+    const ShaftPosition stood = s.estimator.at(at_s(s.t)).position;
+    bool left = false;
+    for (int i = 0; i < 5000; ++i) {
+        s.t += 1e-3;
+        s.estimator.sample(random.one_in(2) ? code : code + 1, at_s(s.t));
+        if (i < 100) continue;
+        left = left || !s.estimator.standing();
+    }
+    EXPECT_FALSE(left);
+    EXPECT_LT(std::fabs((s.estimator.at(at_s(s.t)).position - stood).in_degrees()), 0.2);
+}
+
+TEST(ShaftEstimator, rejects_and_counts_duplicates_old_stamps_and_impossible_codes) {
+    Settled s(3600.0);
+    const ShaftState before = s.estimator.at(at_s(s.t));
+    s.estimator.sample(s.code(), at_s(s.t));
+    s.estimator.sample(s.code(), at_s(s.t - 0.5e-3));
+    s.estimator.sample(0, Time::min());
+    s.estimator.sample(4096, at_s(s.t + 1e-3));
+    s.estimator.sample(0xffff'ffff, at_s(s.t + 1e-3));
+    EXPECT_EQ(s.estimator.counters().out_of_order, 3u);
+    EXPECT_EQ(s.estimator.counters().bad_code, 2u);
+    EXPECT_EQ(s.estimator.at(at_s(s.t)).position, before.position);
+    EXPECT_FALSE(s.estimator.fault());
+}
+
+TEST(ShaftEstimator, raises_a_fault_on_an_impossible_jump_and_keeps_its_place) {
+    Settled s(3600.0);
+    s.t += 1e-3;
+    s.estimator.sample((s.code() + 2048) % 4096, at_s(s.t));
+    EXPECT_TRUE(s.estimator.fault());
+    EXPECT_EQ(s.estimator.counters().implausible, 1u);
+    s.run(0.01);
+    EXPECT_LT(std::fabs(s.error()), 0.3);
+    EXPECT_EQ(s.estimator.epoch(), 0u);
+    EXPECT_TRUE(s.estimator.fault()) << "it stays until acknowledged";
+    s.estimator.acknowledge();
+    EXPECT_FALSE(s.estimator.fault());
+}
+
+TEST(ShaftEstimator, believes_a_jump_after_three_samples_that_agree) {
+    Settled s(3600.0);
+    const auto jumped = [&] {
+        s.t += 1e-3;
+        s.estimator.sample((s.code() + 1500) % 4096, at_s(s.t));
+    };
+    jumped();
+    jumped();
+    EXPECT_EQ(s.estimator.epoch(), 0u);
+    jumped();
+    EXPECT_EQ(s.estimator.epoch(), 1u);
+    EXPECT_FALSE(s.estimator.valid(at_s(s.t))) << "a new beginning has to settle";
+    for (int i = 0; i < 50; ++i) jumped();
+    EXPECT_TRUE(s.estimator.valid(at_s(s.t)));
+    EXPECT_NEAR(apart(s.estimator.at(at_s(s.t)).position.angle().in_degrees(), s.speed * s.t + 10.0), 1500 * 360.0 / 4096, 0.3);
+}
+
+TEST(ShaftEstimator, does_not_believe_jumps_that_do_not_agree) {
+    Settled s(0.0);
+    const std::uint32_t code = s.code();
+    for (int i = 0; i < 6; ++i) {
+        s.t += 1e-3;
+        s.estimator.sample((code + 1000 + 1000 * static_cast<std::uint32_t>(i % 2)) % 4096, at_s(s.t));
+    }
+    EXPECT_EQ(s.estimator.epoch(), 0u);
+    EXPECT_EQ(s.estimator.counters().implausible, 6u);
+    EXPECT_LT(std::fabs(s.error()), 0.1);
+}
+
+TEST(ShaftEstimator, lets_one_outlier_pass_by) {
+    Settled s(3600.0);
+    const std::uint32_t stale = s.code();
+    s.t += 1e-3;
+    s.estimator.sample(stale, at_s(s.t)); // an old frame with a new stamp
+    EXPECT_EQ(s.estimator.counters().outliers, 1u);
+    EXPECT_LT(std::fabs(s.error()), 0.3);
+    s.run(0.01);
+    EXPECT_LT(std::fabs(s.error()), 0.2);
+    EXPECT_FALSE(s.estimator.fault());
+}
+
+TEST(ShaftEstimator, follows_a_crash_harder_than_any_braking) {
+    Settled s(3600.0);
+    const double stopped_at = s.speed * s.t + 10.0;
+    s.speed = 0.0;
+    for (int i = 0; i < 60; ++i) {
+        s.t += 1e-3;
+        s.estimator.sample(code_at(stopped_at, 4096), at_s(s.t));
+    }
+    EXPECT_TRUE(s.estimator.standing());
+    EXPECT_LT(std::fabs(apart(s.estimator.at(at_s(s.t)).position.angle().in_degrees(), stopped_at)), 0.1);
+}
+
+TEST(ShaftEstimator, goes_stale_and_starts_anew_after_a_long_gap) {
+    Settled s(3600.0);
+    EXPECT_TRUE(s.estimator.valid(at_s(s.t + 4e-3)));
+    EXPECT_FALSE(s.estimator.valid(at_s(s.t + 4.1e-3)));
+    s.t += 0.5;
+    s.step();
+    EXPECT_EQ(s.estimator.counters().gaps, 1u);
+    EXPECT_EQ(s.estimator.epoch(), 1u);
+    EXPECT_FALSE(s.estimator.valid(at_s(s.t)));
+    s.run(0.05);
+    EXPECT_TRUE(s.estimator.valid(at_s(s.t)));
+    EXPECT_LT(std::fabs(s.error()), 0.2);
+}
+
+TEST(ShaftEstimator, keeps_its_place_over_a_gap_at_standstill_but_not_when_moved_unseen) {
+    Settled s(0.0);
+    s.t += 10.0;
+    s.step();
+    EXPECT_EQ(s.estimator.epoch(), 0u);
+    EXPECT_TRUE(s.estimator.valid(at_s(s.t)));
+    s.t += 10.0;
+    s.estimator.sample(s.code() + 300, at_s(s.t));
+    EXPECT_EQ(s.estimator.epoch(), 1u);
+}
+
+TEST(ShaftEstimator, knows_the_time_of_a_crossing_ahead) {
+    for (const double speed : {3600.0, -3600.0}) {
+        Settled s(speed);
+        const ShaftState here = s.estimator.at(at_s(s.t));
+        const ShaftPosition target = here.position + Rotation::degrees(speed * 5e-3);
+        EXPECT_NEAR(to_seconds(s.estimator.when(target, at_s(s.t)) - at_s(s.t)), 5e-3, 0.1e-3);
+        EXPECT_EQ(s.estimator.when(here.position - Rotation::degrees(speed * 1e-3), at_s(s.t)), never);
+    }
+    Settled standing(0.0);
+    EXPECT_EQ(standing.estimator.when(ShaftPosition{1, {}}, at_s(standing.t)), never);
+}
+
+TEST(ShaftEstimator, survives_any_bytes) {
+    const std::uint64_t seed = any_seed();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    ShaftEstimator estimator{ShaftProperties{}};
+    std::int64_t t = 0;
+    for (int i = 0; i < 200'000; ++i) {
+        t += random.one_in(100) ? random.between(-10'000'000, 100'000'000) : random.between(-100, 2'000'000);
+        const std::uint64_t code = random.below(4200);
+        estimator.sample(static_cast<std::uint32_t>(code), at_ns(t));
+        const ShaftState state = estimator.at(at_ns(t));
+        ASSERT_TRUE(std::isfinite(state.velocity_deg_s) && std::isfinite(estimator.deviation_deg()));
+        ASSERT_LE(std::fabs(state.velocity_deg_s), (2200_rpm).in_deg_s() * 3.0);
+    }
+    const double true_speed = 1200.0; // and follows again when sense returns
+    for (int i = 0; i < 200; ++i) {
+        t += 1'000'000;
+        estimator.sample(code_at(true_speed * static_cast<double>(t) * 1e-9, 4096), at_ns(t));
+    }
+    const double truth = true_speed * static_cast<double>(t) * 1e-9;
+    EXPECT_TRUE(estimator.valid(at_ns(t)));
+    EXPECT_LT(std::fabs(apart(estimator.at(at_ns(t)).position.angle().in_degrees(), truth)), 0.2);
+}
+
+TEST(ShaftProperties, are_checked_with_a_sentence) {
+    static_assert(check(ShaftProperties{}).empty());
+    ShaftProperties few;
+    few.codes_per_turn = 4;
+    EXPECT_EQ(check(few).view(), "shaft: codes_per_turn is 4; give a number from 8 to 16777216");
+    ShaftProperties slow;
+    slow.max_speed = Speed{};
+    EXPECT_FALSE(check(slow).empty());
+    ShaftProperties soft;
+    soft.max_acceleration_deg_s2 = 0.0;
+    EXPECT_FALSE(check(soft).empty());
+    ShaftProperties sure;
+    sure.jerk_density = 0.0;
+    EXPECT_FALSE(check(sure).empty());
+    ShaftProperties early;
+    early.stamp_jitter = -1us;
+    EXPECT_FALSE(check(early).empty());
+    ShaftProperties patient;
+    patient.lost_after = 1ms;
+    EXPECT_FALSE(check(patient).empty());
+    ShaftProperties blind;
+    blind.lost_after = 100ms;
+    EXPECT_EQ(check(blind).view(), "shaft: in a gap of lost_after the shaft may turn half a turn unseen at "
+                                   "max_acceleration_deg_s2; shorten lost_after");
+}
+
+} // namespace
+} // namespace tappet::test

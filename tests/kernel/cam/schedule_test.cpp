@@ -1,0 +1,341 @@
+// Rows fire once per crossing, on their angle, whatever the shaft does.
+#include "tests/kernel/cam/cam_rig.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+
+namespace tappet::test {
+namespace {
+
+constexpr auto loom = cam_table(
+    2200_rpm, cam("beat_up", at(0_deg)), cam("pick", at(80_deg), dead_time(2500us)),
+    cam("arrival", window(200_deg, 260_deg), dead_time(300us)),
+    cam("nozzle", window(300_deg, 60_deg), dead_time(2500us, 1800us), exclusive("nozzles")),
+    cam("relay", window(60_deg, 180_deg), dead_time(2500us, 1800us), exclusive("nozzles")), cam("last", at(359.9_deg)));
+static_assert(check(loom.view()).empty());
+
+std::uint64_t any_seed() { return std::random_device{}(); }
+
+// The angle at which the effect of a firing falls on the true shaft, against the angle asked for.
+template <std::size_t N>
+double effect_error(const CamRig<N>& rig, const CamTable<N>& table, const Fired& fired) {
+    const CamRow& row = table.rows[fired.event.row];
+    const Duration dead = fired.event.kind == CamKind::leave ? row.leave_dead_time : row.dead_time;
+    return apart(rig.shaft.degrees(in_s(fired.at + dead)), fired.event.target.angle().in_degrees());
+}
+
+// Each row fired once for each crossing between the first and the last, none twice, none left out.
+template <std::size_t N>
+void expect_once_per_turn(const CamRig<N>& rig, const CamTable<N>& table, int step) {
+    for (std::size_t row = 0; row < N; ++row) {
+        for (const CamKind kind : {CamKind::point, CamKind::enter, CamKind::leave}) {
+            const ShaftPosition* before = nullptr;
+            for (const Fired& fired : rig.fired) {
+                if (fired.event.row != row || fired.event.kind != kind) continue;
+                if (before != nullptr) {
+                    ASSERT_EQ(fired.event.target - *before, Rotation::turns(step)) << table.rows[row].name;
+                }
+                before = &fired.event.target;
+            }
+        }
+    }
+}
+
+TEST(CamSchedule, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_samples) {
+    for (const std::uint32_t codes : {4096u, 180u}) {
+        for (const double rpm : {60.0, 600.0, 2000.0}) {
+            const std::uint64_t seed = any_seed();
+            SCOPED_TRACE("seed " + std::to_string(seed) + " codes " + std::to_string(codes));
+            Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 20};
+            const double turns = rpm < 100.0 ? 200.0 : 3000.0;
+            const double seconds = turns * 60.0 / rpm;
+            TrueShaft shaft(123.0);
+            shaft.jump(rpm * 6.0).hold(seconds);
+            CamRig rig(loom, shaft, sampling, seed);
+            rig.run(seconds);
+            expect_once_per_turn(rig, loom, 1);
+            for (std::size_t row = 0; row < loom.size(); ++row) {
+                const CamKind kind = loom.rows[row].is_window ? CamKind::leave : CamKind::point;
+                EXPECT_NEAR(static_cast<double>(rig.count(row, kind)), turns, 2.0) << loom.rows[row].name;
+            }
+            EXPECT_EQ(rig.schedule.counters().skipped_late, 0u);
+            EXPECT_EQ(rig.estimator.counters().resets, 0u);
+        }
+    }
+}
+
+TEST(CamSchedule, fires_in_the_order_of_the_effects) {
+    CamRig rig(loom, TrueShaft(10.0).jump(3600.0).hold(10.0), {}, any_seed());
+    rig.run(10.0);
+    // No dead time lies between these two rows: the one at the greater angle comes later.
+    ShaftPosition last{-100, {}};
+    for (const Fired& fired : rig.fired) {
+        if (fired.event.row != 0 && fired.event.row != 5) continue;
+        EXPECT_GT(fired.event.target - last, Rotation{});
+        last = fired.event.target;
+    }
+    EXPECT_GT(rig.fired.size(), 800u);
+}
+
+TEST(CamSchedule, puts_the_effect_on_the_angle_at_even_speeds) {
+    for (const std::uint32_t codes : {4096u, 180u}) {
+        for (const double rpm : {60.0, 600.0, 1350.0, 2000.0}) {
+            const std::uint64_t seed = any_seed();
+            SCOPED_TRACE("seed " + std::to_string(seed));
+            Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 50};
+            const double seconds = 30.0;
+            CamRig rig(loom, TrueShaft(17.0).jump(rpm * 6.0).hold(seconds), sampling, seed);
+            rig.run(seconds);
+            Errors errors;
+            for (const Fired& fired : rig.fired)
+                if (fired.event.target.turns() > 1) errors.add(effect_error(rig, loom, fired));
+            const std::string what = std::to_string(static_cast<int>(rpm)) + " rpm, " + std::to_string(codes) + " codes";
+            errors.print(what.c_str());
+            const double step = 360.0 / codes;
+            const double jitter = rpm * 6.0 * 29e-6; // one standard deviation of the stamps
+            EXPECT_LT(errors.p50(), 0.3 * step + jitter);
+            EXPECT_LT(errors.p99(), 1.0 * step + 4.0 * jitter);
+            EXPECT_LT(errors.max(), 2.0 * step + 8.0 * jitter + 0.1);
+        }
+    }
+}
+
+TEST(CamSchedule, puts_the_effect_on_the_angle_during_the_run_up) {
+    for (const std::uint32_t codes : {4096u, 180u}) {
+        Errors errors;
+        std::uint64_t skipped = 0;
+        for (int run = 0; run < 50; ++run) {
+            const std::uint64_t seed = any_seed();
+            SCOPED_TRACE("seed " + std::to_string(seed));
+            Random random(seed);
+            Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 50};
+            const double start = random.unit() * 360.0;
+            CamRig rig(loom, TrueShaft(start).hold(0.1).ramp(3600.0, 0.5).hold(0.2), sampling, seed);
+            rig.run(0.8);
+            expect_once_per_turn(rig, loom, 1);
+            for (const Fired& fired : rig.fired) errors.add(effect_error(rig, loom, fired));
+            skipped += rig.schedule.counters().skipped_late;
+        }
+        const std::string what = "0 to 600 rpm in 0.5 s, " + std::to_string(codes) + " codes";
+        errors.print(what.c_str());
+        const double step = 360.0 / codes;
+        EXPECT_LT(errors.p50(), 0.5 * step + 0.15);
+        EXPECT_LT(errors.p99(), 2.0 * step + 0.5);
+        EXPECT_LT(errors.max(), 3.0 * step + 1.0);
+        EXPECT_EQ(skipped, 0u);
+    }
+}
+
+TEST(CamSchedule, fires_both_ways_when_a_row_says_so) {
+    constexpr auto table = cam_table(700_rpm, cam("both", at(90_deg), direction(Direction::both), dead_time(2ms)),
+                                     cam("forward", at(90_deg)),
+                                     cam("backward", at(90_deg), direction(Direction::backward), dead_time(2ms)),
+                                     cam("window", window(40_deg, 140_deg), direction(Direction::both)));
+    const std::uint64_t seed = any_seed();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    // Ten turns forward, a stop, ten turns backward.
+    TrueShaft shaft(0.0);
+    shaft.hold(0.1).ramp(1800.0, 0.2).hold(1.8).ramp(0.0, 0.2).hold(0.2).ramp(-1800.0, 0.2).hold(1.8).ramp(0.0, 0.2);
+    CamRig rig(table, shaft.hold(0.2), {.missing_one_in = 30}, seed);
+    rig.run(shaft.end_s());
+    EXPECT_EQ(rig.count(0, CamKind::point), 20u);
+    EXPECT_EQ(rig.count(1, CamKind::point), 10u);
+    EXPECT_EQ(rig.count(2, CamKind::point), 10u);
+    EXPECT_EQ(rig.count(3, CamKind::enter), 20u);
+    EXPECT_EQ(rig.count(3, CamKind::leave), 20u);
+    for (const Fired& fired : rig.fired) {
+        EXPECT_LT(std::fabs(effect_error(rig, table, fired)), 0.5);
+        if (fired.event.row != 3) continue;
+        const bool entering_end = (fired.event.kind == CamKind::enter) == fired.event.forward;
+        EXPECT_EQ(fired.event.target.angle(), entering_end ? Angle{40_deg} : Angle{140_deg});
+    }
+}
+
+TEST(CamSchedule, has_nothing_due_while_the_shaft_stands) {
+    for (const std::uint32_t codes : {4096u, 180u}) {
+        CamRig rig(loom, TrueShaft(80.0).hold(5.0), {.codes_per_turn = codes}, any_seed());
+        rig.run(5.0);
+        EXPECT_TRUE(rig.fired.empty());
+        EXPECT_EQ(rig.schedule.next_due(), never);
+        EXPECT_TRUE(rig.estimator.standing());
+    }
+}
+
+TEST(CamSchedule, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
+    constexpr auto table = cam_table(700_rpm, cam("cam", at(90_deg)), cam("both", at(90_deg), direction(Direction::both)));
+    TrueShaft shaft(0.0);
+    shaft.hold(0.1).ramp(360.0, 0.1).hold(0.2).ramp(0.0, 0.1); // to 108 degrees, 90 lying behind
+    for (int i = 0; i < 2; ++i) shaft.ramp(-180.0, 0.1).ramp(0.0, 0.1);
+    // Now at 72: over the cam again, forward, then to and fro by a degree around it.
+    shaft.ramp(90.0, 0.1).hold(0.1).ramp(0.0, 0.1);
+    const double there = shaft.degrees(shaft.end_s());
+    ASSERT_NEAR(there, 90.0, 1e-6);
+    for (int i = 0; i < 50; ++i) shaft.ramp(20.0, 0.05).ramp(0.0, 0.05).ramp(-20.0, 0.1).ramp(0.0, 0.1).ramp(20.0, 0.05).ramp(0.0, 0.05);
+    shaft.ramp(180.0, 0.1).ramp(0.0, 0.1);
+    CamRig rig(table, shaft, {}, any_seed());
+    rig.run(shaft.end_s());
+    EXPECT_EQ(rig.count(0, CamKind::point), 2u); // once on the way out, once after the way back
+    EXPECT_EQ(rig.count(1, CamKind::point), 3u);
+}
+
+TEST(CamSchedule, fires_once_when_the_shaft_stops_between_firing_and_effect) {
+    constexpr auto table = cam_table(700_rpm, cam("slow_valve", at(180_deg), dead_time(20ms)));
+    // 72 degrees ahead at 600 rpm; braked at 120, the shaft stands at about 160 and goes on later.
+    TrueShaft shaft(-150.0);
+    shaft.jump(3600.0).hold(0.075).brake(40.0).hold(0.5).ramp(360.0, 0.05).hold(0.2);
+    CamRig rig(table, shaft, {}, any_seed());
+    rig.run(shaft.end_s());
+    EXPECT_EQ(rig.count(0, CamKind::point), 1u);
+}
+
+TEST(CamSchedule, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back_before_now) {
+    constexpr auto table = cam_table(700_rpm, cam("valve", at(30_deg), dead_time(10ms), min_speed(300_rpm)));
+    // min_speed is reached at about 20 degrees, where the effect already lies 18 degrees ahead.
+    TrueShaft shaft(0.0);
+    shaft.hold(0.1).accelerate(1800.0 * 1800.0 / 40.0, 40.0 / 1800.0).hold(0.3);
+    CamRig rig(table, shaft, {}, any_seed());
+    rig.run(0.16);
+    ASSERT_EQ(rig.count(0, CamKind::point), 1u);
+    EXPECT_EQ(rig.schedule.counters().late, 1u);
+    EXPECT_GT(rig.fired[0].event.late_deg, 5.0);
+    EXPECT_EQ(rig.schedule.counters().latest_deg, rig.fired[0].event.late_deg);
+}
+
+TEST(CamSchedule, fires_nothing_below_its_least_speed_but_leaves_windows) {
+    constexpr auto table = cam_table(700_rpm, cam("point", at(90_deg), min_speed(100_rpm)),
+                                     cam("window", window(40_deg, 270_deg), min_speed(100_rpm)));
+    TrueShaft shaft(0.0);
+    shaft.hold(0.1).ramp(300.0, 0.1).hold(2.4); // two turns at 50 rpm: nothing
+    CamRig slow(table, shaft, {}, any_seed());
+    slow.run(shaft.end_s());
+    EXPECT_TRUE(slow.fired.empty());
+    EXPECT_EQ(slow.schedule.counters().skipped_slow, 4u);
+
+    TrueShaft braked(-180.0);
+    braked.jump(3600.0).hold(0.09).ramp(120.0, 0.01).hold(1.5); // enters at speed, leaves at 20 rpm
+    CamRig rig(table, braked, {}, any_seed());
+    rig.run(braked.end_s());
+    EXPECT_EQ(rig.count(1, CamKind::enter), 1u);
+    EXPECT_EQ(rig.count(1, CamKind::leave), 1u);
+    EXPECT_FALSE(rig.schedule.inside(1));
+}
+
+TEST(CamSchedule, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_burst) {
+    for (const double dark_s : {0.03, 0.35, 2.0}) {
+        const std::uint64_t seed = any_seed();
+        SCOPED_TRACE("seed " + std::to_string(seed) + " dark " + std::to_string(dark_s));
+        CamRig rig(loom, TrueShaft(0.0).jump(3600.0).hold(4.0), {}, seed);
+        rig.run(1.0);
+        const std::size_t before = rig.fired.size();
+        rig.run(1.0 + dark_s, 0.0, 1.0 + dark_s);
+        EXPECT_FALSE(rig.estimator.valid(at_s(1.0 + dark_s)));
+        rig.run(1.01 + dark_s);
+        // 10 ms turn 36 degrees: no more rows can truly have passed, and two windows may have to be left.
+        EXPECT_LE(rig.fired.size() - before, 16u);
+        EXPECT_GE(rig.estimator.epoch(), 1u);
+        rig.run(4.0);
+        EXPECT_GT(rig.fired.size(), 2u * before * 5u / 10u);
+        int nozzle = 0;
+        for (const Fired& fired : rig.fired) {
+            if (fired.event.row != 3) continue;
+            nozzle += fired.event.kind == CamKind::enter ? 1 : -1;
+            ASSERT_TRUE(nozzle == 0 || nozzle == 1);
+        }
+    }
+}
+
+TEST(CamSchedule, leaves_an_open_window_when_the_encoder_comes_back_elsewhere) {
+    constexpr auto table = cam_table(700_rpm, cam("valve", window(60_deg, 120_deg)));
+    // At 0.12 s the shaft is at 72 degrees, inside; the encoder is dark until 0.2 s, at 0 degrees.
+    CamRig rig(table, TrueShaft(-360.0).jump(3600.0).hold(1.0), {}, any_seed());
+    rig.run(0.21, 0.12, 0.2);
+    ASSERT_EQ(rig.count(0, CamKind::enter), 2u); // a turn before, too
+    ASSERT_EQ(rig.count(0, CamKind::leave), 2u);
+    EXPECT_TRUE(rig.fired.back().event.forced);
+    EXPECT_EQ(rig.schedule.counters().forced, 1u);
+    EXPECT_FALSE(rig.schedule.inside(0));
+    rig.run(1.0);
+    EXPECT_EQ(rig.count(0, CamKind::enter), rig.count(0, CamKind::leave));
+}
+
+TEST(CamSchedule, keeps_exclusive_windows_apart_when_they_touch) {
+    constexpr auto table = cam_table(2200_rpm, cam("b", window(120_deg, 240_deg), exclusive("g")),
+                                     cam("a", window(0_deg, 120_deg), exclusive("g")),
+                                     cam("c", window(240_deg, 0_deg), exclusive("g")));
+    static_assert(check(table.view()).empty());
+    TrueShaft shaft(10.0);
+    shaft.jump(9000.0).hold(3.0);
+    CamRig rig(table, shaft, {.codes_per_turn = 180}, any_seed());
+    rig.run(3.0);
+    int open = 0;
+    for (const Fired& fired : rig.fired) {
+        open += fired.event.kind == CamKind::enter ? 1 : -1;
+        ASSERT_TRUE(open == 0 || open == 1);
+    }
+    EXPECT_GT(rig.fired.size(), 400u);
+}
+
+// A shaft that is run up, braked, turned back and forth at random: what fires alternates as the truth does.
+TEST(CamSchedule, keeps_windows_paired_on_any_way_of_the_shaft) {
+    constexpr auto table = cam_table(1500_rpm, cam("w", window(50_deg, 170_deg), direction(Direction::both), dead_time(3ms)),
+                                     cam("v", window(250_deg, 20_deg), direction(Direction::forward), dead_time(1ms, 4ms)));
+    for (int run = 0; run < 30; ++run) {
+        const std::uint64_t seed = any_seed();
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        TrueShaft shaft(random.unit() * 360.0);
+        shaft.hold(0.1);
+        for (int i = 0; i < 40; ++i) {
+            const double speed = random.one_in(3) ? 0.0 : (random.unit() - 0.5) * 12'000.0;
+            const double in = 0.1 + random.unit() * 0.3;
+            shaft.ramp(speed, in);
+            shaft.hold(random.unit() * 0.5);
+        }
+        const std::uint32_t codes = random.one_in(2) ? 180 : 4096;
+        CamRig rig(table, shaft, {.codes_per_turn = codes, .stamp_delay_s = 50e-6, .missing_one_in = 40}, seed);
+        rig.run(shaft.end_s());
+        for (std::size_t row = 0; row < 2; ++row) {
+            bool inside = false;
+            for (const Fired& fired : rig.fired) {
+                if (fired.event.row != row) continue;
+                ASSERT_NE(inside, fired.event.kind == CamKind::enter);
+                inside = !inside;
+            }
+            EXPECT_EQ(inside, rig.schedule.inside(row));
+        }
+        EXPECT_EQ(rig.schedule.counters().skipped_late, 0u);
+        EXPECT_EQ(rig.estimator.counters().resets, 0u);
+    }
+}
+
+TEST(CamSchedule, does_the_same_to_the_bit_for_the_same_seed) {
+    const auto run = [] {
+        CamRig rig(loom, TrueShaft(0.0).hold(0.1).ramp(3600.0, 0.5).hold(1.0).brake(80.0),
+                   {.stamp_delay_s = 100e-6, .missing_one_in = 20}, 4711);
+        rig.run(1.7);
+        std::uint64_t digest = 0;
+        for (const Fired& fired : rig.fired) {
+            std::uint64_t late = 0;
+            std::memcpy(&late, &fired.event.late_deg, sizeof late);
+            digest = digest * 0x100000001b3u + static_cast<std::uint64_t>(to_ns(fired.at)) + late + fired.event.row;
+        }
+        return digest;
+    };
+    const std::uint64_t once = run();
+    EXPECT_EQ(once, run());
+    EXPECT_EQ(once, 9560047577239405001u) << "another compiler, or another estimator";
+}
+
+TEST(CamSchedule, does_nothing_before_the_first_samples) {
+    CamSchedule schedule(loom);
+    const ShaftEstimator estimator{ShaftProperties{}};
+    schedule.update(estimator, Time{1s});
+    EXPECT_EQ(schedule.next_due(), never);
+    schedule.advance(Time{2s}, [](const CamEvent&) noexcept TAPPET_REALTIME { TAPPET_ESCAPE("the test fails", FAIL()); });
+}
+
+} // namespace
+} // namespace tappet::test
