@@ -1,4 +1,5 @@
-// Did you mean ...? The name nearest to a misspelt one, found in a constant expression so that a diagnostic can say it.
+// Did you mean ...? The name nearest to a misspelt one, found in a constant expression so that a diagnostic
+// can say it.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +18,9 @@ constexpr char lower_case(char letter) noexcept {
     return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
 }
 
-/// The least number of letters inserted, left out, changed, or swapped with their neighbour that leads from one text
-/// to the other (Damerau 1964, with no letter edited twice). More than `limit` is reported as limit + 1, soon.
+/// The least number of letters inserted, left out, changed, or swapped with their neighbour that leads from
+/// one text to the other (Damerau 1964, with no letter edited twice). More than `limit` is reported as limit
+/// + 1, soon.
 constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
                                     std::size_t limit = nearest_max_letters,
                                     LetterCase letter_case = LetterCase::matters) noexcept {
@@ -39,14 +41,16 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
         std::size_t least = i;
         for (std::size_t j = 1; j <= to.size(); ++j) {
             const bool equal = same(from[i - 1], to[j - 1]);
-            std::size_t best = std::min({(*last)[j] + 1, (*row)[j - 1] + 1, (*last)[j - 1] + (equal ? 0u : 1u)});
+            std::size_t best =
+                std::min({(*last)[j] + 1, (*row)[j - 1] + 1, (*last)[j - 1] + (equal ? 0u : 1u)});
             if (i > 1 && j > 1 && same(from[i - 1], to[j - 2]) && same(from[i - 2], to[j - 1])) {
                 best = std::min(best, (*before_last)[j - 2] + 1);
             }
             (*row)[j] = best;
             least = std::min(least, best);
         }
-        if (least > limit) return limit + 1; // no row's least is under the one before: a swap costs what it skips
+        if (least > limit)
+            return limit + 1; // no row's least is under the one before: a swap costs what it skips
         Row* const oldest = before_last;
         before_last = last;
         last = row;
@@ -55,9 +59,9 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
     return std::min((*last)[to.size()], limit + 1);
 }
 
-/// Shows every candidate to consider() and keeps the nearest one that is near enough to be meant: at most two edits,
-/// or a third of the written name. Of two equally near the one nearer in lower case wins, then the first shown.
-/// The same name in other case is always near. The candidates' letters must outlive it.
+/// Shows every candidate to consider() and keeps the nearest one that is near enough to be meant: at most two
+/// edits, or a third of the written name. Of two equally near the one nearer in lower case wins, then the
+/// first shown. The same name in other case is always near. The candidates' letters must outlive it.
 class Nearest {
 public:
     explicit constexpr Nearest(std::string_view written) noexcept
@@ -81,8 +85,9 @@ public:
 private:
     std::string_view written_;
     std::string_view best_{};
-    std::size_t distance_;   // of the best; at first one more than a suggestion may have
-    std::size_t folded_ = 0; // its distance in lower case; 0 at first, so that a distance over the limit loses
+    std::size_t distance_; // of the best; at first one more than a suggestion may have
+    std::size_t folded_ =
+        0; // its distance in lower case; 0 at first, so that a distance over the limit loses
 };
 
 } // namespace tappet

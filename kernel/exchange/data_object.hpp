@@ -1,5 +1,6 @@
-// The last value of one writer for any number of readers, wait-free for all of them (thesis 4.4: the data object):
-// several slots in turn, each with the generation it holds, as in a sequence lock with more than one slot.
+// The last value of one writer for any number of readers, wait-free for all of them (thesis 4.4: the data
+// object): several slots in turn, each with the generation it holds, as in a sequence lock with more than one
+// slot.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -13,13 +14,16 @@
 namespace tappet {
 
 /// write() is one copy and four stores, and loads nothing that a reader writes: readers write nothing at all.
-/// read() is at most Attempts copies; it fails only if, during each of them, the writer finished Slots - 1 values
-/// and began one more. Real-time on both sides; no allocation; all zero until the first value.
-template <Exchangeable T, std::size_t Slots = 4, std::size_t Attempts = 3, template <class> class Atomic = std::atomic>
+/// read() is at most Attempts copies; it fails only if, during each of them, the writer finished Slots - 1
+/// values and began one more. Real-time on both sides; no allocation; all zero until the first value.
+template <Exchangeable T, std::size_t Slots = 4, std::size_t Attempts = 3,
+          template <class> class Atomic = std::atomic>
 class DataObject {
-    static_assert(Slots >= 2, "with one slot a writer that is preempted in its copy leaves readers nothing to read");
+    static_assert(Slots >= 2,
+                  "with one slot a writer that is preempted in its copy leaves readers nothing to read");
     static_assert(Slots <= 16, "a slot is a whole copy of the value: give the reader attempts, not slots");
-    static_assert(Attempts >= 1 && Attempts <= 16, "the attempts are a reader's worst case: at least one, and few");
+    static_assert(Attempts >= 1 && Attempts <= 16,
+                  "the attempts are a reader's worst case: at least one, and few");
 
 public:
     /// One thread only.
@@ -32,9 +36,9 @@ public:
         published_.store(generation, std::memory_order_release);
     }
 
-    /// Any thread. `generation` is the one the caller has (0: none). True: `into` is newer, and `generation` is its
-    /// number. False: both are untouched, because nothing newer was written, or, if generation() says otherwise,
-    /// because the writer overtook every attempt.
+    /// Any thread. `generation` is the one the caller has (0: none). True: `into` is newer, and `generation`
+    /// is its number. False: both are untouched, because nothing newer was written, or, if generation() says
+    /// otherwise, because the writer overtook every attempt.
     [[nodiscard]] bool read(T& into, std::uint64_t& generation) const noexcept TAPPET_REALTIME {
         for (std::size_t attempt = 0; attempt < Attempts; ++attempt) {
             const std::uint64_t published = published_.load(std::memory_order_acquire);
@@ -42,8 +46,8 @@ public:
             const Slot& slot = slots_[published % Slots];
             typename Value::Copy copy;
             slot.value.load(copy);
-            // Equal to the published one, not just unchanged: a slot that rests may hold a value older than one
-            // this reader has seen.
+            // Equal to the published one, not just unchanged: a slot that rests may hold a value older than
+            // one this reader has seen.
             if (slot.generation.load(std::memory_order_relaxed) != published) continue;
             Value::unpack(copy, into);
             generation = published;

@@ -1,5 +1,6 @@
-// Messages into an engine: one ring and one bit for each activity that sends to it, so that a sender's order is
-// kept, senders are served in order of priority, and what arrives is bounded by the rows (thesis 4.4.4, 4.2.3).
+// Messages into an engine: one ring and one bit for each activity that sends to it, so that a sender's order
+// is kept, senders are served in order of priority, and what arrives is bounded by the rows
+// (thesis 4.4.4, 4.2.3).
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -23,19 +24,21 @@ struct Message {
     std::uint32_t id = 0; ///< the receiver's: a row, an epoch, a command slot
     alignas(8) std::array<std::byte, 48> arguments{};
 };
-static_assert(sizeof(Message) == 72, "with its number in the ring a message takes 80 bytes, two lines and no third");
+static_assert(sizeof(Message) == 72,
+              "with its number in the ring a message takes 80 bytes, two lines and no third");
 
 using Mailbox = Ring<Message>;
 
-/// The receiving end of up to 64 mailboxes, each with one sending activity: index 0 is served first. Posting is one
-/// push and one atomic OR; waking the receiver's thread is its activity's business.
+/// The receiving end of up to 64 mailboxes, each with one sending activity: index 0 is served first. Posting
+/// is one push and one atomic OR; waking the receiver's thread is its activity's business.
 class Inbox {
 public:
     static constexpr std::size_t max_senders = 64;
     static_assert(max_senders == 8 * sizeof(std::uint64_t), "one bit for each sender in one atomic word");
 
     constexpr Inbox() = default;
-    /// The mailboxes are placed with Overflow::reject and outlive the inbox; those beyond max_senders are not used.
+    /// The mailboxes are placed with Overflow::reject and outlive the inbox; those beyond max_senders are not
+    /// used.
     explicit constexpr Inbox(std::span<Mailbox> mailboxes) noexcept { place(mailboxes); }
     Inbox(const Inbox&) = delete;
     Inbox& operator=(const Inbox&) = delete;
@@ -45,7 +48,8 @@ public:
         mailboxes_ = mailboxes.first(mailboxes.size() < max_senders ? mailboxes.size() : max_senders);
     }
 
-    /// The sending activity's thread only, real-time. False: no such sender, or its mailbox is full and counts the loss.
+    /// The sending activity's thread only, real-time. False: no such sender, or its mailbox is full and
+    /// counts the loss.
     [[nodiscard]] bool post(std::size_t sender, const Message& message) noexcept TAPPET_REALTIME {
         if (sender >= mailboxes_.size() || !mailboxes_[sender].push(message)) return false;
         // The result stays unused: with it both compilers would emit a loop of compare-and-exchange.
@@ -58,11 +62,10 @@ public:
         return pending_.load(std::memory_order_acquire) != 0;
     }
 
-    /// The receiver's thread only, real-time if visit(const Message&) is. Serves from each mailbox what is in it when
-    /// its turn comes, so a message posted by a visited one may wait for the next call: pending() then says so.
-    /// Returns how many were served.
-    template <class Visit>
-    std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
+    /// The receiver's thread only, real-time if visit(const Message&) is. Serves from each mailbox what is in
+    /// it when its turn comes, so a message posted by a visited one may wait for the next call: pending()
+    /// then says so. Returns how many were served.
+    template <class Visit> std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
         std::uint64_t waiting = pending_.exchange(0, std::memory_order_acquire);
         std::uint64_t left = 0;
         std::size_t served = 0;

@@ -1,5 +1,6 @@
-// A queue from one thread to one other, in storage that the machine's planner provides: wait-free on both sides,
-// in order, and full in one of two ways: it refuses the newest, or it gives up the oldest (thesis 4.4: the buffer).
+// A queue from one thread to one other, in storage that the machine's planner provides: wait-free on both
+// sides, in order, and full in one of two ways: it refuses the newest, or it gives up the oldest (thesis 4.4:
+// the buffer).
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -20,10 +21,9 @@ enum class Overflow : std::uint8_t {
     drop_oldest, ///< push always succeeds, the oldest is lost
 };
 
-/// Any capacity from 1. Each index lies with its owner's private state far from what the other side polls, and an
-/// index of the other side is loaded only when the copy kept of it no longer suffices.
-template <Exchangeable T, template <class> class Atomic = std::atomic>
-class Ring {
+/// Any capacity from 1. Each index lies with its owner's private state far from what the other side polls,
+/// and an index of the other side is loaded only when the copy kept of it no longer suffices.
+template <Exchangeable T, template <class> class Atomic = std::atomic> class Ring {
     using Value = Words<T, Atomic>;
     struct CellLayout {
         Atomic<std::uint64_t> number;
@@ -35,12 +35,13 @@ class Ring {
         Value value{};
     };
 
-    // When it drops, the producer writes this far behind the oldest value that the consumer may still take, so that
-    // an attempt to take it fails only if the producer pushes as often within that one copy.
+    // When it drops, the producer writes this far behind the oldest value that the consumer may still take,
+    // so that an attempt to take it fails only if the producer pushes as often within that one copy.
     static constexpr std::size_t spare_cells = 2;
     static constexpr std::size_t attempts = 3;
     static_assert(spare_cells >= 1, "with none the producer writes into the very value being taken");
-    static_assert(attempts >= 2, "an attempt that was overtaken skips what was lost; the next one may then succeed");
+    static_assert(attempts >= 2,
+                  "an attempt that was overtaken skips what was lost; the next one may then succeed");
 
 public:
     static constexpr std::size_t alignment = alignof(Cell);
@@ -51,7 +52,9 @@ public:
     /// Holds nothing and refuses everything until it is placed.
     constexpr Ring() = default;
     /// `storage`: bytes_for(capacity) bytes at `alignment`, outliving the ring.
-    Ring(std::byte* storage, std::size_t capacity, Overflow overflow) noexcept { place(storage, capacity, overflow); }
+    Ring(std::byte* storage, std::size_t capacity, Overflow overflow) noexcept {
+        place(storage, capacity, overflow);
+    }
     Ring(const Ring&) = delete;
     Ring& operator=(const Ring&) = delete;
 
@@ -88,13 +91,15 @@ public:
         return true;
     }
 
-    /// Consumer only. At most `attempts` copies, without overflow exactly one. False, `into` untouched: empty; or,
-    /// when dropping, the producer overtook every attempt, and the next call goes on behind what was lost.
+    /// Consumer only. At most `attempts` copies, without overflow exactly one. False, `into` untouched:
+    /// empty; or, when dropping, the producer overtook every attempt, and the next call goes on behind what
+    /// was lost.
     [[nodiscard]] bool pop(T& into) noexcept TAPPET_REALTIME {
         return consumer_.place.overflow == Overflow::reject ? pop_next(into) : pop_oldest_left(into);
     }
 
-    /// Values inside. Exact for either side as far as its own doing goes; any other thread sees a recent value.
+    /// Values inside. Exact for either side as far as its own doing goes; any other thread sees a recent
+    /// value.
     [[nodiscard]] std::size_t size() const noexcept TAPPET_REALTIME {
         const std::uint64_t head = head_.load(std::memory_order_acquire);
         const std::uint64_t tail = tail_.load(std::memory_order_acquire);
@@ -106,8 +111,8 @@ public:
     [[nodiscard]] std::size_t high_water() const noexcept TAPPET_REALTIME {
         return static_cast<std::size_t>(producer_.high_water.load(std::memory_order_relaxed));
     }
-    /// Values pushed that will never be popped, by either policy. Any thread: exact while the other side rests,
-    /// otherwise behind by what it is just doing.
+    /// Values pushed that will never be popped, by either policy. Any thread: exact while the other side
+    /// rests, otherwise behind by what it is just doing.
     [[nodiscard]] std::uint64_t lost() const noexcept TAPPET_REALTIME {
         const std::uint64_t refused = producer_.refused.load(std::memory_order_relaxed);
         // Skipped before head: the consumer stores them the other way round, so nothing counts twice.
@@ -141,8 +146,8 @@ private:
         Atomic<std::uint64_t> skipped{};
     };
 
-    // The other side's index is loaded only when the fill could be a new maximum, so the mark is exact and yet
-    // costs nothing once it stands.
+    // The other side's index is loaded only when the fill could be a new maximum, so the mark is exact and
+    // yet costs nothing once it stands.
     void raise_mark() noexcept TAPPET_REALTIME {
         Producer& my = producer_;
         const std::uint64_t mark = my.high_water.load(std::memory_order_relaxed);

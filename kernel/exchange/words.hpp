@@ -1,5 +1,5 @@
-// The one way a value crosses from one thread to another: word by word, each an atomic of its own, so that a copy
-// torn by the other side is no data race but a value to be thrown away.
+// The one way a value crosses from one thread to another: word by word, each an atomic of its own, so that a
+// copy torn by the other side is no data race but a value to be thrown away.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -14,16 +14,19 @@
 
 namespace tappet {
 
-/// What two threads write must lie this far apart: a line is 64 bytes, but the hardware fetches them in pairs.
+/// What two threads write must lie this far apart: a line is 64 bytes, but the hardware fetches them in
+/// pairs.
 inline constexpr std::size_t line_pair_bytes = 128;
 
-/// A fixed-size Eigen matrix or array: plain numbers, though Eigen 3.4 writes out its copy constructor, so that the
-/// language does not call it trivially copyable. Maps and blocks, which hold pointers, are not their own PlainObject.
+/// A fixed-size Eigen matrix or array: plain numbers, though Eigen 3.4 writes out its copy constructor, so
+/// that the language does not call it trivially copyable. Maps and blocks, which hold pointers, are not their
+/// own PlainObject.
 template <class T>
 concept FixedSizeEigen = std::is_trivially_destructible_v<T> && (T::SizeAtCompileTime > 0) &&
                          std::same_as<typename T::PlainObject, T>;
 
-/// True when a copy of the bytes is a copy of the value. A struct with fixed-size Eigen members says so itself:
+/// True when a copy of the bytes is a copy of the value. A struct with fixed-size Eigen members says so
+/// itself:
 ///     template <> inline constexpr bool tappet::copied_as_bytes<Wrench> = true;
 template <class T>
 inline constexpr bool copied_as_bytes = std::is_trivially_copyable_v<T> || FixedSizeEigen<T>;
@@ -31,12 +34,12 @@ inline constexpr bool copied_as_bytes = std::is_trivially_copyable_v<T> || Fixed
 template <class T>
 concept Exchangeable = copied_as_bytes<T> && std::is_trivially_destructible_v<T>;
 
-/// Room for one T that one thread writes while others read it. Every word is stored with release and loaded with
-/// acquire (on x86-64 the same plain moves as relaxed ones): a reader that met one word of a newer value therefore
-/// also sees whatever the writer stored before it began, and needs no fence, which the thread sanitizer cannot follow.
-/// Atomic is std::atomic; tests put one in its place that lets the other side run between any two accesses.
-template <Exchangeable T, template <class> class Atomic = std::atomic>
-class Words {
+/// Room for one T that one thread writes while others read it. Every word is stored with release and loaded
+/// with acquire (on x86-64 the same plain moves as relaxed ones): a reader that met one word of a newer value
+/// therefore also sees whatever the writer stored before it began, and needs no fence, which the thread
+/// sanitizer cannot follow. Atomic is std::atomic; tests put one in its place that lets the other side run
+/// between any two accesses.
+template <Exchangeable T, template <class> class Atomic = std::atomic> class Words {
 public:
     static constexpr std::size_t count = (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
     using Copy = std::array<std::uint64_t, count>;
@@ -45,8 +48,10 @@ public:
         const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));
         for (std::size_t i = 0; i < count; ++i) {
             std::uint64_t word = 0;
-            if (i < whole) __builtin_memcpy(&word, bytes + i * sizeof word, sizeof word);
-            else __builtin_memcpy(&word, bytes + i * sizeof word, rest);
+            if (i < whole)
+                __builtin_memcpy(&word, bytes + i * sizeof word, sizeof word);
+            else
+                __builtin_memcpy(&word, bytes + i * sizeof word, rest);
             words_[i].store(word, std::memory_order_release);
         }
     }
@@ -57,8 +62,10 @@ public:
         auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint64_t word = from[i];
-            if (i < whole) __builtin_memcpy(bytes + i * sizeof word, &word, sizeof word);
-            else __builtin_memcpy(bytes + i * sizeof word, &word, rest);
+            if (i < whole)
+                __builtin_memcpy(bytes + i * sizeof word, &word, sizeof word);
+            else
+                __builtin_memcpy(bytes + i * sizeof word, &word, rest);
         }
     }
 

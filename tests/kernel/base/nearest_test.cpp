@@ -14,7 +14,8 @@ namespace {
 
 using namespace tappet;
 
-constexpr std::string_view nearest(std::string_view written, std::initializer_list<std::string_view> candidates) {
+constexpr std::string_view nearest(std::string_view written,
+                                   std::initializer_list<std::string_view> candidates) {
     Nearest search{written};
     for (const std::string_view candidate : candidates) search.consider(candidate);
     return search.best();
@@ -63,7 +64,8 @@ std::size_t textbook_distance(std::string_view a, std::string_view b) {
                 d[i][j] = i + j;
                 continue;
             }
-            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            d[i][j] = std::min(
+                {d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
                 d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
             }
@@ -90,7 +92,8 @@ TEST(EditDistance, agrees_with_the_textbook_under_every_limit) {
 
 TEST(Nearest, finds_the_misspelt_name) {
     EXPECT_EQ(nearest("encodr", {"shaft", "encoder", "tension"}), "encoder");
-    EXPECT_EQ(nearest("tensoin.feed_forwrd", {"tension.feed_forward", "tension.feed"}), "tension.feed_forward");
+    EXPECT_EQ(nearest("tensoin.feed_forwrd", {"tension.feed_forward", "tension.feed"}),
+              "tension.feed_forward");
 }
 
 TEST(Nearest, suggests_nothing_that_is_far) {

@@ -43,7 +43,8 @@ struct Reference {
 };
 
 TEST(Random, gives_the_numbers_of_splitmix64_and_xoshiro256) {
-    // The first word splitmix64 gives for seed 0 is published; xoshiro's first result follows from its second word.
+    // The first word splitmix64 gives for seed 0 is published; xoshiro's first result follows from its second
+    // word.
     EXPECT_EQ(Reference{0}.s[0], 0xe220a8397b1dcdafu);
     for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0}}) {
         Random random{seed};

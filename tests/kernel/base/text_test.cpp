@@ -13,9 +13,9 @@ using namespace tappet;
 
 static_assert(Sentence{"row ", 3, ": ", std::size_t{7}, " of ", 8u}.view() == "row 3: 7 of 8");
 
-template <text Name>
-struct Named {};
-static_assert(std::is_same_v<Named<"loom">, Named<text<4>{std::string_view{"loom"}}>>, "equal texts are one argument");
+template <text Name> struct Named {};
+static_assert(std::is_same_v<Named<"loom">, Named<text<4>{std::string_view{"loom"}}>>,
+              "equal texts are one argument");
 static_assert(!std::is_same_v<Named<"loom">, Named<"loop">>);
 
 TEST(Sentence, is_empty_at_first) {

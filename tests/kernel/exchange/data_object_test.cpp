@@ -138,7 +138,8 @@ TEST(DataObject, gives_up_after_its_attempts_and_leaves_the_last_good_value) {
     EXPECT_TRUE(value.whole());
     EXPECT_EQ(generation, 0u);
     EXPECT_GT(object.generation(), 0u) << "how a caller tells being overtaken from nothing new";
-    EXPECT_EQ(accesses, 3u * (1 + 3 + 1)) << "the worst case is counted: index, three words and number, three times";
+    EXPECT_EQ(accesses, 3u * (1 + 3 + 1))
+        << "the worst case is counted: index, three words and number, three times";
 }
 
 TEST(DataObject, lets_readers_run_at_any_point_of_a_write) {
@@ -152,8 +153,8 @@ TEST(DataObject, lets_readers_run_at_any_point_of_a_write) {
         Sealed<24> value{};
         std::uint64_t generation = 0;
         bool fresh = false;
-        accesses = Preemption::here().run(at, [&] { fresh = object.read(value, generation); },
-                                          [&] { object.write(Sealed<24>::of(4)); });
+        accesses = Preemption::here().run(
+            at, [&] { fresh = object.read(value, generation); }, [&] { object.write(Sealed<24>::of(4)); });
         EXPECT_TRUE(fresh);
         EXPECT_TRUE(value.whole());
         EXPECT_EQ(value.number(), 3u);
@@ -162,8 +163,37 @@ TEST(DataObject, lets_readers_run_at_any_point_of_a_write) {
     EXPECT_EQ(accesses, 3u + 3u) << "a write is its words and three stores, and no load";
 }
 
-template <class T>
-class DataObjectAcrossThreads : public testing::Test {};
+// Every order in which two cores may make their accesses, sampled: both sides may stand in the middle of a
+// copy.
+TEST(DataObject, never_tears_and_never_goes_backwards_under_random_interleavings) {
+    Random random{stress_seed()};
+    Interleaving interleaving;
+    for (int round = 0; round < 400; ++round) {
+        DataObject<Sealed<24>, 2, 2, Preemptible> object;
+        const std::uint64_t seed = random.next();
+        bool whole = true;
+        bool forwards = true;
+        interleaving.run(
+            seed,
+            [&] {
+                for (std::uint64_t number = 1; number <= 20; ++number) object.write(Sealed<24>::of(number));
+            },
+            [&] {
+                std::uint64_t generation = 0;
+                for (int i = 0; i < 15; ++i) {
+                    Sealed<24> value;
+                    const std::uint64_t before = generation;
+                    if (!object.read(value, generation)) continue;
+                    whole = whole && value.whole();
+                    forwards = forwards && generation > before && value.number() == generation;
+                }
+            });
+        ASSERT_TRUE(whole) << "seed " << seed;
+        ASSERT_TRUE(forwards) << "seed " << seed;
+    }
+}
+
+template <class T> class DataObjectAcrossThreads : public testing::Test {};
 using Sizes = testing::Types<Sealed<8>, Sealed<160>, Sealed<4096>>;
 TYPED_TEST_SUITE(DataObjectAcrossThreads, Sizes);
 

@@ -21,7 +21,8 @@ class Post {
 public:
     Post(std::size_t senders, std::size_t capacity)
         : capacity_bytes_(Mailbox::bytes_for(capacity)),
-          storage_((senders * capacity_bytes_ + sizeof(Line) - 1) / sizeof(Line)), boxes(senders) {
+          storage_((senders * capacity_bytes_ + sizeof(Line) - 1) / sizeof(Line)),
+          boxes(senders) {
         for (std::size_t i = 0; i < senders; ++i) {
             const std::size_t offset = i * capacity_bytes_;
             boxes[i].place(storage_[offset / sizeof(Line)].bytes, capacity, Overflow::reject);
@@ -53,7 +54,9 @@ Message numbered(std::uint32_t id) {
 struct Served {
     std::array<std::uint32_t, 256> ids{};
     std::size_t count = 0;
-    void operator()(const Message& message) noexcept TAPPET_REALTIME { ids[count++ % ids.size()] = message.id; }
+    void operator()(const Message& message) noexcept TAPPET_REALTIME {
+        ids[count++ % ids.size()] = message.id;
+    }
     [[nodiscard]] std::vector<std::uint32_t> list() const {
         return {ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count)};
     }
@@ -152,7 +155,8 @@ TEST(Message, keeps_its_arguments_aligned_for_any_number) {
     EXPECT_EQ(Message{}.arguments.size(), 48u);
 }
 
-// Several senders and one receiver that sleeps unless pending() says there is something: no message may be forgotten.
+// Several senders and one receiver that sleeps unless pending() says there is something: no message may be
+// forgotten.
 TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
     constexpr std::size_t senders = 4;
     constexpr std::uint32_t last = 10'000;
@@ -168,8 +172,10 @@ TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
                 Message message = numbered(number);
                 message.arguments.fill(static_cast<std::byte>(number));
                 message.arguments[0] = static_cast<std::byte>(sender);
-                if (post.inbox.post(sender, message)) ++number;
-                else std::this_thread::yield();
+                if (post.inbox.post(sender, message))
+                    ++number;
+                else
+                    std::this_thread::yield();
                 dither(random);
             }
         });
@@ -185,8 +191,10 @@ TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
     };
     std::uint64_t served = 0;
     while (served < senders * last) {
-        if (post.inbox.pending()) served += post.inbox.serve(visit);
-        else std::this_thread::yield();
+        if (post.inbox.pending())
+            served += post.inbox.serve(visit);
+        else
+            std::this_thread::yield();
         dither(random);
     }
     for (auto& thread : threads) thread.join();

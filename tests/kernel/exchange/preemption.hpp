@@ -1,29 +1,38 @@
-// Two sides of an exchange on one core, without threads: between any two atomic accesses of one side the other may
-// run some whole operations, as a thread of higher priority would. Deterministic, so that every point can be tried.
+// Two sides of an exchange under a schedule that the test chooses, deterministic, with a switch possible
+// before each atomic access: whole operations of one side in the middle of one of the other, or both in
+// turns, as dice fall.
 #pragma once
 
+#include "kernel/base/random.hpp"
 #include "kernel/base/realtime.hpp"
 
+#include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <semaphore>
+#include <thread>
 #include <utility>
 
 namespace tappet {
 
-/// The one schedule being tried: at the access with number `at` of the side under test, `intruder` runs once.
+/// One core, the other side of higher priority: at the access with number `at` of the side under test,
+/// `intruder` runs once.
 class Preemption {
 public:
     static Preemption& here() {
-        static Preemption one;
+        static thread_local Preemption one;
         return one;
     }
     /// Runs `operation`, interrupted before its access `at` (from 0). Returns how many accesses it made.
     template <class Operation>
     std::size_t run(std::size_t at, std::function<void()> intruder, Operation&& operation) {
-        return run_always([at, intruder = std::move(intruder)](std::size_t access) {
-            if (access == at) intruder();
-        }, std::forward<Operation>(operation));
+        return run_always(
+            [at, intruder = std::move(intruder)](std::size_t access) {
+                if (access == at) intruder();
+            },
+            std::forward<Operation>(operation));
     }
     /// Runs `operation`, calling `intruder` with each access' number before it.
     template <class Operation>
@@ -49,17 +58,60 @@ private:
     bool armed_ = false;
 };
 
+/// Two cores: both sides advance access by access, in an order that follows from the seed alone. Each is a
+/// thread, but only the one whose turn it is runs.
+class Interleaving {
+public:
+    void run(std::uint64_t seed, const std::function<void()>& first, const std::function<void()>& second) {
+        random_ = Random{seed};
+        steps_per_turn_ = 1 + random_.below(12);
+        finished_ = {false, false};
+        const auto begins = static_cast<std::size_t>(random_.below(2));
+        std::thread one([&] { take_part(0, first); });
+        std::thread two([&] { take_part(1, second); });
+        turn_[begins].release();
+        one.join();
+        two.join();
+    }
+    static void access() {
+        if (current_ == nullptr || !current_->random_.one_in(current_->steps_per_turn_)) return;
+        current_->hand_over();
+    }
+
+private:
+    void take_part(std::size_t side, const std::function<void()>& operations) {
+        turn_[side].acquire();
+        current_ = this;
+        side_ = side;
+        operations();
+        current_ = nullptr;
+        finished_[side] = true;
+        if (!finished_[1 - side]) turn_[1 - side].release();
+    }
+    void hand_over() {
+        if (finished_[1 - side_]) return;
+        turn_[1 - side_].release();
+        turn_[side_].acquire();
+    }
+
+    static inline thread_local Interleaving* current_ = nullptr;
+    static inline thread_local std::size_t side_ = 0;
+    Random random_{0};
+    std::uint64_t steps_per_turn_ = 1;
+    std::array<std::binary_semaphore, 2> turn_{std::binary_semaphore{0}, std::binary_semaphore{0}};
+    std::array<bool, 2> finished_{};
+};
+
 /// Stands where std::atomic does.
-template <class T>
-class Preemptible {
+template <class T> class Preemptible {
 public:
     constexpr Preemptible() = default;
     T load(std::memory_order /*order*/) const noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's schedule", Preemption::here().access());
+        TAPPET_ESCAPE("a test's schedule", Preemption::here().access(); Interleaving::access());
         return value_;
     }
     void store(T value, std::memory_order /*order*/) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's schedule", Preemption::here().access());
+        TAPPET_ESCAPE("a test's schedule", Preemption::here().access(); Interleaving::access());
         value_ = value;
     }
 

@@ -18,8 +18,7 @@ namespace {
 using namespace tappet;
 
 /// A ring with the storage it asks for.
-template <class T, template <class> class Atomic = std::atomic>
-struct Placed {
+template <class T, template <class> class Atomic = std::atomic> struct Placed {
     using Queue = Ring<T, Atomic>;
     struct alignas(64) Line {
         std::byte bytes[64];
@@ -170,8 +169,8 @@ TEST(Ring, agrees_with_a_plain_queue_on_random_sequences) {
     }
 }
 
-// What every schedule must keep, checked at the end of one: whole values in order, and each value pushed either
-// popped, lost or still inside.
+// What every schedule must keep, checked at the end of one: whole values in order, and each value pushed
+// either popped, lost or still inside.
 struct Ledger {
     std::uint64_t pushed = 0;
     std::uint64_t popped = 0;
@@ -179,13 +178,11 @@ struct Ledger {
     bool whole = true;
     bool ordered = true;
 
-    template <class Queue>
-    void push(Queue& ring) {
+    template <class Queue> void push(Queue& ring) {
         ++pushed;
         static_cast<void>(ring.push(Sealed<16>::of(pushed)));
     }
-    template <class Queue>
-    bool pop(Queue& ring) {
+    template <class Queue> bool pop(Queue& ring) {
         Sealed<16> value{};
         if (!ring.pop(value)) return false;
         ++popped;
@@ -194,12 +191,12 @@ struct Ledger {
         last = value.number();
         return true;
     }
-    template <class Queue>
-    void settle(Queue& ring) {
+    template <class Queue> void settle(Queue& ring) {
         EXPECT_TRUE(whole);
         EXPECT_TRUE(ordered);
         EXPECT_EQ(pushed, popped + ring.lost() + ring.size());
-        while (pop(ring)) {}
+        while (pop(ring)) {
+        }
         EXPECT_EQ(pushed, popped + ring.lost());
         EXPECT_TRUE(whole);
         EXPECT_TRUE(ordered);
@@ -212,7 +209,8 @@ TEST(Ring, withstands_any_burst_of_pushes_at_any_point_of_a_pop) {
             for (std::size_t burst = 0; burst < 12; ++burst) {
                 std::size_t accesses = 1;
                 for (std::size_t at = 0; at < accesses; ++at) {
-                    SCOPED_TRACE(testing::Message() << "filled " << before << " burst " << burst << " at " << at);
+                    SCOPED_TRACE(testing::Message()
+                                 << "filled " << before << " burst " << burst << " at " << at);
                     Placed<Sealed<16>, Preemptible> placed{3, overflow};
                     Ledger ledger;
                     for (std::size_t i = 0; i < before; ++i) ledger.push(placed.ring);
@@ -235,7 +233,8 @@ TEST(Ring, withstands_any_burst_of_pops_at_any_point_of_a_push) {
             for (std::size_t burst = 0; burst < 6; ++burst) {
                 std::size_t accesses = 1;
                 for (std::size_t at = 0; at < accesses; ++at) {
-                    SCOPED_TRACE(testing::Message() << "filled " << before << " burst " << burst << " at " << at);
+                    SCOPED_TRACE(testing::Message()
+                                 << "filled " << before << " burst " << burst << " at " << at);
                     Placed<Sealed<16>, Preemptible> placed{3, overflow};
                     Ledger ledger;
                     for (std::size_t i = 0; i < before; ++i) ledger.push(placed.ring);
@@ -261,7 +260,8 @@ TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_behind_what_
         },
         [&] { taken = ledger.pop(placed.ring); });
     EXPECT_FALSE(taken);
-    EXPECT_LE(accesses, 3u * (1 + 3 + 2 + 1)) << "counted: tail, three stores of a skip, two words and a number";
+    EXPECT_LE(accesses, 3u * (1 + 3 + 2 + 1))
+        << "counted: tail, three stores of a skip, two words and a number";
     EXPECT_TRUE(ledger.pop(placed.ring));
     ledger.settle(placed.ring);
 }
@@ -275,6 +275,67 @@ TEST(Ring, makes_a_bounded_number_of_accesses_in_a_push_however_the_consumer_lag
     }
 }
 
+TEST(Ring, that_drops_still_gives_the_oldest_when_two_pushes_come_within_one_pop) {
+    for (const std::uint64_t burst : {1u, 2u, 3u}) {
+        for (std::size_t at = 1; at < 4; ++at) {
+            Placed<Sealed<16>, Preemptible> placed{3, Overflow::drop_oldest};
+            Ledger ledger;
+            for (int i = 0; i < 3; ++i) ledger.push(placed.ring);
+            const auto intruder = [&] {
+                for (std::uint64_t i = 0; i < burst; ++i) ledger.push(placed.ring);
+            };
+            Preemption::here().run(at, intruder, [&] { EXPECT_TRUE(ledger.pop(placed.ring)); });
+            EXPECT_EQ(ledger.last, burst <= 2 ? 1u : 4u) << "burst " << burst << " at " << at;
+            ledger.settle(placed.ring);
+        }
+    }
+}
+
+TEST(Ring, asks_for_the_consumers_index_no_more_once_its_mark_stands) {
+    Placed<Sealed<16>, Preemptible> placed{8, Overflow::reject};
+    Ledger ledger;
+    for (int i = 0; i < 4; ++i) ledger.push(placed.ring);
+    while (ledger.pop(placed.ring)) {
+    }
+    const auto push = [&] {
+        return Preemption::here().run(~std::size_t{0}, [] {}, [&] { ledger.push(placed.ring); });
+    };
+    constexpr std::size_t stores_and_the_mark = 1 + 2 + 1 + 1 + 1;
+    EXPECT_EQ(push(), stores_and_the_mark + 1) << "after four pushes the fill could be new";
+    EXPECT_EQ(push(), stores_and_the_mark);
+    EXPECT_EQ(push(), stores_and_the_mark);
+}
+
+// Every order in which two cores may make their accesses, sampled: both sides may stand in the middle of a
+// copy.
+TEST(Ring, keeps_its_ledger_under_random_interleavings) {
+    Random random{stress_seed()};
+    Interleaving interleaving;
+    for (int round = 0; round < 400; ++round) {
+        const auto capacity = static_cast<std::size_t>(random.between(1, 4));
+        const Overflow overflow = random.one_in(4) ? Overflow::reject : Overflow::drop_oldest;
+        const std::uint64_t pushes = 5 + random.below(25);
+        const std::uint64_t pops = 1 + random.below(20);
+        const std::uint64_t seed = random.next();
+        SCOPED_TRACE(testing::Message() << "capacity " << capacity << " seed " << seed);
+        Placed<Sealed<16>, Preemptible> placed{capacity, overflow};
+        Ledger ledger;
+        std::uint64_t pushed = 0;
+        interleaving.run(
+            seed,
+            [&] {
+                for (; pushed < pushes; ++pushed)
+                    static_cast<void>(placed.ring.push(Sealed<16>::of(pushed + 1)));
+            },
+            [&] {
+                for (std::uint64_t i = 0; i < pops; ++i) ledger.pop(placed.ring);
+            });
+        ledger.pushed = pushed;
+        ledger.settle(placed.ring);
+        if (HasFailure()) break;
+    }
+}
+
 class RingAcrossThreads : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Capacities, RingAcrossThreads, testing::Values(1, 2, 7, 64));
 
@@ -285,7 +346,8 @@ TEST_P(RingAcrossThreads, keeps_every_value_in_order_when_the_producer_waits_for
     std::thread producer([&] {
         Random random{stress_seed()};
         for (std::uint64_t number = 1; number <= last;) {
-            if (placed.ring.push(Sealed<160>::of(number))) ++number;
+            if (placed.ring.push(Sealed<160>::of(number)))
+                ++number;
             else {
                 ++refused;
                 std::this_thread::yield();
@@ -315,7 +377,7 @@ TEST_P(RingAcrossThreads, keeps_every_value_in_order_when_the_producer_waits_for
 }
 
 TEST_P(RingAcrossThreads, loses_exactly_what_it_counts_when_it_drops) {
-    constexpr std::uint64_t last = 30'000;
+    constexpr std::uint64_t last = 150'000;
     Placed<Sealed<160>> placed{GetParam(), Overflow::drop_oldest};
     std::atomic<bool> done{false};
     bool plausible = true;

@@ -14,13 +14,13 @@
 namespace tappet {
 
 /// Bytes / 8 words that all follow from the first: copies of two values mixed are seen.
-template <std::size_t Bytes>
-struct Sealed {
+template <std::size_t Bytes> struct Sealed {
     std::array<std::uint64_t, Bytes / 8> words{};
 
     static Sealed of(std::uint64_t number) {
         Sealed value;
-        for (std::size_t i = 0; i < value.words.size(); ++i) value.words[i] = number + i * 0x9e3779b97f4a7c15u;
+        for (std::size_t i = 0; i < value.words.size(); ++i)
+            value.words[i] = number + i * 0x9e3779b97f4a7c15u;
         return value;
     }
     [[nodiscard]] std::uint64_t number() const { return words[0]; }
@@ -33,10 +33,11 @@ inline std::uint64_t stress_seed() {
     return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
 }
 
-/// Lets others run, or does not, as the dice fall.
+/// Lets others run, waits a little, or mostly does neither, as the dice fall.
 inline void dither(Random& random) {
     if (random.one_in(64)) std::this_thread::yield();
-    const std::uint64_t spins = random.below(32);
+    if (!random.one_in(8)) return;
+    const std::uint64_t spins = random.below(256);
     for (std::uint64_t i = 0; i < spins; ++i) asm volatile("" ::: "memory");
 }
 

@@ -32,16 +32,15 @@ static_assert(Exchangeable<Eigen::Vector3d> && Exchangeable<Eigen::Matrix<float,
 static_assert(!Exchangeable<Eigen::VectorXd> && !Exchangeable<Eigen::Map<Eigen::Vector3d>>,
               "what points to its numbers cannot be copied as bytes");
 static_assert(!Exchangeable<std::string>);
-static_assert(!Exchangeable<WithEigenInside>, "a struct with Eigen members states that it is copied as bytes");
+static_assert(!Exchangeable<WithEigenInside>,
+              "a struct with Eigen members states that it is copied as bytes");
 
-template <>
-inline constexpr bool tappet::copied_as_bytes<Stated> = true;
+template <> inline constexpr bool tappet::copied_as_bytes<Stated> = true;
 static_assert(Exchangeable<Stated>);
 
 namespace {
 
-template <class T>
-T through_words(const T& value, T into) {
+template <class T> T through_words(const T& value, T into) {
     Words<T> words;
     words.store(value);
     typename Words<T>::Copy copy;

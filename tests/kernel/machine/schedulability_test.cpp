@@ -122,7 +122,8 @@ TEST(ResponseTime, survives_the_largest_numbers) {
     EXPECT_EQ(response_time(std::array{long_one, long_one}, 1), worst(analysis_max_ns / 2));
 }
 
-// The analysis is exact for tasks that arrive together without jitter: a simulation of every nanosecond agrees.
+// The analysis is exact for tasks that arrive together without jitter: a simulation of every nanosecond
+// agrees.
 std::int64_t simulated_worst(std::span<const TaskTiming> tasks, std::size_t index, std::int64_t until) {
     struct State {
         std::int64_t jobs_done = 0;
@@ -161,7 +162,8 @@ TEST(ResponseTime, agrees_with_a_simulation_of_random_task_sets) {
         for (std::size_t i = 0; i < tasks.size(); ++i) {
             const Response response = response_time(tasks, i);
             ASSERT_TRUE(response.bounded);
-            ASSERT_EQ(response.worst_ns, simulated_worst(tasks, i, 60'000)) << "round " << round << " task " << i;
+            ASSERT_EQ(response.worst_ns, simulated_worst(tasks, i, 60'000))
+                << "round " << round << " task " << i;
             if (response.worst_ns > tasks[i].period_ns) ++late;
         }
     }
