@@ -29,30 +29,35 @@ struct Signal {
     double offset = 0;
     std::string_view unit{};
 
-    // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).plus(0).in("rpm")
+    // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm")
     constexpr Signal as_signed() const noexcept {
-        return with([](Signal& s) { s.kind = Kind::signed_integer; });
+        Signal copy = *this;
+        copy.kind = Kind::signed_integer;
+        return copy;
     }
     constexpr Signal as_float() const noexcept {
-        return with([](Signal& s) { s.kind = s.bits == 64 ? Kind::float64 : Kind::float32; });
+        Signal copy = *this;
+        copy.kind = bits == 64 ? Kind::float64 : Kind::float32;
+        return copy;
     }
     constexpr Signal big_endian() const noexcept {
-        return with([](Signal& s) { s.order = Order::motorola; });
-    }
-    constexpr Signal times(double f) const noexcept {
-        return with([f](Signal& s) { s.factor = f; });
-    }
-    constexpr Signal plus(double o) const noexcept {
-        return with([o](Signal& s) { s.offset = o; });
-    }
-    constexpr Signal in(std::string_view u) const noexcept {
-        return with([u](Signal& s) { s.unit = u; });
-    }
-
-private:
-    template <class Change> constexpr Signal with(Change change) const noexcept {
         Signal copy = *this;
-        change(copy);
+        copy.order = Order::motorola;
+        return copy;
+    }
+    constexpr Signal times(double new_factor) const noexcept {
+        Signal copy = *this;
+        copy.factor = new_factor;
+        return copy;
+    }
+    constexpr Signal plus(double new_offset) const noexcept {
+        Signal copy = *this;
+        copy.offset = new_offset;
+        return copy;
+    }
+    constexpr Signal in(std::string_view new_unit) const noexcept {
+        Signal copy = *this;
+        copy.unit = new_unit;
         return copy;
     }
 };

@@ -1,0 +1,59 @@
+// What both worlds derive from the list of lines: masks, safe values, and whether the list can work at all.
+#pragma once
+
+#include "drivers/gpio/device.hpp"
+#include "kernel/base/text.hpp"
+
+#include <expected>
+
+namespace tappet::gpio {
+
+struct LinePlan {
+    Mask outputs = 0;
+    Mask safe = 0;
+};
+
+/// Not real-time. The error names the line and the cure.
+constexpr std::expected<LinePlan, Sentence> plan(const Settings& settings) {
+    const Sentence who{"GPIO chip \"", settings.chip, "\""};
+    if (settings.lines.size() < 2)
+        return std::unexpected{
+            Sentence{who, " is asked for fewer than two lines: lost edges of a single line are invisible; "
+                          "add another line, used or not"}};
+    if (settings.lines.size() > most_lines)
+        return std::unexpected{Sentence{who, " is asked for ", settings.lines.size(),
+                                        " lines: one request holds 64; use a second device"}};
+    LinePlan result;
+    for (std::size_t i = 0; i < settings.lines.size(); ++i) {
+        const Line& line = settings.lines[i];
+        for (std::size_t other = 0; other < i; ++other)
+            if (settings.lines[other].offset == line.offset)
+                return std::unexpected{Sentence{who, ": lines \"", settings.lines[other].name, "\" and \"",
+                                                line.name, "\" are both line ", line.offset,
+                                                "; correct the board"}};
+        if (line.debounce < 0ns || line.debounce > 1s)
+            return std::unexpected{Sentence{who, ": line \"", line.name, "\" is to be debounced for ",
+                                            line.debounce.count() / 1000, " us; choose 0 to 1000000"}};
+        if (line.role == Role::output) {
+            result.outputs |= Mask{1} << i;
+            if (line.safe_value) result.safe |= Mask{1} << i;
+        }
+    }
+    return result;
+}
+
+/// Finds lost edges from the numbers of those that came: the kernel counts every interrupt of the request.
+class EdgeSequence {
+public:
+    /// How many were lost before this one. Real-time.
+    constexpr std::uint32_t missed_before(std::uint32_t seqno) noexcept TAPPET_REALTIME {
+        const std::uint32_t missed = seqno - last_ - 1; // wraps with the kernel's own count
+        last_ = seqno;
+        return missed;
+    }
+
+private:
+    std::uint32_t last_ = 0; // the first edge of a request is number 1
+};
+
+} // namespace tappet::gpio

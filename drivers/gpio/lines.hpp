@@ -1,0 +1,53 @@
+// Digital lines behind Linux's GPIO character device, by libgpiod 2: one request for all of them.
+#pragma once
+
+#include "drivers/gpio/line_plan.hpp"
+
+#include <array>
+#include <memory>
+
+struct gpiod_line_request;
+struct gpiod_edge_event_buffer;
+
+namespace tappet::gpio {
+
+class Lines final : public Device {
+public:
+    Lines() = default;
+    ~Lines() override { close(); }
+
+    /// Not real-time; allocates all that the real-time calls use. Outputs take their safe values. On failure
+    /// nothing stays open, and the error says what is wrong and how to cure it.
+    std::expected<void, Sentence> open(const Settings& settings);
+    /// Not real-time. Writes the safe values and releases the lines.
+    void close() noexcept;
+
+    EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME override;
+    Levels levels() noexcept TAPPET_REALTIME override;
+    bool write(Mask mask, Mask values) noexcept TAPPET_REALTIME override;
+    bool make_safe() noexcept TAPPET_REALTIME override { return write(plan_.outputs, plan_.safe); }
+    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return count_; }
+    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return fd_; }
+    void set_listener(Listener, void*) noexcept override {} // the descriptor says it
+
+private:
+    struct Release {
+        void operator()(gpiod_line_request* request) const noexcept;
+        void operator()(gpiod_edge_event_buffer* buffer) const noexcept;
+    };
+    static constexpr std::size_t edges_at_once = 64;
+
+    [[nodiscard]] std::size_t fetch(std::span<Edge> edges) noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::uint32_t index_of(unsigned offset) const noexcept TAPPET_REALTIME;
+
+    LinePlan plan_{};
+    std::array<unsigned, most_lines> offsets_{};
+    std::size_t lines_ = 0;
+    std::unique_ptr<gpiod_line_request, Release> request_{};
+    std::unique_ptr<gpiod_edge_event_buffer, Release> buffer_{};
+    int fd_ = -1;
+    EdgeSequence sequence_{};
+    Counters count_{};
+};
+
+} // namespace tappet::gpio

@@ -1,0 +1,100 @@
+// Digital lines of the host world: the machine reads and writes them as a Device, the plant drives the other
+// ends.
+#pragma once
+
+#include "drivers/gpio/line_plan.hpp"
+#include "drivers/twin/ring.hpp"
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/random.hpp"
+
+#include <atomic>
+
+namespace tappet::gpio {
+
+/// What goes wrong at one input.
+struct LineFaults {
+    std::uint32_t lose_next = 0;     ///< the next edges are lost: counted by the kernel, never delivered
+    std::uint32_t lose_one_in = 0;   ///< and one in so many of the others; 0: none
+    std::uint32_t bounces = 0;       ///< extra pairs of edges after each change ...
+    Duration bounce_spacing = 200us; ///< ... this far apart
+    Duration delay{};                ///< edges are delivered this much later; their stamps stay right
+};
+
+/// The Device's calls belong to the machine's thread, drive(), deliver_until() and the faults to the plant's;
+/// they meet in a ring and two words only. Levels are logical on both sides.
+class Twin final : public Device {
+public:
+    static constexpr std::size_t event_buffer = 1024; // as large as Linux grants one
+
+    explicit Twin(std::uint64_t seed = 1) noexcept : random_{seed} {}
+
+    /// Not real-time, before either thread runs.
+    std::expected<void, Sentence> open(const Settings& settings);
+
+    EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME override;
+    Levels levels() noexcept TAPPET_REALTIME override;
+    bool write(Mask mask, Mask values) noexcept TAPPET_REALTIME override;
+    bool make_safe() noexcept TAPPET_REALTIME override { return write(plan_.outputs, plan_.safe); }
+    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return count_; }
+    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
+    /// `ready` is called by the plant's thread.
+    void set_listener(Listener ready, void* context) noexcept override;
+
+    // The plant's side; real-time.
+    /// An input changes at `at`, which lies at or after the last deliver_until. False when 64 changes wait
+    /// already.
+    bool drive(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
+    /// Carries out the changes due by `now`: bounce, debounce, edges, then the listener.
+    void deliver_until(Time now) noexcept TAPPET_REALTIME;
+    /// The outputs as the machine wrote them, in their bits.
+    [[nodiscard]] Mask outputs() const noexcept TAPPET_REALTIME {
+        return driven_.load(std::memory_order_acquire);
+    }
+    LineFaults& faults(std::size_t line) noexcept TAPPET_REALTIME { return faults_[line]; }
+    /// The input stays at this level whatever drives it, until released.
+    void stick(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
+    void release(std::size_t line) noexcept TAPPET_REALTIME { stuck_ &= ~(Mask{1} << line); }
+
+private:
+    struct Change {
+        Time at{};
+        std::uint32_t order = 0; // changes of one time keep their order
+        std::uint32_t line = 0;
+        bool active = false;
+        bool operator==(const Change&) const = default;
+    };
+    struct Late {
+        Edge edge{};
+        Time due{};
+        bool operator==(const Late&) const = default;
+    };
+    bool schedule(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool next_change(Time now, Change& change) noexcept TAPPET_REALTIME;
+    void settle(Time now) noexcept TAPPET_REALTIME;
+    void commit(std::uint32_t line, bool active, Time at) noexcept TAPPET_REALTIME;
+    void deliver_late(Time now) noexcept TAPPET_REALTIME;
+    void deliver(const Edge& edge) noexcept TAPPET_REALTIME;
+
+    std::span<const Line> lines_{};
+    LinePlan plan_{};
+    twin::Ring<Edge, event_buffer> edges_{};
+    std::atomic<Mask> inputs_{0};
+    std::atomic<Mask> driven_{0};
+    EdgeSequence sequence_{}; // the machine's
+    Counters count_{};        // the machine's
+    // The plant's.
+    Random random_;
+    std::array<LineFaults, most_lines> faults_{};
+    std::array<Time, most_lines> raw_since_{}; // when the undebounced level last changed
+    Mask raw_ = 0;
+    Mask stuck_ = 0;
+    Bounded<Change, 64> changes_{};
+    Bounded<Late, 64> late_{};
+    std::uint32_t order_ = 0;
+    std::uint32_t seqno_ = 0;
+    bool arrived_ = false;
+    Listener ready_ = nullptr;
+    void* context_ = nullptr;
+};
+
+} // namespace tappet::gpio
