@@ -163,9 +163,7 @@ private:
             my.produced = tail_.load(std::memory_order_acquire);
             if (my.position == my.produced) return false;
         }
-        typename Value::Copy copy;
-        my.place.cells[my.cell].value.load(copy);
-        Value::unpack(copy, into);
+        my.place.cells[my.cell].value.load(into);
         advance();
         return true;
     }

@@ -58,20 +58,25 @@ public:
     void load(Copy& into) const noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < count; ++i) into[i] = words_[i].load(std::memory_order_acquire);
     }
+    /// For whoever knows that nobody is writing: without the copy in between that could be thrown away.
+    void load(T& into) const noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < count; ++i) put(into, i, words_[i].load(std::memory_order_acquire));
+    }
     static void unpack(const Copy& from, T& into) noexcept TAPPET_REALTIME {
-        auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::uint64_t word = from[i];
-            if (i < whole)
-                __builtin_memcpy(bytes + i * sizeof word, &word, sizeof word);
-            else
-                __builtin_memcpy(bytes + i * sizeof word, &word, rest);
-        }
+        for (std::size_t i = 0; i < count; ++i) put(into, i, from[i]);
     }
 
 private:
     static constexpr std::size_t whole = sizeof(T) / sizeof(std::uint64_t);
     static constexpr std::size_t rest = sizeof(T) % sizeof(std::uint64_t);
+
+    static void put(T& into, std::size_t i, std::uint64_t word) noexcept TAPPET_REALTIME {
+        auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
+        if (i < whole)
+            __builtin_memcpy(bytes + i * sizeof word, &word, sizeof word);
+        else
+            __builtin_memcpy(bytes + i * sizeof word, &word, rest);
+    }
 
     std::array<Atomic<std::uint64_t>, count> words_{};
 };

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 namespace {
@@ -46,6 +47,9 @@ template <class T> T through_words(const T& value, T into) {
     typename Words<T>::Copy copy;
     words.load(copy);
     Words<T>::unpack(copy, into);
+    T directly{};
+    words.load(directly);
+    EXPECT_EQ(std::memcmp(&directly, &into, sizeof(T)), 0) << "both ways of loading agree";
     return into;
 }
 
