@@ -34,7 +34,7 @@ struct Scenario {
     std::string kernel = "rt"; // or "plain", which has no real-time
     Clock clock = Clock::instructions;
     unsigned processors = 1; // more than one only under the host's clock
-    unsigned memory_mib = 512;
+    unsigned memory_mib = 256;
     std::string kernel_arguments; // appended to ours
     std::vector<File> files;      // dynamic programs bring their libraries along
     std::vector<std::string> tools; // programs of the host, by name, to /bin

@@ -30,7 +30,7 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --kernel rt|plain      with PREEMPT_RT (default) or without real-time
   --clock instructions|host   guest time from executed instructions (default; steady) or from the host
   --cpus N               processors of the guest (default 1; more only with --clock host)
-  --memory MIB           memory of the guest (default 512)
+  --memory MIB           memory of the guest (default 256)
   --append TEXT          more kernel arguments
   --timeout S            of wall time (default 120)
   --init FILE            PID 1 (default: bench-init beside this program)
