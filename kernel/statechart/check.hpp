@@ -1,5 +1,5 @@
-// The checks of a state machine: the first fault as one sentence that names the row, the fault and the cure. The same
-// code runs in the C++ compiler for tables and compiled scripts, and on the target for loaded ones.
+// The checks of a state machine: the first fault as one sentence that names the row, the fault and the cure.
+// The same code runs in the C++ compiler for tables and compiled scripts, and on the target for loaded ones.
 #pragma once
 
 #include "kernel/base/nearest.hpp"
@@ -24,13 +24,13 @@ public:
 private:
     // ---- sentences; fail() is a template and must be complete before a constant expression calls it
 
-    template <class... Pieces>
-    constexpr bool fail(const Pieces&... pieces) {
+    template <class... Pieces> constexpr bool fail(const Pieces&... pieces) {
         fault_ = Sentence{"state machine \"", table_.name, "\": ", pieces...};
         return false;
     }
     constexpr bool fail_twice(const Sentence& who, std::string_view part) {
-        if (part == "component type") return fail(who, " has programs of two component types; use those of one");
+        if (part == "component type")
+            return fail(who, " has programs of two component types; use those of one");
         return fail(who, " is given ", part, " twice; keep one");
     }
     constexpr bool fail_foreign(const Sentence& who, TypeId component) {
@@ -41,7 +41,9 @@ private:
     [[nodiscard]] constexpr bool is_own(TypeId component) const {
         return component == nullptr || component == table_.component;
     }
-    [[nodiscard]] constexpr std::string_view name(StateIndex state) const { return table_.states[state].name; }
+    [[nodiscard]] constexpr std::string_view name(StateIndex state) const {
+        return table_.states[state].name;
+    }
     [[nodiscard]] constexpr Sentence state_text(std::size_t i) const {
         return Sentence{"state \"", table_.states[i].name, "\""};
     }
@@ -69,11 +71,13 @@ private:
         for (std::size_t i = 0; i < names_.states(); ++i) {
             const StateRow& row = table_.states[i];
             if (row.name.empty()) return fail("state ", i + 1, " has no name; give it one");
-            if (find_state(table_, row.name) != i) return fail(state_text(i), " is there twice; rename or drop one");
+            if (find_state(table_, row.name) != i)
+                return fail(state_text(i), " is there twice; rename or drop one");
             if (!row.twice.empty()) return fail_twice(state_text(i), row.twice);
             if (!is_own(row.component)) return fail_foreign(state_text(i), row.component);
             if (!row.parent.empty() && names_.parent[i] == no_state)
-                return fail(state_text(i), " is in an unknown state \"", row.parent, "\"; ", cure_for(row.parent));
+                return fail(state_text(i), " is in an unknown state \"", row.parent, "\"; ",
+                            cure_for(row.parent));
         }
         return true;
     }
@@ -88,7 +92,8 @@ private:
         }
         for (std::size_t i = 0; i < names_.states(); ++i)
             if (names_.depth[i] == 0)
-                return fail(state_text(i), " is more than ", max_state_depth, " levels deep; flatten the hierarchy");
+                return fail(state_text(i), " is more than ", max_state_depth,
+                            " levels deep; flatten the hierarchy");
         return true;
     }
 
@@ -98,23 +103,26 @@ private:
             const StateIndex outer = names_.parent[i];
             const StateIndex first = outer == no_state ? names_.initial_top : names_.initial_inside[outer];
             if (row.initial && first != i)
-                return fail(state_text(i), " is a second initial state ", where(outer), " beside \"", name(first),
-                            "\"; keep one");
+                return fail(state_text(i), " is a second initial state ", where(outer), " beside \"",
+                            name(first), "\"; keep one");
             if (row.final && names_.final_state != i)
                 return fail(state_text(i), " is a second final state beside \"", name(names_.final_state),
                             "\"; keep one, the safe state that a request leads to from everywhere");
             if (row.final && outer != no_state)
-                return fail(state_text(i), " is final inside \"", name(outer),
-                            "\"; the final state is safe for the whole machine: take it out of every composite");
+                return fail(
+                    state_text(i), " is final inside \"", name(outer),
+                    "\"; the final state is safe for the whole machine: take it out of every composite");
             if (row.final && names_.composite[i])
                 return fail(state_text(i), " is final and has states inside; the safe state is a plain one");
         }
         if (names_.initial_top == no_state) return fail("no top state is initial; mark the one to start in");
         for (std::size_t i = 0; i < names_.states(); ++i)
             if (names_.composite[i] && names_.initial_inside[i] == no_state)
-                return fail(state_text(i), " is composite and none of its states is initial; mark the one to enter");
+                return fail(state_text(i),
+                            " is composite and none of its states is initial; mark the one to enter");
         if (names_.final_state == no_state)
-            return fail("no state is final; mark the safe state that the machine may be brought to from everywhere");
+            return fail(
+                "no state is final; mark the safe state that the machine may be brought to from everywhere");
         return true;
     }
 
@@ -122,19 +130,26 @@ private:
         for (std::size_t t = 0; t < names_.transitions(); ++t) {
             const TransitionRow& row = table_.transitions[t];
             if (names_.from[t] == no_state)
-                return fail(transition_text(t), " leaves an unknown state \"", row.from, "\"; ", cure_for(row.from));
+                return fail(transition_text(t), " leaves an unknown state \"", row.from, "\"; ",
+                            cure_for(row.from));
             if (!row.to.empty() && names_.to[t] == no_state)
-                return fail(transition_text(t), " leads to an unknown state \"", row.to, "\"; ", cure_for(row.to));
+                return fail(transition_text(t), " leads to an unknown state \"", row.to, "\"; ",
+                            cure_for(row.to));
             if (!row.twice.empty()) return fail_twice(transition_text(t), row.twice);
             if (!is_own(row.component)) return fail_foreign(transition_text(t), row.component);
             if (row.on_event && row.event.empty())
-                return fail(transition_text(t), " waits for an event without a name; write on(\"component.event\")");
+                return fail(transition_text(t),
+                            " waits for an event without a name; write on(\"component.event\")");
             if (row.on_event && row.timed)
-                return fail(transition_text(t), " has both on(...) and after(...); make two transitions of it");
+                return fail(transition_text(t),
+                            " has both on(...) and after(...); make two transitions of it");
             if (row.timed && row.after <= Duration{})
-                return fail(transition_text(t), " has a time-out that is not positive; write a time, or leave after(...) out");
+                return fail(transition_text(t),
+                            " has a time-out that is not positive; write a time, or leave after(...) out");
             if (row.to.empty() && !row.on_event)
-                return fail(transition_text(t), " is internal and has no event, so it would fire in every step; use run<> of the state");
+                return fail(
+                    transition_text(t),
+                    " is internal and has no event, so it would fire in every step; use run<> of the state");
             if (row.to.empty() && row.then == nullptr)
                 return fail(transition_text(t), " is internal and does nothing; give it then<>, or drop it");
         }
@@ -175,8 +190,9 @@ private:
                 if (!open) blocker = b;
             }
             if (!open)
-                return fail(transition_text(t), " can never be taken, ", transition_text(blocker),
-                            " always comes first; give that one a guard<>, put this one before it, or drop it");
+                return fail(
+                    transition_text(t), " can never be taken, ", transition_text(blocker),
+                    " always comes first; give that one a guard<>, put this one before it, or drop it");
         }
         return true;
     }
@@ -216,11 +232,13 @@ private:
         }
         for (std::size_t i = 0; i < names_.states(); ++i)
             if (!reached[i])
-                return fail(state_text(i), " is never entered; lead a transition to it, make it initial, or drop it");
+                return fail(state_text(i),
+                            " is never entered; lead a transition to it, make it initial, or drop it");
         return true;
     }
 
-    // Follows the transitions that need nothing to be taken; coming back to a state means that no step would end.
+    // Follows the transitions that need nothing to be taken; coming back to a state means that no step would
+    // end.
     constexpr bool check_waits() {
         for (std::size_t i = 0; i < names_.states(); ++i) {
             if (names_.composite[i]) continue;
@@ -230,7 +248,8 @@ private:
                 if (t == names_.transitions()) break;
                 leaf = names_.initial_leaf(names_.to[t]);
                 if (leaf == i)
-                    return fail(state_text(i), " comes back to itself without waiting, by ", transition_text(t),
+                    return fail(state_text(i), " comes back to itself without waiting, by ",
+                                transition_text(t),
                                 "; give one transition of the ring on(...), after(...) or guard<>");
             }
         }
@@ -255,11 +274,21 @@ private:
 /// Empty when the machine is good. Bounded, without heap; not for real-time threads.
 constexpr Sentence check(const StateMachineTable& table) {
     if (table.states.size() > max_states)
-        return Sentence{"state machine \"", table.name, "\": it has ", table.states.size(), " states and may have ",
-                        max_states, "; split it over components"};
+        return Sentence{"state machine \"",
+                        table.name,
+                        "\": it has ",
+                        table.states.size(),
+                        " states and may have ",
+                        max_states,
+                        "; split it over components"};
     if (table.transitions.size() > max_transitions)
-        return Sentence{"state machine \"", table.name, "\": it has ", table.transitions.size(),
-                        " transitions and may have ", max_transitions, "; split it over components"};
+        return Sentence{"state machine \"",
+                        table.name,
+                        "\": it has ",
+                        table.transitions.size(),
+                        " transitions and may have ",
+                        max_transitions,
+                        "; split it over components"};
     return statechart::Checker{table}.check();
 }
 

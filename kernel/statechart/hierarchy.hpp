@@ -1,5 +1,5 @@
-// A state machine's names as numbers: who is inside whom, where a transition leads, which event is which trigger.
-// Computed once from the rows, by the checks and by the resolver, at compile time or on the target.
+// A state machine's names as numbers: who is inside whom, where a transition leads, which event is which
+// trigger. Computed once from the rows, by the checks and by the resolver, at compile time or on the target.
 #pragma once
 
 #include "kernel/statechart/table.hpp"
@@ -25,11 +25,13 @@ struct StateHierarchy {
     std::array<StateIndex, max_states> parent{};
     std::array<StateIndex, max_states> initial_inside{}; ///< the first initial state right inside
     std::array<bool, max_states> composite{};
-    std::array<std::uint8_t, max_states> depth{}; ///< a top state has 1; 0: deeper than max_state_depth, or a cycle
+    std::array<std::uint8_t, max_states>
+        depth{}; ///< a top state has 1; 0: deeper than max_state_depth, or a cycle
     std::array<StateIndex, max_transitions> from{};
     std::array<StateIndex, max_transitions> to{};
     std::array<TriggerIndex, max_transitions> trigger{};
-    std::array<TransitionIndex, max_transitions> first_with{}; ///< by trigger: the transition that first names it
+    std::array<TransitionIndex, max_transitions>
+        first_with{}; ///< by trigger: the transition that first names it
     std::size_t triggers = 0;
     StateIndex initial_top = no_state;
     StateIndex final_state = no_state;
@@ -66,7 +68,9 @@ struct StateHierarchy {
     /// Depth of the deepest state that is around both and is neither of them; 0: the machine itself.
     [[nodiscard]] constexpr std::size_t shared_depth(StateIndex a, StateIndex b) const noexcept {
         std::size_t level = 0;
-        while (level + 1 < depth[a] && level + 1 < depth[b] && ancestor(a, level + 1) == ancestor(b, level + 1)) ++level;
+        while (level + 1 < depth[a] && level + 1 < depth[b] &&
+               ancestor(a, level + 1) == ancestor(b, level + 1))
+            ++level;
         return level;
     }
 

@@ -1,5 +1,6 @@
-// A state machine with its hierarchy folded away: for each leaf and trigger the transitions that may be taken, in order,
-// and for each of those one list of programs to call. Computed by the compiler, or on the target into bounded memory.
+// A state machine with its hierarchy folded away: for each leaf and trigger the transitions that may be
+// taken, in order, and for each of those one list of programs to call. Computed by the compiler, or on the
+// target into bounded memory.
 #pragma once
 
 #include "kernel/statechart/check.hpp"
@@ -10,33 +11,41 @@
 
 namespace tappet {
 
-/// A piece of one of the arrays below.
-struct StateSlice {
+/// A piece of the array of programs.
+struct ProgramSlice {
     std::uint16_t first = 0;
     std::uint16_t count = 0;
 };
 
+/// Number of an arc. Arcs that are asked one after the other lie side by side, up to the one that is `last`.
+using ArcIndex = std::uint16_t;
+inline constexpr ArcIndex start_arc = 0;
+inline constexpr ArcIndex reset_arc = 1;
+inline constexpr ArcIndex no_arc = start_arc; ///< in a list of arcs, where no start stands
+
 /// One way out of one leaf.
 struct StateArc {
     StateGuard guard = nullptr;
-    Duration after{};                ///< 0: at once
-    StateSlice programs;             ///< transition program, exits from the inside, entries from the outside
-    StateIndex target = no_state;    ///< the leaf that is active afterwards
+    Duration after{};             ///< 0: at once
+    ProgramSlice programs;        ///< transition program, exits from the inside, entries from the outside
+    StateIndex target = no_state; ///< the leaf that is active afterwards
     TransitionIndex transition = 0;
-    std::uint8_t source_level = 0;   ///< whose time of entry `after` counts from
-    std::uint8_t kept_levels = 0;    ///< states that are neither left nor entered, from the outside
-    std::uint8_t target_levels = 0;  ///< depth of `target`
+    std::uint16_t first_cell = 0;   ///< of `target`
+    std::uint8_t source_level = 0;  ///< whose time of entry `after` counts from
+    std::uint8_t kept_levels = 0;   ///< states that are neither left nor entered, from the outside
+    std::uint8_t target_levels = 0; ///< depth of `target`
     bool gives_reason = false;
+    bool last = true;
 };
 
 /// What a state needs beside its arcs. Composite states have only a parent and a depth.
 struct StatePlan {
     StateIndex parent = no_state;
     std::uint16_t depth = 0;
-    StateSlice conditions; ///< arcs: condition transitions and time-outs
-    StateSlice run;        ///< programs, from the outside
-    StateSlice leave;      ///< programs: every exit, from the inside
-    std::uint16_t to_final = 0; ///< the arc that is always valid
+    ArcIndex conditions = no_arc; ///< condition transitions and time-outs
+    ArcIndex to_final = no_arc;   ///< always valid
+    ProgramSlice run;             ///< from the outside
+    ProgramSlice leave;           ///< every exit, from the inside
 };
 
 struct ResolvedSizes {
@@ -46,18 +55,19 @@ struct ResolvedSizes {
     std::size_t programs = 0;
 
     [[nodiscard]] constexpr bool fits_in(const ResolvedSizes& room) const noexcept {
-        return states <= room.states && triggers <= room.triggers && arcs <= room.arcs && programs <= room.programs &&
-               arcs <= 0xffff && programs <= 0xffff;
+        return states <= room.states && triggers <= room.triggers && arcs <= room.arcs &&
+               programs <= room.programs && states * triggers <= 0xffff && arcs <= 0xffff &&
+               programs <= 0xffff; // what the numbers can hold
     }
     constexpr bool operator==(const ResolvedSizes&) const = default;
 };
 
-/// A resolved machine, as its execution reads it. Arc 0 starts the machine, arc 1 resets it.
+/// A resolved machine, as its execution reads it.
 struct ResolvedView {
     StateMachineTable table{};
     std::span<const std::string_view> triggers{};
-    const StatePlan* plans = nullptr;  ///< [state]
-    const StateSlice* cells = nullptr; ///< [state][trigger]: arcs
+    const StatePlan* plans = nullptr; ///< [state]
+    const ArcIndex* cells = nullptr;  ///< [state][trigger]: the first arc to ask, or no_arc
     const StateArc* arcs = nullptr;
     const StateProgram* programs = nullptr;
 };
@@ -66,7 +76,7 @@ struct ResolvedView {
 struct ResolvedRoom {
     std::span<StatePlan> plans;
     std::span<std::string_view> triggers;
-    std::span<StateSlice> cells;
+    std::span<ArcIndex> cells;
     std::span<StateArc> arcs;
     std::span<StateProgram> programs;
 };
@@ -75,12 +85,13 @@ namespace statechart {
 
 class Resolver {
 public:
-    constexpr Resolver(const StateMachineTable& table, const ResolvedRoom& room) : names_{table}, room_{room} {}
+    constexpr Resolver(const StateMachineTable& table, const ResolvedRoom& room)
+        : names_{table}, room_{room} {}
 
     constexpr ResolvedSizes resolve() {
         for (std::size_t i = 0; i < names_.triggers; ++i)
             if (i < room_.triggers.size()) room_.triggers[i] = names_.trigger_name(i);
-        add_request(no_state, names_.initial_top, start_transition);
+        add_request(no_state, names_.initial_top, start_transition); // start_arc, then reset_arc
         add_request(names_.final_state, names_.initial_top, reset_transition);
         for (std::size_t i = 0; i < names_.states(); ++i) {
             StatePlan plan;
@@ -97,29 +108,31 @@ private:
     constexpr void resolve_leaf(StateIndex leaf, StatePlan& plan) {
         plan.conditions = add_arcs(leaf, no_trigger);
         for (std::size_t trigger = 0; trigger < names_.triggers; ++trigger) {
-            const StateSlice slice = add_arcs(leaf, static_cast<TriggerIndex>(trigger));
+            const ArcIndex first = add_arcs(leaf, static_cast<TriggerIndex>(trigger));
             const std::size_t cell = leaf * names_.triggers + trigger;
-            if (cell < room_.cells.size()) room_.cells[cell] = slice;
+            if (cell < room_.cells.size()) room_.cells[cell] = first;
         }
-        plan.to_final = static_cast<std::uint16_t>(arcs_);
+        plan.to_final = static_cast<ArcIndex>(arcs_);
         add_request(leaf, names_.final_state, final_transition);
 
         plan.run = begin_programs();
-        for (std::size_t level = 1; level <= names_.depth[leaf]; ++level) add(row_of(names_.ancestor(leaf, level)).run, plan.run);
+        for (std::size_t level = 1; level <= names_.depth[leaf]; ++level)
+            add(row_of(names_.ancestor(leaf, level)).run, plan.run);
         plan.leave = begin_programs();
         add_exits(leaf, 0, plan.leave);
     }
 
-    // The transitions of one leaf and trigger: those of the innermost state first (UML), each state's in table order.
-    constexpr StateSlice add_arcs(StateIndex leaf, TriggerIndex trigger) {
-        StateSlice slice{static_cast<std::uint16_t>(arcs_), 0};
+    // The transitions of one leaf and trigger: those of the innermost state first (UML), each state's in
+    // table order.
+    constexpr ArcIndex add_arcs(StateIndex leaf, TriggerIndex trigger) {
+        const std::size_t first = arcs_;
         for (StateIndex source = leaf; source != no_state; source = names_.parent[source])
             for (std::size_t t = 0; t < names_.transitions(); ++t) {
                 if (names_.from[t] != source || names_.trigger[t] != trigger) continue;
+                if (arcs_ > first && arcs_ <= room_.arcs.size()) room_.arcs[arcs_ - 1].last = false;
                 add_transition(leaf, source, t);
-                ++slice.count;
             }
-        return slice;
+        return arcs_ > first ? static_cast<ArcIndex>(first) : no_arc;
     }
 
     constexpr void add_transition(StateIndex leaf, StateIndex source, std::size_t t) {
@@ -150,24 +163,30 @@ private:
         for (std::size_t level = kept + 1; level <= names_.depth[target]; ++level)
             add(row_of(names_.ancestor(target, level)).entry, arc.programs);
         arc.target = target;
+        arc.first_cell = static_cast<std::uint16_t>(target * names_.triggers);
         arc.kept_levels = static_cast<std::uint8_t>(kept);
         arc.target_levels = names_.depth[target];
         if (arcs_ < room_.arcs.size()) room_.arcs[arcs_] = arc;
         ++arcs_;
     }
 
-    constexpr void add_exits(StateIndex leaf, std::size_t kept, StateSlice& slice) {
-        for (StateIndex state = leaf; state != no_state && names_.depth[state] > kept; state = names_.parent[state])
+    constexpr void add_exits(StateIndex leaf, std::size_t kept, ProgramSlice& slice) {
+        for (StateIndex state = leaf; state != no_state && names_.depth[state] > kept;
+             state = names_.parent[state])
             add(row_of(state).exit, slice);
     }
-    [[nodiscard]] constexpr StateSlice begin_programs() const { return {static_cast<std::uint16_t>(programs_), 0}; }
-    constexpr void add(StateProgram program, StateSlice& slice) {
+    [[nodiscard]] constexpr ProgramSlice begin_programs() const {
+        return {static_cast<std::uint16_t>(programs_), 0};
+    }
+    constexpr void add(StateProgram program, ProgramSlice& slice) {
         if (program == nullptr) return;
         if (programs_ < room_.programs.size()) room_.programs[programs_] = program;
         ++programs_;
         ++slice.count;
     }
-    [[nodiscard]] constexpr const StateRow& row_of(StateIndex state) const { return names_.table.states[state]; }
+    [[nodiscard]] constexpr const StateRow& row_of(StateIndex state) const {
+        return names_.table.states[state];
+    }
 
     StateHierarchy names_;
     ResolvedRoom room_;
@@ -177,8 +196,8 @@ private:
 
 } // namespace statechart
 
-/// Resolves a table that check() found good. Returns what it takes; it is stored whole when that fits in the room.
-/// Bounded, without heap; not for real-time threads.
+/// Resolves a table that check() found good. Returns what it takes; it is stored whole when that fits in the
+/// room. Bounded, without heap; not for real-time threads.
 constexpr ResolvedSizes resolve_into(const StateMachineTable& table, const ResolvedRoom& room) {
     return statechart::Resolver{table, room}.resolve();
 }
@@ -188,33 +207,47 @@ constexpr ResolvedSizes measure(const StateMachineTable& table) {
     return check(table).empty() ? resolve_into(table, {}) : ResolvedSizes{};
 }
 
-/// Room for a machine of at most these sizes: exactly measured for a constant table, or a slot that machines are loaded
-/// into on the target. It keeps views of the table's rows, which outlive it.
-template <ResolvedSizes sizes>
-struct ResolvedMachine {
+/// Room for a machine of at most these sizes: exactly measured for a constant table, or a slot that machines
+/// are loaded into on the target. It keeps views of the table's rows, which outlive it.
+template <ResolvedSizes sizes> struct ResolvedMachine {
     StateMachineTable table{};
     std::size_t trigger_count = 0;
     std::array<StatePlan, sizes.states> plans{};
     std::array<std::string_view, sizes.triggers> triggers{};
-    std::array<StateSlice, sizes.states * sizes.triggers> cells{};
+    std::array<ArcIndex, sizes.states * sizes.triggers> cells{};
     std::array<StateArc, sizes.arcs> arcs{};
     std::array<StateProgram, sizes.programs> programs{};
 
     constexpr ResolvedMachine() = default;
     explicit constexpr ResolvedMachine(const StateMachineTable& of) { static_cast<void>(load(of)); }
 
-    /// Checks and resolves. Empty when the machine is there; otherwise what is wrong, and no machine is there. No
-    /// execution may be using this room.
+    /// Checks and resolves. Empty when the machine is there; otherwise what is wrong, and no machine is
+    /// there. No execution may be using this room.
     [[nodiscard]] constexpr Sentence load(const StateMachineTable& of) {
         table = {};
         trigger_count = 0;
         if (Sentence fault = check(of); !fault.empty()) return fault;
         const ResolvedSizes taken = resolve_into(of, {plans, triggers, cells, arcs, programs});
         if (!taken.fits_in(sizes))
-            return Sentence{"state machine \"", of.name, "\": it takes ", taken.states, " states, ", taken.triggers,
-                            " events, ", taken.arcs, " transitions of leaves and ", taken.programs,
-                            " program calls, and there is room for ", sizes.states, ", ", sizes.triggers, ", ", sizes.arcs,
-                            " and ", sizes.programs, "; make the room larger or the machine smaller"};
+            return Sentence{"state machine \"",
+                            of.name,
+                            "\": it takes ",
+                            taken.states,
+                            " states, ",
+                            taken.triggers,
+                            " events, ",
+                            taken.arcs,
+                            " transitions of leaves and ",
+                            taken.programs,
+                            " program calls, and there is room for ",
+                            sizes.states,
+                            ", ",
+                            sizes.triggers,
+                            ", ",
+                            sizes.arcs,
+                            " and ",
+                            sizes.programs,
+                            "; make the room larger or the machine smaller"};
         table = of;
         trigger_count = taken.triggers;
         return {};
@@ -222,13 +255,15 @@ struct ResolvedMachine {
     /// Without a machine, a view that no execution starts.
     [[nodiscard]] constexpr ResolvedView view() const {
         if (table.states.empty()) return {};
-        return {table, std::span{triggers}.first(trigger_count), plans.data(), cells.data(), arcs.data(), programs.data()};
+        return {table,        std::span{triggers}.first(trigger_count),
+                plans.data(), cells.data(),
+                arcs.data(),  programs.data()};
     }
 };
 
-/// The resolved form of a constant machine, in constant memory: resolved<loom_cycle>.view(). The machine is a variable
-/// at namespace scope, so that symbols carry its name and nothing of its rows. A faulty machine resolves to nothing:
-/// its user reports check().
+/// The resolved form of a constant machine, in constant memory: resolved<loom_cycle>.view(). The machine is a
+/// variable at namespace scope, so that symbols carry its name and nothing of its rows. A faulty machine
+/// resolves to nothing: its user reports check().
 template <const auto& machine>
 inline constexpr ResolvedMachine<measure(machine.view())> resolved{machine.view()};
 

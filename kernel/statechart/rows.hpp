@@ -1,4 +1,5 @@
-// How a state machine is spelled in C++. Each word gives a plain struct; member functions become function pointers.
+// How a state machine is spelled in C++. Each word gives a plain struct; member functions become function
+// pointers.
 //
 //     constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
 //         states(
@@ -25,44 +26,38 @@ namespace tappet {
 
 namespace statechart {
 
-template <class>
-struct Member {
-    static constexpr bool real_time = false;
-};
-template <class R, class C>
-struct Member<R (C::*)() noexcept TAPPET_REALTIME> {
+template <class> struct Member { static constexpr bool real_time = false; };
+template <class R, class C> struct Member<R (C::*)() noexcept TAPPET_REALTIME> {
     static constexpr bool real_time = true;
     using Result = R;
     using Component = C;
     using Object = C;
 };
-template <class R, class C>
-struct Member<R (C::*)() const noexcept TAPPET_REALTIME> {
+template <class R, class C> struct Member<R (C::*)() const noexcept TAPPET_REALTIME> {
     static constexpr bool real_time = true;
     using Result = R;
     using Component = C;
     using Object = const C;
 };
 
-template <auto Function, class Result>
-Result call(void* component) noexcept TAPPET_REALTIME {
+template <auto Function, class Result> Result call(void* component) noexcept TAPPET_REALTIME {
     return (static_cast<typename Member<decltype(Function)>::Object*>(component)->*Function)();
 }
 
-template <class Pointer>
-struct Bound {
+template <class Pointer> struct Bound {
     Pointer call = nullptr;
     TypeId component = nullptr;
 };
 
-template <auto Function, class Result>
-consteval auto bind() {
+template <auto Function, class Result> consteval auto bind() {
     using Of = Member<decltype(Function)>;
-    static_assert(Of::real_time, "a program or guard of a state machine is a member function without arguments, "
-                                 "declared noexcept TAPPET_REALTIME: it runs in the real-time activity");
+    static_assert(Of::real_time,
+                  "a program or guard of a state machine is a member function without arguments, "
+                  "declared noexcept TAPPET_REALTIME: it runs in the real-time activity");
     static_assert(std::is_same_v<typename Of::Result, Result>,
                   "a guard returns bool; an entry, exit, run or transition program returns void");
-    return Bound<Result (*)(void*) noexcept TAPPET_REALTIME>{&call<Function, Result>, type_id<typename Of::Component>};
+    return Bound<Result (*)(void*) noexcept TAPPET_REALTIME>{&call<Function, Result>,
+                                                             type_id<typename Of::Component>};
 }
 
 struct Entry : Bound<StateProgram> {};
@@ -83,17 +78,19 @@ struct Because {
     std::string_view reason;
 };
 
-// A row takes each part once and belongs to one component type; what is against that is kept for the check to report.
-template <class Row>
-constexpr void give(Row& row, std::string_view part, bool is_given) {
+// A row takes each part once and belongs to one component type; what is against that is kept for the check to
+// report.
+template <class Row> constexpr void give(Row& row, std::string_view part, bool is_given) {
     if (is_given && row.twice.empty()) row.twice = part;
 }
 template <class Row, class Pointer>
 constexpr void give(Row& row, std::string_view part, Pointer& place, const Bound<Pointer>& bound) {
     give(row, part, place != nullptr);
     place = bound.call;
-    if (row.component == nullptr) row.component = bound.component;
-    else if (row.component != bound.component) give(row, "component type", true);
+    if (row.component == nullptr)
+        row.component = bound.component;
+    else if (row.component != bound.component)
+        give(row, "component type", true);
 }
 
 } // namespace statechart
@@ -101,17 +98,12 @@ constexpr void give(Row& row, std::string_view part, Pointer& place, const Bound
 /// The role of a state.
 enum StateRole : std::uint8_t { initial, final };
 
-template <auto Function>
-inline constexpr statechart::Entry entry{statechart::bind<Function, void>()};
-template <auto Function>
-inline constexpr statechart::Exit exit{statechart::bind<Function, void>()};
-template <auto Function>
-inline constexpr statechart::Run run{statechart::bind<Function, void>()};
+template <auto Function> inline constexpr statechart::Entry entry{statechart::bind<Function, void>()};
+template <auto Function> inline constexpr statechart::Exit exit{statechart::bind<Function, void>()};
+template <auto Function> inline constexpr statechart::Run run{statechart::bind<Function, void>()};
 /// The transition program.
-template <auto Function>
-inline constexpr statechart::Then then{statechart::bind<Function, void>()};
-template <auto Function>
-inline constexpr statechart::When guard{statechart::bind<Function, bool>()};
+template <auto Function> inline constexpr statechart::Then then{statechart::bind<Function, void>()};
+template <auto Function> inline constexpr statechart::When guard{statechart::bind<Function, bool>()};
 /// The composite state around this one.
 constexpr statechart::In in(std::string_view state) { return {state}; }
 /// An event transition: "component.event", or "event" of the own component.
@@ -155,8 +147,7 @@ constexpr void apply(TransitionRow& row, const Then& part) { give(row, "then", r
 
 } // namespace statechart
 
-template <class... Parts>
-constexpr StateRow state(std::string_view name, const Parts&... parts) {
+template <class... Parts> constexpr StateRow state(std::string_view name, const Parts&... parts) {
     StateRow row{.name = name};
     (statechart::apply(row, parts), ...);
     return row;
@@ -170,13 +161,11 @@ constexpr TransitionRow transition(std::string_view from, std::string_view to, c
 }
 
 /// A reaction to an event that leaves and enters no state.
-template <class... Parts>
-constexpr TransitionRow internal(std::string_view state, const Parts&... parts) {
+template <class... Parts> constexpr TransitionRow internal(std::string_view state, const Parts&... parts) {
     return transition(state, {}, parts...);
 }
 
-template <class... Rows>
-constexpr std::array<StateRow, sizeof...(Rows)> states(const Rows&... rows) {
+template <class... Rows> constexpr std::array<StateRow, sizeof...(Rows)> states(const Rows&... rows) {
     return {rows...};
 }
 
@@ -186,8 +175,7 @@ constexpr std::array<TransitionRow, sizeof...(Rows)> transitions(const Rows&... 
 }
 
 /// S states, T transitions.
-template <std::size_t S, std::size_t T>
-struct StateMachine {
+template <std::size_t S, std::size_t T> struct StateMachine {
     std::string_view name;
     TypeId component;
     std::array<StateRow, S> states;

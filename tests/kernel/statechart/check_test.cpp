@@ -25,16 +25,15 @@ std::string fault(const auto& states, const auto& transitions) {
 
 // A machine that every test changes in one place.
 struct Good {
-    std::vector<StateRow> states{state("idle", initial, entry<&Loom::go>),
-                                 state("working"),
+    std::vector<StateRow> states{state("idle", initial, entry<&Loom::go>), state("working"),
                                  state("run_up", in("working"), initial, run<&Loom::go>),
-                                 state("weave", in("working"), exit<&Loom::go>),
-                                 state("safe", final)};
-    std::vector<TransitionRow> transitions{transition("idle", "run_up", on("panel.start"), guard<&Loom::ready>),
-                                           transition("run_up", "weave", guard<&Loom::ready>, then<&Loom::go>),
-                                           transition("working", "safe", on("panel.emergency")),
-                                           transition("run_up", "safe", after(5s), because("too long")),
-                                           transition("weave", "idle", on("panel.stop"))};
+                                 state("weave", in("working"), exit<&Loom::go>), state("safe", final)};
+    std::vector<TransitionRow> transitions{
+        transition("idle", "run_up", on("panel.start"), guard<&Loom::ready>),
+        transition("run_up", "weave", guard<&Loom::ready>, then<&Loom::go>),
+        transition("working", "safe", on("panel.emergency")),
+        transition("run_up", "safe", after(5s), because("too long")),
+        transition("weave", "idle", on("panel.stop"))};
 
     [[nodiscard]] StateMachineTable view() const { return {"m", states, transitions, type_id<Loom>}; }
     [[nodiscard]] std::string fault() const { return std::string{check(view()).view()}; }
@@ -45,21 +44,25 @@ TEST(StateMachineCheck, finds_no_fault_in_a_good_machine) { EXPECT_EQ(Good{}.fau
 TEST(StateMachineCheck, names_the_nearest_state_for_a_misspelt_target) {
     Good m;
     m.transitions[2].to = "saef";
-    EXPECT_EQ(m.fault(), "state machine \"m\": transition 3 (\"working\" to \"saef\" on \"panel.emergency\") leads to an unknown "
+    EXPECT_EQ(m.fault(), "state machine \"m\": transition 3 (\"working\" to \"saef\" on \"panel.emergency\") "
+                         "leads to an unknown "
                          "state \"saef\"; did you mean \"safe\"?");
 }
 
 TEST(StateMachineCheck, names_an_unknown_source) {
     Good m;
     m.transitions[1].from = "xylophone";
-    EXPECT_EQ(m.fault(), "state machine \"m\": transition 2 (\"xylophone\" to \"weave\") leaves an unknown state \"xylophone\"; "
+    EXPECT_EQ(m.fault(), "state machine \"m\": transition 2 (\"xylophone\" to \"weave\") leaves an unknown "
+                         "state \"xylophone\"; "
                          "name one of the machine's states, or add this one");
 }
 
 TEST(StateMachineCheck, names_an_unknown_composite) {
     Good m;
     m.states[3].parent = "workin";
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"weave\" is in an unknown state \"workin\"; did you mean \"working\"?");
+    EXPECT_EQ(
+        m.fault(),
+        "state machine \"m\": state \"weave\" is in an unknown state \"workin\"; did you mean \"working\"?");
 }
 
 TEST(StateMachineCheck, refuses_a_state_that_is_there_twice) {
@@ -88,53 +91,63 @@ TEST(StateMachineCheck, refuses_a_machine_without_an_initial_state) {
 TEST(StateMachineCheck, refuses_two_initial_states_in_one_composite) {
     Good m;
     m.states[3].initial = true;
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"weave\" is a second initial state in \"working\" beside \"run_up\"; keep one");
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"weave\" is a second initial state in \"working\" "
+                         "beside \"run_up\"; keep one");
 }
 
 TEST(StateMachineCheck, refuses_two_initial_states_at_the_top) {
     Good m;
     m.states[1].initial = true;
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"working\" is a second initial state at the top beside \"idle\"; keep one");
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"working\" is a second initial state at the top beside "
+                         "\"idle\"; keep one");
 }
 
 TEST(StateMachineCheck, refuses_a_composite_without_an_initial_state) {
     Good m;
     m.states[2].initial = false;
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"working\" is composite and none of its states is initial; mark the one to enter");
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"working\" is composite and none of its states is "
+                         "initial; mark the one to enter");
 }
 
 TEST(StateMachineCheck, refuses_a_machine_without_a_final_state) {
     Good m;
     m.states[4].final = false;
-    EXPECT_EQ(m.fault(), "state machine \"m\": no state is final; mark the safe state that the machine may be brought to from everywhere");
+    EXPECT_EQ(m.fault(), "state machine \"m\": no state is final; mark the safe state that the machine may "
+                         "be brought to from everywhere");
 }
 
 TEST(StateMachineCheck, refuses_a_second_final_state) {
     Good m;
     m.states[0].final = true;
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"safe\" is a second final state beside \"idle\"; keep one, the safe state that "
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"safe\" is a second final state beside \"idle\"; keep "
+                         "one, the safe state that "
                          "a request leads to from everywhere");
 }
 
 TEST(StateMachineCheck, refuses_a_final_state_inside_a_composite) {
     Good m;
     m.states[4].parent = "working";
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"safe\" is final inside \"working\"; the final state is safe for the whole "
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"safe\" is final inside \"working\"; the final state "
+                         "is safe for the whole "
                          "machine: take it out of every composite");
 }
 
 TEST(StateMachineCheck, refuses_a_final_state_with_states_inside) {
     Good m;
     m.states.push_back(state("inner", in("safe"), initial));
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"safe\" is final and has states inside; the safe state is a plain one");
+    EXPECT_EQ(
+        m.fault(),
+        "state machine \"m\": state \"safe\" is final and has states inside; the safe state is a plain one");
 }
 
 TEST(StateMachineCheck, refuses_a_state_inside_itself) {
     Good m;
     m.states[1].parent = "weave";
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"working\" is inside itself; take one in(...) out of the ring");
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": state \"working\" is inside itself; take one in(...) out of the ring");
     m.states[1].parent = "working";
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"working\" is inside itself; take one in(...) out of the ring");
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": state \"working\" is inside itself; take one in(...) out of the ring");
 }
 
 TEST(StateMachineCheck, refuses_a_hierarchy_that_is_too_deep) {
@@ -150,14 +163,16 @@ TEST(StateMachineCheck, refuses_a_hierarchy_that_is_too_deep) {
         }
         m.states.push_back(state(names[i], in(names[i - 1]), initial));
     }
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"d9\" is more than 8 levels deep; flatten the hierarchy");
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": state \"d9\" is more than 8 levels deep; flatten the hierarchy");
 }
 
 TEST(StateMachineCheck, refuses_a_state_that_is_never_entered) {
     Good m;
     m.states.push_back(state("lost"));
     m.transitions.push_back(transition("lost", "idle", on("found")));
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"lost\" is never entered; lead a transition to it, make it initial, or drop it");
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"lost\" is never entered; lead a transition to it, "
+                         "make it initial, or drop it");
 }
 
 TEST(StateMachineCheck, refuses_a_state_with_no_way_out) {
@@ -166,21 +181,25 @@ TEST(StateMachineCheck, refuses_a_state_with_no_way_out) {
     m.transitions.push_back(transition("idle", "trap", on("fall")));
     m.transitions.push_back(transition("trap", "trap", on("again")));
     m.transitions.push_back(internal("trap", on("move"), then<&Loom::go>));
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"trap\" has no way out; give it a transition, or mark it final");
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": state \"trap\" has no way out; give it a transition, or mark it final");
 }
 
 TEST(StateMachineCheck, refuses_a_transition_behind_one_that_always_comes_first) {
     Good m;
     m.transitions.push_back(transition("weave", "safe", on("panel.stop"), guard<&Loom::ready>));
-    EXPECT_EQ(m.fault(), "state machine \"m\": transition 6 (\"weave\" to \"safe\" on \"panel.stop\") can never be taken, transition 5 "
-                         "(\"weave\" to \"idle\" on \"panel.stop\") always comes first; give that one a guard<>, put this one before it, "
+    EXPECT_EQ(m.fault(), "state machine \"m\": transition 6 (\"weave\" to \"safe\" on \"panel.stop\") can "
+                         "never be taken, transition 5 "
+                         "(\"weave\" to \"idle\" on \"panel.stop\") always comes first; give that one a "
+                         "guard<>, put this one before it, "
                          "or drop it");
 }
 
 TEST(StateMachineCheck, refuses_a_later_time_out_behind_an_earlier_one) {
     Good m;
     m.transitions.push_back(transition("run_up", "idle", after(6s)));
-    EXPECT_NE(m.fault().find("transition 6 (\"run_up\" to \"idle\") can never be taken"), std::string::npos) << m.fault();
+    EXPECT_NE(m.fault().find("transition 6 (\"run_up\" to \"idle\") can never be taken"), std::string::npos)
+        << m.fault();
     m.transitions.back().after = 4s;
     EXPECT_EQ(m.fault(), "");
 }
@@ -190,7 +209,9 @@ TEST(StateMachineCheck, refuses_an_outer_transition_only_when_all_states_inside_
     m.transitions.push_back(transition("run_up", "idle", on("panel.emergency")));
     EXPECT_EQ(m.fault(), "");
     m.transitions.push_back(transition("weave", "idle", on("panel.emergency")));
-    EXPECT_NE(m.fault().find("transition 3 (\"working\" to \"safe\" on \"panel.emergency\") can never be taken"), std::string::npos)
+    EXPECT_NE(
+        m.fault().find("transition 3 (\"working\" to \"safe\" on \"panel.emergency\") can never be taken"),
+        std::string::npos)
         << m.fault();
 }
 
@@ -199,7 +220,8 @@ TEST(StateMachineCheck, refuses_states_that_come_back_without_waiting) {
     m.transitions.push_back(transition("weave", "run_up"));
     m.transitions[1].guard = nullptr;
     m.transitions.erase(m.transitions.begin() + 3); // its time-out would never come
-    EXPECT_EQ(m.fault(), "state machine \"m\": state \"run_up\" comes back to itself without waiting, by transition 5 (\"weave\" to "
+    EXPECT_EQ(m.fault(), "state machine \"m\": state \"run_up\" comes back to itself without waiting, by "
+                         "transition 5 (\"weave\" to "
                          "\"run_up\"); give one transition of the ring on(...), after(...) or guard<>");
 }
 
@@ -207,7 +229,8 @@ TEST(StateMachineCheck, refuses_parts_that_contradict_each_other) {
     Good both;
     both.transitions[0].timed = true;
     both.transitions[0].after = 1s;
-    EXPECT_NE(both.fault().find("has both on(...) and after(...); make two transitions of it"), std::string::npos);
+    EXPECT_NE(both.fault().find("has both on(...) and after(...); make two transitions of it"),
+              std::string::npos);
     for (const Duration wrong : {Duration{0}, Duration{-1}}) {
         Good time;
         time.transitions[3].after = wrong;
@@ -245,7 +268,8 @@ TEST(StateMachineCheck, refuses_more_rows_than_the_limits) {
     EXPECT_EQ(m.fault(), "state machine \"m\": it has 257 states and may have 256; split it over components");
     Good n;
     n.transitions.resize(max_transitions + 1, n.transitions[0]);
-    EXPECT_EQ(n.fault(), "state machine \"m\": it has 1025 transitions and may have 1024; split it over components");
+    EXPECT_EQ(n.fault(),
+              "state machine \"m\": it has 1025 transitions and may have 1024; split it over components");
 }
 
 TEST(StateMachineCheck, finds_every_misspelt_name_and_names_its_row) {
@@ -293,10 +317,12 @@ TEST(StateMachineCheck, finds_every_dropped_and_doubled_row_that_matters) {
 }
 
 TEST(StateMachineCheck, works_in_a_constant_expression) {
-    static constexpr auto wrong = state_machine<Loom>("wrong", states(state("a", initial, final)), transitions(transition("a", "b")));
+    static constexpr auto wrong =
+        state_machine<Loom>("wrong", states(state("a", initial, final)), transitions(transition("a", "b")));
     constexpr Sentence said = check(wrong.view());
-    static_assert(said.view() == "state machine \"wrong\": transition 1 (\"a\" to \"b\") leads to an unknown state \"b\"; "
-                                 "name one of the machine's states, or add this one");
+    static_assert(said.view() ==
+                  "state machine \"wrong\": transition 1 (\"a\" to \"b\") leads to an unknown state \"b\"; "
+                  "name one of the machine's states, or add this one");
     static_assert(resolved<wrong>.view().plans == nullptr, "a faulty machine resolves to nothing");
     EXPECT_FALSE(said.empty());
 }

@@ -1,5 +1,6 @@
-// Counts what one event costs beside the programs it calls: run under callgrind with --toggle-collect='measured_*'.
-// Each event leaves two states, runs a transition program, enters two states, and refuses one guard on the way.
+// Counts what one event costs beside the programs it calls: run under callgrind with
+// --toggle-collect='measured_*'. Each event leaves two states, runs a transition program, enters two states,
+// and refuses one guard on the way.
 #include "kernel/statechart/execution.hpp"
 #include "kernel/statechart/rows.hpp"
 
@@ -10,10 +11,7 @@ namespace {
 
 struct Counter {
     unsigned calls = 0;
-    template <unsigned step>
-    void count() noexcept TAPPET_REALTIME {
-        calls += step;
-    }
+    template <unsigned step> void count() noexcept TAPPET_REALTIME { calls += step; }
     bool refuse() const noexcept TAPPET_REALTIME { return calls == 0; }
 };
 
@@ -27,18 +25,25 @@ constexpr auto swing = state_machine<Counter>(
     transitions(transition("l", "safe", on("swing"), guard<&Counter::refuse>),
                 transition("left", "right", on("swing"), then<&Counter::count<10>>),
                 transition("r", "safe", on("swing"), guard<&Counter::refuse>),
-                transition("right", "left", on("swing"), then<&Counter::count<10>>), transition("l", "plain", on("plain")),
-                transition("plain", "other", on("plain")), transition("other", "plain", on("plain")),
-                transition("plain", "safe", after(1h)), transition("plain", "safe", guard<&Counter::refuse>)));
+                transition("right", "left", on("swing"), then<&Counter::count<10>>),
+                transition("l", "plain", on("plain")), transition("plain", "other", on("plain")),
+                transition("other", "plain", on("plain")), transition("plain", "safe", after(1h)),
+                transition("plain", "safe", guard<&Counter::refuse>)));
 static_assert(check(swing.view()).empty());
 
 } // namespace
 } // namespace tappet
 
 extern "C" {
-[[gnu::noinline]] void measured_chain(tappet::StateMachineExecution& machine, tappet::Time now) { machine.dispatch(0, now); }
-[[gnu::noinline]] void measured_plain(tappet::StateMachineExecution& machine, tappet::Time now) { machine.dispatch(1, now); }
-[[gnu::noinline]] void measured_step(tappet::StateMachineExecution& machine, tappet::Time now) { machine.step(now); }
+[[gnu::noinline]] void measured_chain(tappet::StateMachineExecution& machine, tappet::Time now) {
+    machine.dispatch(0, now);
+}
+[[gnu::noinline]] void measured_plain(tappet::StateMachineExecution& machine, tappet::Time now) {
+    machine.dispatch(1, now);
+}
+[[gnu::noinline]] void measured_step(tappet::StateMachineExecution& machine, tappet::Time now) {
+    machine.step(now);
+}
 }
 
 int main() {

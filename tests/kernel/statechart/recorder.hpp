@@ -1,4 +1,5 @@
-// A component whose state programs write down that they ran: "+a" entry, "-a" exit, "!a" run, "*a" transition program.
+// A component whose state programs write down that they ran: "+a" entry, "-a" exit, "!a" run, "*a" transition
+// program.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -19,13 +20,11 @@ struct Recorder {
     bool yes = false;
     int asked = 0;
 
-    template <text what>
-    void say() noexcept TAPPET_REALTIME {
+    template <text what> void say() noexcept TAPPET_REALTIME {
         if (!letters.empty()) static_cast<void>(letters.push(' '));
         for (char letter : what.view()) static_cast<void>(letters.push(letter));
     }
-    template <text what, std::size_t trigger>
-    void raise() noexcept TAPPET_REALTIME {
+    template <text what, std::size_t trigger> void raise() noexcept TAPPET_REALTIME {
         say<what>();
         last_outcome = machine->dispatch(trigger, now);
     }

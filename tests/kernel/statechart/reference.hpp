@@ -1,5 +1,5 @@
-// A second interpreter of the flat form, to compare the first with: it walks the hierarchy by names at run time, with
-// heap and maps, and shares nothing with the resolver or the execution but the rows.
+// A second interpreter of the flat form, to compare the first with: it walks the hierarchy by names at run
+// time, with heap and maps, and shares nothing with the resolver or the execution but the rows.
 #pragma once
 
 #include "kernel/statechart/table.hpp"
@@ -37,11 +37,15 @@ public:
         ++transitions;
     }
     void dispatch(std::string_view event, Time now) {
-        const auto names_it = [event](const TransitionRow& row) { return row.on_event && row.event == event; };
+        const auto names_it = [event](const TransitionRow& row) {
+            return row.on_event && row.event == event;
+        };
         if (active_.empty() || std::ranges::none_of(table_.transitions, names_it)) return;
         if (busy_ || !raised_.empty()) {
-            if (raised_.size() < 8) raised_.emplace_back(event);
-            else ++lost;
+            if (raised_.size() < 8)
+                raised_.emplace_back(event);
+            else
+                ++lost;
             if (!busy_) settle(now);
             return;
         }
@@ -143,7 +147,8 @@ private:
             source.pop_back(); // neither of the two stays
             target.pop_back();
             std::size_t shared = 0;
-            while (shared < source.size() && shared < target.size() && source[shared] == target[shared]) ++shared;
+            while (shared < source.size() && shared < target.size() && source[shared] == target[shared])
+                ++shared;
             leave_down_to(shared);
             enter(row.to, now);
         }

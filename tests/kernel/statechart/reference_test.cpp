@@ -1,5 +1,6 @@
-// Thousands of random machines under random events, steps and requests: the resolved form and an interpreter that
-// walks the hierarchy by names do the same, program by program and guard by guard. TAPPET_SEED chooses other machines.
+// Thousands of random machines under random events, steps and requests: the resolved form and an interpreter
+// that walks the hierarchy by names do the same, program by program and guard by guard. TAPPET_SEED chooses
+// other machines.
 #include "tests/kernel/statechart/reference.hpp"
 
 #include "kernel/base/random.hpp"
@@ -20,11 +21,13 @@ namespace {
 
 constexpr std::size_t program_count = 160;
 constexpr std::size_t guard_count = 12;
-constexpr std::string_view state_names[] = {"s0",  "s1",  "s2",  "s3",  "s4",  "s5",  "s6",  "s7",  "s8", "s9",
-                                            "s10", "s11", "s12", "s13", "s14", "s15", "s16", "s17", "s18", "s19"};
+constexpr std::string_view state_names[] = {"s0",  "s1",  "s2",  "s3",  "s4",  "s5",  "s6",
+                                            "s7",  "s8",  "s9",  "s10", "s11", "s12", "s13",
+                                            "s14", "s15", "s16", "s17", "s18", "s19"};
 constexpr std::string_view event_names[] = {"go", "stop", "panel.start", "panel.emergency", "weft.break"};
 constexpr std::string_view reasons[] = {"weft break", "warp break", "operator"};
-static_assert(std::size(state_names) * 3 + 48 <= program_count, "each program of a machine has its own number");
+static_assert(std::size(state_names) * 3 + 48 <= program_count,
+              "each program of a machine has its own number");
 
 /// What a program does besides being written down.
 enum class Deed : std::uint8_t { nothing, raise, give_up };
@@ -41,7 +44,8 @@ struct Log {
 
     void run(std::size_t program) {
         calls.push_back(static_cast<int>(program));
-        if ((*deeds)[program] == Deed::raise) raise(machine, event_names[program % std::size(event_names)], now);
+        if ((*deeds)[program] == Deed::raise)
+            raise(machine, event_names[program % std::size(event_names)], now);
         if ((*deeds)[program] == Deed::give_up) give_up(machine, now);
     }
     bool ask(std::size_t guard) {
@@ -50,12 +54,10 @@ struct Log {
     }
 };
 
-template <std::size_t i>
-void program(void* log) noexcept TAPPET_REALTIME {
+template <std::size_t i> void program(void* log) noexcept TAPPET_REALTIME {
     TAPPET_ESCAPE("a test's log grows", static_cast<Log*>(log)->run(i));
 }
-template <std::size_t i>
-bool guard_of(void* log) noexcept TAPPET_REALTIME {
+template <std::size_t i> bool guard_of(void* log) noexcept TAPPET_REALTIME {
     bool answer = false;
     TAPPET_ESCAPE("a test's log grows", answer = static_cast<Log*>(log)->ask(i));
     return answer;
@@ -83,7 +85,9 @@ struct RandomMachine {
         for (std::size_t i = 0; i < count; ++i) {
             StateRow row{.name = state_names[i]};
             row.final = i == 0;
-            if (i > 1 && !random.one_in(3)) row.parent = state_names[static_cast<std::size_t>(random.between(1, static_cast<std::int64_t>(i) - 1))];
+            if (i > 1 && !random.one_in(3))
+                row.parent = state_names[static_cast<std::size_t>(
+                    random.between(1, static_cast<std::int64_t>(i) - 1))];
             if (!random.one_in(4)) row.entry = programs[3 * i];
             if (!random.one_in(4)) row.exit = programs[3 * i + 1];
             if (!random.one_in(3)) row.run = programs[3 * i + 2];
@@ -96,7 +100,8 @@ struct RandomMachine {
             states.push_back(row);
         }
         for (std::size_t i = count; i > 1; --i) std::swap(states[i - 1], states[random.below(i)]);
-        for (std::size_t i = 0; i < count; ++i) add(random, states[i].name); // each has a way out, most of the time
+        for (std::size_t i = 0; i < count; ++i)
+            add(random, states[i].name); // each has a way out, most of the time
         while (transitions.size() < 48 && !random.one_in(20)) add(random, states[random.below(count)].name);
         for (Deed& deed : deeds) {
             if (random.one_in(12)) deed = Deed::raise;
@@ -116,7 +121,8 @@ private:
         } else if (kind < 7) {
             row.timed = true;
             row.after = Duration{random.between(1, 60)};
-        } else if (!has_guard) row.guard = guards[0];
+        } else if (!has_guard)
+            row.guard = guards[0];
         const bool has_program = !random.one_in(3);
         if (has_program) row.then = programs[3 * std::size(state_names) + transitions.size()];
         if (row.on_event && has_program && random.one_in(8)) row.to = {};
@@ -142,11 +148,15 @@ struct Pair {
             auto& execution = *static_cast<StateMachineExecution*>(m);
             execution.dispatch(trigger(execution, event), now);
         };
-        real_log.give_up = [](void* m, Time now) { static_cast<StateMachineExecution*>(m)->request_final(now, "gave up"); };
+        real_log.give_up = [](void* m, Time now) {
+            static_cast<StateMachineExecution*>(m)->request_final(now, "gave up");
+        };
         reference_log.raise = [](void* m, std::string_view event, Time now) {
             static_cast<ReferenceMachine*>(m)->dispatch(event, now);
         };
-        reference_log.give_up = [](void* m, Time now) { static_cast<ReferenceMachine*>(m)->request_final(now, "gave up"); };
+        reference_log.give_up = [](void* m, Time now) {
+            static_cast<ReferenceMachine*>(m)->request_final(now, "gave up");
+        };
     }
     static std::size_t trigger(const StateMachineExecution& execution, std::string_view event) {
         const auto names = execution.machine().triggers;
@@ -155,7 +165,8 @@ struct Pair {
 };
 
 struct Coverage {
-    std::size_t machines = 0, refused = 0, transitions = 0, internal = 0, deepest = 0, left_over = 0, lost = 0, timed = 0;
+    std::size_t machines = 0, refused = 0, transitions = 0, internal = 0, deepest = 0, left_over = 0,
+                lost = 0, timed = 0;
 };
 
 void compare(const RandomMachine& machine, const Slot& slot, Random& random, Coverage& coverage) {
@@ -219,7 +230,8 @@ TEST(StateMachineReference, does_what_an_interpreter_of_the_hierarchy_does) {
         const RandomMachine machine{random};
         if (const Sentence fault = slot.load(machine.view()); !fault.empty()) {
             ASSERT_EQ(fault.view().find("there is room for"), std::string_view::npos) << fault.view();
-            ASSERT_LT(++coverage.refused, 1000000u) << "the generator makes no good machines: " << fault.view();
+            ASSERT_LT(++coverage.refused, 1000000u)
+                << "the generator makes no good machines: " << fault.view();
             continue;
         }
         ++coverage.machines;
@@ -229,9 +241,10 @@ TEST(StateMachineReference, does_what_an_interpreter_of_the_hierarchy_does) {
             return;
         }
     }
-    std::cout << coverage.machines << " machines (" << coverage.refused << " faulty ones refused), " << coverage.transitions
-              << " transitions, " << coverage.internal << " internal and " << coverage.timed << " timed rows, depth up to "
-              << coverage.deepest << ", " << coverage.left_over << " calls with work left over, " << coverage.lost
+    std::cout << coverage.machines << " machines (" << coverage.refused << " faulty ones refused), "
+              << coverage.transitions << " transitions, " << coverage.internal << " internal and "
+              << coverage.timed << " timed rows, depth up to " << coverage.deepest << ", "
+              << coverage.left_over << " calls with work left over, " << coverage.lost
               << " events lost for want of room\n";
     EXPECT_GT(coverage.transitions, coverage.machines * 10);
     EXPECT_GE(coverage.deepest, 5u);

@@ -24,7 +24,8 @@ static_assert(statechart::Member<decltype(&Declared::real_time_too)>::real_time)
 static_assert(!statechart::Member<decltype(&Declared::throwing)>::real_time);
 static_assert(!statechart::Member<decltype(&Declared::with_argument)>::real_time);
 #if defined(__clang__)
-static_assert(!statechart::Member<decltype(&Declared::blocking)>::real_time, "clang knows the effect; g++ reads a comment");
+static_assert(!statechart::Member<decltype(&Declared::blocking)>::real_time,
+              "clang knows the effect; g++ reads a comment");
 #endif
 
 constexpr auto loom = state_machine<R>(
@@ -40,13 +41,16 @@ constexpr auto loom = state_machine<R>(
 static_assert(check(loom.view()).empty());
 constexpr ResolvedView view = resolved<loom>.view();
 
-StateSlice cell(std::string_view leaf, std::size_t trigger) {
+ArcIndex cell(std::string_view leaf, std::size_t trigger) {
     return view.cells[find_state(view.table, leaf) * view.triggers.size() + trigger];
 }
-std::vector<TransitionIndex> transitions_of(StateSlice slice) {
+std::vector<TransitionIndex> transitions_of(ArcIndex first) {
     std::vector<TransitionIndex> numbers;
-    for (std::size_t i = 0; i < slice.count; ++i) numbers.push_back(view.arcs[slice.first + i].transition);
-    return numbers;
+    if (first == no_arc) return numbers;
+    for (const StateArc* arc = view.arcs + first;; ++arc) {
+        numbers.push_back(arc->transition);
+        if (arc->last) return numbers;
+    }
 }
 using Numbers = std::vector<TransitionIndex>;
 
@@ -66,7 +70,7 @@ TEST(StateMachineResolver, orders_the_transitions_of_a_leaf_from_the_inside_and_
 }
 
 TEST(StateMachineResolver, folds_the_programs_of_a_transition_into_one_list) {
-    const StateArc& start = view.arcs[cell("idle", 1).first];
+    const StateArc& start = view.arcs[cell("idle", 1)];
     Recorder recorder;
     for (std::size_t i = 0; i < start.programs.count; ++i) view.programs[start.programs.first + i](&recorder);
     EXPECT_EQ(recorder.heard(), "*start -idle +working +run_up");
@@ -81,7 +85,8 @@ TEST(StateMachineResolver, takes_exactly_the_room_it_measured) {
     EXPECT_EQ(exact.load(loom.view()).view(), "");
     const auto refused = [](auto room) {
         const Sentence said = room.load(loom.view());
-        EXPECT_NE(said.view().find("make the room larger or the machine smaller"), std::string_view::npos) << said.view();
+        EXPECT_NE(said.view().find("make the room larger or the machine smaller"), std::string_view::npos)
+            << said.view();
         EXPECT_EQ(room.view().plans, nullptr);
     };
     refused(ResolvedMachine<ResolvedSizes{sizes.states - 1, sizes.triggers, sizes.arcs, sizes.programs}>{});
@@ -105,12 +110,12 @@ TEST(StateMachineResolver, makes_the_same_of_a_table_at_run_time_as_the_compiler
         EXPECT_EQ(loaded.arcs[i].programs.first, view.arcs[i].programs.first);
         EXPECT_EQ(loaded.arcs[i].programs.count, view.arcs[i].programs.count);
     }
-    for (std::size_t i = 0; i < sizes.states * sizes.triggers; ++i) EXPECT_EQ(loaded.cells[i].first, view.cells[i].first);
+    for (std::size_t i = 0; i < sizes.states * sizes.triggers; ++i) EXPECT_EQ(loaded.cells[i], view.cells[i]);
 }
 
 TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
-    static constexpr auto small =
-        state_machine<R>("small", states(state("a", initial), state("z", final)), transitions(transition("a", "z", on("end"))));
+    static constexpr auto small = state_machine<R>("small", states(state("a", initial), state("z", final)),
+                                                   transitions(transition("a", "z", on("end"))));
     ResolvedMachine<ResolvedSizes{40, 10, 500, 900}> room;
     Recorder recorder;
     StateMachineExecution execution;
@@ -124,7 +129,8 @@ TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
     execution.bind(room.view(), &recorder);
     execution.start(at_ns(3));
     EXPECT_EQ(execution.path()[0], "a");
-    EXPECT_EQ(execution.dispatch(1, at_ns(4)), StateOutcome::ignored) << "the machine before had this trigger";
+    EXPECT_EQ(execution.dispatch(1, at_ns(4)), StateOutcome::ignored)
+        << "the machine before had this trigger";
     EXPECT_EQ(execution.dispatch(0, at_ns(4)), StateOutcome::taken);
 }
 
