@@ -1,43 +1,48 @@
-// The wires between the carpet loom's machine and the loom itself: what stands on each CAN identifier, GPIO line
-// and Modbus register, and the loom's nominal figures. The machine's maps and the plant read the same numbers.
+// The wires between the carpet loom's machine and the loom itself: what stands on each CAN identifier, GPIO
+// line and Modbus register, and the loom's nominal figures. The machine's maps and the plant read the same
+// numbers.
 #pragma once
 
 #include <cstdint>
 
 namespace tappet::loom::wires {
 
-// --- CANopen, 500 kbit/s, 11-bit identifiers, little-endian (CiA 301) -----------------------------------------
+// --- CANopen, 500 kbit/s, 11-bit identifiers, little-endian (CiA 301)
+// -----------------------------------------
 
 inline constexpr std::uint32_t can_bit_rate = 500'000;
 
 namespace node {
-inline constexpr std::uint8_t main_drive = 1;   // CiA 402, velocity
+inline constexpr std::uint8_t main_drive = 1;    // CiA 402, velocity
 inline constexpr std::uint8_t let_off_drive = 2; // CiA 402, velocity
-inline constexpr std::uint8_t encoder = 3;      // CiA 406
-inline constexpr std::uint8_t load_cell = 4;    // CiA 404
-inline constexpr std::uint8_t feeder = 5;       // CiA 414-2
-inline constexpr std::uint8_t dobby = 6;        // CiA 414
+inline constexpr std::uint8_t encoder = 3;       // CiA 406
+inline constexpr std::uint8_t load_cell = 4;     // CiA 404
+inline constexpr std::uint8_t feeder = 5;        // CiA 414-2
+inline constexpr std::uint8_t dobby = 6;         // CiA 414
 inline constexpr std::uint8_t count = 6;
 } // namespace node
 
 namespace cob {
-inline constexpr std::uint32_t nmt = 0x000;       // {command u8, node u8 (0 = all)}
-inline constexpr std::uint32_t emergency = 0x080; // + node: {code u16, error register u8, 5 bytes of the maker}
+inline constexpr std::uint32_t nmt = 0x000; // {command u8, node u8 (0 = all)}
+inline constexpr std::uint32_t emergency =
+    0x080; // + node: {code u16, error register u8, 5 bytes of the maker}
 inline constexpr std::uint32_t heartbeat = 0x700; // + node: {state u8}
 
 // To the loom (RPDO).
-inline constexpr std::uint32_t main_drive_command = 0x201;    // {controlword u16, target velocity i32 0.1 rpm}
-inline constexpr std::uint32_t let_off_drive_command = 0x202; // {controlword u16, target velocity i32 0.001 rpm}
-inline constexpr std::uint32_t feeder_command = 0x205;        // {selected colour u8, speed u16 windings/min}
-inline constexpr std::uint32_t dobby_command = 0x206;         // {pick number u32, pattern bits u16}
+inline constexpr std::uint32_t main_drive_command = 0x201; // {controlword u16, target velocity i32 0.1 rpm}
+inline constexpr std::uint32_t let_off_drive_command =
+    0x202;                                             // {controlword u16, target velocity i32 0.001 rpm}
+inline constexpr std::uint32_t feeder_command = 0x205; // {selected colour u8, speed u16 windings/min}
+inline constexpr std::uint32_t dobby_command = 0x206;  // {pick number u32, pattern bits u16}
 
 // From the loom (TPDO).
-inline constexpr std::uint32_t main_drive_status = 0x181;    // {statusword u16, actual velocity i32 0.1 rpm}
-inline constexpr std::uint32_t let_off_drive_status = 0x182; // {statusword u16, actual velocity i32 0.001 rpm}
-inline constexpr std::uint32_t encoder_position = 0x183;     // {position u16 code, sample counter u16}
-inline constexpr std::uint32_t load_cell_tension = 0x184;    // {tension i16 0.1 N, status u8}
-inline constexpr std::uint32_t feeder_status = 0x185;        // {status u8, windings in stock u16}
-inline constexpr std::uint32_t dobby_status = 0x186;         // {pick number taken u32, level u8}; on change
+inline constexpr std::uint32_t main_drive_status = 0x181; // {statusword u16, actual velocity i32 0.1 rpm}
+inline constexpr std::uint32_t let_off_drive_status =
+    0x182;                                                // {statusword u16, actual velocity i32 0.001 rpm}
+inline constexpr std::uint32_t encoder_position = 0x183;  // {position u16 code, sample counter u16}
+inline constexpr std::uint32_t load_cell_tension = 0x184; // {tension i16 0.1 N, status u8}
+inline constexpr std::uint32_t feeder_status = 0x185;     // {status u8, windings in stock u16}
+inline constexpr std::uint32_t dobby_status = 0x186;      // {pick number taken u32, level u8}; on change
 } // namespace cob
 
 namespace length {
@@ -74,7 +79,8 @@ inline constexpr std::int64_t load_cell_period_us = 1'000;
 inline constexpr std::int64_t drive_status_period_us = 2'000;
 inline constexpr std::int64_t feeder_status_period_us = 10'000;
 inline constexpr std::int64_t heartbeat_period_us = 100'000;
-inline constexpr std::int64_t drive_command_timeout_us = 100'000; // an enabled drive stops itself after this silence
+inline constexpr std::int64_t drive_command_timeout_us =
+    100'000; // an enabled drive stops itself after this silence
 
 inline constexpr int encoder_codes_per_turn = 4096;
 inline constexpr int main_velocity_per_rpm = 10;
@@ -98,13 +104,14 @@ inline constexpr std::uint16_t command_lost = 0x8130;
 inline constexpr std::uint16_t wrong_length = 0x8210;
 } // namespace emergency_code
 
-// --- GPIO, chip "loom-io": offsets ----------------------------------------------------------------------------
+// --- GPIO, chip "loom-io": offsets
+// ----------------------------------------------------------------------------
 
 namespace line {
 // Inputs of the machine.
 inline constexpr unsigned emergency_stop = 0; // 1 = pressed (the opened circuit, inverted at the wire)
-inline constexpr unsigned drop_wire = 1;      // 1 = a drop wire has fallen; stays until the operator repaired it
-inline constexpr unsigned weft_detector = 2;  // a pulse of weft_pulse_us when a weft arrives
+inline constexpr unsigned drop_wire = 1; // 1 = a drop wire has fallen; stays until the operator repaired it
+inline constexpr unsigned weft_detector = 2; // a pulse of weft_pulse_us when a weft arrives
 inline constexpr unsigned button_start = 3;
 inline constexpr unsigned button_stop = 4;
 inline constexpr unsigned button_acknowledge = 5;
@@ -123,7 +130,8 @@ inline constexpr unsigned chip_lines = 14;
 
 inline constexpr std::int64_t weft_pulse_us = 3'000;
 
-// --- Modbus slave of the climate and lubrication unit ---------------------------------------------------------
+// --- Modbus slave of the climate and lubrication unit
+// ---------------------------------------------------------
 
 namespace modbus {
 inline constexpr int unit = 1;
@@ -149,7 +157,8 @@ inline constexpr std::uint16_t count = 1;
 } // namespace discrete_input
 } // namespace modbus
 
-// --- Nominal figures of the loom: what its maker's data sheet tells the machine -------------------------------
+// --- Nominal figures of the loom: what its maker's data sheet tells the machine
+// -------------------------------
 
 namespace nominal {
 inline constexpr double speed_rpm = 600.0;
@@ -166,7 +175,7 @@ inline constexpr std::int64_t brake_dead_us = 8'000;
 inline constexpr double brake_distance_deg = 49.0; // from the line's edge to standstill, at speed_rpm
 inline constexpr double tension_n = 300.0;
 inline constexpr double tension_band_n = 30.0;
-inline constexpr double pick_spacing_mm = 2.0; // take-up of one turn
+inline constexpr double pick_spacing_mm = 2.0;  // take-up of one turn
 inline constexpr double beam_radius_mm = 400.0; // of a full warp beam
 inline constexpr double oil_pressure_bar = 2.5;
 inline constexpr double oil_pressure_least_bar = 1.0; // below it the loom must not run

@@ -1,4 +1,5 @@
-// A classic CAN frame as the plant sees it, its little-endian fields, and the queue of frames on their way out.
+// A classic CAN frame as the plant sees it, its little-endian fields, and the queue of frames on their way
+// out.
 #pragma once
 
 #include "kernel/base/digest.hpp"
@@ -43,15 +44,15 @@ private:
 };
 
 /// The little-endian number of `bytes` bytes from `offset`; the caller has checked the frame's length.
-constexpr std::uint32_t field_of(const CanFrame& frame, std::size_t offset, unsigned bytes) noexcept TAPPET_REALTIME {
+constexpr std::uint32_t field_of(const CanFrame& frame, std::size_t offset, unsigned bytes) noexcept
+    TAPPET_REALTIME {
     std::uint32_t value = 0;
     for (unsigned i = 0; i < bytes; ++i) value |= std::uint32_t{frame.data[offset + i]} << (8 * i);
     return value;
 }
 
 /// A ring of what waits to be fetched. When nobody fetches, the oldest is lost and counted.
-template <class T, std::size_t N>
-class Outbox {
+template <class T, std::size_t N> class Outbox {
 public:
     constexpr void push(const T& item) noexcept TAPPET_REALTIME {
         if (used_ == N) {

@@ -13,8 +13,7 @@ namespace tappet::loom {
 
 /// Modbus exception codes the unit answers with.
 enum class ModbusError : std::uint8_t { illegal_address = 2, illegal_value = 3 };
-template <class T>
-using ModbusAnswer = std::expected<T, ModbusError>;
+template <class T> using ModbusAnswer = std::expected<T, ModbusError>;
 
 class Climate {
 public:
@@ -27,7 +26,8 @@ public:
     }
 
     void step() noexcept TAPPET_REALTIME {
-        const double set_point = 0.1 * static_cast<double>(holding_[wires::modbus::holding_register::humidity_set_point]);
+        const double set_point =
+            0.1 * static_cast<double>(holding_[wires::modbus::holding_register::humidity_set_point]);
         humidity_percent_ += (set_point - humidity_percent_) * (period_s / 60.0);
         const bool pumped = pump_ && !oil_lost_;
         const double wanted_bar = pumped ? wires::nominal::oil_pressure_bar : 0.0;
@@ -40,22 +40,30 @@ public:
     [[nodiscard]] double oil_bar() const noexcept TAPPET_REALTIME { return oil_bar_; }
     [[nodiscard]] bool pump() const noexcept TAPPET_REALTIME { return pump_; }
 
-    [[nodiscard]] ModbusAnswer<std::uint16_t> input_register(std::uint16_t address) const noexcept TAPPET_REALTIME {
+    [[nodiscard]] ModbusAnswer<std::uint16_t> input_register(std::uint16_t address) const noexcept
+        TAPPET_REALTIME {
         namespace at = wires::modbus::input_register;
         switch (address) {
-        case at::room_temperature: return word(temperature_c_ * 10.0);
-        case at::humidity: return word(humidity_percent_ * 10.0);
-        case at::oil_pressure: return word(oil_bar_ * 100.0);
-        case at::oil_temperature: return word(oil_c_ * 10.0);
-        default: return std::unexpected(ModbusError::illegal_address);
+        case at::room_temperature:
+            return word(temperature_c_ * 10.0);
+        case at::humidity:
+            return word(humidity_percent_ * 10.0);
+        case at::oil_pressure:
+            return word(oil_bar_ * 100.0);
+        case at::oil_temperature:
+            return word(oil_c_ * 10.0);
+        default:
+            return std::unexpected(ModbusError::illegal_address);
         }
     }
-    [[nodiscard]] ModbusAnswer<std::uint16_t> holding_register(std::uint16_t address) const noexcept TAPPET_REALTIME {
+    [[nodiscard]] ModbusAnswer<std::uint16_t> holding_register(std::uint16_t address) const noexcept
+        TAPPET_REALTIME {
         if (address >= holding_.size()) return std::unexpected(ModbusError::illegal_address);
         return holding_[address];
     }
     [[nodiscard]] ModbusAnswer<bool> coil(std::uint16_t address) const noexcept TAPPET_REALTIME {
-        if (address != wires::modbus::coil::lubrication_pump) return std::unexpected(ModbusError::illegal_address);
+        if (address != wires::modbus::coil::lubrication_pump)
+            return std::unexpected(ModbusError::illegal_address);
         return pump_;
     }
     [[nodiscard]] ModbusAnswer<bool> discrete_input(std::uint16_t address) const noexcept TAPPET_REALTIME {
@@ -63,7 +71,8 @@ public:
             return std::unexpected(ModbusError::illegal_address);
         return oil_level_low_;
     }
-    ModbusAnswer<void> write_holding_register(std::uint16_t address, std::uint16_t value) noexcept TAPPET_REALTIME {
+    ModbusAnswer<void> write_holding_register(std::uint16_t address, std::uint16_t value) noexcept
+        TAPPET_REALTIME {
         if (address >= holding_.size()) return std::unexpected(ModbusError::illegal_address);
         const Limits limits = limits_of[address];
         if (value < limits.low || value > limits.high) return std::unexpected(ModbusError::illegal_value);
@@ -71,7 +80,8 @@ public:
         return {};
     }
     ModbusAnswer<void> write_coil(std::uint16_t address, bool on) noexcept TAPPET_REALTIME {
-        if (address != wires::modbus::coil::lubrication_pump) return std::unexpected(ModbusError::illegal_address);
+        if (address != wires::modbus::coil::lubrication_pump)
+            return std::unexpected(ModbusError::illegal_address);
         pump_ = on;
         return {};
     }
@@ -80,7 +90,8 @@ private:
     struct Limits {
         std::uint16_t low, high;
     };
-    static constexpr std::array<Limits, wires::modbus::holding_register::count> limits_of{{{300, 900}, {10, 3600}}};
+    static constexpr std::array<Limits, wires::modbus::holding_register::count> limits_of{
+        {{300, 900}, {10, 3600}}};
     static constexpr double period_s = to_seconds(period);
 
     static std::uint16_t word(double value) noexcept TAPPET_REALTIME {

@@ -1,4 +1,5 @@
-// A contact wired to an input of the machine: its level, its bouncing, and the edges it makes, each at its time.
+// A contact wired to an input of the machine: its level, its bouncing, and the edges it makes, each at its
+// time.
 #pragma once
 
 #include "apps/carpet_loom/plant/can_frame.hpp"
@@ -30,14 +31,16 @@ private:
 
 class Contact {
 public:
-    constexpr Contact(unsigned line, bool bounces) noexcept TAPPET_REALTIME : line_(line), bounces_(bounces) {}
+    constexpr Contact(unsigned line, bool bounces) noexcept TAPPET_REALTIME : line_(line),
+                                                                              bounces_(bounces) {}
 
     [[nodiscard]] bool level() const noexcept TAPPET_REALTIME { return level_; }
     [[nodiscard]] bool closed() const noexcept TAPPET_REALTIME { return wanted_; }
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME { return std::min(flip_at_, open_at_); }
 
     /// Opens or closes now, and opens again at `open_at`.
-    void set(bool closed, Time now, Random& random, EdgeOutbox& out, Time open_at = never) noexcept TAPPET_REALTIME {
+    void set(bool closed, Time now, Random& random, EdgeOutbox& out, Time open_at = never) noexcept
+        TAPPET_REALTIME {
         open_at_ = closed ? open_at : never;
         if (closed == wanted_) return;
         wanted_ = closed;

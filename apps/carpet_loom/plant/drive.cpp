@@ -25,24 +25,43 @@ constexpr Duration command_timeout = std::chrono::microseconds{wires::drive_comm
 Power Drive::power() const noexcept TAPPET_REALTIME {
     if (!node_.alive()) return Power::off;
     switch (state_) {
-    case DriveState::operation_enabled: return Power::follow;
+    case DriveState::operation_enabled:
+        return Power::follow;
     case DriveState::quick_stop_active:
-    case DriveState::fault_reaction_active: return Power::stop;
-    default: return Power::off;
+    case DriveState::fault_reaction_active:
+        return Power::stop;
+    default:
+        return Power::off;
     }
 }
 
 std::uint16_t Drive::statusword() const noexcept TAPPET_REALTIME {
     unsigned word = 0;
     switch (state_) {
-    case DriveState::not_ready: word = 0x00; break;
-    case DriveState::switch_on_disabled: word = 0x40; break;
-    case DriveState::ready_to_switch_on: word = 0x21; break;
-    case DriveState::switched_on: word = 0x23; break;
-    case DriveState::operation_enabled: word = 0x27; break;
-    case DriveState::quick_stop_active: word = 0x07; break;
-    case DriveState::fault_reaction_active: word = 0x0F; break;
-    case DriveState::fault: word = 0x08; break;
+    case DriveState::not_ready:
+        word = 0x00;
+        break;
+    case DriveState::switch_on_disabled:
+        word = 0x40;
+        break;
+    case DriveState::ready_to_switch_on:
+        word = 0x21;
+        break;
+    case DriveState::switched_on:
+        word = 0x23;
+        break;
+    case DriveState::operation_enabled:
+        word = 0x27;
+        break;
+    case DriveState::quick_stop_active:
+        word = 0x07;
+        break;
+    case DriveState::fault_reaction_active:
+        word = 0x0F;
+        break;
+    case DriveState::fault:
+        word = 0x08;
+        break;
     }
     if (state_ != DriveState::not_ready) word |= 0x0010u; // voltage enabled: the mains are always there
     if (node_.operational()) word |= 0x0200u;             // remote
@@ -84,7 +103,8 @@ void Drive::control(std::uint16_t word) noexcept TAPPET_REALTIME {
     case DriveState::quick_stop_active:
         if (order == Order::disable_voltage) state_ = DriveState::switch_on_disabled; // 12
         break;
-    default: break;
+    default:
+        break;
     }
 }
 
@@ -98,7 +118,8 @@ void Drive::command(const CanFrame& frame, Time now, FrameOutbox& out) noexcept 
     target_ = static_cast<std::int32_t>(field_of(frame, 2, 4));
     const bool was_faulty = state_ == DriveState::fault;
     control(static_cast<std::uint16_t>(field_of(frame, 0, 2)));
-    if (was_faulty && state_ != DriveState::fault) send_emergency(wires::emergency_code::error_reset, now, out);
+    if (was_faulty && state_ != DriveState::fault)
+        send_emergency(wires::emergency_code::error_reset, now, out);
 }
 
 void Drive::supervise(bool standing, bool at_target, bool at_limit, Time now, FrameOutbox& out) noexcept
@@ -106,7 +127,8 @@ void Drive::supervise(bool standing, bool at_target, bool at_limit, Time now, Fr
     at_target_ = at_target;
     at_limit_ = at_limit;
     const bool energised = state_ == DriveState::operation_enabled || state_ == DriveState::switched_on;
-    if (energised && now - last_command_ > command_timeout) trip(wires::emergency_code::command_lost, now, out);
+    if (energised && now - last_command_ > command_timeout)
+        trip(wires::emergency_code::command_lost, now, out);
     if (state_ == DriveState::not_ready && node_.alive()) state_ = DriveState::switch_on_disabled; // 1
     if (!standing) return;
     if (state_ == DriveState::quick_stop_active) state_ = DriveState::switch_on_disabled; // 12
@@ -137,7 +159,9 @@ void Drive::send_status(std::int32_t actual, Time due, FrameOutbox& out) const n
 void Drive::send_emergency(std::uint16_t code, Time now, FrameOutbox& out) const noexcept TAPPET_REALTIME {
     if (!node_.alive()) return;
     // Error register (1001h): bit 0 generic, bit 4 communication; both clear when all errors are gone.
-    const std::uint8_t reg = code == 0 ? std::uint8_t{0} : (code & 0xF000u) == 0x8000u ? std::uint8_t{0x11} : std::uint8_t{0x01};
+    const std::uint8_t reg = code == 0                     ? std::uint8_t{0}
+                             : (code & 0xF000u) == 0x8000u ? std::uint8_t{0x11}
+                                                           : std::uint8_t{0x01};
     out.push({FrameWriter(wires::cob::emergency + node_.id()).u16(code).u8(reg).u32(0).u8(0).frame(), now});
 }
 

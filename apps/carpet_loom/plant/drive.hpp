@@ -1,4 +1,5 @@
-// A velocity drive after CiA 402: its state machine, its process data and its emergency messages. Not its motor.
+// A velocity drive after CiA 402: its state machine, its process data and its emergency messages. Not its
+// motor.
 #pragma once
 
 #include "apps/carpet_loom/plant/node.hpp"
@@ -37,7 +38,8 @@ public:
     /// The RPDO. A frame too short is refused with an emergency message and otherwise ignored.
     void command(const CanFrame& frame, Time now, FrameOutbox& out) noexcept TAPPET_REALTIME;
     /// Supervision and automatic transitions; the motor stands or not, follows its target or not.
-    void supervise(bool standing, bool at_target, bool at_limit, Time now, FrameOutbox& out) noexcept TAPPET_REALTIME;
+    void supervise(bool standing, bool at_target, bool at_limit, Time now, FrameOutbox& out) noexcept
+        TAPPET_REALTIME;
     void trip(std::uint16_t code, Time now, FrameOutbox& out) noexcept TAPPET_REALTIME;
     /// Power-up or NMT reset node.
     void restart() noexcept TAPPET_REALTIME;

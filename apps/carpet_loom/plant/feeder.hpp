@@ -12,7 +12,9 @@ public:
 
     [[nodiscard]] Node& node() noexcept TAPPET_REALTIME { return node_; }
     [[nodiscard]] const Node& node() const noexcept TAPPET_REALTIME { return node_; }
-    [[nodiscard]] bool fed() const noexcept TAPPET_REALTIME { return windings_ >= wires::nominal::windings_per_pick; }
+    [[nodiscard]] bool fed() const noexcept TAPPET_REALTIME {
+        return windings_ >= wires::nominal::windings_per_pick;
+    }
     [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return empty_; }
     [[nodiscard]] std::uint8_t colour() const noexcept TAPPET_REALTIME { return colour_; }
 
@@ -34,7 +36,8 @@ public:
     /// Every status period: winds by the commanded speed, then tells.
     void tick(Time due, FrameOutbox& out) noexcept TAPPET_REALTIME {
         if (!empty_ && windings_ < drum) {
-            wound_ += per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period_us / 1000); // 1/60000
+            wound_ +=
+                per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period_us / 1000); // 1/60000
             const std::uint32_t whole = wound_ / 60'000;
             wound_ -= whole * 60'000;
             windings_ = std::min(drum, windings_ + whole);
@@ -42,7 +45,11 @@ public:
         std::uint8_t status = 0;
         if (fed() && !empty_) status |= wires::feeder_bit::ready;
         if (empty_) status |= wires::feeder_bit::empty;
-        out.push({FrameWriter(wires::cob::feeder_status).u8(status).u16(static_cast<std::uint16_t>(windings_)).frame(), due});
+        out.push({FrameWriter(wires::cob::feeder_status)
+                      .u8(status)
+                      .u16(static_cast<std::uint16_t>(windings_))
+                      .frame(),
+                  due});
     }
 
 private:

@@ -1,4 +1,5 @@
-// The weft: the release valve with its dead time, the flight through the shed, arrival, and what can go wrong.
+// The weft: the release valve with its dead time, the flight through the shed, arrival, and what can go
+// wrong.
 #pragma once
 
 #include "apps/carpet_loom/plant/shapes.hpp"
@@ -17,8 +18,9 @@ class Insertion {
 public:
     explicit Insertion(Random& random) noexcept TAPPET_REALTIME {
         const double dead = 0.9 + 0.2 * random.unit();
-        dead_ = Duration{round_to_int(dead * static_cast<double>(wires::nominal::weft_release_dead_us) * 1000.0)};
-        yarn_deg_ = -1.5 + 3.0 * random.unit();
+        dead_ =
+            Duration{round_to_int(dead * static_cast<double>(wires::nominal::weft_release_dead_us) * 1000.0)};
+        yarn_deg_ = -3.0 + 6.0 * random.unit();
     }
 
     void set_valve(bool on, Time now) noexcept TAPPET_REALTIME {
@@ -51,14 +53,16 @@ public:
             return Release::closed_shed;
         if (wefts_ > 0) return Release::second_weft;
         ++wefts_;
-        const double yarn = yarn_deg_ + 2.0 * (random.unit() - random_half);
+        const double yarn = yarn_deg_ + 3.0 * (random.unit() - 0.5);
         if (fed && !breaks) gate_deg_ = position_deg + flight_deg + yarn;
         return Release::flies;
     }
-    /// The shaft moved over a step that began at `begin` and took dt: past the gate, only the yarn's lag is left.
+    /// The shaft moved over a step that began at `begin` and took dt: past the gate, only the yarn's lag is
+    /// left.
     void follow(double before_deg, double after_deg, Time begin, double dt_s) noexcept TAPPET_REALTIME {
         if (after_deg < gate_deg_) return;
-        const double part = after_deg > before_deg ? (gate_deg_ - before_deg) / (after_deg - before_deg) : 1.0;
+        const double part =
+            after_deg > before_deg ? (gate_deg_ - before_deg) / (after_deg - before_deg) : 1.0;
         arrive_at_ = begin + Duration{round_to_int(part * dt_s * 1e9)} + lag;
         gate_deg_ = no_gate_deg;
     }
@@ -87,7 +91,6 @@ public:
 
 private:
     static constexpr double no_gate_deg = 1e18;
-    static constexpr double random_half = 0.5;
     // The gripper's part is geared to the shaft, the yarn's part takes time: together the nominal arrival.
     static constexpr Duration lag = 4ms;
     static constexpr double lag_deg = 6.0 * wires::nominal::speed_rpm * to_seconds(lag);

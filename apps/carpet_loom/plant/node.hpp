@@ -24,7 +24,8 @@ public:
     Node(std::uint8_t id, std::int64_t pdo_period_us, Random& random) noexcept TAPPET_REALTIME : id_(id) {
         const std::int64_t ppm = random.between(-50, 50);
         pdo_.period = Duration{pdo_period_us * 1000 + pdo_period_us * ppm / 1000};
-        heartbeat_.period = Duration{wires::heartbeat_period_us * 1000 + wires::heartbeat_period_us * ppm / 1000};
+        heartbeat_.period =
+            Duration{wires::heartbeat_period_us * 1000 + wires::heartbeat_period_us * ppm / 1000};
         boot_at_ = at_ns(random.between(20'000'000, 120'000'000));
     }
 
@@ -47,19 +48,30 @@ public:
             if (!operational() && pdo_.period > Duration{}) pdo_.start(now);
             state_ = wires::nmt_state::operational;
             return false;
-        case order::stop: leave_operational(wires::nmt_state::stopped); return false;
-        case order::pre_operational: leave_operational(wires::nmt_state::pre_operational); return false;
-        case order::reset_communication: restart(now); return false;
-        case order::reset_node: restart(now); return true;
-        default: return false;
+        case order::stop:
+            leave_operational(wires::nmt_state::stopped);
+            return false;
+        case order::pre_operational:
+            leave_operational(wires::nmt_state::pre_operational);
+            return false;
+        case order::reset_communication:
+            restart(now);
+            return false;
+        case order::reset_node:
+            restart(now);
+            return true;
+        default:
+            return false;
         }
     }
 
-    /// Sends the boot-up message or the heartbeat when due. True when the process data is due: the caller sends it.
+    /// Sends the boot-up message or the heartbeat when due. True when the process data is due: the caller
+    /// sends it.
     bool tick(Time now, FrameOutbox& out) noexcept TAPPET_REALTIME {
         if (!alive_) return false;
         if (boot_at_ <= now) {
-            out.push({FrameWriter(wires::cob::heartbeat + id_).u8(wires::nmt_state::boot_up).frame(), boot_at_});
+            out.push(
+                {FrameWriter(wires::cob::heartbeat + id_).u8(wires::nmt_state::boot_up).frame(), boot_at_});
             heartbeat_.start(boot_at_);
             boot_at_ = never;
             state_ = wires::nmt_state::pre_operational;

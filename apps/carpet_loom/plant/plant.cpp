@@ -16,20 +16,29 @@ std::int32_t in_units(double rad_s, double unit_rad_s) noexcept TAPPET_REALTIME 
 } // namespace
 
 Plant::Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALTIME
-    : settings_(settings), seed_(seed), random_(seed), main_(wires::node::main_drive, random_),
+    : settings_(settings),
+      seed_(seed),
+      random_(seed),
+      main_(wires::node::main_drive, random_),
       let_off_(wires::node::let_off_drive, random_),
       encoder_(wires::node::encoder, wires::encoder_period_us, random_),
-      load_cell_(wires::node::load_cell, wires::load_cell_period_us, random_), feeder_(random_), dobby_(random_),
-      shaft_(random_), brake_(settings.brake_wear_per_stop, random_), warp_(random_), insertion_(random_),
-      climate_(random_), operator_(settings.operator_reaction),
+      load_cell_(wires::node::load_cell, wires::load_cell_period_us, random_),
+      feeder_(random_),
+      dobby_(random_),
+      shaft_(random_),
+      brake_(settings.brake_wear_per_stop, random_),
+      warp_(random_),
+      insertion_(random_),
+      climate_(random_),
+      operator_(settings.operator_reaction),
       contacts_{Contact{wires::line::emergency_stop, settings.contact_bounce},
                 Contact{wires::line::drop_wire, settings.contact_bounce},
                 Contact{wires::line::weft_detector, false},
                 Contact{wires::line::button_start, settings.contact_bounce},
                 Contact{wires::line::button_stop, settings.contact_bounce},
                 Contact{wires::line::button_acknowledge, settings.contact_bounce}},
-      next_mark_deg_(0.0), warp_breaks_at_deg_(1e18) {
-    next_mark_deg_ = 360.0; // it stands before the beat-up, harnesses near level
+      next_mark_deg_(360.0),
+      warp_breaks_at_deg_(1e18) {
     run_script();
     begin_step();
     find_next_timer();
@@ -56,11 +65,11 @@ void Plant::begin_step() noexcept TAPPET_REALTIME {
     const double main_target = main_unit_rad_s * static_cast<double>(main_.target());
     const double speed = shaft_.speed_rad_s();
     const std::uint64_t faults_before = main_.faults() + let_off_.faults();
-    main_.supervise(speed > -0.05 && speed < 0.05, std::abs(speed - main_target) < 0.5, shaft_.saturated(), step_begin_,
-                    frames_);
+    main_.supervise(speed > -0.05 && speed < 0.05, std::abs(speed - main_target) < 0.5, shaft_.saturated(),
+                    step_begin_, frames_);
     const double let_off_target = let_off_unit_rad_s * static_cast<double>(let_off_.target());
-    let_off_.supervise(warp_.standing(), std::abs(warp_.beam_rad_s() - let_off_target) < 0.002, false, step_begin_,
-                       frames_);
+    let_off_.supervise(warp_.standing(), std::abs(warp_.beam_rad_s() - let_off_target) < 0.002, false,
+                       step_begin_, frames_);
 
     const bool main_idle = main_.power() == Power::off || main_.target() == 0;
     const bool let_off_idle = let_off_.power() != Power::follow || let_off_.target() == 0;
@@ -71,8 +80,10 @@ void Plant::begin_step() noexcept TAPPET_REALTIME {
     shaft_.begin_step(main_.power(), main_target, brake_.torque_nm(), dt_s);
 
     const bool blocked = shaft_.saturated() && shaft_.standing();
-    if (!blocked) blocked_since_ = never;
-    else if (blocked_since_ == never) blocked_since_ = step_begin_;
+    if (!blocked)
+        blocked_since_ = never;
+    else if (blocked_since_ == never)
+        blocked_since_ = step_begin_;
     else if (step_begin_ - blocked_since_ > blocked_limit && main_.power() == Power::follow) {
         ++report_.damage.motor_blocked;
         main_.trip(wires::emergency_code::motor_blocked, step_begin_, frames_);
@@ -86,7 +97,8 @@ void Plant::end_step() noexcept TAPPET_REALTIME {
     const double after = shaft_.position_deg();
     const Duration dt = step_end_ - step_begin_;
     const double dt_s = to_seconds(dt);
-    warp_.step(let_off_.power(), let_off_unit_rad_s * static_cast<double>(let_off_.target()), after - before, dt_s);
+    warp_.step(let_off_.power(), let_off_unit_rad_s * static_cast<double>(let_off_.target()), after - before,
+               dt_s);
     if (after == before && !stopped) return;
     insertion_.follow(before, after, step_begin_, dt_s);
     pass_marks(after);
@@ -104,8 +116,8 @@ void Plant::shorten_rest() noexcept TAPPET_REALTIME {
 
 void Plant::find_next_timer() noexcept TAPPET_REALTIME {
     Time next = std::min({main_.node().next(), let_off_.node().next(), encoder_.next(), load_cell_.next(),
-                          feeder_.node().next(), dobby_.node().next(), insertion_.next(), climate_at_, operator_at_,
-                          valve_check_at_, faults_end_at_});
+                          feeder_.node().next(), dobby_.node().next(), insertion_.next(), climate_at_,
+                          operator_at_, valve_check_at_, faults_end_at_});
     for (const Contact& contact : contacts_) next = std::min(next, contact.next());
     next_timer_ = next;
 }
@@ -159,12 +171,14 @@ void Plant::tick_nodes(Time now) noexcept TAPPET_REALTIME {
     if (load_cell_.next() <= now && load_cell_.tick(now, frames_)) {
         const double first = random_.unit();
         const double second = random_.unit();
-        const double noisy = warp_.tension_n(shaft_.position_deg_at(into_s)) + load_cell_noise_n * (first - second);
+        const double noisy =
+            warp_.tension_n(shaft_.position_deg_at(into_s)) + load_cell_noise_n * (first - second);
         const std::uint8_t status = noisy > Warp::hard_high_n
                                         ? wires::load_cell_bit::valid | wires::load_cell_bit::overload
                                         : wires::load_cell_bit::valid;
         frames_.push({FrameWriter(wires::cob::load_cell_tension)
-                          .i16(static_cast<std::int16_t>(round_to_int(clamp_to(noisy * wires::tension_per_n, 32000.0))))
+                          .i16(static_cast<std::int16_t>(
+                              round_to_int(clamp_to(noisy * wires::tension_per_n, 32000.0))))
                           .u8(status)
                           .frame(),
                       now});
@@ -181,7 +195,8 @@ void Plant::manage_network(const CanFrame& frame, Time now) noexcept TAPPET_REAL
         Node* const node = node_of(id);
         const bool was_operational = node->operational();
         if (node->network_management(frame.data[0], frame.data[1], now)) restart_application(id);
-        if (id == wires::node::dobby && !was_operational && node->operational()) dobby_.introduce(now, frames_);
+        if (id == wires::node::dobby && !was_operational && node->operational())
+            dobby_.introduce(now, frames_);
     }
 }
 
@@ -191,7 +206,9 @@ void Plant::receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME {
     log_.add((std::uint64_t{frame.id} << 8) | frame.length);
     log_.add(std::bit_cast<std::uint64_t>(frame.data));
     switch (frame.id) {
-    case wires::cob::nmt: manage_network(frame, now_); break;
+    case wires::cob::nmt:
+        manage_network(frame, now_);
+        break;
     case wires::cob::main_drive_command:
         main_.command(frame, now_, frames_);
         shorten_rest();
@@ -200,9 +217,14 @@ void Plant::receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME {
         let_off_.command(frame, now_, frames_);
         shorten_rest();
         break;
-    case wires::cob::feeder_command: feeder_.command(frame); break;
-    case wires::cob::dobby_command: dobby_.command(frame); break;
-    default: break;
+    case wires::cob::feeder_command:
+        feeder_.command(frame);
+        break;
+    case wires::cob::dobby_command:
+        dobby_.command(frame);
+        break;
+    default:
+        break;
     }
     find_next_timer();
 }

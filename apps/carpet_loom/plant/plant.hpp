@@ -1,4 +1,5 @@
-// The carpet loom at the other end of the wires: frames, lines and registers outside, physics and an operator inside.
+// The carpet loom at the other end of the wires: frames, lines and registers outside, physics and an operator
+// inside.
 #pragma once
 
 #include "apps/carpet_loom/plant/climate.hpp"
@@ -16,9 +17,9 @@ namespace tappet::loom {
 
 enum class Button : std::uint8_t { start, stop, acknowledge, emergency_stop };
 
-/// Time begins at Time{0} and never runs backwards: every call that carries a time first advances to it. The physics
-/// runs on a grid of its own, so a run does not depend on how often it is advanced. One thread at a time.
-/// Real-time: a call costs a bounded time per microsecond of plant time advanced.
+/// Time begins at Time{0} and never runs backwards: every call that carries a time first advances to it. The
+/// physics runs on a grid of its own, so a run does not depend on how often it is advanced. One thread at a
+/// time. Real-time: a call costs a bounded time per microsecond of plant time advanced.
 class Plant {
 public:
     static constexpr Duration step = 100us;
@@ -27,12 +28,16 @@ public:
     Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALTIME;
 
     void advance(Time now) noexcept TAPPET_REALTIME;
-    /// Nothing leaves the plant before this time unless it is acted upon: a world in virtual time may leap to it.
-    [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME { return std::min(next_timer_, step_end_); }
+    /// Nothing leaves the plant before this time unless it is acted upon: a world in virtual time may leap to
+    /// it.
+    [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME {
+        return std::min(next_timer_, step_end_);
+    }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return now_; }
 
-    // CAN: a frame from the machine; the plant's own frames, in the order they were due. Unknown identifiers are
-    // none of the plant's business, wrong lengths are ignored (a drive answers with an emergency message).
+    // CAN: a frame from the machine; the plant's own frames, in the order they were due. Unknown identifiers
+    // are none of the plant's business, wrong lengths are ignored (a drive answers with an emergency
+    // message).
     void receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool transmit(CanFrame& frame, Time& due) noexcept TAPPET_REALTIME;
 
@@ -58,7 +63,9 @@ public:
     [[nodiscard]] double speed_rpm() const noexcept TAPPET_REALTIME {
         return shaft_.speed_rad_s_at(into_step_s(now_)) / rad_s_per_rpm;
     }
-    [[nodiscard]] double tension_n() const noexcept TAPPET_REALTIME { return warp_.tension_n(position_deg()); }
+    [[nodiscard]] double tension_n() const noexcept TAPPET_REALTIME {
+        return warp_.tension_n(position_deg());
+    }
     [[nodiscard]] const Drive& main_drive() const noexcept TAPPET_REALTIME { return main_; }
     [[nodiscard]] const Drive& let_off_drive() const noexcept TAPPET_REALTIME { return let_off_; }
     [[nodiscard]] const Dobby& dobby() const noexcept TAPPET_REALTIME { return dobby_; }
@@ -79,7 +86,9 @@ private:
     void tick_nodes(Time now) noexcept TAPPET_REALTIME;
     void find_next_timer() noexcept TAPPET_REALTIME;
     void shorten_rest() noexcept TAPPET_REALTIME;
-    [[nodiscard]] double into_step_s(Time at) const noexcept TAPPET_REALTIME { return to_seconds(at - step_begin_); }
+    [[nodiscard]] double into_step_s(Time at) const noexcept TAPPET_REALTIME {
+        return to_seconds(at - step_begin_);
+    }
     [[nodiscard]] double position_deg_at(Time at) const noexcept TAPPET_REALTIME {
         return shaft_.position_deg_at(into_step_s(at));
     }
@@ -139,8 +148,9 @@ private:
     std::uint16_t encoder_samples_ = 0;
 
     // The turn.
-    double turn_deg_ = 0.0;      // where the present turn began
-    double next_mark_deg_ = 0.0; // positions are passed once, however the shaft is jogged
+    double turn_deg_ = 0.0; // where the present turn began
+    double next_mark_deg_;  // first the beat-up: it is parked near level. Passed once, however the shaft is
+                            // jogged
     std::size_t next_mark_ = 0;
     double brake_edge_deg_ = 0.0;
     bool braked_ = false; // since the shaft last began to move

@@ -10,12 +10,18 @@ namespace tappet::loom {
 
 const char* name_of(StopCause cause) noexcept TAPPET_REALTIME {
     switch (cause) {
-    case StopCause::emergency: return "emergency";
-    case StopCause::fault: return "fault";
-    case StopCause::warp: return "warp";
-    case StopCause::weft: return "weft";
-    case StopCause::operator_stop: return "operator";
-    case StopCause::machine: return "machine";
+    case StopCause::emergency:
+        return "emergency";
+    case StopCause::fault:
+        return "fault";
+    case StopCause::warp:
+        return "warp";
+    case StopCause::weft:
+        return "weft";
+    case StopCause::operator_stop:
+        return "operator";
+    case StopCause::machine:
+        return "machine";
     }
     return "unknown";
 }
@@ -81,7 +87,8 @@ public:
         const auto size = static_cast<std::uint64_t>(thousandths < 0 ? -thousandths : thousandths);
         number(size / 1000);
         const std::uint64_t rest = size % 1000;
-        const char decimals[4] = {'.', static_cast<char>('0' + rest / 100), static_cast<char>('0' + rest / 10 % 10),
+        const char decimals[4] = {'.', static_cast<char>('0' + rest / 100),
+                                  static_cast<char>('0' + rest / 10 % 10),
                                   static_cast<char>('0' + rest % 10)};
         put({decimals, 4});
     }

@@ -59,8 +59,8 @@ struct Damage {
     std::uint64_t motor_blocked = 0;   // the motor driven against the brake until it tripped
     std::uint64_t ran_dry = 0;         // run for long without oil pressure
     [[nodiscard]] std::uint64_t total() const noexcept TAPPET_REALTIME {
-        return closed_shed_wefts + double_wefts + late_wefts + valve_after_emergency + tension_high + tension_low +
-               moved_unpowered + motor_blocked + ran_dry;
+        return closed_shed_wefts + double_wefts + late_wefts + valve_after_emergency + tension_high +
+               tension_low + moved_unpowered + motor_blocked + ran_dry;
     }
 };
 
@@ -97,8 +97,8 @@ struct Report {
     std::uint64_t digest = 0;
 };
 
-/// As one JSON object with a closing newline. The number of characters written; 0 when the buffer is too small
-/// (64 kB hold every report).
+/// As one JSON object with a closing newline. The number of characters written; 0 when the buffer is too
+/// small (64 kB hold every report).
 [[nodiscard]] std::size_t write_json(const Report& report, std::span<char> buffer) noexcept;
 
 } // namespace tappet::loom

@@ -1,4 +1,5 @@
-// What a simulated loom is asked to do besides weaving: faults by chance and by script, and how its operator works.
+// What a simulated loom is asked to do besides weaving: faults by chance and by script, and how its operator
+// works.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -25,8 +26,8 @@ struct ScriptedFault {
     Fault fault = Fault::weft_break;
     Time at = never;
     std::uint64_t at_pick = ~std::uint64_t{0};
-    Duration lasts{};       // 0: until the operator repairs it
-    std::uint8_t node = 0;  // node_lost, drive_fault
+    Duration lasts{};      // 0: until the operator repairs it
+    std::uint8_t node = 0; // node_lost, drive_fault
     bool operator==(const ScriptedFault&) const = default;
 };
 
@@ -40,8 +41,8 @@ struct Settings {
 
     bool operator_present = true;
     Duration operator_reaction = 1s; // from standstill to the repair; acknowledge and start take a part of it
-    std::uint64_t last_pick = 0;     // the operator presses stop when it is reached and starts no more; 0 = never
-    bool contact_bounce = true;      // of buttons and drop wires
+    std::uint64_t last_pick = 0; // the operator presses stop when it is reached and starts no more; 0 = never
+    bool contact_bounce = true;  // of buttons and drop wires
     double brake_wear_per_stop = 0.001; // part of the torque lost by each stop, at most 0.15 in all
 };
 

@@ -27,7 +27,8 @@ double MainShaft::motor_nm(Power power, double target_rad_s, double dt_s) noexce
     return torque;
 }
 
-void MainShaft::begin_step(Power power, double target_rad_s, double brake_nm, double dt_s) noexcept TAPPET_REALTIME {
+void MainShaft::begin_step(Power power, double target_rad_s, double brake_nm, double dt_s) noexcept
+    TAPPET_REALTIME {
     dt_s_ = dt_s;
     moving_s_ = dt_s;
     stops_ = false;
@@ -41,7 +42,8 @@ void MainShaft::begin_step(Power power, double target_rad_s, double brake_nm, do
     }
     const double part = speed_rad_s_ / nominal_rad_s;
     const double sley = sley_nm * part * part * sine_of_turns(position_deg_ / 360.0);
-    const double against = (speed_rad_s_ > 0.0 ? 1.0 : -1.0) * (brake_nm + coulomb_nm_) + viscous_nm_s * speed_rad_s_;
+    const double against =
+        (speed_rad_s_ > 0.0 ? 1.0 : -1.0) * (brake_nm + coulomb_nm_) + viscous_nm_s * speed_rad_s_;
     acceleration_ = (motor + sley - against) / inertia_kg_m2_;
     const double end_speed = speed_rad_s_ + acceleration_ * dt_s;
     if ((end_speed > 0.0) == (speed_rad_s_ > 0.0) && end_speed != 0.0) return;

@@ -1,4 +1,5 @@
-// The main shaft with its motor and its brake: torques in, position out, exact within each step of integration.
+// The main shaft with its motor and its brake: torques in, position out, exact within each step of
+// integration.
 #pragma once
 
 #include "apps/carpet_loom/plant/drive.hpp"
@@ -38,7 +39,9 @@ public:
 
 private:
     static constexpr double rise_s = 0.002;
-    [[nodiscard]] double full() const noexcept TAPPET_REALTIME { return full_torque_nm_ * (1.0 - worn_) * variation_; }
+    [[nodiscard]] double full() const noexcept TAPPET_REALTIME {
+        return full_torque_nm_ * (1.0 - worn_) * variation_;
+    }
 
     double full_torque_nm_ = 4400.0;
     double wear_per_stop_;
@@ -50,7 +53,8 @@ private:
     Time effect_at_{};
 };
 
-/// Motor, inertia, friction and the cyclic load of the sley. Positions count degrees from the turn the loom began in.
+/// Motor, inertia, friction and the cyclic load of the sley. Positions count degrees from the turn the loom
+/// began in.
 class MainShaft {
 public:
     static constexpr double torque_limit_nm = 90.0;
@@ -77,7 +81,9 @@ public:
         return into_step_s >= moving_s_ && stops_ ? 0.0 : speed_rad_s_ + acceleration_ * into_step_s;
     }
     [[nodiscard]] double speed_rad_s() const noexcept TAPPET_REALTIME { return speed_rad_s_; }
-    [[nodiscard]] bool standing() const noexcept TAPPET_REALTIME { return speed_rad_s_ == 0.0 && acceleration_ == 0.0; }
+    [[nodiscard]] bool standing() const noexcept TAPPET_REALTIME {
+        return speed_rad_s_ == 0.0 && acceleration_ == 0.0;
+    }
     [[nodiscard]] bool saturated() const noexcept TAPPET_REALTIME { return saturated_; }
     /// Into the last step, when the shaft came to its standstill.
     [[nodiscard]] double stopped_into_s() const noexcept TAPPET_REALTIME { return moving_s_; }

@@ -1,4 +1,5 @@
-// The warp between beam and cloth: a spring that the take-up stretches, the let-off feeds and the shed pulls at.
+// The warp between beam and cloth: a spring that the take-up stretches, the let-off feeds and the shed pulls
+// at.
 #pragma once
 
 #include "apps/carpet_loom/plant/drive.hpp"
@@ -28,12 +29,15 @@ public:
         }
         const double let_off_mm = beam_rad_s_ * radius_mm_ * dt_s;
         stretch_mm_ += takeup_deg * (wires::nominal::pick_spacing_mm / 360.0) - let_off_mm;
-        stretch_mm_ = stretch_mm_ > longest_mm ? longest_mm : stretch_mm_ < -longest_mm ? -longest_mm : stretch_mm_;
+        stretch_mm_ = stretch_mm_ > longest_mm    ? longest_mm
+                      : stretch_mm_ < -longest_mm ? -longest_mm
+                                                  : stretch_mm_;
         let_off_mm_ += let_off_mm;
     }
     /// Once a turn: the beam grows thinner by what it gave.
     void thin_beam() noexcept TAPPET_REALTIME {
-        radius_mm_ = std::max(150.0, radius_mm_ - let_off_mm_ * (warp_thickness_mm / (2.0 * 3.141592653589793)) / radius_mm_);
+        radius_mm_ = std::max(
+            150.0, radius_mm_ - let_off_mm_ * (warp_thickness_mm / (2.0 * 3.141592653589793)) / radius_mm_);
         let_off_mm_ = 0.0;
     }
     /// At a shaft angle: the harnesses are level at stop_deg and pull the more the wider the shed is open.

@@ -57,10 +57,16 @@ void Plant::open_valve(Time at) noexcept TAPPET_REALTIME {
     const bool breaks = next_weft_breaks_;
     const bool fed = feeder_.fed();
     switch (insertion_.open(position_deg_at(at), fed, breaks, random_)) {
-    case Release::nothing: return;
-    case Release::closed_shed: ++report_.damage.closed_shed_wefts; return;
-    case Release::second_weft: ++report_.damage.double_wefts; return;
-    case Release::flies: break;
+    case Release::nothing:
+        return;
+    case Release::closed_shed:
+        ++report_.damage.closed_shed_wefts;
+        return;
+    case Release::second_weft:
+        ++report_.damage.double_wefts;
+        return;
+    case Release::flies:
+        break;
     }
     feeder_.draw();
     if (breaks) {
@@ -97,7 +103,8 @@ void Plant::measure_motion(double turned_deg, Duration dt) noexcept TAPPET_REALT
     const bool powered = main_.power() != Power::off;
     unpowered_ = powered || brake_.on() || speed < 1.0 ? Duration{} : unpowered_ + dt;
     if (unpowered_ > unpowered_limit && unpowered_ - dt <= unpowered_limit) ++report_.damage.moved_unpowered;
-    const bool dry = climate_.oil_bar() < 0.5 * wires::nominal::oil_pressure_least_bar && speed > running_rad_s;
+    const bool dry =
+        climate_.oil_bar() < 0.5 * wires::nominal::oil_pressure_least_bar && speed > running_rad_s;
     dry_ = dry ? dry_ + dt : Duration{};
     if (dry_ > dry_limit && dry_ - dt <= dry_limit) ++report_.damage.ran_dry;
 
@@ -149,7 +156,8 @@ Report Plant::report() const noexcept TAPPET_REALTIME {
     report.seed = seed_;
     report.time_s = to_seconds(now_ - Time{});
     report.running_s = to_seconds(running_);
-    if (running_ > Duration{}) report.picks_per_minute = static_cast<double>(report.picks) * 60.0 / report.running_s;
+    if (running_ > Duration{})
+        report.picks_per_minute = static_cast<double>(report.picks) * 60.0 / report.running_s;
     report.cam_samples = cam_errors_.samples();
     report.cam_error_p50_deg = cam_errors_.percentile_deg(50);
     report.cam_error_p99_deg = cam_errors_.percentile_deg(99);

@@ -16,8 +16,7 @@ public:
     void run_until(Time end) {
         for (; now < end; now += 1ms) cycle();
     }
-    template <class Condition>
-    bool run_while(Condition condition, Duration at_most) {
+    template <class Condition> bool run_while(Condition condition, Duration at_most) {
         for (const Time end = now + at_most; now < end; now += 1ms) {
             if (!condition()) return true;
             cycle();
@@ -30,10 +29,10 @@ public:
     State state = State::prepare;
     double distance_deg = wires::nominal::brake_distance_deg;
     double tension_n = 0.0;
-    bool releases = true;        // give the weft its release
-    bool holds_tension = true;   // run the tension loop
-    bool speaks = true;          // send process data
-    bool checks_weft = true;     // stop when it is missing
+    bool releases = true;      // give the weft its release
+    bool holds_tension = true; // run the tension loop
+    bool speaks = true;        // send process data
+    bool checks_weft = true;   // stop when it is missing
     bool repeats_pattern = false;
     double wanted_rpm = wires::nominal::speed_rpm;
     std::vector<double> arrivals_deg; // estimated shaft angle of each arrival
@@ -102,7 +101,8 @@ private:
             arrivals_deg.push_back(angle_of_position(angle_at_time(edge.at)));
             arrival_speeds_rpm.push_back(speed_rpm);
         }
-        if (edge.line == line::drop_wire || edge.line == line::button_stop) stop_wanted = state == State::running;
+        if (edge.line == line::drop_wire || edge.line == line::button_stop)
+            stop_wanted = state == State::running;
         if (edge.line == line::button_start && state == State::ready) {
             plant.set_line(line::brake, false, now);
             state = State::running;
@@ -111,7 +111,8 @@ private:
             stop_wanted = false;
             run_at = now + 15ms;
         }
-        if (edge.line == line::button_acknowledge && state == State::stopped && !plant.line(line::emergency_stop)) {
+        if (edge.line == line::button_acknowledge && state == State::stopped &&
+            !plant.line(line::emergency_stop)) {
             state = State::prepare;
             quick = false;
         }
@@ -131,14 +132,15 @@ private:
         if (state == State::running) {
             if (angle < 30.0) released = arrived = false;
             if (angle > 200.0) plant.set_line(wires::line::weft_release, false, now);
-            if (checks_weft && releases && angle > wires::nominal::weft_window_end_deg && angle < 300.0 && released &&
-                !arrived)
+            if (checks_weft && releases && angle > wires::nominal::weft_window_end_deg && angle < 300.0 &&
+                released && !arrived)
                 stop_wanted = true;
             const double part = speed_rpm / wires::nominal::speed_rpm;
             const double dead = speed_rpm * 6.0 * 0.008;
             const double distance = dead + (distance_deg - 28.8) * part * part;
             const double left = wires::nominal::stop_deg - distance - angle;
-            if (stop_wanted && speed_rpm > 60.0 && left < speed_rpm * 6.0 * 0.001 && left > -speed_rpm * 6.0 * 0.001) {
+            if (stop_wanted && speed_rpm > 60.0 && left < speed_rpm * 6.0 * 0.001 &&
+                left > -speed_rpm * 6.0 * 0.001) {
                 const double in_s = std::max(0.0, left / (speed_rpm * 6.0));
                 brake(now + Duration{static_cast<std::int64_t>(in_s * 1e9)});
                 learns = part > 0.95;
@@ -186,7 +188,8 @@ private:
             plant.receive(FrameWriter(cob::feeder_command).u8(1).u16(1500).frame(), now);
         const auto pick = static_cast<std::uint32_t>(plant.dobby().taken() + 1);
         if (!repeats_pattern && now.time_since_epoch() % 10ms == 0ms)
-            plant.receive(FrameWriter(cob::dobby_command).u32(pick).u16(static_cast<std::uint16_t>(pick)).frame(), now);
+            plant.receive(
+                FrameWriter(cob::dobby_command).u32(pick).u16(static_cast<std::uint16_t>(pick)).frame(), now);
         if (now == Time{} + 100ms) static_cast<void>(plant.climate().write_coil(0, true));
     }
 
@@ -201,7 +204,8 @@ private:
         in_s -= dead_s;
         if (in_s > 0.001 || angle > wires::nominal::weft_release_deg) return;
         released = true;
-        plant.set_line(wires::line::weft_release, true, now + Duration{static_cast<std::int64_t>(std::max(0.0, in_s) * 1e9)});
+        plant.set_line(wires::line::weft_release, true,
+                       now + Duration{static_cast<std::int64_t>(std::max(0.0, in_s) * 1e9)});
     }
 
     double angle_deg = 0.0;

@@ -1,0 +1,255 @@
+// The plant at its wires: nodes that boot and fall silent, lines, registers, bad input.
+#include "apps/carpet_loom/plant/plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+namespace tappet::loom {
+namespace {
+
+constexpr std::uint64_t seeds = 8;
+
+struct Traffic {
+    std::map<std::uint32_t, std::vector<SentFrame>> of;
+    void fetch(Plant& plant) {
+        SentFrame sent;
+        while (plant.transmit(sent.frame, sent.due)) of[sent.frame.id].push_back(sent);
+    }
+    void run(Plant& plant, Duration duration) {
+        for (const Time end = plant.now() + duration; plant.now() < end;) {
+            plant.advance(plant.now() + 1ms);
+            fetch(plant);
+        }
+    }
+};
+
+CanFrame network(std::uint8_t command, std::uint8_t node) {
+    return FrameWriter(wires::cob::nmt).u8(command).u8(node).frame();
+}
+
+Settings alone() {
+    Settings settings;
+    settings.operator_present = false;
+    return settings;
+}
+
+TEST(Nodes, boot_beat_and_are_mute_until_they_are_started) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        Plant plant(alone(), seed);
+        Traffic traffic;
+        traffic.run(plant, 1s);
+        EXPECT_EQ(traffic.of.size(), std::size_t{wires::node::count});
+        for (std::uint32_t node = 1; node <= wires::node::count; ++node) {
+            const auto& beats = traffic.of[wires::cob::heartbeat + node];
+            ASSERT_GT(beats.size(), 8U);
+            EXPECT_EQ(beats[0].frame.data[0], wires::nmt_state::boot_up);
+            EXPECT_EQ(beats[1].frame.data[0], wires::nmt_state::pre_operational);
+            EXPECT_NEAR(to_seconds(beats[2].due - beats[1].due), 0.1, 1e-5);
+        }
+    }
+}
+
+TEST(Nodes, send_at_their_rates_once_operational) {
+    Plant plant(alone(), 1);
+    Traffic traffic;
+    traffic.run(plant, 200ms);
+    plant.receive(network(wires::nmt_command::start, 0), plant.now());
+    traffic.of.clear();
+    traffic.run(plant, 1s);
+    const std::map<std::uint32_t, std::pair<std::size_t, unsigned>> expected{
+        {0x181, {500, 6}}, {0x182, {500, 6}}, {0x183, {1000, 4}}, {0x184, {1000, 3}}, {0x185, {100, 3}}};
+    for (const auto& [id, rate] : expected) {
+        const auto& frames = traffic.of[id];
+        EXPECT_NEAR(static_cast<double>(frames.size()), static_cast<double>(rate.first), 1.0)
+            << std::hex << id;
+        for (const SentFrame& sent : frames) EXPECT_EQ(sent.frame.length, rate.second);
+    }
+    EXPECT_EQ(traffic.of[0x186].size(), 1U) << "the dobby introduces itself and then speaks on change";
+    EXPECT_EQ(traffic.of[0x701].back().frame.data[0], wires::nmt_state::operational);
+    const auto& encoder = traffic.of[0x183];
+    for (std::size_t i = 1; i < encoder.size(); ++i)
+        EXPECT_EQ(field_of(encoder[i].frame, 2, 2), field_of(encoder[i - 1].frame, 2, 2) + 1);
+}
+
+TEST(Nodes, obey_the_network_one_by_one) {
+    Plant plant(alone(), 2);
+    Traffic traffic;
+    traffic.run(plant, 200ms);
+    plant.receive(network(wires::nmt_command::start, wires::node::encoder), plant.now());
+    traffic.run(plant, 50ms);
+    EXPECT_FALSE(traffic.of[0x183].empty());
+    EXPECT_TRUE(traffic.of[0x184].empty());
+    plant.receive(network(wires::nmt_command::stop, 0), plant.now());
+    traffic.fetch(plant);
+    traffic.of.clear();
+    traffic.run(plant, 200ms);
+    EXPECT_TRUE(traffic.of[0x183].empty());
+    EXPECT_EQ(traffic.of[0x703].back().frame.data[0], wires::nmt_state::stopped);
+    plant.receive(network(wires::nmt_command::reset_node, wires::node::encoder), plant.now());
+    traffic.of.clear();
+    traffic.run(plant, 150ms);
+    ASSERT_FALSE(traffic.of[0x703].empty());
+    EXPECT_EQ(traffic.of[0x703].front().frame.data[0], wires::nmt_state::boot_up);
+}
+
+TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
+    Plant plant(alone(), 3);
+    Traffic traffic;
+    traffic.run(plant, 200ms);
+    plant.receive(network(wires::nmt_command::start, 0), plant.now());
+    traffic.run(plant, 100ms);
+    plant.inject({.fault = Fault::node_lost, .node = wires::node::encoder});
+    traffic.fetch(plant);
+    traffic.of.clear();
+    traffic.run(plant, 500ms);
+    EXPECT_TRUE(traffic.of[0x183].empty());
+    EXPECT_TRUE(traffic.of[0x703].empty());
+    EXPECT_FALSE(traffic.of[0x184].empty());
+    plant.repair();
+    traffic.run(plant, 300ms);
+    ASSERT_FALSE(traffic.of[0x703].empty());
+    EXPECT_EQ(traffic.of[0x703].front().frame.data[0], wires::nmt_state::boot_up);
+    EXPECT_TRUE(traffic.of[0x183].empty());
+}
+
+TEST(Nodes, lost_for_a_time_come_back_by_themselves) {
+    Settings settings = alone();
+    ASSERT_TRUE(settings.script.push(
+        {.fault = Fault::node_lost, .at = at_ns(300'000'000), .lasts = 400ms, .node = 4}));
+    Plant plant(settings, 4);
+    Traffic traffic;
+    traffic.run(plant, 2s);
+    const auto& beats = traffic.of[0x704];
+    std::vector<Time> boots;
+    for (const SentFrame& sent : beats)
+        if (sent.frame.data[0] == wires::nmt_state::boot_up) boots.push_back(sent.due);
+    ASSERT_EQ(boots.size(), 2U);
+    EXPECT_NEAR(to_seconds(boots[1] - Time{}), 0.8, 0.02);
+}
+
+TEST(BadInput, changes_nothing) {
+    Plant plant(alone(), 5);
+    Traffic traffic;
+    traffic.run(plant, 200ms);
+    for (std::uint32_t id = 0; id < 0x800; ++id) {
+        CanFrame frame;
+        frame.id = id;
+        frame.length = static_cast<std::uint8_t>(id % 2);
+        plant.receive(frame, plant.now());
+    }
+    plant.receive(network(wires::nmt_command::start, 77), plant.now());
+    plant.receive(network(0x55, 0), plant.now());
+    for (const unsigned line : {0U, 3U, 6U, 7U, 14U, 4'000'000'000U}) {
+        plant.set_line(line, true, plant.now());
+        EXPECT_FALSE(plant.line(line));
+    }
+    traffic.run(plant, 200ms);
+    EXPECT_EQ(traffic.of[0x701].back().frame.data[0], wires::nmt_state::pre_operational);
+    EXPECT_EQ(plant.speed_rpm(), 0.0);
+    EXPECT_EQ(plant.report().damage.total(), 0U);
+}
+
+TEST(BadInput, that_lies_in_the_past_is_taken_as_now) {
+    Plant plant(alone(), 6);
+    plant.advance(at_ns(500'000'000));
+    plant.advance(at_ns(100));
+    plant.set_line(wires::line::brake, true, at_ns(100));
+    EXPECT_EQ(plant.now(), at_ns(500'000'000));
+}
+
+TEST(Frames, that_nobody_fetches_are_counted) {
+    Plant plant(alone(), 7);
+    plant.advance(at_ns(20'000'000'000));
+    EXPECT_GT(plant.report().frames_lost, 0U);
+}
+
+TEST(Buttons, make_and_break_bouncing_and_end_where_they_were_put) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        Plant plant(alone(), seed);
+        plant.advance(at_ns(1'000'000));
+        plant.press(Button::start, 100ms);
+        bool level = false;
+        Time last{};
+        int edges = 0;
+        const auto fetch = [&] {
+            Edge edge;
+            while (plant.next_edge(edge)) {
+                EXPECT_EQ(edge.line, wires::line::button_start);
+                EXPECT_NE(edge.level, level);
+                EXPECT_GE(edge.at, last);
+                level = edge.level;
+                last = edge.at;
+                ++edges;
+            }
+        };
+        plant.advance(at_ns(50'000'000));
+        fetch();
+        EXPECT_TRUE(level);
+        EXPECT_TRUE(plant.line(wires::line::button_start));
+        plant.advance(at_ns(200'000'000));
+        fetch();
+        EXPECT_FALSE(level);
+        EXPECT_EQ(edges % 2, 0);
+    }
+}
+
+TEST(EmergencyStop, stays_pressed_until_it_is_released) {
+    Plant plant(alone(), 8);
+    plant.press(Button::emergency_stop, Duration{});
+    plant.advance(at_ns(5'000'000'000));
+    EXPECT_TRUE(plant.line(wires::line::emergency_stop));
+    plant.repair();
+    plant.advance(at_ns(5'100'000'000));
+    EXPECT_FALSE(plant.line(wires::line::emergency_stop));
+}
+
+TEST(Advancing, often_or_rarely_gives_the_same_run) {
+    Settings settings = alone();
+    ASSERT_TRUE(settings.script.push({.fault = Fault::oil_lost, .at = at_ns(700'000'000)}));
+    Plant often(settings, 9);
+    Plant rarely(settings, 9);
+    for (Time now{}; now < at_ns(1'000'000'000); now += 37us) often.advance(now);
+    for (Plant* plant : {&often, &rarely}) {
+        plant->receive(network(wires::nmt_command::start, 0), at_ns(1'000'000'000));
+        plant->set_line(wires::line::brake, true, at_ns(1'000'500'123));
+    }
+    while (often.now() < at_ns(2'000'000'000)) often.advance(often.next_event());
+    rarely.advance(often.now());
+    EXPECT_EQ(often.report().digest, rarely.report().digest);
+}
+
+TEST(Climate, builds_oil_pressure_while_the_pump_runs_and_loses_it_when_told) {
+    Plant plant(alone(), 10);
+    EXPECT_TRUE(plant.climate().write_coil(wires::modbus::coil::lubrication_pump, true));
+    plant.advance(at_ns(2'000'000'000));
+    const auto pressure = [&] {
+        return plant.climate().input_register(wires::modbus::input_register::oil_pressure);
+    };
+    EXPECT_GT(pressure().value(), 200);
+    plant.inject({.fault = Fault::oil_lost});
+    plant.advance(at_ns(7'000'000'000));
+    EXPECT_LT(pressure().value(), 50);
+    plant.repair();
+    plant.advance(at_ns(9'500'000'000));
+    EXPECT_GT(pressure().value(), 200);
+}
+
+TEST(Climate, answers_wrong_requests_with_their_exception) {
+    Random random(1);
+    Climate climate(random);
+    EXPECT_EQ(climate.input_register(4).error(), ModbusError::illegal_address);
+    EXPECT_EQ(climate.holding_register(2).error(), ModbusError::illegal_address);
+    EXPECT_EQ(climate.coil(1).error(), ModbusError::illegal_address);
+    EXPECT_EQ(climate.discrete_input(1).error(), ModbusError::illegal_address);
+    EXPECT_EQ(climate.write_coil(1, true).error(), ModbusError::illegal_address);
+    EXPECT_EQ(climate.write_holding_register(2, 0).error(), ModbusError::illegal_address);
+    EXPECT_EQ(climate.write_holding_register(0, 299).error(), ModbusError::illegal_value);
+    EXPECT_EQ(climate.write_holding_register(0, 901).error(), ModbusError::illegal_value);
+    EXPECT_TRUE(climate.write_holding_register(0, 700));
+    EXPECT_EQ(climate.holding_register(0).value(), 700);
+}
+
+} // namespace
+} // namespace tappet::loom
