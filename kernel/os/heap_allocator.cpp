@@ -206,9 +206,14 @@ Allocator::Piece Allocator::look_at(const void* piece) const noexcept {
     const auto left = static_cast<std::size_t>(reinterpret_cast<std::byte*>(end_) - block->payload());
     if (block->size() % alignment != 0 || block->size() > left) return Piece::damaged;
     if (block->above()->below != block) return Piece::damaged;
-    if (Block* below = block->below;
-        below != nullptr && (!contains(below->payload()) || below->above() != block))
-        return Piece::damaged;
+    // The pointer may be anything: it is followed only where a block can lie.
+    if (const Block* below = block->below; below != nullptr) {
+        const auto at = reinterpret_cast<std::uintptr_t>(below),
+                   here = reinterpret_cast<std::uintptr_t>(block);
+        if (at % alignment != 0 || at < reinterpret_cast<std::uintptr_t>(begin_) || at >= here)
+            return Piece::damaged;
+        if (below->size() != here - at - header_bytes) return Piece::damaged;
+    }
     return block->is_free() ? Piece::free : Piece::in_use;
 }
 
