@@ -1,5 +1,6 @@
 // Angles of a shaft, exact: whole numbers of 2^-32 turn, so that a turn wraps by itself and nothing drifts.
-// Angle is a place within one turn, ShaftPosition a place on the unwound shaft, Rotation the way between two places.
+// Angle is a place within one turn, ShaftPosition a place on the unwound shaft, Rotation the way between two
+// places.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -91,8 +92,8 @@ constexpr Rotation forward_way(Angle from, Angle to) noexcept TAPPET_REALTIME {
     return Rotation::units(static_cast<std::uint32_t>(to.in_units() - from.in_units()));
 }
 
-/// A place on the unwound shaft: whole turns and the angle. It wraps after 2^31 turns (two years at 2000 rpm),
-/// which differences do not notice; there is therefore no `<`: compare `a - b` with a Rotation.
+/// A place on the unwound shaft: whole turns and the angle. It wraps after 2^31 turns (two years at 2000
+/// rpm), which differences do not notice; there is therefore no `<`: compare `a - b` with a Rotation.
 class ShaftPosition {
 public:
     constexpr ShaftPosition() noexcept = default;
@@ -102,7 +103,9 @@ public:
     [[nodiscard]] constexpr std::int64_t turns() const noexcept TAPPET_REALTIME {
         return from_zero_.in_units() >> 32;
     }
-    [[nodiscard]] constexpr double in_degrees() const noexcept TAPPET_REALTIME { return from_zero_.in_degrees(); }
+    [[nodiscard]] constexpr double in_degrees() const noexcept TAPPET_REALTIME {
+        return from_zero_.in_degrees();
+    }
     friend constexpr Rotation operator-(ShaftPosition a, ShaftPosition b) noexcept TAPPET_REALTIME {
         return a.from_zero_ - b.from_zero_;
     }
@@ -125,7 +128,9 @@ class Speed {
 public:
     constexpr Speed() noexcept = default;
     [[nodiscard]] static constexpr Speed deg_s(double value) noexcept TAPPET_REALTIME { return Speed{value}; }
-    [[nodiscard]] static constexpr Speed rpm(double value) noexcept TAPPET_REALTIME { return Speed{value * 6.0}; }
+    [[nodiscard]] static constexpr Speed rpm(double value) noexcept TAPPET_REALTIME {
+        return Speed{value * 6.0};
+    }
     [[nodiscard]] constexpr double in_deg_s() const noexcept TAPPET_REALTIME { return deg_s_; }
     [[nodiscard]] constexpr double in_rpm() const noexcept TAPPET_REALTIME { return deg_s_ / 6.0; }
     constexpr auto operator<=>(const Speed&) const noexcept = default;

@@ -31,16 +31,23 @@ double clamp(double value, double limit) noexcept TAPPET_REALTIME {
     return std::max(-limit, std::min(limit, value));
 }
 
-// How many deviations away a sample shows that the shaft is being accelerated, and how many make it an outlier.
-constexpr double manoeuvre_deviations = 3.0;
+// How many deviations away a sample shows that the shaft is being accelerated, and how many make it an
+// outlier.
+constexpr double manoeuvre_deviations = 3.5;
 constexpr double outlier_deviations = 6.0;
-static_assert(outlier_deviations > manoeuvre_deviations, "a manoeuvre is followed before a sample is refused");
+static_assert(
+    manoeuvre_deviations * manoeuvre_deviations > 12.0,
+    "at a beat of speed and samples the rounding jumps by a whole code, sqrt(12) of its deviations");
+static_assert(outlier_deviations > manoeuvre_deviations,
+              "a manoeuvre is followed before a sample is refused");
 
 } // namespace
 
 ShaftEstimator::ShaftEstimator(const ShaftProperties& properties) noexcept
-    : properties_(properties), step_deg_(360.0 / properties.codes_per_turn),
-      step_variance_(step_deg_ * step_deg_ / 12.0), jitter_s_(to_seconds(properties.stamp_jitter)) {
+    : properties_(properties),
+      step_deg_(360.0 / properties.codes_per_turn),
+      step_variance_(step_deg_ * step_deg_ / 12.0),
+      jitter_s_(to_seconds(properties.stamp_jitter)) {
     motion_.horizon_s = to_seconds(properties.acceleration_horizon);
 }
 
@@ -118,7 +125,8 @@ void ShaftEstimator::reset(const Reading& now) noexcept TAPPET_REALTIME {
 void ShaftEstimator::suspect(const Reading& now) noexcept TAPPET_REALTIME {
     ++counters_.implausible;
     fault_ = true;
-    suspected_in_a_row_ = suspected_in_a_row_ != 0 && reachable(suspected_, now) ? suspected_in_a_row_ + 1 : 1;
+    suspected_in_a_row_ =
+        suspected_in_a_row_ != 0 && reachable(suspected_, now) ? suspected_in_a_row_ + 1 : 1;
     suspected_ = now;
     if (suspected_in_a_row_ == agreeing_jumps) reset(now);
 }
@@ -135,7 +143,8 @@ void ShaftEstimator::open(double velocity_deviation) noexcept TAPPET_REALTIME {
 void ShaftEstimator::filter(const Reading& now) noexcept TAPPET_REALTIME {
     Eigen::Map<Matrix> covariance{covariance_.data()};
     const double dt = to_seconds(now.stamp - last_.stamp);
-    if (standing_) { // off again: as fast as one sample's acceleration and a creep below the notice of standing_
+    if (standing_) { // off again: as fast as one sample's acceleration and a creep below the notice of
+                     // standing_
         standing_ = false;
         open(properties_.max_acceleration_deg_s2 * dt + step_deg_ / to_seconds(properties_.standstill_after));
     }

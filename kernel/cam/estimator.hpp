@@ -1,5 +1,6 @@
 // The shaft between two encoder samples: a Kalman filter over position, velocity and acceleration.
-// (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.3: white noise jerk.)
+// (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.3: white noise
+// jerk.)
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -25,8 +26,8 @@ struct ShaftProperties {
     double manoeuvre_gain = 3000.0;         // times more of it while the samples leave the prediction
     Duration standstill_after = 20ms;       // no new code for so long: the speed is 0 exactly
     Duration max_age = 4ms;                 // older than this, the estimate is stale
-    Duration lost_after = 20ms;             // a longer gap while turning: turns are no longer counted for sure
-    Duration acceleration_horizon = 20ms;   // how long an acceleration is believed to last
+    Duration lost_after = 20ms;           // a longer gap while turning: turns are no longer counted for sure
+    Duration acceleration_horizon = 20ms; // how long an acceleration is believed to last
 };
 
 /// What is wrong with the properties and how to cure it; empty when nothing is.
@@ -37,13 +38,16 @@ constexpr Sentence check(const ShaftProperties& p) {
     if (!(p.max_acceleration_deg_s2 > 0.0))
         return Sentence{"shaft: max_acceleration_deg_s2 is not above 0; give the hardest braking"};
     if (!(p.jerk_density > 0.0) || !(p.manoeuvre_gain >= 1.0))
-        return Sentence{"shaft: the process noise is too small; give jerk_density > 0 and manoeuvre_gain >= 1"};
+        return Sentence{
+            "shaft: the process noise is too small; give jerk_density > 0 and manoeuvre_gain >= 1"};
     if (p.stamp_jitter < 0us || p.stamp_latency < 0us)
         return Sentence{"shaft: stamp_jitter or stamp_latency is negative; give how late the stamps are"};
     if (p.standstill_after <= 0us || p.max_age <= 0us || p.lost_after < p.max_age)
-        return Sentence{"shaft: standstill_after, max_age and lost_after must be above 0, and lost_after at least "
-                        "max_age; lengthen the one that is too short"};
-    // In a gap, an acceleration nobody saw moves the shaft by a t^2 / 2; beyond half a turn the turn is a guess.
+        return Sentence{
+            "shaft: standstill_after, max_age and lost_after must be above 0, and lost_after at least "
+            "max_age; lengthen the one that is too short"};
+    // In a gap, an acceleration nobody saw moves the shaft by a t^2 / 2; beyond half a turn the turn is a
+    // guess.
     if (const double gap = to_seconds(p.lost_after); 0.5 * p.max_acceleration_deg_s2 * gap * gap > 180.0)
         return Sentence{"shaft: in a gap of lost_after the shaft may turn half a turn unseen at "
                         "max_acceleration_deg_s2; shorten lost_after"};
@@ -62,8 +66,8 @@ struct ShaftCounters {
     constexpr bool operator==(const ShaftCounters&) const = default;
 };
 
-/// The estimator. One writer; readers in the same activity. The position is an exact integer and the filter works on
-/// the small rest beside it, so that nothing is lost after any number of turns.
+/// The estimator. One writer; readers in the same activity. The position is an exact integer and the filter
+/// works on the small rest beside it, so that nothing is lost after any number of turns.
 class ShaftEstimator {
 public:
     /// check(properties) is empty.
@@ -92,8 +96,8 @@ public:
     /// An implausible jump was seen; stays until acknowledged.
     [[nodiscard]] bool fault() const noexcept TAPPET_REALTIME { return fault_; }
     void acknowledge() noexcept TAPPET_REALTIME { fault_ = false; }
-    /// Rises whenever the position may have jumped: after a gap, or after `agreeing_jumps` implausible samples in a
-    /// row that agree with one another (the encoder is believed then).
+    /// Rises whenever the position may have jumped: after a gap, or after `agreeing_jumps` implausible
+    /// samples in a row that agree with one another (the encoder is believed then).
     [[nodiscard]] std::uint32_t epoch() const noexcept TAPPET_REALTIME { return epoch_; }
     [[nodiscard]] const ShaftCounters& counters() const noexcept TAPPET_REALTIME { return counters_; }
     /// Standard deviation the filter claims for its position at the last sample, degrees.
@@ -122,18 +126,19 @@ private:
     [[nodiscard]] bool reachable(const Reading& from, const Reading& to) const noexcept TAPPET_REALTIME;
 
     ShaftProperties properties_;
-    double step_deg_ = 0.0;     // one code
+    double step_deg_ = 0.0;      // one code
     double step_variance_ = 0.0; // of its rounding
     double jitter_s_ = 0.0;
-    ShaftMotion motion_;        // the estimate, at the last sample
-    double rest_deg_ = 0.0;     // what of the position is finer than 2^-32 turn
+    ShaftMotion motion_;    // the estimate, at the last sample
+    double rest_deg_ = 0.0; // what of the position is finer than 2^-32 turn
     std::array<double, 9> covariance_{};
-    Reading last_;              // the last sample believed
-    Reading suspected_;         // the last implausible one
+    Reading last_;      // the last sample believed
+    Reading suspected_; // the last implausible one
     std::uint32_t suspected_in_a_row_ = 0;
     std::uint32_t outliers_in_a_row_ = 0;
     std::uint32_t settled_ = 0;
-    std::array<std::uint32_t, 2> rest_codes_{}; // a shaft at the edge of two codes may show either and still stand
+    std::array<std::uint32_t, 2>
+        rest_codes_{}; // a shaft at the edge of two codes may show either and still stand
     Time rest_since_{};
     std::uint32_t epoch_ = 0;
     bool standing_ = false;

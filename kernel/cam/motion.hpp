@@ -1,4 +1,5 @@
-// How a shaft goes on from what is known of it at one instant: where it will be, and when it will be somewhere.
+// How a shaft goes on from what is known of it at one instant: where it will be, and when it will be
+// somewhere.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -17,8 +18,8 @@ struct ShaftState {
     double acceleration_deg_s2 = 0.0;
 };
 
-/// A shaft's motion from `stamp` on: the acceleration holds for `horizon_s`, then the velocity stays; a shaft that is
-/// braked stops and does not turn back. Before `stamp` the velocity is taken as constant.
+/// A shaft's motion from `stamp` on: the acceleration holds for `horizon_s`, then the velocity stays; a shaft
+/// that is braked stops and does not turn back. Before `stamp` the velocity is taken as constant.
 struct ShaftMotion {
     ShaftState state;
     Time stamp{};
@@ -42,8 +43,8 @@ struct ShaftMotion {
         return {at(t), t, std::max(0.0, horizon_s - to_seconds(t - stamp))};
     }
 
-    /// The first time from `stamp` on at which the shaft is at `target`, moving on in its present direction; `never`
-    /// when it stands, stops before, or has passed already. Real-time: one square root, no loop.
+    /// The first time from `stamp` on at which the shaft is at `target`, moving on in its present direction;
+    /// `never` when it stands, stops before, or has passed already. Real-time: one square root, no loop.
     [[nodiscard]] Time when(ShaftPosition target) const noexcept TAPPET_REALTIME {
         const bool backward = state.velocity_deg_s < 0.0;
         const double way_forward = (target - state.position).in_degrees();

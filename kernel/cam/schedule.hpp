@@ -1,6 +1,6 @@
-// The cam table at work: from the shaft's motion, the time of the next firing; at that time, what is to be fired.
-// On a sample: estimator.sample(); schedule.update(estimator, now); arm a one-shot timer at schedule.next_due().
-// On the timer: schedule.advance(now, fire); arm it again.
+// The cam table at work: from the shaft's motion, the time of the next firing; at that time, what is to be
+// fired. On a sample: estimator.sample(); schedule.update(estimator, now); arm a one-shot timer at
+// schedule.next_due(). On the timer: schedule.advance(now, fire); arm it again.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -36,7 +36,7 @@ struct CamEvent {
 struct CamProperties {
     /// How far the shaft turns back before a crossing counts again: more than one step of the encoder.
     Rotation hysteresis = Rotation::degrees(3.0);
-    Rotation late_from = Rotation::degrees(1.0); // counted as late from here on
+    Rotation late_from = Rotation::degrees(1.0);  // counted as late from here on
     Rotation skip_from = Rotation::degrees(90.0); // later than this, it is skipped and counted, not fired
 };
 
@@ -51,18 +51,18 @@ struct CamCounters {
     constexpr bool operator==(const CamCounters&) const = default;
 };
 
-/// The rows of one table at run time. Each crossing fires exactly once, in the order of the angles. All calls take
-/// time bounded by the number of rows; one activity owns it. A window in which the shaft stands at the beginning is
-/// not entered: events come from crossings only. Nothing is fired on a stale estimate: what has to be safe then is
-/// the machine's business.
-template <std::size_t N>
-class CamSchedule {
+/// The rows of one table at run time. Each crossing fires exactly once, in the order of the angles. All calls
+/// take time bounded by the number of rows; one activity owns it. A window in which the shaft stands at the
+/// beginning is not entered: events come from crossings only. Nothing is fired on a stale estimate: what has
+/// to be safe then is the machine's business.
+template <std::size_t N> class CamSchedule {
 public:
     /// check(table.view()) is empty.
     explicit constexpr CamSchedule(const CamTable<N>& table, const CamProperties& properties = {}) noexcept
         : properties_(properties) {
         for (std::size_t i = 0; i < N; ++i) {
             const CamRow& row = table.rows[i];
+            longest_dead_ = std::max({longest_dead_, row.dead_time, row.leave_dead_time});
             if (row.is_window) {
                 // Forward, the beginning enters and the end leaves; backward, the end enters.
                 insert(row, i, End::begin, row.enter, row.dead_time, row.leave_dead_time);
@@ -79,6 +79,7 @@ public:
         good_until_ = estimator.valid_until();
         if (now > good_until_) return;
         motion_ = estimator.motion().from(now);
+        reach_ = motion_.at(good_until_ + longest_dead_).position;
         const ShaftPosition here = motion_.state.position;
         if (!started_ || estimator.epoch() != epoch_) jump_to(here);
         epoch_ = estimator.epoch();
@@ -90,12 +91,12 @@ public:
         }
     }
 
-    /// When to call advance() next: now or before now means at once; `never` until the next update. Real-time.
+    /// When to call advance() next: at or before now means at once. `never` when nothing is due for as long
+    /// as the present estimate is good: the next update will tell. Real-time.
     [[nodiscard]] Time next_due() const noexcept TAPPET_REALTIME { return next_due_; }
 
     /// Calls fire(const CamEvent&) for every event that is due at `now`. Real-time when `fire` is, O(N).
-    template <class Fire>
-    void advance(Time now, Fire&& fire) noexcept TAPPET_REALTIME {
+    template <class Fire> void advance(Time now, Fire&& fire) noexcept TAPPET_REALTIME {
         if (next_due_ > now) return;
         if (now > good_until_) {
             next_due_ = never;
@@ -128,21 +129,22 @@ private:
         End end = End::point;
         Direction direction = Direction::forward;
         double min_speed_deg_s = 0.0;
-        Angle begin;    // of the row's window
+        Angle begin; // of the row's window
         Rotation width;
         Duration forward_dead = Duration::zero();
         Duration backward_dead = Duration::zero();
         ShaftPosition below{};
         Closed closed = Closed::none;
-        ShaftPosition furthest{}; // since the crossing, but not beyond the angle: where turning back is measured from
-        std::int8_t side = 1;     // the crossing planned: 1 forward over the turn's end, -1 backward over `below`
+        ShaftPosition
+            furthest{}; // since the crossing, but not beyond the angle: where turning back is measured from
+        std::int8_t side = 1; // the crossing planned: 1 forward over the turn's end, -1 backward over `below`
         bool must_leave = false;
         Time due = never;
     };
 
     // By angle; at one angle what ends comes before what begins, so that neighbours are never open together.
-    constexpr void insert(const CamRow& row, std::size_t index, End end, Rotation angle, Duration forward_dead,
-                          Duration backward_dead) noexcept {
+    constexpr void insert(const CamRow& row, std::size_t index, End end, Rotation angle,
+                          Duration forward_dead, Duration backward_dead) noexcept {
         Edge edge;
         edge.angle = angle;
         edge.row = index;
@@ -178,7 +180,8 @@ private:
         return e.closed != (e.side > 0 ? Closed::above : Closed::below);
     }
 
-    // Takes the place of an edge from the shaft's position alone: at the start and after the encoder started anew.
+    // Takes the place of an edge from the shaft's position alone: at the start and after the encoder started
+    // anew.
     constexpr void jump_to(ShaftPosition here) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < used_; ++i) {
             Edge& e = edges_[i];
@@ -199,12 +202,16 @@ private:
     // Reopens a crossing once the shaft is far enough from it.
     constexpr void track(Edge& e, ShaftPosition here) noexcept TAPPET_REALTIME {
         if (e.closed == Closed::below) {
-            if (here - e.below >= properties_.hysteresis) e.closed = Closed::none;
-            else if (here - e.furthest > Rotation{}) e.furthest = here - e.below > Rotation{} ? e.below : here;
+            if (here - e.below >= properties_.hysteresis)
+                e.closed = Closed::none;
+            else if (here - e.furthest > Rotation{})
+                e.furthest = here - e.below > Rotation{} ? e.below : here;
         } else if (e.closed == Closed::above) {
             const ShaftPosition top = above(e);
-            if (top - here >= properties_.hysteresis) e.closed = Closed::none;
-            else if (e.furthest - here > Rotation{}) e.furthest = top - here > Rotation{} ? top : here;
+            if (top - here >= properties_.hysteresis)
+                e.closed = Closed::none;
+            else if (e.furthest - here > Rotation{})
+                e.furthest = top - here > Rotation{} ? top : here;
         }
     }
 
@@ -225,6 +232,8 @@ private:
         if (!over && !under && v == 0.0) return;
         e.side = over || (!under && v > 0.0) ? 1 : -1;
         const bool passed = over || under;
+        const ShaftPosition target = e.side > 0 ? up : down;
+        if (!passed && (e.side > 0 ? target - reach_ : reach_ - target) > Rotation{}) return;
         const bool slow = v == 0.0 || (v < 0.0 ? -v : v) < e.min_speed_deg_s;
         const CamKind what = kind(e, e.side);
         // Leaving is always planned: its window may be entered before it comes.
@@ -235,7 +244,7 @@ private:
         } else if (passed) {
             e.due = now;
         } else {
-            const Time crossing = motion_.when(e.side > 0 ? up : down);
+            const Time crossing = motion_.when(target);
             // A crossing that is closed still is fired when the shaft is there, not ahead.
             e.due = crossing == never || !open_ahead(e) ? crossing : crossing - dead(e);
         }
@@ -272,8 +281,7 @@ private:
         return first;
     }
 
-    template <class Fire>
-    void serve(Edge& e, Fire& fire) noexcept TAPPET_REALTIME {
+    template <class Fire> void serve(Edge& e, Fire& fire) noexcept TAPPET_REALTIME {
         CamEvent event;
         event.row = e.row;
         event.position = motion_.state.position;
@@ -313,7 +321,9 @@ private:
     std::array<Edge, 2 * N> edges_{};
     std::size_t used_ = 0;
     std::array<bool, N> inside_{};
+    Duration longest_dead_ = Duration::zero();
     ShaftMotion motion_;
+    ShaftPosition reach_{}; // what lies beyond cannot be due before the motion is stale
     std::uint32_t epoch_ = 0;
     Time next_due_ = never;
     Time good_until_ = Time::min(); // of the motion
@@ -321,9 +331,7 @@ private:
     CamCounters counters_;
 };
 
-template <std::size_t N>
-CamSchedule(const CamTable<N>&) -> CamSchedule<N>;
-template <std::size_t N>
-CamSchedule(const CamTable<N>&, const CamProperties&) -> CamSchedule<N>;
+template <std::size_t N> CamSchedule(const CamTable<N>&) -> CamSchedule<N>;
+template <std::size_t N> CamSchedule(const CamTable<N>&, const CamProperties&) -> CamSchedule<N>;
 
 } // namespace tappet

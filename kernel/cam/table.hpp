@@ -1,4 +1,5 @@
-// The cam table: which event falls on which angle of the shaft, as flat constexpr rows, and its compile-time checks.
+// The cam table: which event falls on which angle of the shaft, as flat constexpr rows, and its compile-time
+// checks.
 //     constexpr auto cams = cam_table(700_rpm,
 //         cam("pick_window", at(80_deg)),
 //         cam("main_nozzle", window(60_deg, 180_deg), dead_time(2500us, 1800us), exclusive("nozzles")));
@@ -18,7 +19,8 @@ namespace tappet {
 /// The direction of turning in which a row acts. A window that was entered is left in any direction.
 enum class Direction : std::uint8_t { forward, backward, both };
 
-/// One row. A point has one event; a window [enter, leave) has two, and turning backward it is entered at its end.
+/// One row. A point has one event; a window [enter, leave) has two, and turning backward it is entered at its
+/// end.
 struct CamRow {
     std::string_view name;
     Rotation enter;
@@ -38,8 +40,7 @@ struct CamTableView {
 };
 
 /// N rows and the fastest speed they are meant for.
-template <std::size_t N>
-struct CamTable {
+template <std::size_t N> struct CamTable {
     std::array<CamRow, N> rows{};
     Speed max_speed;
     [[nodiscard]] constexpr CamTableView view() const noexcept { return {rows, max_speed}; }
@@ -107,7 +108,8 @@ constexpr CamTable<sizeof...(Rows)> cam_table(Speed max_speed, const Rows&... ro
     return {{rows...}, max_speed};
 }
 
-/// The first fault of the table in one sentence that names the row, the fault and the cure; empty when there is none.
+/// The first fault of the table in one sentence that names the row, the fault and the cure; empty when there
+/// is none.
 constexpr Sentence check(const CamTableView& table);
 
 namespace cam_check {
@@ -158,7 +160,8 @@ constexpr Sentence check_window(const CamRow& row, Speed max_speed) {
         return about(row).add("the window opens and closes at one angle; give two angles, or write at(...)");
     const double blur = moved_deg(max_speed, row.dead_time_jitter);
     const double closing_ahead = moved_deg(max_speed, row.leave_dead_time - row.dead_time);
-    // Closing is fired before opening when it needs so much longer that the window is used up; and the other way.
+    // Closing is fired before opening when it needs so much longer that the window is used up; and the other
+    // way.
     const double open = width - (closing_ahead > 0.0 ? closing_ahead : 0.0);
     const double shut = 360.0 - width + (closing_ahead < 0.0 ? closing_ahead : 0.0);
     const bool too_short = open <= blur;
@@ -201,8 +204,10 @@ constexpr Sentence check_row(const CamRow& row, Speed max_speed) {
                               "fires; give a speed between 0 and the maximum");
     if (row.is_window) return check_window(row, max_speed);
     if (!row.group.empty())
-        return about(row).add("it is exclusive(\"").add(row.group).add(
-            "\"), but a point has no width; write window(...) or drop the group");
+        return about(row)
+            .add("it is exclusive(\"")
+            .add(row.group)
+            .add("\"), but a point has no width; write window(...) or drop the group");
     return {};
 }
 

@@ -1,6 +1,6 @@
 // Angles are exact, wrap by themselves and know the shortest way.
-#include "kernel/cam/angle.hpp"
 #include "kernel/base/random.hpp"
+#include "kernel/cam/angle.hpp"
 
 #include <gtest/gtest.h>
 

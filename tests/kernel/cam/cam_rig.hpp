@@ -1,4 +1,5 @@
-// A true shaft, its encoder, the estimator and the schedule in virtual time: samples arrive, timers go off exactly.
+// A true shaft, its encoder, the estimator and the schedule in virtual time: samples arrive, timers go off
+// exactly.
 #pragma once
 
 #include "kernel/cam/estimator.hpp"
@@ -18,16 +19,20 @@ struct Fired {
 inline ShaftProperties properties_for(const Sampling& sampling) {
     ShaftProperties p;
     p.codes_per_turn = sampling.codes_per_turn;
+    p.max_age = 8ms; // so many samples in a row are never missing by chance
     p.stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)};
     p.stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)};
     return p;
 }
 
-template <std::size_t N>
-struct CamRig {
+template <std::size_t N> struct CamRig {
     CamRig(const CamTable<N>& table, const TrueShaft& truth, const Sampling& how, std::uint64_t seed,
            const CamProperties& properties = {})
-        : shaft(truth), sampling(how), random(seed), estimator(properties_for(how)), schedule(table, properties) {}
+        : shaft(truth),
+          sampling(how),
+          random(seed),
+          estimator(properties_for(how)),
+          schedule(table, properties) {}
 
     /// Until the true shaft's time `until_s`; the encoder is silent from `dark_from_s` to `dark_to_s`.
     void run(double until_s, double dark_from_s = 1e9, double dark_to_s = 1e9) {

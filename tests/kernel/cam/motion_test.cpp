@@ -1,6 +1,6 @@
 // A shaft's motion ahead: positions follow the quadratic, crossings are their inverse.
-#include "kernel/cam/motion.hpp"
 #include "kernel/base/random.hpp"
+#include "kernel/cam/motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,8 @@ TEST(ShaftMotion, is_at_the_target_at_the_time_it_says_for_any_motion) {
         if (when == never) continue;
         ++reached;
         ASSERT_GE(when, std::max(not_before, motion.stamp)) << "seed " << seed;
-        // At the instant of stopping a nanosecond's rounding is a place's; elsewhere it is speed times a nanosecond.
+        // At the instant of stopping a nanosecond's rounding is a place's; elsewhere it is speed times a
+        // nanosecond.
         ASSERT_NEAR((motion.at(when).position - target).in_degrees(), 0.0, 1e-4) << "seed " << seed;
     }
     EXPECT_GT(reached, 10'000);

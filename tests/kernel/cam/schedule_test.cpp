@@ -10,11 +10,12 @@
 namespace tappet::test {
 namespace {
 
-constexpr auto loom = cam_table(
-    2200_rpm, cam("beat_up", at(0_deg)), cam("pick", at(80_deg), dead_time(2500us)),
-    cam("arrival", window(200_deg, 260_deg), dead_time(300us)),
-    cam("nozzle", window(300_deg, 60_deg), dead_time(2500us, 1800us), exclusive("nozzles")),
-    cam("relay", window(60_deg, 180_deg), dead_time(2500us, 1800us), exclusive("nozzles")), cam("last", at(359.9_deg)));
+constexpr auto loom =
+    cam_table(2200_rpm, cam("beat_up", at(0_deg)), cam("pick", at(80_deg), dead_time(2500us)),
+              cam("arrival", window(200_deg, 260_deg), dead_time(300us)),
+              cam("nozzle", window(300_deg, 60_deg), dead_time(2500us, 1800us), exclusive("nozzles")),
+              cam("relay", window(60_deg, 180_deg), dead_time(2500us, 1800us), exclusive("nozzles")),
+              cam("last", at(359.9_deg)));
 static_assert(check(loom.view()).empty());
 
 std::uint64_t any_seed() { return std::random_device{}(); }
@@ -28,8 +29,7 @@ double effect_error(const CamRig<N>& rig, const CamTable<N>& table, const Fired&
 }
 
 // Each row fired once for each crossing between the first and the last, none twice, none left out.
-template <std::size_t N>
-void expect_once_per_turn(const CamRig<N>& rig, const CamTable<N>& table, int step) {
+template <std::size_t N> void expect_once_per_turn(const CamRig<N>& rig, const CamTable<N>& table, int step) {
     for (std::size_t row = 0; row < N; ++row) {
         for (const CamKind kind : {CamKind::point, CamKind::enter, CamKind::leave}) {
             const ShaftPosition* before = nullptr;
@@ -92,7 +92,8 @@ TEST(CamSchedule, puts_the_effect_on_the_angle_at_even_speeds) {
             Errors errors;
             for (const Fired& fired : rig.fired)
                 if (fired.event.target.turns() > 1) errors.add(effect_error(rig, loom, fired));
-            const std::string what = std::to_string(static_cast<int>(rpm)) + " rpm, " + std::to_string(codes) + " codes";
+            const std::string what =
+                std::to_string(static_cast<int>(rpm)) + " rpm, " + std::to_string(codes) + " codes";
             errors.print(what.c_str());
             const double step = 360.0 / codes;
             const double jitter = rpm * 6.0 * 29e-6; // one standard deviation of the stamps
@@ -130,15 +131,23 @@ TEST(CamSchedule, puts_the_effect_on_the_angle_during_the_run_up) {
 }
 
 TEST(CamSchedule, fires_both_ways_when_a_row_says_so) {
-    constexpr auto table = cam_table(700_rpm, cam("both", at(90_deg), direction(Direction::both), dead_time(2ms)),
-                                     cam("forward", at(90_deg)),
-                                     cam("backward", at(90_deg), direction(Direction::backward), dead_time(2ms)),
-                                     cam("window", window(40_deg, 140_deg), direction(Direction::both)));
+    constexpr auto table =
+        cam_table(700_rpm, cam("both", at(90_deg), direction(Direction::both), dead_time(2ms)),
+                  cam("forward", at(90_deg)),
+                  cam("backward", at(90_deg), direction(Direction::backward), dead_time(2ms)),
+                  cam("window", window(40_deg, 140_deg), direction(Direction::both)));
     const std::uint64_t seed = any_seed();
     SCOPED_TRACE("seed " + std::to_string(seed));
     // Ten turns forward, a stop, ten turns backward.
     TrueShaft shaft(0.0);
-    shaft.hold(0.1).ramp(1800.0, 0.2).hold(1.8).ramp(0.0, 0.2).hold(0.2).ramp(-1800.0, 0.2).hold(1.8).ramp(0.0, 0.2);
+    shaft.hold(0.1)
+        .ramp(1800.0, 0.2)
+        .hold(1.8)
+        .ramp(0.0, 0.2)
+        .hold(0.2)
+        .ramp(-1800.0, 0.2)
+        .hold(1.8)
+        .ramp(0.0, 0.2);
     CamRig rig(table, shaft.hold(0.2), {.missing_one_in = 30}, seed);
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(0, CamKind::point), 20u);
@@ -165,7 +174,8 @@ TEST(CamSchedule, has_nothing_due_while_the_shaft_stands) {
 }
 
 TEST(CamSchedule, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
-    constexpr auto table = cam_table(700_rpm, cam("cam", at(90_deg)), cam("both", at(90_deg), direction(Direction::both)));
+    constexpr auto table =
+        cam_table(700_rpm, cam("cam", at(90_deg)), cam("both", at(90_deg), direction(Direction::both)));
     TrueShaft shaft(0.0);
     shaft.hold(0.1).ramp(360.0, 0.1).hold(0.2).ramp(0.0, 0.1); // to 108 degrees, 90 lying behind
     for (int i = 0; i < 2; ++i) shaft.ramp(-180.0, 0.1).ramp(0.0, 0.1);
@@ -173,7 +183,13 @@ TEST(CamSchedule, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
     shaft.ramp(90.0, 0.1).hold(0.1).ramp(0.0, 0.1);
     const double there = shaft.degrees(shaft.end_s());
     ASSERT_NEAR(there, 90.0, 1e-6);
-    for (int i = 0; i < 50; ++i) shaft.ramp(20.0, 0.05).ramp(0.0, 0.05).ramp(-20.0, 0.1).ramp(0.0, 0.1).ramp(20.0, 0.05).ramp(0.0, 0.05);
+    for (int i = 0; i < 50; ++i)
+        shaft.ramp(20.0, 0.05)
+            .ramp(0.0, 0.05)
+            .ramp(-20.0, 0.1)
+            .ramp(0.0, 0.1)
+            .ramp(20.0, 0.05)
+            .ramp(0.0, 0.05);
     shaft.ramp(180.0, 0.1).ramp(0.0, 0.1);
     CamRig rig(table, shaft, {}, any_seed());
     rig.run(shaft.end_s());
@@ -280,8 +296,9 @@ TEST(CamSchedule, keeps_exclusive_windows_apart_when_they_touch) {
 
 // A shaft that is run up, braked, turned back and forth at random: what fires alternates as the truth does.
 TEST(CamSchedule, keeps_windows_paired_on_any_way_of_the_shaft) {
-    constexpr auto table = cam_table(1500_rpm, cam("w", window(50_deg, 170_deg), direction(Direction::both), dead_time(3ms)),
-                                     cam("v", window(250_deg, 20_deg), direction(Direction::forward), dead_time(1ms, 4ms)));
+    constexpr auto table =
+        cam_table(1500_rpm, cam("w", window(50_deg, 170_deg), direction(Direction::both), dead_time(3ms)),
+                  cam("v", window(250_deg, 20_deg), direction(Direction::forward), dead_time(1ms, 4ms)));
     for (int run = 0; run < 30; ++run) {
         const std::uint64_t seed = any_seed();
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -295,7 +312,8 @@ TEST(CamSchedule, keeps_windows_paired_on_any_way_of_the_shaft) {
             shaft.hold(random.unit() * 0.5);
         }
         const std::uint32_t codes = random.one_in(2) ? 180 : 4096;
-        CamRig rig(table, shaft, {.codes_per_turn = codes, .stamp_delay_s = 50e-6, .missing_one_in = 40}, seed);
+        CamRig rig(table, shaft, {.codes_per_turn = codes, .stamp_delay_s = 50e-6, .missing_one_in = 40},
+                   seed);
         rig.run(shaft.end_s());
         for (std::size_t row = 0; row < 2; ++row) {
             bool inside = false;
@@ -320,13 +338,14 @@ TEST(CamSchedule, does_the_same_to_the_bit_for_the_same_seed) {
         for (const Fired& fired : rig.fired) {
             std::uint64_t late = 0;
             std::memcpy(&late, &fired.event.late_deg, sizeof late);
-            digest = digest * 0x100000001b3u + static_cast<std::uint64_t>(to_ns(fired.at)) + late + fired.event.row;
+            digest = digest * 0x100000001b3u + static_cast<std::uint64_t>(to_ns(fired.at)) + late +
+                     fired.event.row;
         }
         return digest;
     };
     const std::uint64_t once = run();
     EXPECT_EQ(once, run());
-    EXPECT_EQ(once, 9560047577239405001u) << "another compiler, or another estimator";
+    EXPECT_EQ(once, 336675540384717305u) << "another compiler, or another estimator";
 }
 
 TEST(CamSchedule, does_nothing_before_the_first_samples) {
@@ -334,7 +353,8 @@ TEST(CamSchedule, does_nothing_before_the_first_samples) {
     const ShaftEstimator estimator{ShaftProperties{}};
     schedule.update(estimator, Time{1s});
     EXPECT_EQ(schedule.next_due(), never);
-    schedule.advance(Time{2s}, [](const CamEvent&) noexcept TAPPET_REALTIME { TAPPET_ESCAPE("the test fails", FAIL()); });
+    schedule.advance(Time{2s}, [](const CamEvent&) noexcept
+                     TAPPET_REALTIME { TAPPET_ESCAPE("the test fails", FAIL()); });
 }
 
 } // namespace

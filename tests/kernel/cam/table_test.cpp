@@ -8,8 +8,7 @@
 namespace tappet {
 namespace {
 
-template <class... Rows>
-constexpr Sentence fault_of(const Rows&... rows) {
+template <class... Rows> constexpr Sentence fault_of(const Rows&... rows) {
     return check(cam_table(600_rpm, rows...).view());
 }
 
@@ -26,7 +25,8 @@ TEST(CamTable, says_nothing_of_a_good_table) {
 }
 
 TEST(CamTable, refuses_a_name_used_twice) {
-    constexpr Sentence fault = fault_of(cam("pick", at(80_deg)), cam("beat", at(0_deg)), cam("pick", at(90_deg)));
+    constexpr Sentence fault =
+        fault_of(cam("pick", at(80_deg)), cam("beat", at(0_deg)), cam("pick", at(90_deg)));
     EXPECT_EQ(fault.view(), "cam row 'pick': the name is used by two rows; rename one of them");
 }
 
@@ -46,31 +46,35 @@ TEST(CamTable, refuses_an_angle_outside_the_turn) {
 
 TEST(CamTable, refuses_a_dead_time_longer_than_a_turn) {
     constexpr Sentence fault = fault_of(cam("weft", at(80_deg), dead_time(120ms)));
-    EXPECT_EQ(fault.view(), "cam row 'weft': its dead time is 432 deg at the table's maximum speed, not less than a "
-                            "turn; choose a faster actuator or lower the maximum speed");
+    EXPECT_EQ(fault.view(),
+              "cam row 'weft': its dead time is 432 deg at the table's maximum speed, not less than a "
+              "turn; choose a faster actuator or lower the maximum speed");
     static_assert(fault_of(cam("weft", at(80_deg), dead_time(99ms))).empty());
     static_assert(!fault_of(cam("weft", at(80_deg), dead_time(99ms), dead_time_jitter(2ms))).empty());
 }
 
 TEST(CamTable, refuses_a_negative_dead_time) {
     constexpr Sentence fault = fault_of(cam("weft", at(80_deg), dead_time(-1us)));
-    EXPECT_EQ(fault.view(), "cam row 'weft': a dead time or its jitter is negative; give how late the actuator answers");
+    EXPECT_EQ(fault.view(),
+              "cam row 'weft': a dead time or its jitter is negative; give how late the actuator answers");
 }
 
 TEST(CamTable, refuses_a_window_shorter_than_its_jitter) {
     constexpr Sentence fault =
         fault_of(cam("valve", window(60_deg, 65_deg), dead_time(2500us), dead_time_jitter(2ms)));
-    EXPECT_EQ(fault.view(), "cam row 'valve': the window is 5 deg wide, but its dead times and their jitter take 7.2 "
-                            "deg at the table's maximum speed; widen the window or choose a steadier actuator");
+    EXPECT_EQ(fault.view(),
+              "cam row 'valve': the window is 5 deg wide, but its dead times and their jitter take 7.2 "
+              "deg at the table's maximum speed; widen the window or choose a steadier actuator");
 }
 
 TEST(CamTable, refuses_a_window_whose_closing_is_fired_before_its_opening) {
     static_assert(!fault_of(cam("valve", window(60_deg, 90_deg), dead_time(1ms, 10ms))).empty());
     static_assert(fault_of(cam("valve", window(60_deg, 100_deg), dead_time(1ms, 10ms))).empty());
     constexpr Sentence fault = fault_of(cam("valve", window(60_deg, 40_deg), dead_time(10ms, 1ms)));
-    EXPECT_EQ(fault.view(), "cam row 'valve': the way outside the window is 20 deg wide, but its dead times and their "
-                            "jitter take 32.4 deg at the table's maximum speed; narrow the window or choose a "
-                            "steadier actuator");
+    EXPECT_EQ(fault.view(),
+              "cam row 'valve': the way outside the window is 20 deg wide, but its dead times and their "
+              "jitter take 32.4 deg at the table's maximum speed; narrow the window or choose a "
+              "steadier actuator");
 }
 
 TEST(CamTable, refuses_a_window_without_width) {
@@ -108,26 +112,30 @@ TEST(CamTable, counts_the_jitter_of_both_dead_times_between_exclusive_windows) {
     constexpr Sentence fault =
         fault_of(cam("main", window(60_deg, 180_deg), dead_time_jitter(1ms), exclusive("valves")),
                  cam("relay", window(185_deg, 240_deg), dead_time_jitter(1ms), exclusive("valves")));
-    EXPECT_EQ(fault.view(), "cam row 'relay': its window overlaps that of 'main' by 2.2 deg with the jitter of both "
-                            "dead times, but both are exclusive(\"valves\"); move one window or drop its group");
+    EXPECT_EQ(fault.view(),
+              "cam row 'relay': its window overlaps that of 'main' by 2.2 deg with the jitter of both "
+              "dead times, but both are exclusive(\"valves\"); move one window or drop its group");
 }
 
 TEST(CamTable, refuses_a_point_that_is_exclusive) {
     constexpr Sentence fault = fault_of(cam("pick", at(80_deg), exclusive("valves")));
-    EXPECT_EQ(fault.view(), "cam row 'pick': it is exclusive(\"valves\"), but a point has no width; write window(...) "
-                            "or drop the group");
+    EXPECT_EQ(fault.view(),
+              "cam row 'pick': it is exclusive(\"valves\"), but a point has no width; write window(...) "
+              "or drop the group");
 }
 
 TEST(CamTable, refuses_a_row_that_is_never_fast_enough) {
     constexpr Sentence fault = fault_of(cam("pick", at(80_deg), min_speed(600_rpm)));
-    EXPECT_EQ(fault.view(), "cam row 'pick': its min_speed is negative or not below the table's maximum speed, so it "
-                            "never fires; give a speed between 0 and the maximum");
+    EXPECT_EQ(fault.view(),
+              "cam row 'pick': its min_speed is negative or not below the table's maximum speed, so it "
+              "never fires; give a speed between 0 and the maximum");
 }
 
 TEST(CamTable, refuses_a_table_without_a_speed) {
     constexpr auto cams = cam_table(0_rpm, cam("pick", at(80_deg)));
     constexpr Sentence fault = check(cams.view());
-    EXPECT_EQ(fault.view(), "cam table: the maximum speed is not above 0; give the fastest speed of the shaft");
+    EXPECT_EQ(fault.view(),
+              "cam table: the maximum speed is not above 0; give the fastest speed of the shaft");
 }
 
 } // namespace

@@ -84,13 +84,15 @@ public:
     [[nodiscard]] double percentile(double part) {
         if (all_.empty()) return 1e9; // a test that measured nothing must not pass
         std::sort(all_.begin(), all_.end());
-        return all_[std::min(all_.size() - 1, static_cast<std::size_t>(part * static_cast<double>(all_.size())))];
+        return all_[std::min(all_.size() - 1,
+                             static_cast<std::size_t>(part * static_cast<double>(all_.size())))];
     }
     [[nodiscard]] double p50() { return percentile(0.5); }
     [[nodiscard]] double p99() { return percentile(0.99); }
     [[nodiscard]] double max() { return percentile(1.0); }
     void print(const char* what) {
-        std::printf("    %-58s p50 %7.4f  p99 %7.4f  max %7.4f deg (%zu)\n", what, p50(), p99(), max(), count());
+        std::printf("    %-58s p50 %7.4f  p99 %7.4f  max %7.4f deg (%zu)\n", what, p50(), p99(), max(),
+                    count());
     }
 
 private:
