@@ -1,5 +1,5 @@
-// The check of a whole table on a board: empty, or the one sentence that names the row, the fault and the cure. The same
-// function runs in the compiler and in tests.
+// The check of a whole table on a board: empty, or the one sentence that names the row, the fault and the
+// cure. The same function runs in the compiler and in tests.
 #pragma once
 
 #include "kernel/machine/check_board.hpp"
@@ -10,10 +10,11 @@
 
 namespace tappet {
 
-/// Checks in the order in which a reader would look, and fills `r`, which holds only as far as the checks went.
+/// Checks in the order in which a reader would look, and fills `r`, which holds only as far as the checks
+/// went.
 constexpr Sentence check(const MachineView& m, const Board& board, TableIndexView r) {
     const auto first_fault = [&]() -> Sentence {
-        if (Sentence fault = checks::check_components(m); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_activities(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_connections(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;

@@ -1,4 +1,5 @@
-// Checks of the sections components and activities: every component once, in exactly one activity, with properties it has.
+// Checks of the sections components and activities: every component once, in exactly one activity, with
+// properties it has.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -7,12 +8,10 @@
 namespace tappet::checks {
 
 /// What is said of a row: which one, and what is wrong with it.
-template <class... Pieces>
-constexpr Sentence of_component(std::string_view name, const Pieces&... fault) {
+template <class... Pieces> constexpr Sentence of_component(std::string_view name, const Pieces&... fault) {
     return Sentence{"component \"", name, "\": ", fault...};
 }
-template <class... Pieces>
-constexpr Sentence of_activity(std::string_view name, const Pieces&... fault) {
+template <class... Pieces> constexpr Sentence of_activity(std::string_view name, const Pieces&... fault) {
     return Sentence{"activity \"", name, "\": ", fault...};
 }
 
@@ -21,15 +20,19 @@ inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
 
 constexpr bool fits(const Facet& property, const PropertySetting& setting) noexcept {
     const auto wanted = property.property->kind;
-    return wanted == setting.kind || (wanted == PropertySetting::Kind::real && setting.kind == PropertySetting::Kind::whole);
+    return wanted == setting.kind ||
+           (wanted == PropertySetting::Kind::real && setting.kind == PropertySetting::Kind::whole);
 }
 
 constexpr Sentence check_settings(const ComponentRow& row) {
-    if (row.too_many_settings) return of_component(row.name, "sets more than ", ComponentRow::max_settings, " properties; give the others their default in the component");
+    if (row.too_many_settings)
+        return of_component(row.name, "sets more than ", ComponentRow::max_settings,
+                            " properties; give the others their default in the component");
     for (std::size_t i = 0; i < row.settings.size(); ++i) {
         const PropertyRow& setting = row.settings[i];
         for (std::size_t j = 0; j < i; ++j)
-            if (row.settings[j].name == setting.name) return of_component(row.name, "sets property \"", setting.name, "\" twice; keep one");
+            if (row.settings[j].name == setting.name)
+                return of_component(row.name, "sets property \"", setting.name, "\" twice; keep one");
         const std::size_t found = find_facet(row, setting.name);
         if (found == nowhere || row.type->facets[found].kind != FacetKind::property) {
             Nearest nearest{setting.name};
@@ -40,55 +43,95 @@ constexpr Sentence check_settings(const ComponentRow& row) {
             return text;
         }
         const Facet& facet = row.type->facets[found];
-        if (!fits(facet, setting.setting)) return of_component(row.name, "property \"", setting.name, "\" is of type ", facet.type->name, "; set it to a value of that type");
-        const double value = setting.setting.kind == PropertySetting::Kind::real       ? setting.setting.real
-                             : setting.setting.kind == PropertySetting::Kind::duration ? static_cast<double>(setting.setting.whole) * 1e-9
-                                                                                       : static_cast<double>(setting.setting.whole);
+        if (!fits(facet, setting.setting))
+            return of_component(row.name, "property \"", setting.name, "\" is of type ", facet.type->name,
+                                "; set it to a value of that type");
+        const double value = setting.setting.kind == PropertySetting::Kind::real ? setting.setting.real
+                             : setting.setting.kind == PropertySetting::Kind::duration
+                                 ? static_cast<double>(setting.setting.whole) * 1e-9
+                                 : static_cast<double>(setting.setting.whole);
         if (!(value >= facet.range.low && value <= facet.range.high))
-            return of_component(row.name, "property \"", setting.name, "\" is set outside its range; see range(...) in the component's interface");
+            return of_component(row.name, "property \"", setting.name,
+                                "\" is set outside its range; see range(...) in the component's interface");
     }
     return {};
 }
 
-constexpr Sentence check_components(const MachineView& m) {
-    if (m.components.empty()) return Sentence{"the table has no components; add component<Type>(\"name\") rows to components(...)"};
+constexpr Sentence check_interface(const ComponentRow& row) {
+    const auto& facets = row.type->facets;
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        if (facets[f].name.empty() || facets[f].name.find('.') != std::string_view::npos)
+            return of_component(row.name, "its interface names a facet \"", facets[f].name,
+                                "\"; a name is not empty and has no dot: rename it in ", row.type->tag->name);
+        for (std::size_t g = 0; g < f; ++g)
+            if (facets[f].name == facets[g].name)
+                return of_component(row.name, "its interface names \"", facets[f].name,
+                                    "\" twice; rename one in ", row.type->tag->name);
+    }
+    return {};
+}
+
+/// Fills the list by name.
+constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
+    if (m.components.empty())
+        return Sentence{"the table has no components; add component<Type>(\"name\") rows to components(...)"};
     for (std::size_t i = 0; i < m.components.size(); ++i) {
         const ComponentRow& row = m.components[i];
-        if (row.name.empty() || row.name.find('.') != std::string_view::npos) return of_component(row.name, "a component's name is not empty and has no dot; rename it");
-        for (std::size_t j = 0; j < i; ++j)
-            if (m.components[j].name == row.name) return of_component(row.name, "stands in components(...) twice (rows ", j + 1, " and ", i + 1, "); rename or remove one");
-        for (std::size_t f = 0; f < row.type->facets.size(); ++f)
-            for (std::size_t g = 0; g < f; ++g)
-                if (row.type->facets[f].name == row.type->facets[g].name)
-                    return of_component(row.name, "its interface names \"", row.type->facets[f].name, "\" twice; rename one in ", row.type->tag->name);
+        if (row.name.empty() || row.name.find('.') != std::string_view::npos)
+            return of_component(row.name, "a component's name is not empty and has no dot; rename it");
+        if (Sentence fault = check_interface(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
-        if (!row.type->device_kind.empty() && row.device.empty()) return of_component(row.name, "drives a ", row.type->device_kind, " device but its row names none; add device(\"...\")");
-        if (row.type->device_kind.empty() && !row.device.empty()) return of_component(row.name, "drives no device; remove device(\"", row.device, "\")");
+        if (!row.type->device_kind.empty() && row.device.empty())
+            return of_component(row.name, "drives a ", row.type->device_kind,
+                                " device but its row names none; add device(\"...\")");
+        if (row.type->device_kind.empty() && !row.device.empty())
+            return of_component(row.name, "drives no device; remove device(\"", row.device, "\")");
     }
+    sort_by_name(m, r.by_name);
+    for (std::size_t i = 1; i < r.by_name.size(); ++i)
+        if (const std::string_view name = m.components[r.by_name[i]].name;
+            name == m.components[r.by_name[i - 1]].name)
+            return of_component(name, "stands in components(...) twice (rows ", r.by_name[i - 1] + 1, " and ",
+                                r.by_name[i] + 1, "); rename or remove one");
     return {};
 }
 
 constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
-    if (!row.has_trigger) return of_activity(row.name, "nothing wakes it; add every(...), on_work() or on_device(\"...\")");
-    if (row.too_many_runs) return of_activity(row.name, "runs more than ", ActivityRow::max_runs, " components; divide it");
-    if (row.runs.empty()) return of_activity(row.name, "runs no component; add runs(\"...\") or remove the row");
-    if (row.periodic() && row.period <= Duration::zero()) return of_activity(row.name, "its period is not positive; write every(1ms) or the like");
+    if (!row.has_trigger)
+        return of_activity(row.name, "nothing wakes it; add every(...), on_work() or on_device(\"...\")");
+    if (row.too_many_runs)
+        return of_activity(row.name, "runs more than ", ActivityRow::max_runs, " components; divide it");
+    if (row.runs.empty())
+        return of_activity(row.name, "runs no component; add runs(\"...\") or remove the row");
+    if (row.periodic() && row.period <= Duration::zero())
+        return of_activity(row.name, "its period is not positive; write every(1ms) or the like");
     if (row.trigger == Trigger::on_device) {
         const std::size_t driver = find_component(m, row.device);
         if (driver == nowhere) return of_activity(row.name, unknown_component(m, row.device));
-        if (m.components[driver].type->device_kind.empty()) return of_activity(row.name, "component \"", row.device, "\" drives no device to wake it; name a driver in on_device(...)");
+        if (m.components[driver].type->device_kind.empty())
+            return of_activity(row.name, "component \"", row.device,
+                               "\" drives no device to wake it; name a driver in on_device(...)");
         bool runs_it = false;
         for (const auto& name : row.runs) runs_it |= name == row.device;
-        if (!runs_it) return of_activity(row.name, "is woken by the device of \"", row.device, "\" but does not run it; add it to runs(...)");
+        if (!runs_it)
+            return of_activity(row.name, "is woken by the device of \"", row.device,
+                               "\" but does not run it; add it to runs(...)");
     }
     if (row.real_time) {
-        if (row.shortest_period() <= Duration::zero()) return of_activity(row.name, "says not how often it may be woken; add at_most(n, per)");
-        if (row.at_most_n < 1) return of_activity(row.name, "at_most needs at least one wake; write at_most(1, ...)");
-        if (row.at_most_n > max_wakes_together) return of_activity(row.name, "promises more than ", max_wakes_together, " wakes in one window; shorten the window of at_most");
-        if (row.budget_each <= Duration::zero()) return of_activity(row.name, "has no budget; add budget(...), or not_real_time");
-        if (row.deadline_after < Duration::zero()) return of_activity(row.name, "its deadline is negative; correct deadline(...)");
+        if (row.shortest_period() <= Duration::zero())
+            return of_activity(row.name, "says not how often it may be woken; add at_most(n, per)");
+        if (row.at_most_n < 1)
+            return of_activity(row.name, "at_most needs at least one wake; write at_most(1, ...)");
+        if (row.at_most_n > max_wakes_together)
+            return of_activity(row.name, "promises more than ", max_wakes_together,
+                               " wakes in one window; shorten the window of at_most");
+        if (row.budget_each <= Duration::zero())
+            return of_activity(row.name, "has no budget; add budget(...), or not_real_time");
+        if (row.deadline_after < Duration::zero())
+            return of_activity(row.name, "its deadline is negative; correct deadline(...)");
     }
-    if (row.stack < 16 * 1024) return of_activity(row.name, "its stack of ", row.stack, " bytes is under 16384; enlarge stack(...)");
+    if (row.stack < 16 * 1024)
+        return of_activity(row.name, "its stack of ", row.stack, " bytes is under 16384; enlarge stack(...)");
     return {};
 }
 
@@ -98,23 +141,32 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         const ActivityRow& row = m.activities[a];
         for (std::size_t j = 0; j < a; ++j)
-            if (m.activities[j].name == row.name) return of_activity(row.name, "stands in activities(...) twice (rows ", j + 1, " and ", a + 1, "); rename or remove one");
+            if (m.activities[j].name == row.name)
+                return of_activity(row.name, "stands in activities(...) twice (rows ", j + 1, " and ", a + 1,
+                                   "); rename or remove one");
         if (Sentence fault = check_trigger(m, row); !fault.empty()) return fault;
         for (const auto& name : row.runs) {
-            const std::size_t c = find_component(m, name);
+            const std::size_t c = find_component(m, r.by_name, name);
             if (c == nowhere) return of_activity(row.name, unknown_component(m, name));
             if (r.activity[c] != nowhere)
-                return of_component(name, "is run by activity \"", m.activities[r.activity[c]].name, "\" and by activity \"", row.name, "\"; keep it in one");
+                return of_component(name, "is run by activity \"", m.activities[r.activity[c]].name,
+                                    "\" and by activity \"", row.name, "\"; keep it in one");
             r.activity[c] = a;
             for (const auto& facet : m.components[c].type->facets)
                 if (facet.kind == FacetKind::timer && row.real_time && row.periodic())
-                    return of_activity(row.name, "is periodic but component \"", name, "\" has the timer \"", facet.name, "\", which runs between periods; run it on_work() with at_most(n, per), so that the analysis counts it");
+                    return of_activity(row.name, "is periodic but component \"", name, "\" has the timer \"",
+                                       facet.name,
+                                       "\", which runs between periods; run it on_work() with at_most(n, "
+                                       "per), so that the analysis counts it");
             if (m.components[c].type->work != nullptr && row.real_time)
-                return of_activity(row.name, "is real-time but component \"", name, "\" may block (it has work()); run it in an activity that is not_real_time");
+                return of_activity(
+                    row.name, "is real-time but component \"", name,
+                    "\" may block (it has work()); run it in an activity that is not_real_time");
         }
     }
     for (std::size_t c = 0; c < m.components.size(); ++c)
-        if (r.activity[c] == nowhere) return of_component(m.components[c].name, "no activity runs it; add it to runs(...) of one");
+        if (r.activity[c] == nowhere)
+            return of_component(m.components[c].name, "no activity runs it; add it to runs(...) of one");
     return {};
 }
 

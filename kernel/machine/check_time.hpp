@@ -1,5 +1,5 @@
-// Urgency and time: priorities follow from deadlines (deadline monotonic; Leung and Whitehead 1982), and response-time
-// analysis says on each processor whether every deadline holds with the declared budgets.
+// Urgency and time: priorities follow from deadlines (deadline monotonic; Leung and Whitehead 1982), and
+// response-time analysis says on each processor whether every deadline holds with the declared budgets.
 #pragma once
 
 #include "kernel/machine/board.hpp"
@@ -18,9 +18,7 @@ constexpr int processor_of(const Board& board, std::string_view activity) noexce
 }
 
 /// A number of nanoseconds as an engineer reads it.
-constexpr Sentence in_us(std::int64_t ns) {
-    return Sentence{ns / 1000, " us"};
-}
+constexpr Sentence in_us(std::int64_t ns) { return Sentence{ns / 1000, " us"}; }
 
 /// Fills the ranks: the shortest deadline first, then the order of the table; what is not real-time last.
 constexpr void rank_activities(const MachineView& m, TableIndexView r) {
@@ -40,11 +38,14 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
 
 /// Fills the worst response times.
 constexpr Sentence check_schedulability(const MachineView& m, const Board& board, TableIndexView r) {
-    if (m.activities.size() > max_activities) return Sentence{"the table has more than ", max_activities, " activities; merge those of equal period"};
+    if (m.activities.size() > max_activities)
+        return Sentence{"the table has more than ", max_activities,
+                        " activities; merge those of equal period"};
     for (std::size_t i = 0; i < board.placement.size(); ++i) {
         const BoardPlacement& place = board.placement[i];
         if (place.processor < 0 || place.processor >= board.processors)
-            return of_activity(place.activity, "board \"", board.name, "\" places it on processor ", place.processor, " of ", board.processors, "; correct its placement");
+            return of_activity(place.activity, "board \"", board.name, "\" places it on processor ",
+                               place.processor, " of ", board.processors, "; correct its placement");
     }
     rank_activities(m, r);
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
@@ -55,18 +56,27 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
         std::size_t count = 0;
         for (std::size_t rank = 0; rank <= r.rank[a]; ++rank)
             for (std::size_t b = 0; b < m.activities.size(); ++b) {
-                if (r.rank[b] != rank || processor_of(board, m.activities[b].name) != processor_of(board, row.name)) continue;
+                if (r.rank[b] != rank ||
+                    processor_of(board, m.activities[b].name) != processor_of(board, row.name))
+                    continue;
                 // n wakes in a window may come together: they count as one job of n budgets.
                 const ActivityRow& other = m.activities[b];
                 const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
-                tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together, other.deadline().count()};
+                tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
+                                  other.deadline().count()};
             }
         const Response response = response_time(std::span{tasks}.first(count), count - 1);
         if (!response.bounded)
-            return of_activity(row.name, "is not schedulable on processor ", processor_of(board, row.name), " of board \"", board.name, "\": the activities there take more than all of its time; lower budgets, lengthen periods, or place it elsewhere");
+            return of_activity(row.name, "is not schedulable on processor ", processor_of(board, row.name),
+                               " of board \"", board.name,
+                               "\": the activities there take more than all of its time; lower budgets, "
+                               "lengthen periods, or place it elsewhere");
         if (!response.within(row.deadline().count()))
-            return of_activity(row.name, "is not schedulable on processor ", processor_of(board, row.name), " of board \"", board.name, "\": its worst response is ", in_us(response.worst_ns), ", its deadline ", in_us(row.deadline().count()),
-                               "; lower the budget of it or of a more urgent activity, lengthen its deadline, or place it elsewhere");
+            return of_activity(row.name, "is not schedulable on processor ", processor_of(board, row.name),
+                               " of board \"", board.name, "\": its worst response is ",
+                               in_us(response.worst_ns), ", its deadline ", in_us(row.deadline().count()),
+                               "; lower the budget of it or of a more urgent activity, lengthen its "
+                               "deadline, or place it elsewhere");
         r.worst_response_ns[a] = response.worst_ns;
     }
     return {};

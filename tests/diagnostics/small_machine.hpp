@@ -1,0 +1,158 @@
+// A small machine that compiles. Each case of tests/diagnostics/cases replaces one section of it by a faulty
+// one.
+#pragma once
+
+#include "kernel/machine/firmware.hpp"
+
+namespace small {
+
+using namespace tappet;
+
+struct Encoder {
+    static constexpr std::string_view device_kind = "can";
+    Output<double> angle;
+    Output<int> turns;
+    BufferOutput<int> samples;
+    Event<double> index;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { angle.write(1.0); }
+    static constexpr auto interface() {
+        return facets(output<&Encoder::angle>("angle", "deg", "of the shaft"),
+                      output<&Encoder::turns>("turns", "", "since the start"),
+                      output<&Encoder::samples>("samples", "", "raw"),
+                      event<&Encoder::index>("index", "the index mark passed, at this angle"));
+    }
+};
+
+struct Shaft {
+    Input<double> measured;
+    Input<double> reference;
+    BufferInput<int> samples;
+    Output<double> speed;
+    Event<> window;
+    Event<> wrapped;
+    Property<double> gain{1.0};
+    Property<bool> reversed{false};
+    Property<Duration> filter{1ms};
+    void on_index(double) noexcept TAPPET_REALTIME {}
+    void clear() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(input<&Shaft::measured>("measured", "deg", "by the encoder"),
+                      input<&Shaft::reference>("reference", "deg", "where it shall be", optional),
+                      input<&Shaft::samples>("samples", "", "raw", optional),
+                      output<&Shaft::speed>("speed", "rpm", "filtered"),
+                      event<&Shaft::window>("window", "the weft may be released"),
+                      event<&Shaft::wrapped>("wrapped", "at zero"),
+                      operation<&Shaft::on_index>("on_index", "corrects the angle", required),
+                      operation<&Shaft::clear>("clear", "forgets the turns"),
+                      property<&Shaft::gain>("gain", "", "of the estimator", range(0, 10)),
+                      property<&Shaft::reversed>("reversed", "", "mounted the other way round"),
+                      property<&Shaft::filter>("filter", "s", "time constant", range(0, 0.5)));
+    }
+};
+
+struct Tension {
+    Input<double> speed;
+    Output<double> torque;
+    Property<double> wanted_n{80.0};
+    void pre_tension() noexcept TAPPET_REALTIME {}
+    void relax() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      output<&Tension::torque>("torque", "N m", "of the let-off"),
+                      operation<&Tension::pre_tension>("pre_tension", "tightens before the beat-up"),
+                      operation<&Tension::relax>("relax", "lets go", any_thread),
+                      property<&Tension::wanted_n>("wanted_n", "N", "of the warp", range(0, 500)));
+    }
+};
+
+struct Weft {
+    static constexpr bool behaviour_required = true;
+    Output<double> reference;
+    Event<> inserted;
+    Event<> broken;
+    bool may_start() noexcept TAPPET_REALTIME { return true; }
+    void release() noexcept TAPPET_REALTIME {}
+    void insert() noexcept TAPPET_REALTIME { inserted(); }
+    void all_off() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(output<&Weft::reference>("reference", "deg", "the next pick"),
+                      event<&Weft::inserted>("inserted", "the weft arrived"),
+                      event<&Weft::broken>("broken", "it did not"),
+                      operation<&Weft::release>("release", "opens the feeder"),
+                      operation<&Weft::insert>("insert", "blows"));
+    }
+};
+
+struct Climate {
+    static constexpr std::string_view device_kind = "modbus";
+    Output<double> humidity;
+    void work(const Cycle&) {}
+    void log() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(output<&Climate::humidity>("humidity", "%", "of the hall"),
+                      operation<&Climate::log>("log", "writes it down", any_thread));
+    }
+};
+
+struct Lamps {
+    static constexpr std::string_view device_kind = "gpio";
+    static constexpr std::array<std::string_view, 2> lines{"red", "green"};
+    static constexpr std::span<const std::string_view> device_lines() { return lines; }
+    void red() noexcept TAPPET_REALTIME {}
+    void green() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(operation<&Lamps::red>("red", "a stop"), operation<&Lamps::green>("green", "running"));
+    }
+};
+
+inline constexpr auto weft_cycle = state_machine<Weft>(
+    "weft_cycle",
+    states(state("idle", initial), state("weaving", run<&Weft::insert>),
+           state("safe", final, entry<&Weft::all_off>)),
+    transitions(transition("idle", "weaving", on("shaft.window"), guard<&Weft::may_start>),
+                transition("weaving", "safe", on("broken")), transition("weaving", "idle", after(2s))));
+
+inline constexpr auto good_components =
+    components(component<Encoder>("encoder", device("main_encoder")),
+               component<Shaft>("shaft", set("gain", 2.0), set("filter", 2ms)),
+               component<Tension>("tension", set("wanted_n", 120)), component<Weft>("weft"),
+               component<Climate>("climate", device("hall")), component<Lamps>("lamps", device("panel")));
+
+inline constexpr auto good_activities = activities(
+    activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us), runs("encoder")),
+    activity("motion", every(1ms), budget(120us), runs("shaft", "tension")),
+    activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us), runs("weft", "lamps")),
+    activity("hall", every(250ms), not_real_time, runs("climate")));
+
+inline constexpr auto good_connections =
+    connections(data("encoder.angle", "shaft.measured", stale_after(4ms), hold),
+                data("shaft.speed", "tension.speed"), data("weft.reference", "shaft.reference"));
+
+inline constexpr auto good_reactions =
+    reactions(when("encoder.index", tell("shaft.on_index")),
+              when("shaft.window", call("tension.pre_tension")), when("weft.inserted", call("lamps.green")),
+              when("weft.broken", tell("shaft.clear")), when("weft.broken", call("tension.relax")));
+
+inline constexpr auto good_behaviours = behaviours(behaviour("weft", weft_cycle));
+
+inline constexpr Board good_board{
+    .name = "bench",
+    .world = "bench",
+    .memory_budget_bytes = 1'000'000,
+    .heap_bytes = 100'000,
+    .processors = 2,
+    .default_processor = 1,
+    .placement = {{{{"hall", 0}}}, 1},
+    .devices = {
+        {{board_device("main_encoder", "can", "can0"), board_device("hall", "modbus", "192.168.7.2:502"),
+          board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("green", 5))}},
+        3}};
+
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
+constexpr Machine<C, A, X, R, B> loom(const Section<ComponentRow, C>& c, const Section<ActivityRow, A>& a,
+                                      const Section<ConnectionRow, X>& x, const Section<ReactionRow, R>& r,
+                                      const Section<BehaviourRow, B>& b) {
+    return machine("loom", c, a, x, r, b);
+}
+
+} // namespace small
