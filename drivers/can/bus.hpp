@@ -14,18 +14,20 @@ namespace tappet::can {
 
 /// A signal is a whole number unless a factor, an offset or a float makes it a physical value.
 constexpr bool is_whole(const Signal& s) noexcept {
-    return s.factor == 1 && s.offset == 0 && (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
+    return s.factor == 1 && s.offset == 0 &&
+           (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
 }
 
-/// The names of a map's facets, "frame.signal" and "frame.received", as text that lives as long as the program.
-template <const auto& map>
-struct FacetNames {
+/// The names of a map's facets, "frame.signal" and "frame.received", as text that lives as long as the
+/// program.
+template <const auto& map> struct FacetNames {
     static constexpr std::size_t longest = 63;
     struct Name {
         std::array<char, longest + 1> letters{};
         std::size_t length = 0;
         constexpr void add(std::string_view piece) {
-            for (const char letter : piece) letters[length++] = letter; // longer than `longest` does not compile
+            for (const char letter : piece)
+                letters[length++] = letter; // longer than `longest` does not compile
         }
         [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters.data(), length}; }
     };
@@ -48,12 +50,11 @@ struct FacetNames {
     }();
 };
 
-/// Facets: an output or an input for each signal, an event for each received frame, and the state of the bus. Runs in an
-/// activity that is on_device. A frame goes out at its period or, on demand, when one of its signals is written; one of
-/// whose signals was never written, or is stale, does not go out: nothing stale leaves, and the receiver's own time-out
-/// notices. All real-time.
-template <const auto& map>
-struct Bus {
+/// Facets: an output or an input for each signal, an event for each received frame, and the state of the bus.
+/// Runs in an activity that is on_device. A frame goes out at its period or, on demand, when one of its
+/// signals is written; one of whose signals was never written, or is stale, does not go out: nothing stale
+/// leaves, and the receiver's own time-out notices. All real-time.
+template <const auto& map> struct Bus {
     static_assert(map.fault.empty(), "the signal map is refused: its member `fault` says why");
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
@@ -61,7 +62,8 @@ struct Bus {
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
 
-    // One port of each sort for each signal: those that the signal's direction and type do not ask for stay unused.
+    // One port of each sort for each signal: those that the signal's direction and type do not ask for stay
+    // unused.
     std::array<Output<double>, signal_count> physical_out{};
     std::array<Output<std::int64_t>, signal_count> whole_out{};
     std::array<Input<double>, signal_count> physical_in{};
@@ -80,13 +82,17 @@ struct Bus {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
         if (device_ == nullptr) return setup.no_device();
-        if (const int handle = device_->wait_handle(); handle < 0) device_->set_listener(&os::Waiter::wake_thunk, waiter_);
-        else if (!waiter_->watch(handle)) return Sentence{"component \"", setup.component, "\": its activity watches too many devices; give it fewer drivers"};
+        if (const int handle = device_->wait_handle(); handle < 0)
+            device_->set_listener(&os::Waiter::wake_thunk, waiter_);
+        else if (!waiter_->watch(handle))
+            return Sentence{"component \"", setup.component,
+                            "\": its activity watches too many devices; give it fewer drivers"};
         return {};
     }
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        for (std::size_t f = 0; f < frame_count; ++f) due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
+        for (std::size_t f = 0; f < frame_count; ++f)
+            due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         tell_state();
         arm();
     }
@@ -111,7 +117,8 @@ struct Bus {
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (due_[f] > cycle.now) continue;
             send(f, cycle.now);
-            // Absolute times: a late cycle does not move the ones behind it. Whole periods that were missed are left out.
+            // Absolute times: a late cycle does not move the ones behind it. Whole periods that were missed
+            // are left out.
             const Duration behind = cycle.now - due_[f];
             due_[f] += (behind / map.frames[f].every + 1) * map.frames[f].every;
         }
@@ -127,21 +134,27 @@ struct Bus {
         std::size_t n = 0;
         for (std::size_t s = 0; s < signal_count; ++s) list[n++] = signal_facet(s);
         for (std::size_t f = 0; f < frame_count; ++f) {
-            Facet facet = tappet::event<&Bus::bus_fault>(FacetNames<map>::received[f].view(), "a frame arrived");
-            facet.at = [](void* c, std::size_t i) noexcept -> void* { return &static_cast<Bus*>(c)->frame_received[i]; };
+            Facet facet =
+                tappet::event<&Bus::bus_fault>(FacetNames<map>::received[f].view(), "a frame arrived");
+            facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                return &static_cast<Bus*>(c)->frame_received[i];
+            };
             facet.index = f;
             list[n++] = facet;
         }
         for (const Facet& facet : {
                  output<&Bus::is_faulted>("faulted", "", "nothing is sent or received"),
-                 output<&Bus::bus_state>("state", "", "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 down"),
+                 output<&Bus::bus_state>(
+                     "state", "", "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 down"),
                  output<&Bus::frames_lost>("frames_lost", "", "arrived but never read, since start"),
                  output<&Bus::frames_received>("frames_received", "", "since start"),
                  tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
-                 tappet::event<&Bus::bus_recovered>("bus_recovered", "the bus works again, with empty queues"),
+                 tappet::event<&Bus::bus_recovered>("bus_recovered",
+                                                    "the bus works again, with empty queues"),
                  operation<&Bus::purge>("purge", "drops what waits to be sent"),
                  timer<&Bus::next_send, &Bus::send_cyclic>("next_send", "the next cyclic frame"),
-                 timer<&Bus::next_service, &Bus::serve_device>("next_service", "the next time-out of a frame"),
+                 timer<&Bus::next_service, &Bus::serve_device>("next_service",
+                                                               "the next time-out of a frame"),
              })
             list[n++] = facet;
         return list;
@@ -157,17 +170,34 @@ private:
     static constexpr Facet signal_facet(std::size_t s) {
         const Signal& signal = map.signals[s];
         const bool sent = map.frames[map.frame_of[s]].direction == Direction::transmit;
-        Facet facet{.name = FacetNames<map>::signals[s].view(), .unit = signal.unit, .doc = sent ? "sent" : "received", .kind = sent ? FacetKind::input : FacetKind::output, .required = sent, .index = s};
+        Facet facet{.name = FacetNames<map>::signals[s].view(),
+                    .unit = signal.unit,
+                    .doc = sent ? "sent" : "received",
+                    .kind = sent ? FacetKind::input : FacetKind::output,
+                    .required = sent,
+                    .index = s};
         if (is_whole(signal)) {
             facet.type = type_id<std::int64_t>;
             facet.port = &PortAccess::data<std::int64_t>;
-            if (sent) facet.at = [](void* c, std::size_t i) noexcept -> void* { return &static_cast<Bus*>(c)->whole_in[i]; };
-            else facet.at = [](void* c, std::size_t i) noexcept -> void* { return &static_cast<Bus*>(c)->whole_out[i]; };
+            if (sent)
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Bus*>(c)->whole_in[i];
+                };
+            else
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Bus*>(c)->whole_out[i];
+                };
         } else {
             facet.type = type_id<double>;
             facet.port = &PortAccess::data<double>;
-            if (sent) facet.at = [](void* c, std::size_t i) noexcept -> void* { return &static_cast<Bus*>(c)->physical_in[i]; };
-            else facet.at = [](void* c, std::size_t i) noexcept -> void* { return &static_cast<Bus*>(c)->physical_out[i]; };
+            if (sent)
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Bus*>(c)->physical_in[i];
+                };
+            else
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Bus*>(c)->physical_out[i];
+                };
         }
         return facet;
     }
@@ -193,8 +223,10 @@ private:
         ++taken_;
         const FrameRow& row = map.frames[f];
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            if (is_whole(map.signals[s])) whole_out[s].write(store_.integer(s), frame.stamp);
-            else physical_out[s].write(store_.physical(s), frame.stamp);
+            if (is_whole(map.signals[s]))
+                whole_out[s].write(store_.integer(s), frame.stamp);
+            else
+                physical_out[s].write(store_.physical(s), frame.stamp);
         }
         frame_received[f].emit();
     }
@@ -204,8 +236,10 @@ private:
         const bool bad = faulted(state);
         if (bad != was_faulted_) {
             was_faulted_ = bad;
-            if (bad) bus_fault.emit();
-            else bus_recovered.emit();
+            if (bad)
+                bus_fault.emit();
+            else
+                bus_recovered.emit();
         }
         is_faulted.write(bad);
         bus_state.write(static_cast<std::int64_t>(state));
@@ -235,14 +269,17 @@ private:
 
     void send(std::size_t f, Time now) noexcept TAPPET_REALTIME {
         bool fresh = false;
-        if (gather(f, fresh)) static_cast<void>(device_->send(store_.encode(f, now), is_cyclic(f) ? Keep::latest : Keep::every));
+        if (gather(f, fresh))
+            static_cast<void>(
+                device_->send(store_.encode(f, now), is_cyclic(f) ? Keep::latest : Keep::every));
     }
 
     void send_on_demand(Time now) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (map.frames[f].direction != Direction::transmit || is_cyclic(f)) continue;
             bool fresh = false;
-            if (gather(f, fresh) && fresh) static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
+            if (gather(f, fresh) && fresh)
+                static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
         }
     }
 

@@ -1,5 +1,5 @@
-// The lines a machine uses of one GPIO chip, by logical name: what they are is the machine's, where they lie is the
-// board's.
+// The lines a machine uses of one GPIO chip, by logical name: what they are is the machine's, where they lie
+// is the board's.
 #pragma once
 
 #include "drivers/gpio/device.hpp"
@@ -50,23 +50,19 @@ constexpr LineRow row(std::string_view name, Role role, Driven driven, Options..
 
 } // namespace detail
 
-template <class... Options>
-constexpr LineRow sensor(std::string_view name, Options... options) {
+template <class... Options> constexpr LineRow sensor(std::string_view name, Options... options) {
     return detail::row(name, Role::input, Driven::by_port, options...);
 }
 /// Follows an input port of the component: lamps, contactors.
-template <class... Options>
-constexpr LineRow lamp(std::string_view name, Options... options) {
+template <class... Options> constexpr LineRow lamp(std::string_view name, Options... options) {
     return detail::row(name, Role::output, Driven::by_port, options...);
 }
 /// Set and cleared by events: valves and brakes, which act at an angle.
-template <class... Options>
-constexpr LineRow actuator(std::string_view name, Options... options) {
+template <class... Options> constexpr LineRow actuator(std::string_view name, Options... options) {
     return detail::row(name, Role::output, Driven::by_events, options...);
 }
 
-template <std::size_t N>
-struct LineMap {
+template <std::size_t N> struct LineMap {
     std::array<LineRow, N> rows{};
     Sentence fault{}; ///< empty when the map is right
 
@@ -78,26 +74,31 @@ struct LineMap {
 };
 
 /// Checks what the compiler can: static_assert(map.fault.empty()).
-template <class... Rows>
-constexpr LineMap<sizeof...(Rows)> line_map(const Rows&... rows) {
+template <class... Rows> constexpr LineMap<sizeof...(Rows)> line_map(const Rows&... rows) {
     LineMap<sizeof...(Rows)> map{{rows...}, {}};
-    static_assert(sizeof...(Rows) >= 2, "with one line alone in a request the kernel hides the edges it lost: take two");
+    static_assert(sizeof...(Rows) >= 2,
+                  "with one line alone in a request the kernel hides the edges it lost: take two");
     static_assert(sizeof...(Rows) <= most_lines, "one request of the kernel holds at most 64 lines");
     for (std::size_t i = 0; i < map.rows.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-            if (map.rows[i].line.name == map.rows[j].line.name) map.fault = Sentence{"line \"", map.rows[i].line.name, "\" stands in the map twice: rename one of them"};
+            if (map.rows[i].line.name == map.rows[j].line.name)
+                map.fault = Sentence{"line \"", map.rows[i].line.name,
+                                     "\" stands in the map twice: rename one of them"};
     return map;
 }
 
-/// The map's lines with the offsets of a box. `offset_of(name)` answers the offset, or a negative number for none; the
-/// error names the first line that has none.
+/// The map's lines with the offsets of a box. `offset_of(name)` answers the offset, or a negative number for
+/// none; the error names the first line that has none.
 template <std::size_t N, class OffsetOf>
 constexpr std::expected<std::array<Line, N>, Sentence> placed(const LineMap<N>& map, OffsetOf&& offset_of) {
     std::array<Line, N> lines{};
     for (std::size_t i = 0; i < N; ++i) {
         lines[i] = map.rows[i].line;
         const int offset = offset_of(lines[i].name);
-        if (offset < 0) return std::unexpected(Sentence{"line \"", lines[i].name, "\" has no offset on this board: add line(\"", lines[i].name, "\", offset) to its device"});
+        if (offset < 0)
+            return std::unexpected(Sentence{"line \"", lines[i].name,
+                                            "\" has no offset on this board: add line(\"", lines[i].name,
+                                            "\", offset) to its device"});
         lines[i].offset = static_cast<unsigned>(offset);
     }
     return lines;

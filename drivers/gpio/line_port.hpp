@@ -14,8 +14,7 @@
 namespace tappet::gpio {
 
 /// The names of a map's facets: "line", "line.rises", "line.falls", "line.set", "line.clear".
-template <const auto& map>
-struct LineNames {
+template <const auto& map> struct LineNames {
     struct Name {
         std::array<char, 64> letters{};
         std::size_t length = 0;
@@ -40,11 +39,10 @@ struct LineNames {
     }();
 };
 
-/// For each sensor: an output with its level and the edge's time, and the events rises and falls with that time. For
-/// each lamp: a required input. For each actuator: the required operations set and clear. Lost edges are counted, told,
-/// and the levels read anew. Runs in an activity that is on_device. All real-time.
-template <const auto& map>
-struct LinePort {
+/// For each sensor: an output with its level and the edge's time, and the events rises and falls with that
+/// time. For each lamp: a required input. For each actuator: the required operations set and clear. Lost
+/// edges are counted, told, and the levels read anew. Runs in an activity that is on_device. All real-time.
+template <const auto& map> struct LinePort {
     static_assert(map.fault.empty(), "the line map is refused: its member `fault` says why");
     static constexpr std::size_t count = map.rows.size();
     static constexpr std::string_view device_kind = "gpio";
@@ -62,8 +60,11 @@ struct LinePort {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
         if (device_ == nullptr) return setup.no_device();
-        if (const int handle = device_->wait_handle(); handle < 0) device_->set_listener(&os::Waiter::wake_thunk, waiter_);
-        else if (!waiter_->watch(handle)) return Sentence{"component \"", setup.component, "\": its activity watches too many devices; give it fewer drivers"};
+        if (const int handle = device_->wait_handle(); handle < 0)
+            device_->set_listener(&os::Waiter::wake_thunk, waiter_);
+        else if (!waiter_->watch(handle))
+            return Sentence{"component \"", setup.component,
+                            "\": its activity watches too many devices; give it fewer drivers"};
         return {};
     }
 
@@ -91,12 +92,10 @@ struct LinePort {
         static_cast<void>(device_->make_safe());
     }
 
-    template <std::size_t line>
-    void set() noexcept TAPPET_REALTIME {
+    template <std::size_t line> void set() noexcept TAPPET_REALTIME {
         static_cast<void>(device_->write(Mask{1} << line, Mask{1} << line));
     }
-    template <std::size_t line>
-    void clear() noexcept TAPPET_REALTIME {
+    template <std::size_t line> void clear() noexcept TAPPET_REALTIME {
         static_cast<void>(device_->write(Mask{1} << line, 0));
     }
 
@@ -114,13 +113,14 @@ private:
         return n;
     }();
 
-    template <std::size_t... i>
-    static constexpr auto list(std::index_sequence<i...>) {
+    template <std::size_t... i> static constexpr auto list(std::index_sequence<i...>) {
         std::array<Facet, facet_count> all{};
         std::size_t n = 0;
         (add_line<i>(all, n), ...);
-        all[n++] = output<&LinePort::edges_lost>("edges_lost", "", "edges the kernel could not deliver, since start");
-        all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost", "edges were lost; the levels were read anew");
+        all[n++] = output<&LinePort::edges_lost>("edges_lost", "",
+                                                 "edges the kernel could not deliver, since start");
+        all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost",
+                                                             "edges were lost; the levels were read anew");
         return all;
     }
 
@@ -129,18 +129,55 @@ private:
         using Names = LineNames<map>;
         constexpr std::string_view name = Names::plain[i];
         if constexpr (map.rows[i].line.role == Role::input) {
-            all[n++] = {.name = name, .doc = "the line's level", .kind = FacetKind::output, .type = type_id<bool>, .index = i, .at = [](void* c, std::size_t k) noexcept -> void* { return &static_cast<LinePort*>(c)->level[k]; }, .port = &PortAccess::data<bool>};
-            all[n++] = {.name = Names::rises[i].view(), .doc = "the line became active, at that time", .kind = FacetKind::event, .type = type_id<Arguments<Time>>, .index = i, .at = [](void* c, std::size_t k) noexcept -> void* { return &static_cast<LinePort*>(c)->rises[k]; }, .event = &PortAccess::event<Time>};
-            all[n++] = {.name = Names::falls[i].view(), .doc = "the line became inactive, at that time", .kind = FacetKind::event, .type = type_id<Arguments<Time>>, .index = i, .at = [](void* c, std::size_t k) noexcept -> void* { return &static_cast<LinePort*>(c)->falls[k]; }, .event = &PortAccess::event<Time>};
+            all[n++] = {.name = name,
+                        .doc = "the line's level",
+                        .kind = FacetKind::output,
+                        .type = type_id<bool>,
+                        .index = i,
+                        .at = [](void* c, std::size_t k) noexcept -> void* {
+                            return &static_cast<LinePort*>(c)->level[k];
+                        },
+                        .port = &PortAccess::data<bool>};
+            all[n++] = {.name = Names::rises[i].view(),
+                        .doc = "the line became active, at that time",
+                        .kind = FacetKind::event,
+                        .type = type_id<Arguments<Time>>,
+                        .index = i,
+                        .at = [](void* c, std::size_t k) noexcept -> void* {
+                            return &static_cast<LinePort*>(c)->rises[k];
+                        },
+                        .event = &PortAccess::event<Time>};
+            all[n++] = {.name = Names::falls[i].view(),
+                        .doc = "the line became inactive, at that time",
+                        .kind = FacetKind::event,
+                        .type = type_id<Arguments<Time>>,
+                        .index = i,
+                        .at = [](void* c, std::size_t k) noexcept -> void* {
+                            return &static_cast<LinePort*>(c)->falls[k];
+                        },
+                        .event = &PortAccess::event<Time>};
         } else if constexpr (map.rows[i].driven == Driven::by_port) {
-            all[n++] = {.name = name, .doc = "the level wanted", .kind = FacetKind::input, .type = type_id<bool>, .required = true, .index = i, .at = [](void* c, std::size_t k) noexcept -> void* { return &static_cast<LinePort*>(c)->wanted[k]; }, .port = &PortAccess::data<bool>};
+            all[n++] = {.name = name,
+                        .doc = "the level wanted",
+                        .kind = FacetKind::input,
+                        .type = type_id<bool>,
+                        .required = true,
+                        .index = i,
+                        .at = [](void* c, std::size_t k) noexcept -> void* {
+                            return &static_cast<LinePort*>(c)->wanted[k];
+                        },
+                        .port = &PortAccess::data<bool>};
         } else {
-            all[n++] = operation<&LinePort::template set<i>>(Names::set[i].view(), "makes the line active", required);
-            all[n++] = operation<&LinePort::template clear<i>>(Names::clear[i].view(), "makes the line inactive", required);
+            all[n++] = operation<&LinePort::template set<i>>(Names::set[i].view(), "makes the line active",
+                                                             required);
+            all[n++] = operation<&LinePort::template clear<i>>(Names::clear[i].view(),
+                                                               "makes the line inactive", required);
         }
     }
 
-    static constexpr bool bit(Mask mask, std::size_t i) noexcept TAPPET_REALTIME { return (mask >> i & 1u) != 0; }
+    static constexpr bool bit(Mask mask, std::size_t i) noexcept TAPPET_REALTIME {
+        return (mask >> i & 1u) != 0;
+    }
     static constexpr Mask with_bit(Mask mask, std::size_t i, bool value) noexcept TAPPET_REALTIME {
         return value ? mask | Mask{1} << i : mask & ~(Mask{1} << i);
     }
@@ -149,18 +186,22 @@ private:
         if (edge.line >= count) return;
         levels_ = with_bit(levels_, edge.line, edge.rising);
         level[edge.line].write(edge.rising, edge.stamp);
-        if (edge.rising) rises[edge.line].emit(edge.stamp);
-        else falls[edge.line].emit(edge.stamp);
+        if (edge.rising)
+            rises[edge.line].emit(edge.stamp);
+        else
+            falls[edge.line].emit(edge.stamp);
     }
 
-    // What the lost edges left behind: a level that differs is an edge whose time is not known better than now.
+    // What the lost edges left behind: a level that differs is an edge whose time is not known better than
+    // now.
     void mend(const Gap& gap, Time now) noexcept TAPPET_REALTIME {
         lost_ += gap.missed;
         edges_lost.write(lost_);
         edges_were_lost.emit();
         if (!gap.levels_known) return;
         for (std::size_t i = 0; i < count; ++i)
-            if (map.rows[i].line.role == Role::input && bit(gap.levels, i) != bit(levels_, i)) take({static_cast<std::uint32_t>(i), bit(gap.levels, i), now, 0, 0});
+            if (map.rows[i].line.role == Role::input && bit(gap.levels, i) != bit(levels_, i))
+                take({static_cast<std::uint32_t>(i), bit(gap.levels, i), now, 0, 0});
     }
 
     void write_outputs() noexcept TAPPET_REALTIME {

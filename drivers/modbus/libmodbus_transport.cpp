@@ -1,0 +1,160 @@
+// libmodbus's calls, its time-outs and its errors as values.
+#include "drivers/modbus/libmodbus_transport.hpp"
+
+#include <arpa/inet.h>
+#include <array>
+#include <cerrno>
+#include <modbus.h>
+#include <string>
+#include <sys/select.h>
+#include <time.h>
+
+namespace tappet::modbus {
+namespace {
+
+constexpr std::size_t most_values = MODBUS_MAX_READ_REGISTERS;
+constexpr std::size_t most_in_write = MODBUS_MAX_WRITE_REGISTERS;
+
+Time now() noexcept {
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+}
+
+Answer judge(int result, int expected, int error, Duration took) noexcept {
+    if (result == expected) return {.took = took};
+    if (result >= 0) return {.outcome = Outcome::garbled, .took = took};
+    if (error > MODBUS_ENOBASE && error <= EMBXGTAR)
+        return {.outcome = Outcome::exception,
+                .exception = static_cast<std::uint8_t>(error - MODBUS_ENOBASE),
+                .took = took};
+    if (error > EMBXGTAR && error <= EMBBADSLAVE) return {.outcome = Outcome::garbled, .took = took};
+    return {.outcome = error == ETIMEDOUT ? Outcome::timeout : Outcome::disconnected, .took = took};
+}
+
+std::expected<modbus_t*, Sentence> prepare(const Tcp& tcp) {
+    const std::string address{tcp.address};
+    in_addr parsed{};
+    if (::inet_pton(AF_INET, address.c_str(), &parsed) != 1 || tcp.port == 0)
+        return std::unexpected{Sentence{
+            "Modbus server \"", tcp.address, "\", port ", unsigned{tcp.port},
+            ": this is no numeric IPv4 address and port; write it like \"192.168.0.7\" in the board"}};
+    return modbus_new_tcp(address.c_str(), tcp.port);
+}
+
+std::expected<modbus_t*, Sentence> prepare(const Serial& serial) {
+    const bool known_parity = serial.parity == 'N' || serial.parity == 'E' || serial.parity == 'O';
+    if (serial.device.empty() || !known_parity || serial.baud < 1200 || serial.stop_bits < 1 ||
+        serial.stop_bits > 2)
+        return std::unexpected{
+            Sentence{"Modbus line \"", serial.device, "\", ", serial.baud, " baud, parity ",
+                     std::string_view{&serial.parity, 1}, ", ", serial.stop_bits,
+                     " stop bits: this cannot be; 1200 baud or more, parity N, E or O, 1 or 2 stop bits"}};
+    return modbus_new_rtu(std::string{serial.device}.c_str(), serial.baud, serial.parity, 8,
+                          serial.stop_bits);
+}
+
+} // namespace
+
+void LibmodbusTransport::Free::operator()(_modbus* context) const noexcept { modbus_free(context); }
+
+std::expected<void, Sentence> LibmodbusTransport::open(const TransportSettings& settings) {
+    close();
+    is_serial_ = std::holds_alternative<Serial>(settings.line);
+    const int most_unit = is_serial_ ? 247 : 255;
+    if (settings.unit < 1 || settings.unit > most_unit)
+        return std::unexpected{Sentence{"Modbus unit ", settings.unit, " does not exist: choose 1 to ",
+                                        most_unit, " in the board"}};
+    const auto prepared = std::visit([](const auto& line) { return prepare(line); }, settings.line);
+    if (!prepared) return std::unexpected{prepared.error()};
+    context_.reset(*prepared);
+    const auto seconds = [](Duration d) { return static_cast<std::uint32_t>(d / 1s); };
+    const auto rest_us = [](Duration d) { return static_cast<std::uint32_t>(d % 1s / 1us); };
+    modbus_t* m = context_.get();
+    const bool ok = m != nullptr && modbus_set_slave(m, settings.unit) == 0 &&
+                    modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE) == 0 &&
+                    modbus_set_response_timeout(m, seconds(settings.answer_within),
+                                                rest_us(settings.answer_within)) == 0 &&
+                    modbus_set_byte_timeout(m, seconds(settings.between_bytes_within),
+                                            rest_us(settings.between_bytes_within)) == 0;
+    if (ok) return {};
+    close();
+    return std::unexpected{Sentence{"Modbus unit ", settings.unit, " cannot be set up: ",
+                                    modbus_strerror(errno), "; its time-outs must be above 1 us"}};
+}
+
+void LibmodbusTransport::close() noexcept {
+    disconnect();
+    context_.reset();
+}
+
+Answer LibmodbusTransport::connect() noexcept {
+    if (!context_) return {.outcome = Outcome::refused};
+    disconnect();
+    const Time begin = now();
+    connected_ = modbus_connect(context_.get()) == 0;
+    // libmodbus waits by select(), which cannot watch a higher descriptor.
+    if (connected_ && modbus_get_socket(context_.get()) >= FD_SETSIZE) disconnect();
+    return {.outcome = connected_ ? Outcome::ok : Outcome::refused, .took = now() - begin};
+}
+
+void LibmodbusTransport::disconnect() noexcept {
+    if (connected_) modbus_close(context_.get());
+    connected_ = false;
+}
+
+bool LibmodbusTransport::recover() noexcept {
+    // A late answer on TCP would be taken for the next one's; a serial line only has to be emptied.
+    if (is_serial_ && connected_ && modbus_flush(context_.get()) >= 0) return true;
+    disconnect();
+    return false;
+}
+
+Answer LibmodbusTransport::read(Table table, std::uint16_t address,
+                                std::span<std::uint16_t> values) noexcept {
+    if (!connected_ || values.empty() || values.size() > most_values)
+        return {.outcome = Outcome::disconnected};
+    const int count = static_cast<int>(values.size());
+    modbus_t* m = context_.get();
+    std::array<std::uint8_t, most_values> bits{};
+    const Time begin = now();
+    int result = -1;
+    switch (table) {
+    case Table::coils:
+        result = modbus_read_bits(m, address, count, bits.data());
+        break;
+    case Table::discrete_inputs:
+        result = modbus_read_input_bits(m, address, count, bits.data());
+        break;
+    case Table::input_registers:
+        result = modbus_read_input_registers(m, address, count, values.data());
+        break;
+    case Table::holding_registers:
+        result = modbus_read_registers(m, address, count, values.data());
+        break;
+    }
+    const int error = errno;
+    if (holds_bits(table) && result == count)
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = bits[i];
+    return judge(result, count, error, now() - begin);
+}
+
+Answer LibmodbusTransport::write(Table table, std::uint16_t address,
+                                 std::span<const std::uint16_t> values) noexcept {
+    if (!connected_ || values.empty() || values.size() > most_in_write || !writable(table))
+        return {.outcome = Outcome::disconnected};
+    const int count = static_cast<int>(values.size());
+    std::array<std::uint8_t, most_values> bits{};
+    const Time begin = now();
+    int result = -1;
+    if (table == Table::coils) {
+        for (std::size_t i = 0; i < values.size(); ++i) bits[i] = values[i] != 0 ? 1 : 0;
+        result = modbus_write_bits(context_.get(), address, count, bits.data());
+    } else {
+        result = modbus_write_registers(context_.get(), address, count, values.data());
+    }
+    const int error = errno;
+    return judge(result, count, error, now() - begin);
+}
+
+} // namespace tappet::modbus

@@ -1,0 +1,59 @@
+// Modbus TCP and RTU by libmodbus, with its own recovery off: what goes wrong is for the client to decide.
+#pragma once
+
+#include "drivers/modbus/transport.hpp"
+#include "kernel/base/text.hpp"
+
+#include <expected>
+#include <memory>
+#include <string_view>
+#include <variant>
+
+struct _modbus;
+
+namespace tappet::modbus {
+
+struct Tcp {
+    std::string_view
+        address{}; ///< numeric IPv4: a name would be looked up, for as long as that takes, at each connect
+    std::uint16_t port = 502;
+};
+struct Serial {
+    std::string_view device{}; ///< "/dev/ttyS1"
+    int baud = 19200;
+    char parity = 'E'; ///< 'N', 'E' or 'O'
+    int stop_bits = 1;
+};
+
+struct TransportSettings {
+    std::variant<Tcp, Serial> line{};
+    int unit = 1;                   ///< the server's address: 1 to 247; TCP also 255
+    Duration answer_within = 300ms; ///< to connect, and from a request to its answer's first byte
+    Duration between_bytes_within = 50ms;
+};
+
+class LibmodbusTransport final : public Transport {
+public:
+    LibmodbusTransport() = default;
+    ~LibmodbusTransport() override { close(); }
+
+    /// Checks and prepares; does not connect. The error says what is wrong and how to cure it.
+    std::expected<void, Sentence> open(const TransportSettings& settings);
+    void close() noexcept;
+
+    Answer connect() noexcept override;
+    void disconnect() noexcept override;
+    bool recover() noexcept override;
+    Answer read(Table table, std::uint16_t address, std::span<std::uint16_t> values) noexcept override;
+    Answer write(Table table, std::uint16_t address, std::span<const std::uint16_t> values) noexcept override;
+
+private:
+    struct Free {
+        void operator()(_modbus* context) const noexcept;
+    };
+    std::unique_ptr<_modbus, Free> context_{};
+    bool is_serial_ = false;
+    bool connected_ = false;
+};
+
+} // namespace tappet::modbus

@@ -1,0 +1,197 @@
+// What is read from and written to one Modbus server, as one constexpr table, and what the compiler finds
+// wrong with it.
+#pragma once
+
+#include "drivers/modbus/registers.hpp"
+#include "kernel/base/text.hpp"
+#include "kernel/base/time.hpp"
+
+#include <cstddef>
+
+namespace tappet::modbus {
+
+/// The longest run of a table that one request carries (Modbus application protocol 1.1b3, section 6).
+constexpr unsigned most_in_request(Table table, bool write) noexcept {
+    if (holds_bits(table)) return write ? 1968 : 2000;
+    return write ? 123 : 125;
+}
+inline constexpr unsigned most_words = 125; ///< what the client's buffers hold; rows of bits are as short
+
+struct Run {
+    Table table = Table::holding_registers;
+    std::uint32_t address = 0; ///< counted from 0, as on the wire
+    std::uint32_t count = 0;
+};
+constexpr Run coils(std::uint32_t address, std::uint32_t count) noexcept {
+    return {Table::coils, address, count};
+}
+constexpr Run discrete_inputs(std::uint32_t address, std::uint32_t count) noexcept {
+    return {Table::discrete_inputs, address, count};
+}
+constexpr Run input_registers(std::uint32_t address, std::uint32_t count) noexcept {
+    return {Table::input_registers, address, count};
+}
+constexpr Run holding_registers(std::uint32_t address, std::uint32_t count) noexcept {
+    return {Table::holding_registers, address, count};
+}
+
+/// One request, sent periodically. A written row also goes out at once when one of its values changed.
+struct Row {
+    std::string_view name{};
+    Run run{};
+    bool write = false;
+    Duration every{};
+    Duration
+        stale_after{}; ///< read: older values are stale; write: older values are not sent any more; 0: never
+    std::size_t first = 0; ///< its registers in the map's array
+    std::size_t registers = 0;
+};
+
+template <std::size_t N> struct RowWithRegisters {
+    Row row{};
+    std::array<Register, N> registers{};
+};
+
+struct Every {
+    Duration period{};
+};
+constexpr Every every(Duration period) noexcept { return {period}; }
+struct StaleAfter {
+    Duration age{};
+};
+constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
+
+/// read("climate", input_registers(0, 4), every(250ms), stale_after(2s), word("temperature",
+/// 0).as_signed().times(0.1), ...)
+template <class... Registers>
+constexpr auto read(std::string_view name, Run run, Every period, StaleAfter age,
+                    const Registers&... registers) noexcept {
+    return RowWithRegisters<sizeof...(Registers)>{
+        {name, run, false, period.period, age.age, 0, sizeof...(Registers)}, {registers...}};
+}
+template <class... Registers>
+constexpr auto write(std::string_view name, Run run, Every period, StaleAfter age,
+                     const Registers&... registers) noexcept {
+    return RowWithRegisters<sizeof...(Registers)>{
+        {name, run, true, period.period, age.age, 0, sizeof...(Registers)}, {registers...}};
+}
+
+inline constexpr std::size_t no_such = ~std::size_t{0};
+
+template <std::size_t R, std::size_t V> struct RegisterMap {
+    std::array<Row, R> rows{};
+    std::array<Register, V> registers{};
+    std::array<std::size_t, V> row_of{};
+    Sentence fault{}; ///< empty when the table is right
+
+    [[nodiscard]] constexpr std::size_t row(std::string_view name) const noexcept {
+        for (std::size_t r = 0; r < R; ++r)
+            if (rows[r].name == name) return r;
+        return no_such;
+    }
+    /// By "row.register".
+    [[nodiscard]] constexpr std::size_t value(std::string_view path) const noexcept {
+        for (std::size_t v = 0; v < V; ++v) {
+            const std::string_view owner = rows[row_of[v]].name;
+            if (path.size() == owner.size() + 1 + registers[v].name.size() && path.starts_with(owner) &&
+                path[owner.size()] == '.' && path.ends_with(registers[v].name))
+                return v;
+        }
+        return no_such;
+    }
+};
+
+namespace detail {
+
+constexpr Sentence row_fault(const Row& row) noexcept {
+    const Sentence who{"row \"", row.name, "\""};
+    const unsigned most = std::min(most_in_request(row.run.table, row.write), most_words);
+    if (row.name.empty()) return Sentence{"a row has no name: name it"};
+    if (row.run.count == 0 || row.run.count > most)
+        return Sentence{
+            who,  " has ",     row.run.count, " ", name_of(row.run.table), ": a row carries 1 to ",
+            most, "; split it"};
+    if (row.run.address + std::uint64_t{row.run.count} > 65536)
+        return Sentence{who, " ends at address ", row.run.address + row.run.count - 1, ": the last is 65535"};
+    if (row.write && !writable(row.run.table))
+        return Sentence{who, " writes ", name_of(row.run.table),
+                        ", which can only be read: write coils or holding registers"};
+    if (row.every <= 0ns) return Sentence{who, " has no period: give it one, every(250ms)"};
+    if (row.stale_after != 0ns && row.stale_after < row.every)
+        return Sentence{who,
+                        " is stale before it is due again: choose stale_after at least as long as every"};
+    return {};
+}
+
+constexpr Sentence register_fault(const Row& row, const Register& r) noexcept {
+    const Sentence who{"register \"", row.name, ".", r.name, "\""};
+    if (r.name.empty()) return Sentence{"row \"", row.name, "\" has a register without a name: name it"};
+    if ((r.kind == Kind::bit) != holds_bits(row.run.table))
+        return Sentence{who,
+                        " is a ",
+                        r.kind == Kind::bit ? "bit" : "word",
+                        " among ",
+                        name_of(row.run.table),
+                        ": take bit() for coils and discrete inputs, words elsewhere"};
+    if (std::uint32_t{r.at} + r.width() > row.run.count)
+        return Sentence{who, " reaches outside its row of ", row.run.count,
+                        " ", name_of(row.run.table),         ": move it or lengthen the row"};
+    if (r.factor == 0 || r.factor != r.factor)
+        return Sentence{who, " has the factor 0: every value would be the offset; give it another"};
+    return {};
+}
+
+template <std::size_t R, std::size_t V> constexpr Sentence map_fault(const RegisterMap<R, V>& map) noexcept {
+    for (std::size_t i = 0; i < R; ++i) {
+        const Row& row = map.rows[i];
+        if (const Sentence fault = row_fault(row); !fault.empty()) return fault;
+        for (std::size_t other = 0; other < i; ++other)
+            if (map.rows[other].name == row.name)
+                return Sentence{"row \"", row.name, "\" is there twice: rename one of them"};
+        std::uint32_t covered = 0;
+        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+            const Register& r = map.registers[v];
+            if (const Sentence fault = register_fault(row, r); !fault.empty()) return fault;
+            covered += r.width();
+            for (std::size_t other = row.first; other < v; ++other) {
+                const Register& o = map.registers[other];
+                if (o.name == r.name)
+                    return Sentence{"row \"", row.name, "\" has two registers \"", r.name,
+                                    "\": rename one of them"};
+                if (r.at < o.at + o.width() && o.at < r.at + r.width())
+                    return Sentence{"register \"",         row.name, ".", r.name, "\" overlaps \"", o.name,
+                                    "\": move one of them"};
+            }
+        }
+        if (row.write && covered != row.run.count)
+            return Sentence{
+                "row \"",      row.name, "\" writes ",
+                row.run.count, " ",      name_of(row.run.table),
+                " and names ", covered,  ": name all, or what is not named would be overwritten with 0"};
+    }
+    return {};
+}
+
+} // namespace detail
+
+/// Flattens the rows and checks them: static_assert(map.fault.empty(), map.fault).
+template <std::size_t... N> constexpr auto register_map(const RowWithRegisters<N>&... rows) noexcept {
+    RegisterMap<sizeof...(N), (N + ... + 0)> map;
+    std::size_t i = 0;
+    std::size_t v = 0;
+    const auto flatten = [&](const auto& row) {
+        map.rows[i] = row.row;
+        map.rows[i].first = v;
+        for (const Register& one : row.registers) {
+            map.registers[v] = one;
+            map.row_of[v] = i;
+            ++v;
+        }
+        ++i;
+    };
+    (flatten(rows), ...);
+    map.fault = detail::map_fault(map);
+    return map;
+}
+
+} // namespace tappet::modbus

@@ -1,0 +1,130 @@
+// A Modbus server as a component: its ports come from a constexpr register map.
+#pragma once
+
+#include "drivers/modbus/client.hpp"
+#include "drivers/modbus/register_map.hpp"
+#include "drivers/modbus/transport.hpp"
+#include "kernel/component/component.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace tappet::modbus {
+
+template <const auto& map> struct RegisterNames {
+    struct Name {
+        std::array<char, 64> letters{};
+        std::size_t length = 0;
+        constexpr void add(std::string_view piece) {
+            for (const char letter : piece) letters[length++] = letter;
+        }
+        [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters.data(), length}; }
+    };
+    static constexpr auto all = [] {
+        std::array<Name, map.registers.size()> names{};
+        for (std::size_t v = 0; v < names.size(); ++v) {
+            names[v].add(map.rows[map.row_of[v]].name);
+            names[v].add(".");
+            names[v].add(map.registers[v].name);
+        }
+        return names;
+    }();
+};
+
+/// For each register read an output, stamped when the answer came and written only then, so that its age
+/// tells of an outage; for each register written a required input. It blocks for one request at most: it runs
+/// in an activity of its own that is not_real_time.
+template <const auto& map> struct Slave {
+    static_assert(map.fault.empty(), "the register map is refused: its member `fault` says why");
+    static constexpr std::size_t count = map.registers.size();
+    static constexpr std::string_view device_kind = "modbus";
+
+    std::array<Output<double>, count> read{};
+    std::array<Input<double>, count> wanted{};
+    Output<bool> connected{};
+    Output<std::int64_t> outages{};
+    Output<std::int64_t> outages_survived{};
+    Event<> lost{};
+    Event<> back{};
+
+    Sentence configure(Setup& setup) {
+        auto* transport = setup.device<Transport>();
+        if (transport == nullptr) return setup.no_device();
+        client_.emplace(map, *transport);
+        return {};
+    }
+
+    void work(const Cycle& cycle) {
+        for (std::size_t v = 0; v < count; ++v) {
+            double value = 0;
+            if (is_written(v) && wanted[v].read(value) == Flow::fresh)
+                static_cast<void>(client_->set(v, value, cycle.now));
+        }
+        // As many requests as are due; each is bounded by the transport's time-out.
+        for (std::size_t n = 0; n < map.rows.size() && client_->step(cycle.now) <= cycle.now; ++n) {
+        }
+        for (std::size_t v = 0; v < count; ++v) {
+            const Value value = client_->value(v, cycle.now);
+            if (is_written(v) || value.stamp == seen_[v] || value.quality != Quality::good) continue;
+            seen_[v] = value.stamp;
+            read[v].write(value.value, value.stamp);
+        }
+        connected.write(client_->connected());
+        outages.write(static_cast<std::int64_t>(client_->counters().outages));
+        outages_survived.write(static_cast<std::int64_t>(client_->counters().outages_survived));
+        if (client_->outage() == was_lost_) return;
+        was_lost_ = !was_lost_;
+        if (was_lost_)
+            lost.emit();
+        else
+            back.emit();
+    }
+
+    [[nodiscard]] Counters counters() const noexcept { return client_->counters(); }
+
+    static constexpr auto interface() {
+        std::array<Facet, count + 5> list{};
+        std::size_t n = 0;
+        for (std::size_t v = 0; v < count; ++v) {
+            const bool sent = is_written(v);
+            Facet facet{.name = RegisterNames<map>::all[v].view(),
+                        .unit = map.registers[v].unit,
+                        .doc = sent ? "written to the server" : "read from the server",
+                        .kind = sent ? FacetKind::input : FacetKind::output,
+                        .type = type_id<double>,
+                        .required = sent,
+                        .index = v,
+                        .port = &PortAccess::data<double>};
+            if (sent)
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Slave*>(c)->wanted[i];
+                };
+            else
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Slave*>(c)->read[i];
+                };
+            list[n++] = facet;
+        }
+        list[n++] = output<&Slave::connected>("connected", "", "the server answers");
+        list[n++] = output<&Slave::outages>("outages", "", "times the server was lost, since start");
+        list[n++] = output<&Slave::outages_survived>("outages_survived", "", "times it came back");
+        list[n++] = event<&Slave::lost>("lost", "the server does not answer");
+        list[n++] = event<&Slave::back>("back", "the server answers again");
+        return list;
+    }
+
+private:
+    static constexpr bool is_written(std::size_t v) noexcept { return map.rows[map.row_of[v]].write; }
+
+    std::optional<Client<map.rows.size(), map.registers.size()>> client_{};
+    std::array<Time, count> seen_ = [] {
+        std::array<Time, count> none{};
+        none.fill(Time::min());
+        return none;
+    }();
+    bool was_lost_ = false;
+};
+
+} // namespace tappet::modbus

@@ -1,0 +1,215 @@
+// The Modbus client under virtual time: polling, values with an age, and every fault of a server survived.
+#include "drivers/modbus/client.hpp"
+#include "drivers/modbus/twin.hpp"
+
+#include "kernel/base/random.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::modbus {
+namespace {
+
+constexpr auto map =
+    register_map(read("climate", input_registers(0, 2), every(100ms), stale_after(500ms),
+                      word("temperature", 0).as_signed().times(0.1), word("humidity", 1)),
+                 read("pump", discrete_inputs(4, 1), every(200ms), stale_after(1s), bit("running", 0)),
+                 write("setpoints", holding_registers(8, 2), every(1s), stale_after(3s),
+                       word("temperature", 0), word("humidity", 1)));
+static_assert(map.fault.empty());
+constexpr std::size_t temperature = map.value("climate.temperature");
+constexpr std::size_t running = map.value("pump.running");
+constexpr std::size_t wanted_temperature = map.value("setpoints.temperature");
+constexpr std::size_t wanted_humidity = map.value("setpoints.humidity");
+
+struct ModbusClient : testing::Test {
+    ModbusClient() {
+        server.set(Table::input_registers, 0, 215);
+        server.set(Table::discrete_inputs, 4, 1);
+    }
+    /// Runs the client's activity up to `end`; each step takes as long as the server lets it.
+    void run_until(Time end) {
+        for (int guard = 0; now < end && guard < 1'000'000; ++guard) {
+            const Time next = client.step(now);
+            EXPECT_GE(next, now);
+            now = next;
+        }
+        now = end;
+    }
+    Twin server{300ms};
+    Client<3, 5> client{map, server};
+    Time now{};
+};
+
+TEST_F(ModbusClient, polls_its_rows_at_their_periods) {
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::never);
+    run_until(Time{10s});
+    EXPECT_EQ(client.value(temperature, now).value, 21.5);
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+    EXPECT_LT(now - client.value(temperature, now).stamp, 110ms);
+    EXPECT_EQ(client.value(running, now).value, 1.0);
+    EXPECT_NEAR(static_cast<double>(client.counters().requests), 100 + 50, 3);
+    EXPECT_EQ(client.counters().outages, 0u);
+}
+
+TEST_F(ModbusClient, writes_nothing_before_all_values_of_a_row_were_set) {
+    run_until(Time{1s});
+    EXPECT_TRUE(client.set(wanted_temperature, 22, now));
+    run_until(Time{3s});
+    EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
+    EXPECT_TRUE(client.set(wanted_temperature, 22, now));
+    EXPECT_TRUE(client.set(wanted_humidity, 60, now));
+    run_until(now + 10ms);
+    EXPECT_EQ(server.get(Table::holding_registers, 8), 22) << "a change goes out at once";
+    EXPECT_EQ(server.get(Table::holding_registers, 9), 60);
+}
+
+TEST_F(ModbusClient, repeats_what_it_wrote_and_stops_when_it_is_stale) {
+    client.set(wanted_temperature, 22, now);
+    client.set(wanted_humidity, 60, now);
+    run_until(Time{100ms});
+    server.set(Table::holding_registers, 8, 0); // the server restarted and forgot
+    run_until(Time{2s});
+    EXPECT_EQ(server.get(Table::holding_registers, 8), 22);
+    run_until(Time{4s});
+    server.set(Table::holding_registers, 8, 0);
+    run_until(Time{8s});
+    EXPECT_EQ(server.get(Table::holding_registers, 8), 0) << "nobody set it for more than 3 s";
+}
+
+TEST_F(ModbusClient, sends_nothing_stale_after_an_outage) {
+    run_until(Time{1s});
+    server.inject(Fault::down);
+    run_until(Time{2s});
+    client.set(wanted_temperature, 22, now);
+    client.set(wanted_humidity, 60, now);
+    run_until(Time{12s});
+    server.inject(Fault::none);
+    run_until(Time{40s});
+    EXPECT_FALSE(client.outage());
+    EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
+    EXPECT_EQ(client.counters().dropped_stale, 1u);
+}
+
+TEST_F(ModbusClient, refuses_to_set_a_value_that_is_only_read_or_is_no_number) {
+    EXPECT_FALSE(client.set(temperature, 1, now));
+    EXPECT_FALSE(client.set(wanted_temperature, 0.0 / 0.0 * 1.0, now));
+}
+
+TEST_F(ModbusClient, lets_values_grow_stale_when_the_server_is_silent_and_survives) {
+    run_until(Time{1s});
+    server.inject(Fault::silent);
+    run_until(Time{11s});
+    EXPECT_TRUE(client.outage());
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::stale);
+    EXPECT_EQ(client.value(temperature, now).value, 21.5) << "the last good value stays readable";
+    EXPECT_GT(client.counters().timeouts, 3u);
+    EXPECT_LT(client.counters().timeouts, 10u) << "the back-off doubles";
+    server.inject(Fault::none);
+    server.set(Table::input_registers, 0, 100);
+    run_until(Time{25s});
+    EXPECT_EQ(client.value(temperature, now).value, 10.0);
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+    EXPECT_EQ(client.counters().outages, 1u);
+    EXPECT_EQ(client.counters().outages_survived, 1u);
+}
+
+TEST_F(ModbusClient, backs_off_when_refused_and_no_further_than_told) {
+    server.inject(Fault::down);
+    run_until(Time{100s});
+    // 0.1 0.2 0.4 ... 6.4 s are seven waits of 12.7 s together, then one each 10 s.
+    EXPECT_GE(client.counters().refused, 15u);
+    EXPECT_LE(client.counters().refused, 17u);
+    EXPECT_EQ(client.counters().requests, 0u);
+    server.inject(Fault::none);
+    run_until(Time{111s});
+    EXPECT_TRUE(client.connected());
+}
+
+TEST_F(ModbusClient, never_takes_a_late_answer_for_the_next_one) {
+    run_until(Time{1s});
+    server.set_slow_by(400ms);
+    server.inject(Fault::slow, 1);
+    run_until(Time{3s});
+    EXPECT_EQ(client.counters().timeouts, 1u);
+    EXPECT_EQ(client.counters().garbled, 0u) << "the connection was made anew";
+    EXPECT_EQ(client.value(temperature, now).value, 21.5);
+    EXPECT_EQ(client.counters().outages_survived, 1u);
+}
+
+TEST_F(ModbusClient, waits_for_a_slow_answer_that_is_in_time) {
+    server.set_slow_by(50ms);
+    server.inject(Fault::slow);
+    run_until(Time{2s});
+    EXPECT_EQ(client.counters().timeouts, 0u);
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+}
+
+TEST_F(ModbusClient, makes_an_exception_a_quality_and_stays_connected) {
+    run_until(Time{1s});
+    server.set_exception(6);
+    server.inject(Fault::exception);
+    run_until(Time{2s});
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::exception);
+    EXPECT_EQ(client.value(temperature, now).exception, 6);
+    EXPECT_EQ(client.value(temperature, now).value, 21.5);
+    EXPECT_TRUE(client.connected());
+    EXPECT_FALSE(client.outage());
+    server.inject(Fault::none);
+    run_until(Time{3s});
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+}
+
+TEST_F(ModbusClient, reports_an_address_that_the_server_does_not_have) {
+    static constexpr auto far = register_map(
+        read("far", holding_registers(Twin::size, 1), every(100ms), stale_after(1s), word("w", 0)));
+    Twin other;
+    Client<1, 1> far_client{far, other};
+    Time t{};
+    for (int i = 0; i < 10; ++i) t = far_client.step(t);
+    EXPECT_EQ(far_client.value(0, t).quality, Quality::exception);
+    EXPECT_EQ(far_client.value(0, t).exception, 2);
+}
+
+TEST_F(ModbusClient, reconnects_after_garbage_and_foreign_answers) {
+    for (const Fault fault : {Fault::garbage_length, Fault::wrong_transaction}) {
+        const auto before = client.counters();
+        server.inject(fault, 1);
+        run_until(now + 2s);
+        EXPECT_EQ(client.counters().garbled, before.garbled + 1);
+        EXPECT_EQ(client.counters().outages_survived, before.outages_survived + 1);
+        EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+    }
+}
+
+TEST_F(ModbusClient, keeps_reading_while_values_to_write_change_all_the_time) {
+    run_until(Time{1s});
+    for (int i = 0; i < 500; ++i) {
+        client.set(wanted_temperature, i, now);
+        client.set(wanted_humidity, i, now);
+        run_until(now + 10ms);
+    }
+    EXPECT_LT(now - client.value(temperature, now).stamp, 150ms);
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+}
+
+TEST_F(ModbusClient, survives_random_faults) {
+    Random random{11};
+    constexpr Fault faults[] = {Fault::silent,         Fault::slow,
+                                Fault::exception,      Fault::wrong_transaction,
+                                Fault::garbage_length, Fault::down};
+    for (int i = 0; i < 300; ++i) {
+        server.set_slow_by(Duration{random.between(0, 600'000'000)});
+        const auto which = random.below(6);
+        const auto strikes = static_cast<std::uint32_t>(random.below(5));
+        server.inject(faults[which], strikes);
+        run_until(now + 300ms);
+    }
+    server.inject(Fault::none);
+    run_until(now + 30s);
+    EXPECT_FALSE(client.outage());
+    EXPECT_EQ(client.value(temperature, now).quality, Quality::good);
+    EXPECT_EQ(client.counters().outages, client.counters().outages_survived);
+}
+
+} // namespace
+} // namespace tappet::modbus

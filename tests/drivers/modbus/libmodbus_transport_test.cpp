@@ -1,0 +1,235 @@
+// The real transport on loopback and on a pair of terminals, against a server of bytes that can answer
+// wrongly.
+#include "drivers/modbus/libmodbus_transport.hpp"
+
+#include "drivers/modbus/client.hpp"
+#include "tests/drivers/modbus/raw_server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <ctime>
+#include <dirent.h>
+#include <string>
+
+namespace tappet::modbus {
+namespace {
+
+class Wire : public testing::TestWithParam<RawServer::Line> {
+protected:
+    Wire() {
+        TransportSettings settings{.unit = 17, .answer_within = 100ms, .between_bytes_within = 40ms};
+        if (GetParam() == RawServer::Line::tcp)
+            settings.line = Tcp{"127.0.0.1", server.port()};
+        else
+            settings.line = Serial{server.terminal(), 115200, 'N', 1};
+        const auto opened = transport.open(settings);
+        EXPECT_TRUE(opened) << (opened ? "" : opened.error().view());
+        EXPECT_EQ(transport.connect().outcome, Outcome::ok);
+    }
+    Answer read(std::uint16_t address = 7) {
+        return transport.read(Table::holding_registers, address, words);
+    }
+    RawServer server{GetParam()};
+    LibmodbusTransport transport;
+    std::array<std::uint16_t, 3> words{};
+};
+
+TEST_P(Wire, reads_and_writes_all_four_tables) {
+    EXPECT_EQ(read().outcome, Outcome::ok);
+    EXPECT_EQ(words, (std::array<std::uint16_t, 3>{1007, 1008, 1009}));
+    EXPECT_EQ(transport.read(Table::input_registers, 0, words).outcome, Outcome::ok);
+    EXPECT_EQ(words[0], 1000);
+    for (const Table table : {Table::coils, Table::discrete_inputs}) {
+        EXPECT_EQ(transport.read(table, 3, words).outcome, Outcome::ok);
+        EXPECT_EQ(words, (std::array<std::uint16_t, 3>{1, 0, 1}));
+    }
+    words = {1, 0, 0xABCD};
+    EXPECT_EQ(transport.write(Table::holding_registers, 7, words).outcome, Outcome::ok);
+    const Bytes request = server.last_request();
+    const std::size_t pdu = GetParam() == RawServer::Line::tcp ? 7 : 1;
+    ASSERT_GT(request.size(), pdu + 11);
+    EXPECT_EQ(request[pdu - 1], 17) << "the unit";
+    EXPECT_EQ(Bytes(request.begin() + static_cast<std::ptrdiff_t>(pdu),
+                    request.begin() + static_cast<std::ptrdiff_t>(pdu) + 12),
+              (Bytes{16, 0, 7, 0, 3, 6, 0, 1, 0, 0, 0xAB, 0xCD}));
+    EXPECT_EQ(transport.write(Table::coils, 7, words).outcome, Outcome::ok);
+    EXPECT_EQ(server.last_request()[pdu], 15);
+    EXPECT_EQ(server.last_request()[pdu + 6], 0b101);
+}
+
+TEST_P(Wire, hands_an_exception_on_as_a_value) {
+    server.manner = Manner::exception;
+    const Answer answer = read();
+    EXPECT_EQ(answer.outcome, Outcome::exception);
+    EXPECT_EQ(answer.exception, 6);
+    server.manner = Manner::right;
+    EXPECT_EQ(read().outcome, Outcome::ok) << "the connection still stands";
+}
+
+TEST_P(Wire, waits_no_longer_than_told_for_a_silent_server) {
+    server.manner = Manner::silent;
+    const Answer answer = read();
+    EXPECT_EQ(answer.outcome, Outcome::timeout);
+    EXPECT_GE(answer.took, 100ms);
+    EXPECT_LT(answer.took, 250ms);
+}
+
+TEST_P(Wire, waits_no_longer_than_told_for_the_rest_of_an_answer) {
+    server.manner = Manner::drip;
+    const Answer answer = read();
+    EXPECT_NE(answer.outcome, Outcome::ok);
+    EXPECT_LT(answer.took, 250ms);
+}
+
+TEST_P(Wire, never_takes_a_late_answer_for_the_next_one) {
+    server.manner = Manner::late;
+    EXPECT_EQ(read(7).outcome, Outcome::timeout);
+    std::this_thread::sleep_for(std::chrono::milliseconds{300});
+    server.manner = Manner::right;
+    if (!transport.recover()) {
+        EXPECT_EQ(transport.connect().outcome, Outcome::ok);
+    }
+    EXPECT_EQ(read(50).outcome, Outcome::ok);
+    EXPECT_EQ(words[0], 1050);
+}
+
+TEST_P(Wire, refuses_an_answer_that_is_too_short) {
+    server.manner = Manner::short_answer;
+    EXPECT_NE(read().outcome, Outcome::ok);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modbus, Wire, testing::Values(RawServer::Line::tcp, RawServer::Line::serial),
+                         [](const auto& param) {
+                             return param.param == RawServer::Line::tcp ? "tcp" : "rtu";
+                         });
+
+TEST(ModbusTcp, refuses_the_answer_to_another_request) {
+    RawServer server{RawServer::Line::tcp};
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = 100ms}));
+    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    server.manner = Manner::wrong_transaction;
+    std::array<std::uint16_t, 1> words{};
+    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::garbled);
+    server.manner = Manner::close;
+    EXPECT_FALSE(transport.recover());
+    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::disconnected);
+}
+
+TEST(ModbusRtu, refuses_an_answer_with_a_wrong_checksum) {
+    RawServer server{RawServer::Line::serial};
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Serial{server.terminal(), 19200, 'E', 1}, .answer_within = 100ms}));
+    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    server.manner = Manner::wrong_checksum;
+    std::array<std::uint16_t, 1> words{};
+    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::garbled);
+    server.manner = Manner::right;
+    EXPECT_TRUE(transport.recover());
+    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::ok);
+}
+
+TEST(ModbusTcp, is_refused_where_nobody_listens) {
+    std::uint16_t port = 0;
+    {
+        const RawServer gone{RawServer::Line::tcp};
+        port = gone.port();
+    }
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", port}, .answer_within = 100ms}));
+    EXPECT_EQ(transport.connect().outcome, Outcome::refused);
+    std::array<std::uint16_t, 1> words{};
+    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::disconnected);
+}
+
+TEST(ModbusRtu, is_refused_on_a_line_that_is_not_there) {
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Serial{"/dev/ttyS_not_here"}}));
+    EXPECT_EQ(transport.connect().outcome, Outcome::refused);
+}
+
+std::size_t open_descriptors() {
+    std::size_t n = 0;
+    DIR* directory = ::opendir("/proc/self/fd");
+    while (::readdir(directory) != nullptr) ++n;
+    ::closedir(directory);
+    return n;
+}
+
+TEST(ModbusTcp, leaks_no_descriptor_over_many_outages) {
+    RawServer server{RawServer::Line::tcp};
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = 100ms}));
+    std::array<std::uint16_t, 1> words{};
+    server.manner = Manner::close;
+    const auto one_outage = [&] {
+        transport.connect();
+        transport.read(Table::holding_registers, 0, words);
+        transport.recover();
+    };
+    one_outage();
+    const std::size_t before = open_descriptors();
+    for (int i = 0; i < 20; ++i) one_outage();
+    EXPECT_LE(open_descriptors(), before + 1) << "the server may hold one more for a moment";
+}
+
+std::string refusal(const TransportSettings& settings) {
+    LibmodbusTransport transport;
+    const auto opened = transport.open(settings);
+    return opened ? "" : std::string{opened.error().view()};
+}
+
+TEST(ModbusSettings, refuse_names_instead_of_addresses) {
+    EXPECT_EQ(refusal({.line = Tcp{"climate.local", 502}}),
+              "Modbus server \"climate.local\", port 502: this is no numeric IPv4 address and port; write it "
+              "like \"192.168.0.7\" in the board");
+    EXPECT_NE(refusal({.line = Tcp{"10.0.0.300", 502}}), "");
+    EXPECT_NE(refusal({.line = Tcp{"10.0.0.3", 0}}), "");
+    EXPECT_NE(refusal({.line = Tcp{"", 502}}), "");
+}
+
+TEST(ModbusSettings, refuse_units_lines_and_time_outs_that_cannot_be) {
+    EXPECT_EQ(refusal({.line = Serial{"/dev/ttyS1"}, .unit = 248}),
+              "Modbus unit 248 does not exist: choose 1 to 247 in the board");
+    EXPECT_NE(refusal({.line = Tcp{"10.0.0.3", 502}, .unit = 0}), "");
+    EXPECT_NE(refusal({.line = Serial{"/dev/ttyS1", 9600, 'X', 1}}), "");
+    EXPECT_NE(refusal({.line = Serial{"", 9600, 'E', 1}}), "");
+    EXPECT_NE(refusal({.line = Serial{"/dev/ttyS1", 9600, 'E', 3}}), "");
+    EXPECT_NE(refusal({.line = Tcp{"10.0.0.3", 502}, .answer_within = 0ns}), "");
+}
+
+TEST(ModbusClientOnTheWire, survives_an_outage_in_real_time) {
+    static constexpr auto map = register_map(
+        read("r", holding_registers(5, 2), every(20ms), stale_after(200ms), word("a", 0), word("b", 1)));
+    RawServer server{RawServer::Line::tcp};
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = 60ms}));
+    Client<1, 2> client{map, transport, {.first = 20ms, .most = 100ms}};
+    const auto clock = [] {
+        timespec t{};
+        ::clock_gettime(CLOCK_MONOTONIC, &t);
+        return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+    };
+    const auto run_for = [&](Duration how_long) {
+        const Time end = clock() + how_long;
+        while (clock() < end) {
+            const Duration rest = client.step(clock()) - clock();
+            if (rest > 0ns) std::this_thread::sleep_for(std::min<Duration>(rest, 10ms));
+        }
+    };
+    run_for(200ms);
+    EXPECT_EQ(client.value(1, clock()).value, 1006);
+    EXPECT_EQ(client.value(1, clock()).quality, Quality::good);
+    server.manner = Manner::silent;
+    run_for(600ms);
+    EXPECT_EQ(client.value(1, clock()).quality, Quality::stale);
+    server.manner = Manner::right;
+    run_for(500ms);
+    EXPECT_EQ(client.value(1, clock()).quality, Quality::good);
+    EXPECT_EQ(client.counters().outages_survived, 1u);
+}
+
+} // namespace
+} // namespace tappet::modbus

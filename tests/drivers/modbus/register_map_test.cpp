@@ -1,0 +1,108 @@
+// Values in registers, and tables of registers that must be refused.
+#include "drivers/modbus/register_map.hpp"
+
+#include "kernel/base/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace tappet::modbus {
+namespace {
+
+TEST(Registers, read_words_as_their_kind_says) {
+    EXPECT_EQ(to_physical(word("w", 0).times(0.1), {215, 0}), 21.5);
+    EXPECT_EQ(to_physical(word("w", 0).as_signed(), {0xFFFF, 0}), -1.0);
+    EXPECT_EQ(to_physical(double_word("d", 0), {0x0001, 0x0002}), 65538.0);
+    EXPECT_EQ(to_physical(double_word("d", 0).swapped(), {0x0001, 0x0002}), 131073.0);
+    EXPECT_EQ(to_physical(double_word("d", 0).as_signed(), {0xFFFF, 0xFFFE}), -2.0);
+    EXPECT_EQ(to_physical(float_word("f", 0), {0x3FC0, 0x0000}), 1.5);
+    EXPECT_EQ(to_physical(bit("b", 0), {1, 0}), 1.0);
+}
+
+TEST(Registers, come_back_as_they_went_in) {
+    Random random{4};
+    for (int i = 0; i < 1000; ++i) {
+        const double value = static_cast<double>(random.between(-2147483648ll, 2147483647ll));
+        for (const Register& r : {double_word("d", 0).as_signed(), double_word("d", 0).as_signed().swapped()})
+            EXPECT_EQ(to_physical(r, to_words(r, value).words), value);
+    }
+}
+
+TEST(Registers, saturate_and_refuse_what_is_no_number) {
+    EXPECT_EQ(to_words(word("w", 0), 70000).words[0], 65535);
+    EXPECT_TRUE(to_words(word("w", 0), 70000).saturated);
+    EXPECT_EQ(to_words(word("w", 0), -1).words[0], 0);
+    EXPECT_EQ(to_words(word("w", 0).as_signed(), -40000).words[0], 0x8000);
+    EXPECT_EQ(to_words(word("w", 0).as_signed(), -2.5).words[0], 0xFFFD);
+    EXPECT_EQ(to_words(bit("b", 0), 5).words[0], 1);
+    EXPECT_TRUE(to_words(word("w", 0), std::numeric_limits<double>::quiet_NaN()).refused);
+}
+
+constexpr auto map = register_map(
+    read("climate", input_registers(0, 4), every(250ms), stale_after(2s),
+         word("temperature", 0).as_signed().times(0.1).in("degC"), double_word("hours", 2)),
+    write("setpoints", holding_registers(10, 1), every(1s), stale_after(5s), word("temperature", 0)));
+static_assert(map.fault.empty());
+static_assert(map.value("climate.hours") == 1 && map.value("setpoints.temperature") == 2);
+static_assert(map.value("climate.pressure") == no_such && map.row("setpoints") == 1);
+
+template <class... Rows> std::string_view fault(const Rows&... rows) {
+    static Sentence kept;
+    kept = register_map(rows...).fault;
+    return kept.view();
+}
+auto row(Run run, Register r) { return read("r", run, every(1s), stale_after(5s), r); }
+
+TEST(RegisterMap, refuses_runs_that_no_request_carries) {
+    EXPECT_EQ(fault(row(holding_registers(0, 126), word("w", 0))),
+              "row \"r\" has 126 holding registers: a row carries 1 to 125; split it");
+    EXPECT_EQ(fault(write("r", holding_registers(0, 124), every(1s), stale_after(5s), word("w", 0))),
+              "row \"r\" has 124 holding registers: a row carries 1 to 123; split it");
+    EXPECT_NE(fault(row(holding_registers(0, 0), word("w", 0))), "");
+    EXPECT_EQ(fault(row(holding_registers(65535, 2), word("w", 0))),
+              "row \"r\" ends at address 65536: the last is 65535");
+    EXPECT_EQ(fault(row(holding_registers(65535, 1), word("w", 0))), "");
+}
+
+TEST(RegisterMap, refuses_to_write_what_can_only_be_read) {
+    EXPECT_EQ(fault(write("r", input_registers(0, 1), every(1s), stale_after(5s), word("w", 0))),
+              "row \"r\" writes input registers, which can only be read: write coils or holding registers");
+}
+
+TEST(RegisterMap, refuses_to_overwrite_unnamed_registers) {
+    EXPECT_EQ(fault(write("r", holding_registers(0, 3), every(1s), stale_after(5s), word("w", 0))),
+              "row \"r\" writes 3 holding registers and names 1: name all, or what is not named would be "
+              "overwritten with 0");
+}
+
+TEST(RegisterMap, refuses_registers_outside_their_row_or_over_each_other) {
+    EXPECT_EQ(fault(row(holding_registers(0, 2), double_word("d", 1))),
+              "register \"r.d\" reaches outside its row of 2 holding registers: move it or lengthen the row");
+    EXPECT_EQ(fault(read("r", holding_registers(0, 4), every(1s), stale_after(5s), double_word("d", 0),
+                         word("w", 1))),
+              "register \"r.w\" overlaps \"d\": move one of them");
+}
+
+TEST(RegisterMap, refuses_bits_among_words_and_words_among_bits) {
+    EXPECT_EQ(fault(row(holding_registers(0, 1), bit("b", 0))),
+              "register \"r.b\" is a bit among holding registers: take bit() for coils and discrete inputs, "
+              "words elsewhere");
+    EXPECT_NE(fault(row(coils(0, 1), word("w", 0))), "");
+    EXPECT_EQ(fault(row(discrete_inputs(0, 1), bit("b", 0))), "");
+}
+
+TEST(RegisterMap, refuses_doubled_names_zero_factors_and_impossible_periods) {
+    EXPECT_EQ(fault(row(coils(0, 1), bit("b", 0)), row(coils(1, 1), bit("b", 0))),
+              "row \"r\" is there twice: rename one of them");
+    EXPECT_EQ(fault(read("r", coils(0, 2), every(1s), stale_after(5s), bit("b", 0), bit("b", 1))),
+              "row \"r\" has two registers \"b\": rename one of them");
+    EXPECT_NE(fault(row(holding_registers(0, 1), word("w", 0).times(0))), "");
+    EXPECT_EQ(fault(read("r", coils(0, 1), every(0s), stale_after(5s), bit("b", 0))),
+              "row \"r\" has no period: give it one, every(250ms)");
+    EXPECT_EQ(fault(read("r", coils(0, 1), every(5s), stale_after(1s), bit("b", 0))),
+              "row \"r\" is stale before it is due again: choose stale_after at least as long as every");
+}
+
+} // namespace
+} // namespace tappet::modbus
