@@ -113,8 +113,7 @@ void pack(const Scenario& scenario, const fs::path& kernel, const fs::path& arch
         root.add(file.host, file.guest);
     }
     for (const std::string& tool : scenario.tools) {
-        const fs::path program = find_program(tool);
-        root.add(program, "/bin/" + program.filename().string());
+        root.add_tool(tool);
     }
     for (const char* folder : {"/proc", "/sys", "/tmp", "/run", "/bench"}) {
         root.add_folder(folder);

@@ -60,6 +60,12 @@ std::string libraries_of(const fs::path& program) {
     return text;
 }
 
+// Parts of Python's standard library that no peer on the bench uses; together more than half of it.
+bool is_ballast(const std::string& folder) {
+    static const std::set<std::string> names = {"test", "idlelib", "ensurepip", "lib2to3", "tkinter", "pydoc_data"};
+    return names.contains(folder) || folder.starts_with("config-3.");
+}
+
 } // namespace
 
 fs::path find_program(const std::string& name) {
@@ -67,14 +73,15 @@ fs::path find_program(const std::string& name) {
         return name;
     }
     const char* variable = std::getenv("PATH");
-    std::istringstream folders(std::string(variable != nullptr ? variable : "") + ":/usr/sbin:/sbin");
+    // The distribution's own come first: what else is on a developer's path may be a script around them.
+    std::istringstream folders("/usr/bin:/usr/sbin:" + std::string(variable != nullptr ? variable : ""));
     for (std::string folder; std::getline(folders, folder, ':');) {
         const fs::path candidate = fs::path(folder) / name;
         if (::access(candidate.c_str(), X_OK) == 0 && !fs::is_directory(candidate)) {
             return candidate;
         }
     }
-    throw BenchError("the program '" + name + "' is not on this machine's PATH; run ci/setup once as root");
+    throw BenchError("the program '" + name + "' is not on this machine; run ci/setup once as root");
 }
 
 Initramfs::Initramfs(const fs::path& archive) : archive_(std::fopen(archive.c_str(), "wb")) {
@@ -164,10 +171,21 @@ void Initramfs::add(const fs::path& host, const std::string& guest) {
         return;
     }
     add_folder(guest);
-    for (const fs::directory_entry& item : fs::recursive_directory_iterator(host)) {
-        if (item.is_regular_file()) {
-            add_file(item.path(), guest + "/" + fs::relative(item.path(), host).string());
+    for (auto item = fs::recursive_directory_iterator(host); item != fs::recursive_directory_iterator(); ++item) {
+        if (item->is_directory() && is_ballast(item->path().filename().string())) {
+            item.disable_recursion_pending();
+        } else if (item->is_regular_file()) {
+            add_file(item->path(), guest + "/" + fs::relative(item->path(), host).string());
         }
+    }
+}
+
+void Initramfs::add_tool(const std::string& name) {
+    const fs::path program = find_program(name);
+    add(program, "/bin/" + program.filename().string());
+    const std::string interpreter = fs::canonical(program).filename().string();
+    if (interpreter.starts_with("python3.")) {
+        add("/usr/lib/" + interpreter, "/usr/lib/" + interpreter);
     }
 }
 
