@@ -1,0 +1,22 @@
+// Writing an output only when its value changes, so that a connection that wakes its reader wakes it for news only.
+#pragma once
+
+#include "kernel/component/port.hpp"
+
+namespace tappet::loom {
+
+/// The first call always writes.
+template <class T>
+class Change {
+public:
+    void write(Output<T>& output, const T& value) noexcept TAPPET_REALTIME {
+        if (written_ && output.last() == value) return;
+        written_ = true;
+        output.write(value);
+    }
+
+private:
+    bool written_ = false;
+};
+
+} // namespace tappet::loom

@@ -1,0 +1,92 @@
+// The main drive: leads the CiA 402 velocity drive to enabled, runs and halts the loom.
+#pragma once
+
+#include "apps/carpet_loom/change.hpp"
+#include "apps/carpet_loom/wires.hpp"
+#include "drivers/canopen/cia402.hpp"
+#include "kernel/component/component.hpp"
+
+namespace tappet::loom {
+
+/// All real-time, each cycle of a periodic activity.
+struct MainDrive {
+    Input<std::int64_t> statusword;
+    Input<double> velocity;
+    Output<std::int64_t> controlword;
+    Output<double> target;
+    Output<bool> enabled;
+    Output<bool> at_speed;
+    Output<bool> fault;
+    Property<double> speed_rpm{wires::nominal::speed_rpm};
+    Property<double> at_speed_within_rpm{12.0};
+    Property<Duration> brake_release{15ms};
+
+    void enable() noexcept TAPPET_REALTIME {
+        control_.want(canopen::DriveGoal::enabled);
+        control_.acknowledge();
+    }
+    void disable() noexcept TAPPET_REALTIME {
+        running_ = false;
+        control_.want(canopen::DriveGoal::off);
+    }
+    void quick_stop() noexcept TAPPET_REALTIME {
+        running_ = false;
+        control_.want(canopen::DriveGoal::quick_stop);
+    }
+    void run() noexcept TAPPET_REALTIME { running_ = start_asked_ = true; }
+    void halt() noexcept TAPPET_REALTIME { running_ = false; }
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        controlword.write(canopen::controlword::disable_voltage);
+        target.write(0.0);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        std::int64_t word = 0;
+        const Flow flow = statusword.read(word);
+        const auto status = static_cast<std::uint16_t>(word);
+        const bool heard = flow == Flow::fresh || flow == Flow::old;
+        const canopen::DriveState state = canopen::drive_state(status);
+        if (start_asked_) {
+            start_asked_ = false;
+            run_from_ = cycle.now + brake_release.get(); // against a brake that still holds the motor would be blocked
+        }
+        const bool runs = running_ && cycle.now >= run_from_;
+        controlword.write(heard ? control_.controlword(status) : canopen::controlword::disable_voltage);
+        target.write(runs ? speed_rpm.get() : 0.0);
+        enabled_.write(enabled, heard && state == canopen::DriveState::operation_enabled);
+        fault_.write(fault, !heard || state == canopen::DriveState::fault || state == canopen::DriveState::fault_reaction_active);
+        const double off = velocity.get() - speed_rpm.get();
+        at_speed_.write(at_speed, runs && off < at_speed_within_rpm.get() && -off < at_speed_within_rpm.get());
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        controlword.write(canopen::controlword::quick_stop);
+        target.write(0.0);
+    }
+
+    static constexpr auto interface() {
+        return facets(input<&MainDrive::statusword>("statusword", "", "CiA 402 statusword of the drive"),
+                      input<&MainDrive::velocity>("velocity", "rpm", "actual velocity of the drive"),
+                      output<&MainDrive::controlword>("controlword", "", "CiA 402 controlword for the drive"),
+                      output<&MainDrive::target>("target", "rpm", "target velocity for the drive"),
+                      output<&MainDrive::enabled>("enabled", "", "operation enabled; written on change"),
+                      output<&MainDrive::at_speed>("at_speed", "", "runs at its speed; written on change"),
+                      output<&MainDrive::fault>("fault", "", "the drive is faulty or silent; written on change"),
+                      property<&MainDrive::speed_rpm>("speed_rpm", "rpm", "weaving speed", range(30, 700)),
+                      property<&MainDrive::at_speed_within_rpm>("at_speed_within_rpm", "rpm", "how near counts as at speed", range(1, 100)),
+                      property<&MainDrive::brake_release>("brake_release", "s", "the brake holds so long after its line fell", range(0, 0.5)),
+                      operation<&MainDrive::enable>("enable", "leads the drive to operation enabled; resets one fault", required),
+                      operation<&MainDrive::disable>("disable", "takes the voltage away", required),
+                      operation<&MainDrive::quick_stop>("quick_stop", "brakes with the drive's quick stop", required),
+                      operation<&MainDrive::run>("run", "turns at the weaving speed", required),
+                      operation<&MainDrive::halt>("halt", "target velocity zero", required));
+    }
+
+private:
+    canopen::DriveControl control_{};
+    bool running_ = false;
+    bool start_asked_ = false;
+    Time run_from_{};
+    Change<bool> enabled_, at_speed_, fault_;
+};
+
+} // namespace tappet::loom

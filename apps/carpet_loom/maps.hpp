@@ -1,0 +1,81 @@
+// What stands on the loom's buses, as tables: frames and their signals, lines, registers.
+#pragma once
+
+#include "apps/carpet_loom/wires.hpp"
+#include "drivers/can/bus.hpp"
+#include "drivers/gpio/line_port.hpp"
+#include "drivers/modbus/slave.hpp"
+
+namespace tappet::loom {
+
+namespace detail {
+
+constexpr auto heartbeat(std::string_view name, std::uint8_t node) {
+    return can::receive(can::standard(wires::cob::heartbeat + node), name, can::bytes(wires::length::heartbeat), can::stale_after(350ms), can::signal("state", 0, 8));
+}
+
+} // namespace detail
+
+// clang-format off
+inline constexpr auto can_signals = can::signal_map(
+    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6), can::stale_after(20ms),
+        can::signal("statusword", 0, 16),
+        can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6), can::stale_after(20ms),
+        can::signal("statusword", 0, 16),
+        can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm")),
+    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4), can::stale_after(5ms),
+        can::signal("position", 0, 16),
+        can::signal("sample", 16, 16)),
+    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3), can::stale_after(20ms),
+        can::signal("tension", 0, 16).as_signed().times(0.1).in("N"),
+        can::signal("status", 16, 8)),
+    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3), can::stale_after(100ms),
+        can::signal("status", 0, 8),
+        can::signal("windings", 8, 16)),
+    can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5), can::stale_after(0ms),
+        can::signal("pick_taken", 0, 32),
+        can::signal("level", 32, 8)),
+    detail::heartbeat("heartbeat_1", 1), detail::heartbeat("heartbeat_2", 2), detail::heartbeat("heartbeat_3", 3),
+    detail::heartbeat("heartbeat_4", 4), detail::heartbeat("heartbeat_5", 5), detail::heartbeat("heartbeat_6", 6),
+    can::transmit(can::standard(wires::cob::nmt), "nmt", can::bytes(2), can::on_demand,
+        can::signal("command", 0, 8),
+        can::signal("node", 8, 8)),
+    can::transmit(can::standard(wires::cob::main_drive_command), "main_drive_command", can::bytes(6), can::every(2ms),
+        can::signal("controlword", 0, 16),
+        can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+    can::transmit(can::standard(wires::cob::let_off_drive_command), "let_off_command", can::bytes(6), can::every(2ms),
+        can::signal("controlword", 0, 16),
+        can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm")),
+    can::transmit(can::standard(wires::cob::feeder_command), "feeder_command", can::bytes(3), can::every(100ms),
+        can::signal("colour", 0, 8),
+        can::signal("speed", 8, 16)),
+    can::transmit(can::standard(wires::cob::dobby_command), "dobby_command", can::bytes(6), can::every(10ms),
+        can::signal("pick", 0, 32),
+        can::signal("pattern", 32, 16)));
+
+inline constexpr auto io_lines = gpio::line_map(
+    gpio::sensor("emergency_stop"),
+    gpio::sensor("drop_wire", gpio::debounce(2ms)),
+    gpio::sensor("weft_detector"),
+    gpio::sensor("button_start", gpio::debounce(5ms)),
+    gpio::sensor("button_stop", gpio::debounce(5ms)),
+    gpio::sensor("button_acknowledge", gpio::debounce(5ms)),
+    gpio::actuator("weft_release"),
+    gpio::actuator("brake", gpio::safe_high),
+    gpio::lamp("lamp_run"),
+    gpio::lamp("lamp_stop"),
+    gpio::lamp("lamp_fault"),
+    gpio::lamp("yarn_cutter"));
+
+inline constexpr auto utility_registers = modbus::register_map(
+    modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms), modbus::stale_after(2s),
+        modbus::word("temperature", wires::modbus::input_register::room_temperature).as_signed().times(0.1).in("degC"),
+        modbus::word("humidity", wires::modbus::input_register::humidity).times(0.1).in("%"),
+        modbus::word("oil_pressure", wires::modbus::input_register::oil_pressure).times(0.01).in("bar"),
+        modbus::word("oil_temperature", wires::modbus::input_register::oil_temperature).as_signed().times(0.1).in("degC")),
+    modbus::write("pump", modbus::coils(wires::modbus::coil::lubrication_pump, 1), modbus::every(1s), modbus::stale_after(5s),
+        modbus::bit("on", 0)));
+// clang-format on
+
+} // namespace tappet::loom
