@@ -71,13 +71,18 @@ public:
             return std::unexpected(ModbusError::illegal_address);
         return oil_level_low_;
     }
-    ModbusAnswer<void> write_holding_register(std::uint16_t address, std::uint16_t value) noexcept
+    static ModbusAnswer<void> check_holding_register(std::uint16_t address, std::uint16_t value) noexcept
         TAPPET_REALTIME {
-        if (address >= holding_.size()) return std::unexpected(ModbusError::illegal_address);
+        if (address >= limits_of.size()) return std::unexpected(ModbusError::illegal_address);
         const Limits limits = limits_of[address];
         if (value < limits.low || value > limits.high) return std::unexpected(ModbusError::illegal_value);
-        holding_[address] = value;
         return {};
+    }
+    ModbusAnswer<void> write_holding_register(std::uint16_t address, std::uint16_t value) noexcept
+        TAPPET_REALTIME {
+        const auto answer = check_holding_register(address, value);
+        if (answer) holding_[address] = value;
+        return answer;
     }
     ModbusAnswer<void> write_coil(std::uint16_t address, bool on) noexcept TAPPET_REALTIME {
         if (address != wires::modbus::coil::lubrication_pump)

@@ -160,10 +160,8 @@ void Plant::tick_nodes(Time now) noexcept TAPPET_REALTIME {
     if (let_off_.node().next() <= now && let_off_.node().tick(now, frames_))
         let_off_.send_status(in_units(warp_.beam_rad_s(), let_off_unit_rad_s), now, frames_);
     if (encoder_.next() <= now && encoder_.tick(now, frames_)) {
-        const double turns = shaft_.position_deg_at(into_s) / 360.0;
-        const std::int64_t code = floor_to_int(turns * wires::encoder_codes_per_turn);
         frames_.push({FrameWriter(wires::cob::encoder_position)
-                          .u16(static_cast<std::uint16_t>(code & (wires::encoder_codes_per_turn - 1)))
+                          .u16(encoder_code_at(now))
                           .u16(encoder_samples_++)
                           .frame(),
                       now});

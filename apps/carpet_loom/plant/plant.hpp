@@ -33,6 +33,8 @@ public:
     [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME {
         return std::min(next_timer_, step_end_);
     }
+    /// The next frame or timed edge. A world in real time sleeps until then, or until it polls again.
+    [[nodiscard]] Time next_timer() const noexcept TAPPET_REALTIME { return next_timer_; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return now_; }
 
     // CAN: a frame from the machine; the plant's own frames, in the order they were due. Unknown identifiers
@@ -40,6 +42,12 @@ public:
     // message).
     void receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool transmit(CanFrame& frame, Time& due) noexcept TAPPET_REALTIME;
+
+    /// The code the encoder would sample now: a world in real time that is late sends the shaft as it is, not
+    /// as it was.
+    [[nodiscard]] std::uint16_t encoder_code() const noexcept TAPPET_REALTIME {
+        return encoder_code_at(now_);
+    }
 
     // GPIO: offsets of wires::line. Lines that are no outputs of the machine are ignored.
     void set_line(unsigned output, bool level, Time now) noexcept TAPPET_REALTIME;
@@ -91,6 +99,10 @@ private:
     }
     [[nodiscard]] double position_deg_at(Time at) const noexcept TAPPET_REALTIME {
         return shaft_.position_deg_at(into_step_s(at));
+    }
+    [[nodiscard]] std::uint16_t encoder_code_at(Time at) const noexcept TAPPET_REALTIME {
+        const double codes = position_deg_at(at) * (wires::encoder_codes_per_turn / 360.0);
+        return static_cast<std::uint16_t>(floor_to_int(codes) & (wires::encoder_codes_per_turn - 1));
     }
     void manage_network(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME;
 
