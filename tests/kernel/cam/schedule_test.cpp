@@ -348,6 +348,19 @@ TEST(CamSchedule, does_the_same_to_the_bit_for_the_same_seed) {
     EXPECT_EQ(once, 336675540384717305u) << "another compiler, or another estimator";
 }
 
+TEST(CamSchedule, fires_nothing_on_a_stale_estimate_even_when_the_timer_comes_late) {
+    constexpr auto table = cam_table(700_rpm, cam("cam", at(0_deg)));
+    CamRig rig(table, TrueShaft(-6.0 - 360.0).jump(3600.0).hold(1.0), {.period_jitter_s = 0.0}, any_seed());
+    rig.run(0.1); // 6 degrees before the cam, with one firing a turn ago
+    const std::size_t before = rig.fired.size();
+    ASSERT_NE(rig.schedule.next_due(), never);
+    rig.schedule.advance(at_s(0.12), [](const CamEvent&) noexcept
+                         TAPPET_REALTIME { TAPPET_ESCAPE("the test fails", ADD_FAILURE()); });
+    EXPECT_EQ(rig.schedule.next_due(), never);
+    rig.run(0.2);
+    EXPECT_EQ(rig.fired.size(), before + 1) << "the samples go on, and so does the schedule";
+}
+
 TEST(CamSchedule, does_nothing_before_the_first_samples) {
     CamSchedule schedule(loom);
     const ShaftEstimator estimator{ShaftProperties{}};
