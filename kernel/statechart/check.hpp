@@ -12,11 +12,11 @@ namespace statechart {
 
 class Checker {
 public:
-    explicit constexpr Checker(const StateMachineTable& table) : table_{table}, names_{table} {}
+    explicit constexpr Checker(const StateHierarchy& names) : table_{names.table}, names_{names} {}
 
     constexpr Sentence check() {
-        if (check_states() && check_nesting() && check_roles() && check_transitions() && check_all_taken() &&
-            check_all_left() && check_all_reached())
+        if (check_states() && check_nesting() && check_roles() && check_transitions() && check_size() &&
+            check_all_taken() && check_all_left() && check_all_reached())
             static_cast<void>(check_waits());
         return fault_;
     }
@@ -71,8 +71,7 @@ private:
         for (std::size_t i = 0; i < names_.states(); ++i) {
             const StateRow& row = table_.states[i];
             if (row.name.empty()) return fail("state ", i + 1, " has no name; give it one");
-            if (find_state(table_, row.name) != i)
-                return fail(state_text(i), " is there twice; rename or drop one");
+            if (names_.find(row.name) != i) return fail(state_text(i), " is there twice; rename or drop one");
             if (!row.twice.empty()) return fail_twice(state_text(i), row.twice);
             if (!is_own(row.component)) return fail_foreign(state_text(i), row.component);
             if (!row.parent.empty() && names_.parent[i] == no_state)
@@ -158,6 +157,25 @@ private:
 
     // ---- the rows together
 
+    constexpr bool check_size() {
+        if (names_.triggers > max_state_events)
+            return fail("it hears ", names_.triggers, " events and may hear ", max_state_events,
+                        "; split it over components");
+        std::size_t leaf_transitions = 2; // start and reset
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            if (names_.composite[i]) continue;
+            ++leaf_transitions; // to the final state
+            names_.for_each_out(static_cast<StateIndex>(i), [&](TransitionIndex) {
+                ++leaf_transitions;
+                return true;
+            });
+        }
+        if (leaf_transitions <= max_leaf_transitions) return true;
+        return fail("its transitions lead out of ", leaf_transitions,
+                    " plain states together and may out of ", max_leaf_transitions,
+                    "; move transitions of wide composites inwards, or split it");
+    }
+
     // One row takes away everything from the other when it comes first and holds whenever the other could.
     [[nodiscard]] constexpr bool blocks(std::size_t first, std::size_t second) const {
         const TransitionRow& a = table_.transitions[first];
@@ -167,38 +185,30 @@ private:
         return b.timed && names_.from[first] == names_.from[second] && a.after <= b.after;
     }
 
-    // The transition that comes before `wanted` in `leaf` and blocks it, or the number of transitions.
-    [[nodiscard]] constexpr std::size_t blocker_in(StateIndex leaf, std::size_t wanted) const {
-        for (StateIndex source = leaf; source != no_state; source = names_.parent[source])
-            for (std::size_t t = 0; t < names_.transitions(); ++t) {
-                if (names_.from[t] != source) continue;
-                if (t == wanted) return names_.transitions();
-                if (blocks(t, wanted)) return t;
-            }
-        return names_.transitions();
-    }
-
     constexpr bool check_all_taken() {
-        for (std::size_t t = 0; t < names_.transitions(); ++t) {
-            std::size_t blocker = names_.transitions();
-            bool open = false;
-            for (std::size_t i = 0; i < names_.states() && !open; ++i) {
-                const auto leaf = static_cast<StateIndex>(i);
-                if (names_.composite[i] || !names_.is_inside(leaf, names_.from[t])) continue;
-                const std::size_t b = blocker_in(leaf, t);
-                open = b == names_.transitions();
-                if (!open) blocker = b;
-            }
-            if (!open)
-                return fail(
-                    transition_text(t), " can never be taken, ", transition_text(blocker),
-                    " always comes first; give that one a guard<>, put this one before it, or drop it");
+        std::array<bool, max_transitions> open{};
+        std::array<TransitionIndex, max_transitions> blocker{};
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            if (names_.composite[i]) continue;
+            const auto leaf = static_cast<StateIndex>(i);
+            names_.for_each_out(leaf, [&](TransitionIndex t) {
+                bool blocked = false;
+                names_.for_each_out(leaf, [&](TransitionIndex earlier) {
+                    if (earlier == t) return false;
+                    blocked = blocks(earlier, t);
+                    if (blocked) blocker[t] = earlier;
+                    return !blocked;
+                });
+                open[t] = open[t] || !blocked;
+                return true;
+            });
         }
+        for (std::size_t t = 0; t < names_.transitions(); ++t)
+            if (!open[t])
+                return fail(
+                    transition_text(t), " can never be taken, ", transition_text(blocker[t]),
+                    " always comes first; give that one a guard<>, put this one before it, or drop it");
         return true;
-    }
-
-    [[nodiscard]] constexpr bool leaves(StateIndex leaf, std::size_t t) const {
-        return names_.to[t] != no_state && names_.is_inside(leaf, names_.from[t]);
     }
 
     constexpr bool check_all_left() {
@@ -206,8 +216,10 @@ private:
             if (names_.composite[i] || table_.states[i].final) continue;
             const auto leaf = static_cast<StateIndex>(i);
             bool left = false;
-            for (std::size_t t = 0; t < names_.transitions() && !left; ++t)
-                left = leaves(leaf, t) && names_.initial_leaf(names_.to[t]) != leaf;
+            names_.for_each_out(leaf, [&](TransitionIndex t) {
+                left = names_.to[t] != no_state && names_.initial_leaf(names_.to[t]) != leaf;
+                return !left;
+            });
             if (!left) return fail(state_text(i), " has no way out; give it a transition, or mark it final");
         }
         return true;
@@ -225,11 +237,11 @@ private:
         };
         reach(names_.initial_top);
         reach(names_.final_state); // always valid by request
-        while (waiting > 0) {
-            const StateIndex leaf = open[--waiting];
-            for (std::size_t t = 0; t < names_.transitions(); ++t)
-                if (leaves(leaf, t)) reach(names_.to[t]);
-        }
+        while (waiting > 0)
+            names_.for_each_out(open[--waiting], [&](TransitionIndex t) {
+                if (names_.to[t] != no_state) reach(names_.to[t]);
+                return true;
+            });
         for (std::size_t i = 0; i < names_.states(); ++i)
             if (!reached[i])
                 return fail(state_text(i),
@@ -256,23 +268,21 @@ private:
         return true;
     }
     [[nodiscard]] constexpr std::size_t free_transition_of(StateIndex leaf) const {
-        for (StateIndex source = leaf; source != no_state; source = names_.parent[source])
-            for (std::size_t t = 0; t < names_.transitions(); ++t) {
-                const TransitionRow& row = table_.transitions[t];
-                if (names_.from[t] == source && !row.on_event && !row.timed && row.guard == nullptr) return t;
-            }
-        return names_.transitions();
+        std::size_t found = names_.transitions();
+        names_.for_each_out(leaf, [&](TransitionIndex t) {
+            const TransitionRow& row = table_.transitions[t];
+            if (!row.on_event && !row.timed && row.guard == nullptr) found = t;
+            return found != t;
+        });
+        return found;
     }
 
     const StateMachineTable& table_;
-    StateHierarchy names_;
+    const StateHierarchy& names_;
     Sentence fault_;
 };
 
-} // namespace statechart
-
-/// Empty when the machine is good. Bounded, without heap; not for real-time threads.
-constexpr Sentence check(const StateMachineTable& table) {
+constexpr Sentence check_limits(const StateMachineTable& table) {
     if (table.states.size() > max_states)
         return Sentence{"state machine \"",
                         table.name,
@@ -289,7 +299,15 @@ constexpr Sentence check(const StateMachineTable& table) {
                         " transitions and may have ",
                         max_transitions,
                         "; split it over components"};
-    return statechart::Checker{table}.check();
+    return {};
+}
+
+} // namespace statechart
+
+/// Empty when the machine is good. Bounded, without heap; not for real-time threads.
+constexpr Sentence check(const StateMachineTable& table) {
+    if (Sentence fault = statechart::check_limits(table); !fault.empty()) return fault;
+    return statechart::Checker{StateHierarchy{table}}.check();
 }
 
 } // namespace tappet

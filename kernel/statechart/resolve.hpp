@@ -21,6 +21,7 @@ struct ProgramSlice {
 using ArcIndex = std::uint16_t;
 inline constexpr ArcIndex start_arc = 0;
 inline constexpr ArcIndex reset_arc = 1;
+using StateSlice = ArcIndex;                  ///< what a cell holds: the first arc of its list
 inline constexpr ArcIndex no_arc = start_arc; ///< in a list of arcs, where no start stands
 
 /// One way out of one leaf.
@@ -56,8 +57,7 @@ struct ResolvedSizes {
 
     [[nodiscard]] constexpr bool fits_in(const ResolvedSizes& room) const noexcept {
         return states <= room.states && triggers <= room.triggers && arcs <= room.arcs &&
-               programs <= room.programs && states * triggers <= 0xffff && arcs <= 0xffff &&
-               programs <= 0xffff; // what the numbers can hold
+               programs <= room.programs;
     }
     constexpr bool operator==(const ResolvedSizes&) const = default;
 };
@@ -85,8 +85,7 @@ namespace statechart {
 
 class Resolver {
 public:
-    constexpr Resolver(const StateMachineTable& table, const ResolvedRoom& room)
-        : names_{table}, room_{room} {}
+    constexpr Resolver(const StateHierarchy& names, const ResolvedRoom& room) : names_{names}, room_{room} {}
 
     constexpr ResolvedSizes resolve() {
         for (std::size_t i = 0; i < names_.triggers; ++i)
@@ -122,16 +121,15 @@ private:
         add_exits(leaf, 0, plan.leave);
     }
 
-    // The transitions of one leaf and trigger: those of the innermost state first (UML), each state's in
-    // table order.
+    // The transitions of one leaf and trigger, in the order in which they are asked (UML).
     constexpr ArcIndex add_arcs(StateIndex leaf, TriggerIndex trigger) {
         const std::size_t first = arcs_;
-        for (StateIndex source = leaf; source != no_state; source = names_.parent[source])
-            for (std::size_t t = 0; t < names_.transitions(); ++t) {
-                if (names_.from[t] != source || names_.trigger[t] != trigger) continue;
-                if (arcs_ > first && arcs_ <= room_.arcs.size()) room_.arcs[arcs_ - 1].last = false;
-                add_transition(leaf, source, t);
-            }
+        names_.for_each_out(leaf, [&](TransitionIndex t) {
+            if (names_.trigger[t] != trigger) return true;
+            if (arcs_ > first && arcs_ <= room_.arcs.size()) room_.arcs[arcs_ - 1].last = false;
+            add_transition(leaf, names_.from[t], t);
+            return true;
+        });
         return arcs_ > first ? static_cast<ArcIndex>(first) : no_arc;
     }
 
@@ -188,7 +186,7 @@ private:
         return names_.table.states[state];
     }
 
-    StateHierarchy names_;
+    const StateHierarchy& names_;
     ResolvedRoom room_;
     std::size_t arcs_ = 0;
     std::size_t programs_ = 0;
@@ -199,12 +197,15 @@ private:
 /// Resolves a table that check() found good. Returns what it takes; it is stored whole when that fits in the
 /// room. Bounded, without heap; not for real-time threads.
 constexpr ResolvedSizes resolve_into(const StateMachineTable& table, const ResolvedRoom& room) {
-    return statechart::Resolver{table, room}.resolve();
+    return statechart::Resolver{StateHierarchy{table}, room}.resolve();
 }
 
 /// What a machine takes; nothing when check() finds a fault in it.
 constexpr ResolvedSizes measure(const StateMachineTable& table) {
-    return check(table).empty() ? resolve_into(table, {}) : ResolvedSizes{};
+    if (!statechart::check_limits(table).empty()) return {};
+    const StateHierarchy names{table};
+    return statechart::Checker{names}.check().empty() ? statechart::Resolver{names, {}}.resolve()
+                                                      : ResolvedSizes{};
 }
 
 /// Room for a machine of at most these sizes: exactly measured for a constant table, or a slot that machines
@@ -226,28 +227,23 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
     [[nodiscard]] constexpr Sentence load(const StateMachineTable& of) {
         table = {};
         trigger_count = 0;
-        if (Sentence fault = check(of); !fault.empty()) return fault;
-        const ResolvedSizes taken = resolve_into(of, {plans, triggers, cells, arcs, programs});
-        if (!taken.fits_in(sizes))
-            return Sentence{"state machine \"",
-                            of.name,
-                            "\": it takes ",
-                            taken.states,
-                            " states, ",
-                            taken.triggers,
-                            " events, ",
-                            taken.arcs,
-                            " transitions of leaves and ",
-                            taken.programs,
-                            " program calls, and there is room for ",
-                            sizes.states,
-                            ", ",
-                            sizes.triggers,
-                            ", ",
-                            sizes.arcs,
-                            " and ",
-                            sizes.programs,
-                            "; make the room larger or the machine smaller"};
+        if (Sentence fault = statechart::check_limits(of); !fault.empty()) return fault;
+        const StateHierarchy names{of};
+        if (Sentence fault = statechart::Checker{names}.check(); !fault.empty()) return fault;
+        const ResolvedSizes taken =
+            statechart::Resolver{names, {plans, triggers, cells, arcs, programs}}.resolve();
+        if (!taken.fits_in(sizes)) {
+            const auto list = [](const ResolvedSizes& n) {
+                return Sentence{n.states,    " states, ", n.triggers,
+                                " events, ", n.arcs,      " transitions of leaves, "}
+                    .add(n.programs)
+                    .add(" program calls");
+            };
+            return Sentence{"state machine \"", of.name, "\": it takes ", list(taken),
+                            ", and there is room for "}
+                .add(list(sizes))
+                .add("; make the room larger or the machine smaller");
+        }
         table = of;
         trigger_count = taken.triggers;
         return {};

@@ -24,6 +24,14 @@ using StateGuard = bool (*)(void* component) noexcept TAPPET_REALTIME;
 inline constexpr std::size_t max_states = 256;
 inline constexpr std::size_t max_transitions = 1024;
 inline constexpr std::size_t max_state_depth = 8; ///< a top state has depth 1
+inline constexpr std::size_t max_state_events = 255;
+/// Transitions counted once for each leaf that they lead out of, with the requests that every machine has.
+inline constexpr std::size_t max_leaf_transitions = 3600;
+static_assert(max_states * max_state_events <= 0xffff, "a cell of the resolved table has a 16-bit number");
+static_assert(
+    max_leaf_transitions * (2 * max_state_depth + 1) + max_states * 2 * max_state_depth <= 0xffff,
+    "a place in the resolved list of programs has a 16-bit number: one transition calls at most its "
+    "own program and an exit and an entry a level, one state at most a run and an exit a level");
 
 struct StateRow {
     std::string_view name;
@@ -65,6 +73,7 @@ inline constexpr StateIndex no_state = 0xffff;
 
 /// Number of a transition: its row in the table, or one of those that every machine has.
 using TransitionIndex = std::uint16_t;
+inline constexpr TransitionIndex no_transition = 0xffff;
 inline constexpr TransitionIndex start_transition = 0xfffe; ///< into the initial state
 inline constexpr TransitionIndex final_transition = 0xfffd; ///< to the final state by request
 inline constexpr TransitionIndex reset_transition =

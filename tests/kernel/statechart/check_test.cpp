@@ -272,6 +272,35 @@ TEST(StateMachineCheck, refuses_more_rows_than_the_limits) {
               "state machine \"m\": it has 1025 transitions and may have 1024; split it over components");
 }
 
+TEST(StateMachineCheck, refuses_more_events_than_the_limit) {
+    Good m;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i <= max_state_events - 3; ++i) names.push_back("event" + std::to_string(i));
+    for (const std::string& name : names) m.transitions.push_back(transition("idle", "safe", on(name)));
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": it hears 256 events and may hear 255; split it over components");
+    m.transitions.pop_back();
+    EXPECT_EQ(m.fault(), "");
+}
+
+TEST(StateMachineCheck, refuses_more_transitions_of_leaves_than_can_be_numbered) {
+    Good m;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < 100; ++i) names.push_back("inner" + std::to_string(i));
+    for (const std::string& name : names) {
+        m.states.push_back(state(name, in("working")));
+        m.transitions.push_back(transition("run_up", name, on("panel.choose"), guard<&Loom::ready>));
+    }
+    EXPECT_EQ(m.fault(), "");
+    for (std::size_t i = 0; i < 35; ++i)
+        m.transitions.push_back(transition("working", "idle", on("panel.leave"), guard<&Loom::ready>));
+    const std::string said = m.fault();
+    EXPECT_NE(
+        said.find("plain states together and may out of 3600; move transitions of wide composites inwards"),
+        std::string::npos)
+        << said;
+}
+
 TEST(StateMachineCheck, finds_every_misspelt_name_and_names_its_row) {
     const std::size_t states = Good{}.states.size();
     const std::size_t transitions = Good{}.transitions.size();
