@@ -249,8 +249,8 @@ private:
         return true;
     }
 
-    // Follows the transitions that need nothing to be taken; coming back to a state means that no step would
-    // end.
+    // Follows the transitions that need nothing to be taken; coming
+    // back to a state means that no step would end.
     constexpr bool check_waits() {
         for (std::size_t i = 0; i < names_.states(); ++i) {
             if (names_.composite[i]) continue;

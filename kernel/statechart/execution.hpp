@@ -1,5 +1,5 @@
-// Executes a resolved state machine on a component (thesis 5.2.2, 5.2.3). What holds, where UML and the
-// thesis differ:
+// Executes a resolved state machine on a component (thesis 5.2.2,
+// 5.2.3). What holds, where UML and the thesis differ:
 //
 // clang-format off
 //   order of a transition  its program, the exits from the inside, the entries from the outside. Thesis 5.2.1 (UML: the
@@ -81,12 +81,12 @@ public:
 
     /// Enters the initial state. Ignored when active, or without a machine.
     StateOutcome start(Time now) noexcept TAPPET_REALTIME;
-    /// Runs the exits and becomes inactive; what waited is dropped. Ignored when inactive or called out of a
-    /// program.
+    /// Runs the exits and becomes inactive; what waited is dropped.
+    /// Ignored when inactive or called out of a program.
     StateOutcome deactivate(Time now) noexcept TAPPET_REALTIME;
     /// One step of the engine. `now` never decreases from call to call.
     void step(Time now) noexcept TAPPET_REALTIME;
-    /// An event. `trigger` is an index into triggers(); out of range it is ignored.
+    /// An event. `trigger` is an index into machine().triggers; out of range it is ignored.
     StateOutcome dispatch(std::size_t trigger, Time now) noexcept TAPPET_REALTIME;
     /// Valid in every active state; ignored in the final one. `reason` outlives the execution.
     StateOutcome request_final(Time now, std::string_view reason = {}) noexcept TAPPET_REALTIME;
@@ -115,8 +115,8 @@ public:
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME;
     /// The last reason that a transition gave, and still gives until another one does.
     [[nodiscard]] std::string_view reason() const noexcept TAPPET_REALTIME { return reason_; }
-    /// The last call reached a bound with more to do: a condition that still held, or an event that still
-    /// waits.
+    /// The last call reached a bound with more to do: a condition
+    /// that still held, or an event that still waits.
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME {
         return conditions_left_ || !raised_.empty();
     }

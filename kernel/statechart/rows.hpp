@@ -1,5 +1,5 @@
-// How a state machine is spelled in C++. Each word gives a plain struct; member functions become function
-// pointers.
+// How a state machine is spelled in C++. Each word gives a plain
+// struct; member functions become function pointers.
 //
 //     constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
 //         states(
@@ -78,8 +78,8 @@ struct Because {
     std::string_view reason;
 };
 
-// A row takes each part once and belongs to one component type; what is against that is kept for the check to
-// report.
+// A row takes each part once and belongs to one component type;
+// what is against that is kept for the check to report.
 template <class Row> constexpr void give(Row& row, std::string_view part, bool is_given) {
     if (is_given && row.twice.empty()) row.twice = part;
 }

@@ -19,8 +19,8 @@ using StateProgram = void (*)(void* component) noexcept TAPPET_REALTIME;
 /// Says whether a transition may be taken. It may be asked any number of times, so it changes nothing.
 using StateGuard = bool (*)(void* component) noexcept TAPPET_REALTIME;
 
-/// Limits of one state machine. They bound the memory of the checks and of the resolver, which also run on
-/// the target.
+/// Limits of one state machine. They bound the memory of the checks
+/// and of the resolver, which also run on the target.
 inline constexpr std::size_t max_states = 256;
 inline constexpr std::size_t max_transitions = 1024;
 inline constexpr std::size_t max_state_depth = 8; ///< a top state has depth 1

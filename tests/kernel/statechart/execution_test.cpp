@@ -1,5 +1,5 @@
-// The order of exits, transition programs, entries and runs: one test for each line of the table in
-// execution.hpp.
+// The order of exits, transition programs, entries and runs: one
+// test for each line of the table in execution.hpp.
 #include "tests/kernel/statechart/recorder.hpp"
 
 #include "kernel/statechart/check.hpp"

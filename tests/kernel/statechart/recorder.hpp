@@ -1,5 +1,5 @@
-// A component whose state programs write down that they ran: "+a" entry, "-a" exit, "!a" run, "*a" transition
-// program.
+// A component whose state programs write down that they ran: "+a"
+// entry, "-a" exit, "!a" run, "*a" transition program.
 #pragma once
 
 #include "kernel/base/bounded.hpp"

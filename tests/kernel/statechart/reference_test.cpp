@@ -1,6 +1,6 @@
-// Thousands of random machines under random events, steps and requests: the resolved form and an interpreter
-// that walks the hierarchy by names do the same, program by program and guard by guard. TAPPET_SEED chooses
-// other machines.
+// Thousands of random machines under random events, steps and requests: the resolved
+// form and an interpreter that walks the hierarchy by names do the same, program by
+// program and guard by guard. TAPPET_SEED chooses other machines.
 #include "tests/kernel/statechart/reference.hpp"
 
 #include "kernel/base/random.hpp"
