@@ -6,7 +6,8 @@
 #   TIMEOUT S        wall time (default 120)
 #   RUN ARGUMENT...  the arguments of tappet-bench; generator expressions are welcome
 #
-# In a build tree with a sanitizer there is no bench, and the function does nothing. Bench tests carry the label "bench" and run one at a time: each wants a processor for itself.
+# Bench tests carry the label "bench" and run one at a time: each wants a processor for itself. In a build tree with a
+# sanitizer there is no bench, and the function does nothing.
 include_guard(GLOBAL)
 
 function(tappet_bench_test name)
