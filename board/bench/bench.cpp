@@ -106,7 +106,8 @@ void pack(const Scenario& scenario, const fs::path& kernel, const fs::path& arch
     const fs::path init = scenario.init.empty() ? fs::canonical("/proc/self/exe").parent_path() / "bench-init"
                                                 : fs::path(scenario.init);
     if (!fs::exists(init)) {
-        throw BenchError("the guest's PID 1 is not at '" + init.string() + "'; build the target bench-init, or give --init");
+        throw BenchError("the guest's PID 1 is not at '" + init.string() +
+                         "'; build the target bench-init, or give --init");
     }
     root.add(init, "/init");
     for (const File& file : scenario.files) {
@@ -131,18 +132,16 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const fs::
     }
     std::vector<std::string> arguments = {
         "qemu-system-x86_64", "-nodefaults", "-no-user-config", "-display", "none", "-no-reboot",
-        // Emulation, also where the host could virtualise: the same everywhere, and the instruction clock needs it.
-        "-machine", "q35,accel=tcg", "-m", std::to_string(scenario.memory_mib),
-        "-smp", std::to_string(scenario.processors),
-        "-kernel", (kernel / "vmlinux").string(), "-initrd", (work / "root.cpio").string(),
-        "-append", kernel_arguments,
+        // Emulation, also where the host could virtualise: the same everywhere, and the instruction clock
+        // needs it.
+        "-machine", "q35,accel=tcg", "-m", std::to_string(scenario.memory_mib), "-smp",
+        std::to_string(scenario.processors), "-kernel", (kernel / "vmlinux").string(), "-initrd",
+        (work / "root.cpio").string(), "-append", kernel_arguments,
         // The kernel's own words go to a file, read only when something went wrong.
-        "-serial", "file:" + (work / "kernel.log").string(),
-        "-device", "virtio-serial-pci",
-        "-chardev", "stdio,id=console,signal=off",
-        "-device", "virtserialport,chardev=console,name=tappet.console",
-        "-chardev", "file,id=results,path=" + (work / "results").string(),
-        "-device", "virtserialport,chardev=results,name=tappet.results"};
+        "-serial", "file:" + (work / "kernel.log").string(), "-device", "virtio-serial-pci", "-chardev",
+        "stdio,id=console,signal=off", "-device", "virtserialport,chardev=console,name=tappet.console",
+        "-chardev", "file,id=results,path=" + (work / "results").string(), "-device",
+        "virtserialport,chardev=results,name=tappet.results"};
     if (scenario.clock == Clock::instructions) {
         arguments.insert(arguments.end(),
                          {"-icount", "shift=" + std::to_string(instruction_shift) + ",sleep=off"});
@@ -200,7 +199,8 @@ struct Emulator {
             ::dup2(from[1], STDOUT_FILENO);
             ::dup2(errors, STDERR_FILENO);
             ::execvp(words[0], words.data());
-            ::dprintf(STDERR_FILENO, "cannot run %s: %s; run ci/setup once as root\n", words[0], std::strerror(errno));
+            ::dprintf(STDERR_FILENO, "cannot run %s: %s; run ci/setup once as root\n", words[0],
+                      std::strerror(errno));
             ::_exit(127);
         }
         ::close(to[0]);
@@ -273,7 +273,8 @@ Report read_results(const fs::path& path, const std::vector<File>& wanted) {
                     std::ofstream target(file.host, std::ios::binary);
                     target << content;
                     if (!target.flush()) {
-                        throw BenchError("cannot write '" + file.host + "', collected from the guest; check --collect");
+                        throw BenchError("cannot write '" + file.host +
+                                         "', collected from the guest; check --collect");
                     }
                 }
             }
@@ -284,8 +285,10 @@ Report read_results(const fs::path& path, const std::vector<File>& wanted) {
 
 enum class End { complete, emulator_gone, timeout };
 
-// Hands the guest's output on until it says that nothing more will come, then answers, upon which it switches off.
-End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output& output, double& boot_wall_s) {
+// Hands the guest's output on until it says that nothing more will come, then answers, upon which it switches
+// off.
+End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output& output,
+           double& boot_wall_s) {
     std::array<char, 65536> piece{};
     for (;;) {
         const double left = timeout_s - seconds_since(start);
@@ -335,7 +338,8 @@ void check(const Scenario& scenario, const fs::path& kernel) {
                          "; use rt or plain, and run ci/setup once as root");
     }
     if (scenario.clock == Clock::instructions && scenario.processors != 1) {
-        throw BenchError("the instruction clock drives one processor only, " + std::to_string(scenario.processors) +
+        throw BenchError("the instruction clock drives one processor only, " +
+                         std::to_string(scenario.processors) +
                          " are asked for; use --cpus 1 or --clock host");
     }
     for (const std::string& command : scenario.commands) {
@@ -364,9 +368,11 @@ Outcome run_checked(const Scenario& scenario, const Output& output) {
     if (!report.fault.empty()) {
         outcome.fault = "the guest could not be set up: " + report.fault;
     } else if (end == End::timeout) {
-        outcome.fault = "time-out after " + std::to_string(static_cast<int>(scenario.timeout_s)) + " s of wall time ";
+        outcome.fault =
+            "time-out after " + std::to_string(static_cast<int>(scenario.timeout_s)) + " s of wall time ";
         if (!report.booted) {
-            outcome.fault += "before the first command; the kernel's last words:" + tail_of(work / "kernel.log");
+            outcome.fault +=
+                "before the first command; the kernel's last words:" + tail_of(work / "kernel.log");
         } else if (report.running.empty()) {
             outcome.fault += "after the last command; raise --timeout";
         } else {

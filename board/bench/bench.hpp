@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bench: an emulated industrial PC with a real-time kernel, CAN interfaces and GPIO lines, booted for one scenario
-// and thrown away afterwards. A scenario is a list of files, devices and commands; nothing of it outlives the run.
+// The bench: an emulated industrial PC with a real-time kernel, CAN interfaces and GPIO lines, booted for one
+// scenario and thrown away afterwards. A scenario is a list of files, devices and commands; nothing of it
+// outlives the run.
 #pragma once
 
 #include <functional>
@@ -25,9 +26,10 @@ struct Setting {
     std::string value;
 };
 
-// Which clock the guest lives by. Instructions: guest time follows the instructions executed (2 ns each) and idle time
-// is skipped, so that the guest is a steady single-processor box of 500 million instructions per second whatever the
-// host does. Host: guest time is the host's, several processors, and every hiccup of the host is the guest's latency.
+// Which clock the guest lives by. Instructions: guest time follows the instructions executed (2 ns each) and
+// idle time is skipped, so that the guest is a steady single-processor box of 500 million instructions per
+// second whatever the host does. Host: guest time is the host's, several processors, and every hiccup of the
+// host is the guest's latency.
 enum class Clock { instructions, host };
 
 struct Scenario {
@@ -35,15 +37,17 @@ struct Scenario {
     Clock clock = Clock::instructions;
     unsigned processors = 1; // more than one only under the host's clock
     unsigned memory_mib = 256;
-    std::string kernel_arguments; // appended to ours
-    std::vector<File> files;      // dynamic programs bring their libraries along
+    std::string kernel_arguments;   // appended to ours
+    std::vector<File> files;        // dynamic programs bring their libraries along
     std::vector<std::string> tools; // programs of the host, by name, to /bin
     std::vector<std::string> can;   // virtual CAN interfaces, up
     std::vector<GpioChip> gpio;
     std::vector<Setting> settings; // written before the first command
-    // In order; the first that fails ends the scenario. "& " at the end: in the background, terminated at the end of
-    // the scenario. "- " in front: its exit code does not count. Steps of the bench itself: "@sleep SECONDS",
-    // "@write PATH TEXT", "@link NAME up|down", "@signal NAME SIGNAL", "@wait NAME" (the code of a background command).
+    // In order; the first that fails ends the scenario. "& " at the end: in the background, terminated at the
+    // end of the scenario. "- " in front: its exit code does not count. Steps of the bench itself: "@sleep
+    // SECONDS",
+    // "@write PATH TEXT", "@link NAME up|down", "@signal NAME SIGNAL", "@wait NAME" (the code of a background
+    // command).
     std::vector<std::string> commands;
     std::vector<File> collect; // copied out of the guest at the end, whatever the outcome
     double timeout_s = 120;    // of wall time
@@ -54,9 +58,9 @@ struct Scenario {
 struct Outcome {
     // The bench itself worked: it booted, ran every step it had to run, and switched off.
     bool completed = false;
-    int exit_code = -1;      // of the first command that failed, or 0
-    std::string fault;       // what, where and cure when not completed
-    double boot_wall_s = 0;  // power on to the first command
+    int exit_code = -1;     // of the first command that failed, or 0
+    std::string fault;      // what, where and cure when not completed
+    double boot_wall_s = 0; // power on to the first command
     double total_wall_s = 0;
 };
 

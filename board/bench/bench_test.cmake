@@ -30,7 +30,8 @@ function(tappet_bench_test name)
     endforeach()
     add_test(NAME "bench.${name}"
              COMMAND bench-expect --exit ${test_EXIT} ${expectations} --
-                     $<TARGET_FILE:tappet-bench> --verbose --timeout ${test_TIMEOUT} ${test_RUN})
+                     $<TARGET_FILE:tappet-bench> --verbose --timeout ${test_TIMEOUT}
+                     ${test_RUN})
     math(EXPR hard_limit "${test_TIMEOUT} + 30")
     set_tests_properties("bench.${name}" PROPERTIES LABELS bench RESOURCE_LOCK bench TIMEOUT ${hard_limit})
 endfunction()

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// PID 1 of the bench: brings up the box the manifest describes (kernel modules, CAN interfaces, GPIO chips), runs the
-// manifest's commands in order, hands results to the host and switches the power off. There is nothing else in the
-// guest: no shell, no service, nothing that wakes up by itself and disturbs a measurement.
+// PID 1 of the bench: brings up the box the manifest describes (kernel modules, CAN interfaces, GPIO chips),
+// runs the manifest's commands in order, hands results to the host and switches the power off. There is
+// nothing else in the guest: no shell, no service, nothing that wakes up by itself and disturbs a
+// measurement.
 
 #include <algorithm>
 #include <cerrno>
@@ -42,7 +43,8 @@ struct BackgroundCommand {
     int exit_code = -1; // of a command that ended, until somebody asks
 };
 
-// What the host reads: one line per fact, written at once, so that a bench that hangs still tells how far it got.
+// What the host reads: one line per fact, written at once, so that a bench that hangs still tells how far it
+// got.
 class Results {
 public:
     void open(int descriptor) { descriptor_ = descriptor; }
@@ -126,7 +128,8 @@ void mount_at(const char* type, const std::string& path) {
     }
 }
 
-// --- devices ---------------------------------------------------------------------------------------------------------
+// --- devices
+// ---------------------------------------------------------------------------------------------------------
 
 bool load_module(const std::string& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -140,8 +143,8 @@ bool load_module(const std::string& path) {
     return loaded;
 }
 
-// A module fails as long as one that it needs is missing. Which needs which changes from kernel to kernel, so it is
-// tried again after the others.
+// A module fails as long as one that it needs is missing. Which needs which changes from kernel to kernel, so
+// it is tried again after the others.
 void load_modules(std::vector<std::string> modules) {
     while (!modules.empty()) {
         if (std::erase_if(modules, load_module) == 0) {
@@ -187,7 +190,8 @@ void set_link(const std::string& name, bool up) {
     ::close(socket);
 }
 
-// One rtnetlink request, laid out by hand: the alternative is an `ip` program and its libraries in every guest.
+// One rtnetlink request, laid out by hand: the alternative is an `ip` program and its libraries in every
+// guest.
 class LinkRequest {
 public:
     LinkRequest() {
@@ -260,8 +264,8 @@ void create_can(const std::string& name) {
     set_link(name, true);
 }
 
-// A chip is reached by its name on both sides: /dev/NAME is the character device a driver opens, /sim/NAME is the
-// folder in which the outside world pulls inputs and reads outputs (sim_gpioN/pull, sim_gpioN/value).
+// A chip is reached by its name on both sides: /dev/NAME is the character device a driver opens, /sim/NAME is
+// the folder in which the outside world pulls inputs and reads outputs (sim_gpioN/pull, sim_gpioN/value).
 void create_gpio_chip(const std::string& name, const std::string& lines) {
     const std::string chip = "/sys/kernel/config/gpio-sim/" + name;
     const std::string bank = chip + "/bank0";
@@ -281,10 +285,11 @@ void create_gpio_chip(const std::string& name, const std::string& lines) {
     }
 }
 
-// --- commands --------------------------------------------------------------------------------------------------------
+// --- commands
+// --------------------------------------------------------------------------------------------------------
 
-// Words are parted by blanks; single or double quotes keep blanks. Nothing else is special: what needs a shell brings
-// one along.
+// Words are parted by blanks; single or double quotes keep blanks. Nothing else is special: what needs a
+// shell brings one along.
 std::vector<std::string> split(const std::string& line) {
     std::vector<std::string> words;
     std::string word;
@@ -440,16 +445,20 @@ int run_builtin(const std::vector<std::string>& words) {
         }
         const int number = signal_number(second);
         if (number < 0) {
-            return report_misuse("@signal: unknown signal '" + second + "'; use TERM INT KILL STOP CONT USR1 HUP");
+            return report_misuse("@signal: unknown signal '" + second +
+                                 "'; use TERM INT KILL STOP CONT USR1 HUP");
         }
         if (command->pid < 0) {
             return report_misuse("@signal: '" + first + "' has ended already, with exit code " +
                                  std::to_string(command->exit_code));
         }
-        return ::kill(command->pid, number) == 0 ? 0 : report_misuse("@signal: " + std::string(std::strerror(errno)));
+        return ::kill(command->pid, number) == 0
+                   ? 0
+                   : report_misuse("@signal: " + std::string(std::strerror(errno)));
     }
-    return report_misuse("unknown step '" + name +
-                         "'; use @sleep S, @write PATH TEXT, @link NAME up|down, @signal NAME SIGNAL or @wait NAME");
+    return report_misuse(
+        "unknown step '" + name +
+        "'; use @sleep S, @write PATH TEXT, @link NAME up|down, @signal NAME SIGNAL or @wait NAME");
 }
 
 int run(const std::string& line) {
@@ -484,7 +493,8 @@ void stop_background() {
     collect_ended();
     const auto running = [] {
         collect_ended();
-        return std::ranges::any_of(background, [](const BackgroundCommand& command) { return command.pid > 0; });
+        return std::ranges::any_of(background,
+                                   [](const BackgroundCommand& command) { return command.pid > 0; });
     };
     for (const int number : {SIGTERM, SIGKILL}) {
         for (const BackgroundCommand& command : background) {

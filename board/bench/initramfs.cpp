@@ -20,7 +20,8 @@ namespace {
 std::string read_file(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        throw BenchError("cannot read '" + path.string() + "' for the guest; check --file and --tool, and build it first");
+        throw BenchError("cannot read '" + path.string() +
+                         "' for the guest; check --file and --tool, and build it first");
     }
     std::ostringstream content;
     content << file.rdbuf();
@@ -62,7 +63,8 @@ std::string libraries_of(const fs::path& program) {
 
 // Parts of Python's standard library that no peer on the bench uses; together more than half of it.
 bool is_ballast(const std::string& folder) {
-    static const std::set<std::string> names = {"test", "idlelib", "ensurepip", "lib2to3", "tkinter", "pydoc_data"};
+    static const std::set<std::string> names = {"test",    "idlelib", "ensurepip",
+                                                "lib2to3", "tkinter", "pydoc_data"};
     return names.contains(folder) || folder.starts_with("config-3.");
 }
 
@@ -86,7 +88,8 @@ fs::path find_program(const std::string& name) {
 
 Initramfs::Initramfs(const fs::path& archive) : archive_(std::fopen(archive.c_str(), "wb")) {
     if (archive_ == nullptr) {
-        throw BenchError("cannot write '" + archive.string() + "'; check the space and rights of the temporary folder");
+        throw BenchError("cannot write '" + archive.string() +
+                         "'; check the space and rights of the temporary folder");
     }
     // The kernel opens it for PID 1 before anything is mounted.
     add_folder("/dev");
@@ -104,9 +107,9 @@ void Initramfs::entry(const std::string& guest, unsigned mode, std::string_view 
     static constexpr std::array<char, 4> padding{};
     const std::string name = guest.substr(guest.find_first_not_of('/'));
     std::array<char, 111> header{};
-    std::snprintf(header.data(), header.size(), "070701%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X", next_inode_++,
-                  mode, 0U, 0U, 1U, 0U, static_cast<unsigned>(content.size()), 0U, 0U, major, minor,
-                  static_cast<unsigned>(name.size() + 1), 0U);
+    std::snprintf(header.data(), header.size(), "070701%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X%08X",
+                  next_inode_++, mode, 0U, 0U, 1U, 0U, static_cast<unsigned>(content.size()), 0U, 0U, major,
+                  minor, static_cast<unsigned>(name.size() + 1), 0U);
     std::fwrite(header.data(), 1, 110, archive_);
     std::fwrite(name.c_str(), 1, name.size() + 1, archive_);
     std::fwrite(padding.data(), 1, (4 - (110 + name.size() + 1) % 4) % 4, archive_);
@@ -135,7 +138,7 @@ void Initramfs::add_file(const fs::path& host, const std::string& guest) {
     }
     add_folder(guest.substr(0, guest.rfind('/')));
     const std::string content = read_file(host);
-    struct stat facts {};
+    struct stat facts{};
     ::stat(host.c_str(), &facts);
     present_.insert(guest);
     entry(guest, S_IFREG | (facts.st_mode & 0777), content);
@@ -161,17 +164,20 @@ void Initramfs::add_libraries(const fs::path& program) {
 
 void Initramfs::add(const fs::path& host, const std::string& guest) {
     if (guest.empty() || guest.front() != '/') {
-        throw BenchError("'" + guest + "' is no place in the guest; give an absolute path, as in --file HOST=/GUEST");
+        throw BenchError("'" + guest +
+                         "' is no place in the guest; give an absolute path, as in --file HOST=/GUEST");
     }
     if (!fs::exists(host)) {
-        throw BenchError("'" + host.string() + "' does not exist on this machine; check --file, and build it first");
+        throw BenchError("'" + host.string() +
+                         "' does not exist on this machine; check --file, and build it first");
     }
     if (!fs::is_directory(host)) {
         add_file(host, guest);
         return;
     }
     add_folder(guest);
-    for (auto item = fs::recursive_directory_iterator(host); item != fs::recursive_directory_iterator(); ++item) {
+    for (auto item = fs::recursive_directory_iterator(host); item != fs::recursive_directory_iterator();
+         ++item) {
         if (item->is_directory() && is_ballast(item->path().filename().string())) {
             item.disable_recursion_pending();
         } else if (item->is_regular_file()) {

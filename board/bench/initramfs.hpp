@@ -25,7 +25,8 @@ public:
 
     void add_folder(const std::string& guest);
     void add_text(const std::string& guest, std::string_view text);
-    // A program brings the shared libraries it needs, to where its loader looks for them; a folder comes whole.
+    // A program brings the shared libraries it needs, to where its loader looks for them; a folder comes
+    // whole.
     void add(const std::filesystem::path& host, const std::string& guest);
     // A program of the host, by its name, to /bin. Python brings its standard library.
     void add_tool(const std::string& name);

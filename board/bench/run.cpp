@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tappet-bench: one scenario on the bench, from the command line. Exit code: that of the guest's first failing command,
-// 0 if none failed, 125 if the bench itself did not work.
+// tappet-bench: one scenario on the bench, from the command line. Exit code: that of the guest's first
+// failing command, 0 if none failed, 125 if the bench itself did not work.
 
 #include <charconv>
 #include <cstdio>
@@ -43,7 +43,8 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
     std::exit(bench_fault);
 }
 
-std::pair<std::string, std::string> parts(const std::string& option, const std::string& value, char separator) {
+std::pair<std::string, std::string> parts(const std::string& option, const std::string& value,
+                                          char separator) {
     const std::size_t at = value.find(separator);
     if (at == std::string::npos || at == 0 || at + 1 == value.size()) {
         refuse(option + " needs two parts with '" + separator + "' between them, not '" + value + "'");
@@ -54,7 +55,8 @@ std::pair<std::string, std::string> parts(const std::string& option, const std::
 unsigned number(const std::string& option, const std::string& value) {
     unsigned result = 0;
     const char* end = value.data() + value.size();
-    if (const auto [at, error] = std::from_chars(value.data(), end, result); error != std::errc{} || at != end) {
+    if (const auto [at, error] = std::from_chars(value.data(), end, result);
+        error != std::errc{} || at != end) {
         refuse(option + " needs a number, not '" + value + "'");
     }
     return result;
@@ -136,8 +138,8 @@ int main(int count, char** arguments) {
         std::fflush(stdout);
     });
     if (request.verbose) {
-        std::fprintf(stderr, "tappet-bench: %.1f s to the first command, %.1f s in all\n", outcome.boot_wall_s,
-                     outcome.total_wall_s);
+        std::fprintf(stderr, "tappet-bench: %.1f s to the first command, %.1f s in all\n",
+                     outcome.boot_wall_s, outcome.total_wall_s);
     }
     if (!outcome.completed) {
         std::fprintf(stderr, "tappet-bench: %s\n", outcome.fault.c_str());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smallest thing that can run on the bench: a static program that finds what every machine there relies on, and
-// says what is missing.
+// The smallest thing that can run on the bench: a static program that finds what every machine there relies
+// on, and says what is missing.
 
 #include <algorithm>
 #include <array>

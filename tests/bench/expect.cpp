@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench-expect: runs a command, shows its output, and checks its exit code and that the output matches every given
-// regular expression. CTest's own PASS_REGULAR_EXPRESSION asks for any one of them and forgets the exit code.
+// bench-expect: runs a command, shows its output, and checks its exit code and that the output matches every
+// given regular expression. CTest's own PASS_REGULAR_EXPRESSION asks for any one of them and forgets the exit
+// code.
 
 #include <array>
 #include <cstdio>
