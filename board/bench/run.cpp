@@ -24,7 +24,7 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --file HOST=GUEST      a file or folder for the guest; programs bring their shared libraries
   --tool NAME            a program of this machine for the guest's /bin; python3 brings its standard library
   --can NAME             a virtual CAN interface
-  --gpio-chip NAME:LINES a simulated GPIO chip: /dev/NAME, its outside at /sim/NAME/sim_gpioN/pull and .../value
+  --gpio-chip NAME:LINES simulated GPIO: /dev/NAME, its outside at /sim/NAME/sim_gpioN/pull and .../value
   --set PATH=VALUE       written before the first command, e.g. /proc/sys/kernel/sched_rt_runtime_us=-1
   --collect GUEST=HOST   a file copied out at the end
   --kernel rt|plain      with PREEMPT_RT (default) or without real-time
