@@ -48,16 +48,17 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     worst_excess_ = Duration::zero();
     worst_function_ = Miss::nobody;
     watch_wakes();
-    run_timers();
+    bool acted = run_timers();
     if (due) run_components();
-    run_messages();
-    run_behaviours(due);
+    acted |= run_messages();
+    run_behaviours(due || acted); // what ran may have changed a condition
     watch_inputs();
     account();
     generation_.fetch_add(1, std::memory_order_release);
 }
 
-void Engine::run_timers() noexcept TAPPET_REALTIME {
+bool Engine::run_timers() noexcept TAPPET_REALTIME {
+    bool acted = false;
     for (const EngineTimer& each : plan_.timers) {
         const Time when = each.timer->when();
         if (when > cycle_.now) continue;
@@ -66,7 +67,9 @@ void Engine::run_timers() noexcept TAPPET_REALTIME {
         at.release = when;
         note(each.part, when);
         timed(each.part, FunctionKind::timers, [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component, at); });
+        acted = true;
     }
+    return acted;
 }
 
 void Engine::run_components() noexcept TAPPET_REALTIME {
@@ -77,9 +80,9 @@ void Engine::run_components() noexcept TAPPET_REALTIME {
     }
 }
 
-void Engine::run_messages() noexcept TAPPET_REALTIME {
-    if (!inbox_.pending()) return;
-    statistics_.messages += inbox_.serve([this](const Message& message) noexcept TAPPET_REALTIME {
+bool Engine::run_messages() noexcept TAPPET_REALTIME {
+    if (!inbox_.pending()) return false;
+    const std::size_t served = inbox_.serve([this](const Message& message) noexcept TAPPET_REALTIME {
         note(message.id, cycle_.now);
         for (std::size_t at = 0; at < message.arguments.size(); at += sizeof(std::uint64_t)) {
             std::uint64_t word = 0;
@@ -88,6 +91,8 @@ void Engine::run_messages() noexcept TAPPET_REALTIME {
         }
         timed(message.id, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { message.run(message.object, message.arguments.data()); });
     });
+    statistics_.messages += served;
+    return served != 0;
 }
 
 void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {

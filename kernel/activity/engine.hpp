@@ -143,9 +143,9 @@ private:
         timing.add(took);
         lap_ = end;
     }
-    void run_timers() noexcept TAPPET_REALTIME;
+    bool run_timers() noexcept TAPPET_REALTIME;
     void run_components() noexcept TAPPET_REALTIME;
-    void run_messages() noexcept TAPPET_REALTIME;
+    bool run_messages() noexcept TAPPET_REALTIME;
     void run_behaviours(bool all) noexcept TAPPET_REALTIME;
     void watch_inputs() noexcept TAPPET_REALTIME;
     void watch_wakes() noexcept TAPPET_REALTIME;

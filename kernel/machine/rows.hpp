@@ -83,6 +83,7 @@ struct ActivityRow {
     Bounded<std::string_view, max_runs> runs{};
     bool too_many_runs = false;
     bool has_trigger = false;
+    std::string_view twice{}; ///< the option that the row was given twice
 
     [[nodiscard]] constexpr Duration shortest_period() const noexcept { return trigger == Trigger::every ? period : at_most_per; }
     [[nodiscard]] constexpr Duration deadline() const noexcept { return deadline_after.count() != 0 ? deadline_after : shortest_period(); }
@@ -140,22 +141,40 @@ constexpr Runs runs(const Names&... names) {
 
 namespace detail {
 
+constexpr void give(ActivityRow& row, std::string_view option, bool is_given) noexcept {
+    if (is_given && row.twice.empty()) row.twice = option;
+}
 constexpr void apply(ActivityRow& row, const TriggerOption& option) noexcept {
-    row.trigger = option.trigger;
+    give(row, "a trigger", row.has_trigger);
+    row.trigger = option.trigger == Trigger::every && !row.real_time ? Trigger::background : option.trigger;
     row.period = option.period;
     row.device = option.device;
     row.has_trigger = true;
 }
-constexpr void apply(ActivityRow& row, AtMost option) noexcept { row.at_most_n = option.n, row.at_most_per = option.per; }
-constexpr void apply(ActivityRow& row, Budget option) noexcept { row.budget_each = option.each; }
-constexpr void apply(ActivityRow& row, Deadline option) noexcept { row.deadline_after = option.after; }
+constexpr void apply(ActivityRow& row, AtMost option) noexcept {
+    give(row, "at_most", row.at_most_per != Duration::zero());
+    row.at_most_n = option.n;
+    row.at_most_per = option.per;
+}
+constexpr void apply(ActivityRow& row, Budget option) noexcept {
+    give(row, "a budget", row.budget_each != Duration::zero());
+    row.budget_each = option.each;
+}
+constexpr void apply(ActivityRow& row, Deadline option) noexcept {
+    give(row, "a deadline", row.deadline_after != Duration::zero());
+    row.deadline_after = option.after;
+}
 constexpr void apply(ActivityRow& row, NotRealTime) noexcept {
     row.real_time = false;
     if (row.trigger == Trigger::every) row.trigger = Trigger::background;
 }
 constexpr void apply(ActivityRow& row, StackBytes option) noexcept { row.stack = option.bytes; }
 constexpr void apply(ActivityRow& row, StopWhenLate) noexcept { row.when_late = WhenLate::stop; }
-constexpr void apply(ActivityRow& row, const Runs& option) noexcept { row.runs = option.names, row.too_many_runs = option.too_many; }
+constexpr void apply(ActivityRow& row, const Runs& option) noexcept {
+    give(row, "runs", !row.runs.empty());
+    row.runs = option.names;
+    row.too_many_runs = option.too_many;
+}
 
 } // namespace detail
 
@@ -288,6 +307,55 @@ constexpr Bounded<std::string_view, Slot::max_names> names(const Names&... each)
     Bounded<std::string_view, Slot::max_names> list;
     (static_cast<void>(list.push(std::string_view{each})), ...);
     return list;
+}
+
+namespace detail {
+
+template <class Tag>
+struct SlotNumber {
+    std::uint32_t value;
+};
+template <class Tag>
+struct SlotNames {
+    Bounded<std::string_view, Slot::max_names> list;
+};
+struct NodesTag {};
+struct DataTag {};
+struct DepthTag {};
+struct CommandsTag {};
+struct TimersTag {};
+struct PeersTag {};
+struct OperationsTag {};
+struct EventsTag {};
+
+constexpr void apply(Slot& row, SlotNumber<NodesTag> option) noexcept { row.nodes = option.value; }
+constexpr void apply(Slot& row, SlotNumber<DataTag> option) noexcept { row.data_bytes = option.value; }
+constexpr void apply(Slot& row, SlotNumber<DepthTag> option) noexcept { row.depth = option.value; }
+constexpr void apply(Slot& row, SlotNumber<CommandsTag> option) noexcept { row.command_slots = option.value; }
+constexpr void apply(Slot& row, SlotNumber<TimersTag> option) noexcept { row.timers = option.value; }
+constexpr void apply(Slot& row, const SlotNames<PeersTag>& option) noexcept { row.peers = option.list; }
+constexpr void apply(Slot& row, const SlotNames<OperationsTag>& option) noexcept { row.operations = option.list; }
+constexpr void apply(Slot& row, const SlotNames<EventsTag>& option) noexcept { row.events = option.list; }
+
+} // namespace detail
+
+constexpr detail::SlotNumber<detail::NodesTag> nodes(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber<detail::DataTag> data_bytes(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber<detail::DepthTag> depth(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber<detail::CommandsTag> command_slots(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber<detail::TimersTag> timers(std::uint32_t n) noexcept { return {n}; }
+/// The components, operations and events that what is loaded may name.
+template <class... Names>
+constexpr detail::SlotNames<detail::PeersTag> peers(const Names&... each) { return {names(each...)}; }
+template <class... Names>
+constexpr detail::SlotNames<detail::OperationsTag> operations(const Names&... each) { return {names(each...)}; }
+template <class... Names>
+constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) { return {names(each...)}; }
+template <class... Options>
+constexpr Slot slot(const Options&... options) {
+    Slot row;
+    (detail::apply(row, options), ...);
+    return row;
 }
 
 /// A state machine table that drives a component; it runs in the component's activity.

@@ -1,0 +1,53 @@
+// The loom's console: what an engineer at the box's terminal sees of the machine, one line at a time. It also is the
+// record that the summary reads.
+#pragma once
+
+#include "kernel/component/component.hpp"
+#include "kernel/os/terminal.hpp"
+
+namespace tappet::loom {
+
+/// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another program can
+/// pick them out of a serial console.
+struct Console {
+    Input<std::int64_t> state, cause, stops, picks, frames_lost, bus_state, edges_lost, outages;
+    Input<double> speed_rpm, angle_deg, stop_error_deg, tension_n, oil_bar;
+    Property<bool> quiet{false};
+
+    static constexpr std::array<std::string_view, 10> states{"off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
+    static constexpr std::array<std::string_view, 6> causes{"none", "weft", "warp", "operator", "emergency", "fault"};
+
+    void work(const Cycle& cycle) {
+        if (quiet.get()) return;
+        Sentence line{"loom t=", to_ns(cycle.now) / 1'000'000, "ms state=", name(states, state.get()), " speed=", whole(speed_rpm.get()), "rpm angle=", whole(angle_deg.get()), "deg picks=", picks.get(), " tension=", whole(tension_n.get()),
+                      "N oil=", whole(oil_bar.get() * 100.0), "cbar stops=", stops.get(), " cause=", name(causes, cause.get()), " stop_error=", whole(stop_error_deg.get() * 10.0), "ddeg bus=", bus_state.get(), " frames_lost=", frames_lost.get(),
+                      " edges_lost=", edges_lost.get(), " outages=", outages.get(), "\n"};
+        os::print(line.view());
+    }
+
+    static constexpr auto interface() {
+        return facets(input<&Console::state>("state", "", "number of the loom's state"),
+                      input<&Console::cause>("cause", "", "of the last stop"),
+                      input<&Console::stops>("stops", "", "at the stop angle"),
+                      input<&Console::picks>("picks", "", "woven"),
+                      input<&Console::frames_lost>("frames_lost", "", "on the CAN bus"),
+                      input<&Console::bus_state>("bus_state", "", "of the CAN bus"),
+                      input<&Console::edges_lost>("edges_lost", "", "on the GPIO lines"),
+                      input<&Console::outages>("outages", "", "of the utility unit"),
+                      input<&Console::speed_rpm>("speed_rpm", "rpm", "of the main shaft"),
+                      input<&Console::angle_deg>("angle_deg", "deg", "of the main shaft"),
+                      input<&Console::stop_error_deg>("stop_error_deg", "deg", "of the last stop"),
+                      input<&Console::tension_n>("tension_n", "N", "of the warp"),
+                      input<&Console::oil_bar>("oil_bar", "bar", "oil pressure"),
+                      property<&Console::quiet>("quiet", "", "print nothing"));
+    }
+
+private:
+    static std::int64_t whole(double value) { return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5)); }
+    template <std::size_t N>
+    static std::string_view name(const std::array<std::string_view, N>& names, std::int64_t index) {
+        return index >= 0 && index < static_cast<std::int64_t>(N) ? names[static_cast<std::size_t>(index)] : "?";
+    }
+};
+
+} // namespace tappet::loom

@@ -1,0 +1,171 @@
+// The loom as a whole: what its state machine asks of the other components, and what it must know to decide.
+#pragma once
+
+#include "apps/carpet_loom/wires.hpp"
+#include "kernel/component/component.hpp"
+
+namespace tappet::loom {
+
+enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
+
+/// Its states are in loom_cycle.hpp. All real-time.
+struct Loom {
+    static constexpr bool behaviour_required = true;
+
+    Input<bool> main_enabled, main_at_speed, main_fault;
+    Input<bool> let_off_enabled, let_off_fault, tension_in_band;
+    Input<bool> shaft_valid, shaft_standing;
+    Input<bool> bus_faulted, nodes_operational;
+    Input<bool> drop_wire, emergency_stop;
+    Input<double> oil_pressure;
+    Output<bool> lamp_run, lamp_stop, lamp_fault;
+    Output<double> pump;
+    Output<std::int64_t> feeder_colour, feeder_speed;
+    Output<std::int64_t> state;
+    Output<std::int64_t> cause;
+    Event<> enable_drives, disable_drives, run_shaft, stop_shaft, quick_stop;
+    Event<> set_brake, release_brake;
+    Event<> allow_weft, inhibit_weft;
+    Timer look_timer;
+    Property<Duration> look_every{5ms};
+    Property<double> least_oil_bar{wires::nominal::oil_pressure_least_bar};
+    Property<std::int64_t> colour{1};
+
+    // Guards.
+    [[nodiscard]] bool prepared() noexcept TAPPET_REALTIME {
+        return nodes_operational.get() && main_enabled.get() && let_off_enabled.get() && tension_in_band.get() && shaft_valid.get() && oil_good() && !emergency_stop.get();
+    }
+    [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return prepared() && !drop_wire.get(); }
+    [[nodiscard]] bool at_speed() noexcept TAPPET_REALTIME { return main_at_speed.get(); }
+    [[nodiscard]] bool stands() noexcept TAPPET_REALTIME { return shaft_standing.get(); }
+    [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get(); }
+    [[nodiscard]] bool emergency_is_over() noexcept TAPPET_REALTIME { return !emergency_stop.get(); }
+    [[nodiscard]] bool emergency_is_pressed() noexcept TAPPET_REALTIME { return emergency_stop.get(); }
+    [[nodiscard]] bool bus_is_off() noexcept TAPPET_REALTIME { return bus_faulted.get(); }
+    [[nodiscard]] bool bus_is_back() noexcept TAPPET_REALTIME { return !bus_faulted.get(); }
+    [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
+    [[nodiscard]] bool node_is_silent() noexcept TAPPET_REALTIME { return !nodes_operational.get(); }
+    [[nodiscard]] bool drive_is_faulty() noexcept TAPPET_REALTIME { return main_fault.get() || let_off_fault.get(); }
+    [[nodiscard]] bool oil_is_lost() noexcept TAPPET_REALTIME { return !oil_good(); }
+    [[nodiscard]] bool operator_stopped() noexcept TAPPET_REALTIME { return cause_ == StopCause::operator_stop; }
+
+    // Programs of the state machine.
+    void enter_preparing() noexcept TAPPET_REALTIME {
+        tell(1, false, false, false);
+        set_cause(StopCause::none);
+        pump.write(1.0);
+        release_brake.emit();
+        enable_drives.emit();
+    }
+    void enter_ready() noexcept TAPPET_REALTIME { tell(2, false, true, false); }
+    void enter_run_up() noexcept TAPPET_REALTIME {
+        tell(3, true, false, false);
+        set_cause(StopCause::none);
+        release_brake.emit();
+        allow_weft.emit();
+        run_shaft.emit();
+    }
+    void enter_weave() noexcept TAPPET_REALTIME { tell(4, true, false, false); }
+    void enter_stopping() noexcept TAPPET_REALTIME {
+        tell(5, false, false, false);
+        stop_shaft.emit();
+    }
+    void enter_stopped() noexcept TAPPET_REALTIME { tell(6, false, false, true); }
+    void enter_emergency() noexcept TAPPET_REALTIME {
+        set_cause(StopCause::emergency);
+        make_safe(7);
+    }
+    void enter_fault() noexcept TAPPET_REALTIME {
+        set_cause(StopCause::fault);
+        make_safe(8);
+    }
+    void enter_safe() noexcept TAPPET_REALTIME {
+        make_safe(9);
+        lamp_fault.write(false);
+        pump.write(0.0);
+        disable_drives.emit();
+    }
+    void because_weft() noexcept TAPPET_REALTIME { set_cause(StopCause::weft); }
+    void because_warp() noexcept TAPPET_REALTIME { set_cause(StopCause::warp); }
+    void because_operator() noexcept TAPPET_REALTIME { set_cause(StopCause::operator_stop); }
+
+    /// What grows stale makes no noise: the state machine looks at its conditions this often at least.
+    void look(const Cycle& cycle) noexcept TAPPET_REALTIME { look_timer.arm(cycle.now + look_every.get()); }
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        look(cycle);
+        feeder_colour.write(colour.get());
+        feeder_speed.write(feeder_windings_per_minute);
+        pump.write(0.0);
+        set_cause(StopCause::none);
+    }
+
+    // clang-format off
+    static constexpr auto interface() {
+        return facets(
+            input<&Loom::main_enabled>("main_enabled", "", "the main drive is enabled"),
+            input<&Loom::main_at_speed>("main_at_speed", "", "the shaft turns at weaving speed"),
+            input<&Loom::main_fault>("main_fault", "", "the main drive is faulty or silent"),
+            input<&Loom::let_off_enabled>("let_off_enabled", "", "the let-off drive is enabled"),
+            input<&Loom::let_off_fault>("let_off_fault", "", "the let-off drive is faulty or silent"),
+            input<&Loom::tension_in_band>("tension_in_band", "", "the warp has its tension"),
+            input<&Loom::shaft_valid>("shaft_valid", "", "the encoder can be relied on"),
+            input<&Loom::shaft_standing>("shaft_standing", "", "the shaft stands"),
+            input<&Loom::bus_faulted>("bus_faulted", "", "the CAN bus cannot be relied on"),
+            input<&Loom::nodes_operational>("nodes_operational", "", "every CAN node works"),
+            input<&Loom::drop_wire>("drop_wire", "", "a warp end is broken"),
+            input<&Loom::emergency_stop>("emergency_stop", "", "the emergency stop is pressed"),
+            input<&Loom::oil_pressure>("oil_pressure", "bar", "of the lubrication"),
+            output<&Loom::lamp_run>("lamp_run", "", "the loom runs"),
+            output<&Loom::lamp_stop>("lamp_stop", "", "the loom stands and may be started"),
+            output<&Loom::lamp_fault>("lamp_fault", "", "something waits to be repaired and acknowledged"),
+            output<&Loom::pump>("pump", "", "lubrication pump on"),
+            output<&Loom::feeder_colour>("feeder_colour", "", "yarn of the feeder"),
+            output<&Loom::feeder_speed>("feeder_speed", "1/min", "windings of the feeder"),
+            output<&Loom::state>("state", "", "number of the state"),
+            output<&Loom::cause>("cause", "", "of the last stop: 1 weft, 2 warp, 3 operator, 4 emergency, 5 fault"),
+            event<&Loom::enable_drives>("enable_drives", "drives on, tension loop closed"),
+            event<&Loom::disable_drives>("disable_drives", "drives off"),
+            event<&Loom::run_shaft>("run_shaft", "turn at weaving speed"),
+            event<&Loom::stop_shaft>("stop_shaft", "come to stand at the stop angle"),
+            event<&Loom::quick_stop>("quick_stop", "come to stand at once"),
+            event<&Loom::set_brake>("set_brake", "brake on"),
+            event<&Loom::release_brake>("release_brake", "brake off"),
+            event<&Loom::allow_weft>("allow_weft", "wefts may be released"),
+            event<&Loom::inhibit_weft>("inhibit_weft", "no weft, valve closed"),
+            timer<&Loom::look_timer, &Loom::look>("look_timer", "the next look at the conditions"),
+            property<&Loom::look_every>("look_every", "s", "longest time between two looks at the conditions", range(0.001, 0.1)),
+            property<&Loom::least_oil_bar>("least_oil_bar", "bar", "below it the loom does not run", range(0, 10)),
+            property<&Loom::colour>("colour", "", "yarn of the feeder", range(0, 7)));
+    }
+    // clang-format on
+
+private:
+    static constexpr std::int64_t feeder_windings_per_minute = 1500; // 1.25 times what 600 picks/min take
+
+    [[nodiscard]] bool oil_good() noexcept TAPPET_REALTIME {
+        double bar = 0.0;
+        const Flow flow = oil_pressure.read(bar);
+        return (flow == Flow::fresh || flow == Flow::old) && bar >= least_oil_bar.get();
+    }
+    void set_cause(StopCause why) noexcept TAPPET_REALTIME {
+        cause_ = why;
+        cause.write(static_cast<std::int64_t>(why));
+    }
+    void make_safe(std::int64_t number) noexcept TAPPET_REALTIME {
+        inhibit_weft.emit();
+        quick_stop.emit();
+        set_brake.emit();
+        tell(number, false, false, true);
+    }
+    void tell(std::int64_t number, bool run, bool stop, bool fault) noexcept TAPPET_REALTIME {
+        state.write(number);
+        lamp_run.write(run);
+        lamp_stop.write(stop);
+        lamp_fault.write(fault);
+    }
+
+    StopCause cause_ = StopCause::none;
+};
+
+} // namespace tappet::loom

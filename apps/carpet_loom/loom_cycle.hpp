@@ -1,0 +1,48 @@
+// The states of the carpet loom.
+#pragma once
+
+#include "apps/carpet_loom/loom.hpp"
+#include "kernel/statechart/rows.hpp"
+
+namespace tappet::loom {
+
+// clang-format off
+inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
+    states(
+        state("operating", initial),
+        state("preparing", in("operating"), initial, entry<&Loom::enter_preparing>), // drives on, tension, oil
+        state("ready",     in("operating"), entry<&Loom::enter_ready>),              // the operator may start
+        state("running",   in("operating")),
+        state("run_up",    in("running"), initial, entry<&Loom::enter_run_up>),
+        state("weave",     in("running"), entry<&Loom::enter_weave>),
+        state("stopping",  in("operating"), entry<&Loom::enter_stopping>),           // to the stop angle
+        state("stopped",   in("operating"), entry<&Loom::enter_stopped>),            // waits for repair
+        state("emergency", entry<&Loom::enter_emergency>),
+        state("fault",     entry<&Loom::enter_fault>),
+        state("safe",      final, entry<&Loom::enter_safe>)),
+    transitions(
+        transition("preparing", "ready",     guard<&Loom::prepared>),
+        transition("ready",     "run_up",    on("io.button_start.rises"), guard<&Loom::may_start>),
+        transition("ready",     "preparing", guard<&Loom::node_is_silent>),
+        transition("run_up",    "weave",     guard<&Loom::at_speed>),
+        transition("run_up",    "fault",     after(3s), because("the shaft did not reach its speed within 3 s")),
+        transition("running",   "stopping",  on("weft.missed"), then<&Loom::because_weft>, because("the weft did not arrive")),
+        transition("running",   "stopping",  on("io.drop_wire.rises"), then<&Loom::because_warp>, because("a warp end broke")),
+        transition("running",   "stopping",  on("io.button_stop.rises"), then<&Loom::because_operator>, because("the operator pressed stop")),
+        transition("running",   "fault",     guard<&Loom::oil_is_lost>, because("the oil pressure is lost")),
+        transition("running",   "fault",     guard<&Loom::node_is_silent>, because("a CAN node is silent")),
+        transition("running",   "fault",     guard<&Loom::encoder_is_stale>, because("the encoder is stale")),
+        transition("stopping",  "ready",     on("shaft.stopped"), guard<&Loom::operator_stopped>),
+        transition("stopping",  "stopped",   on("shaft.stopped")),
+        transition("stopping",  "fault",     after(3s), because("the shaft did not come to stand within 3 s")),
+        transition("stopping",  "fault",     guard<&Loom::encoder_is_stale>, because("the encoder is stale")),
+        transition("stopped",   "preparing", on("io.button_acknowledge.rises"), guard<&Loom::repaired>),
+        transition("operating", "emergency", on("io.emergency_stop.rises"), because("the emergency stop was pressed")),
+        transition("operating", "emergency", guard<&Loom::emergency_is_pressed>, because("the emergency stop is pressed")),
+        transition("operating", "fault",     guard<&Loom::bus_is_off>, because("the CAN bus is off")),
+        transition("running",   "fault",     guard<&Loom::drive_is_faulty>, because("a drive reports a fault")),
+        transition("emergency", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::emergency_is_over>),
+        transition("fault",     "preparing", on("io.button_acknowledge.rises"), guard<&Loom::bus_is_back>)));
+// clang-format on
+
+} // namespace tappet::loom

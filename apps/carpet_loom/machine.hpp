@@ -1,0 +1,128 @@
+// The carpet loom on one page: its components, the activities that run them, what flows between them and what happens
+// upon what. Read it with main_shaft.hpp, weft_insertion.hpp, loom_cycle.hpp and cams.hpp at hand.
+#pragma once
+
+#include "apps/carpet_loom/console.hpp"
+#include "apps/carpet_loom/loom.hpp"
+#include "apps/carpet_loom/loom_cycle.hpp"
+#include "apps/carpet_loom/main_drive.hpp"
+#include "apps/carpet_loom/main_shaft.hpp"
+#include "apps/carpet_loom/maps.hpp"
+#include "apps/carpet_loom/network.hpp"
+#include "apps/carpet_loom/warp_tension.hpp"
+#include "apps/carpet_loom/weft_insertion.hpp"
+#include "kernel/machine/machine.hpp"
+
+namespace tappet::loom {
+
+// clang-format off
+inline constexpr auto carpet_loom = machine("carpet-loom",
+    components(
+        component<can::Bus<can_signals>>("can", device("loom-can")),
+        component<gpio::LinePort<io_lines>>("io", device("loom-io")),
+        component<MainShaft>("shaft"),                       // angle, angle events, brake angle
+        component<WeftInsertion>("weft"),                    // release, arrival, pattern
+        component<MainDrive>("main", set("speed_rpm", 600.0)),
+        component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0)),
+        component<Network>("network"),                       // CANopen: starts and watches the nodes
+        component<Loom>("loom"),                             // the states of the whole
+        component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
+        component<Console>("console")),
+    activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
+        activity("can",     on_device("can"), at_most(8, 1ms), runs("can"),            deadline(500us), budget(20us)),
+        activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(12us)),
+        activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
+        activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
+        activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
+        activity("utility", every(100ms),     runs("utility"), not_real_time),
+        activity("console", every(250ms),     runs("console"), not_real_time)),
+    connections( // data flow
+        data("can.encoder.position",      "shaft.code",           wakes),
+        data("shaft.motion",              "weft.shaft"),
+        data("shaft.speed_rpm",           "warp.shaft_speed"),
+        data("can.main_drive.statusword", "main.statusword",      stale_after(50ms), hold),
+        data("can.main_drive.velocity",   "main.velocity",        stale_after(50ms), hold),
+        data("main.controlword",          "can.main_drive_command.controlword", stale_after(20ms), hold),
+        data("main.target",               "can.main_drive_command.velocity",    stale_after(20ms), hold),
+        data("can.load_cell.tension",     "warp.measured",        stale_after(20ms), hold),
+        data("can.let_off.statusword",    "warp.statusword",      stale_after(50ms), hold),
+        data("warp.controlword",          "can.let_off_command.controlword",    stale_after(20ms), hold),
+        data("warp.target",               "can.let_off_command.velocity",       stale_after(20ms), hold),
+        data("weft.pick",                 "can.dobby_command.pick"),
+        data("weft.pattern",              "can.dobby_command.pattern"),
+        data("loom.feeder_colour",        "can.feeder_command.colour"),
+        data("loom.feeder_speed",         "can.feeder_command.speed"),
+        data("can.heartbeat_1.state",     "network.heartbeat_1",  stale_after(350ms), hold),
+        data("can.heartbeat_2.state",     "network.heartbeat_2",  stale_after(350ms), hold),
+        data("can.heartbeat_3.state",     "network.heartbeat_3",  stale_after(350ms), hold),
+        data("can.heartbeat_4.state",     "network.heartbeat_4",  stale_after(350ms), hold),
+        data("can.heartbeat_5.state",     "network.heartbeat_5",  stale_after(350ms), hold),
+        data("can.heartbeat_6.state",     "network.heartbeat_6",  stale_after(350ms), hold),
+        data("network.command",           "can.nmt.command",      wakes),
+        data("network.node",              "can.nmt.node",         wakes),
+        data("main.enabled",              "loom.main_enabled",    wakes),
+        data("main.at_speed",             "loom.main_at_speed",   wakes),
+        data("main.fault",                "loom.main_fault",      wakes),
+        data("warp.enabled",              "loom.let_off_enabled", wakes),
+        data("warp.fault",                "loom.let_off_fault",   wakes),
+        data("warp.in_band",              "loom.tension_in_band", wakes),
+        data("shaft.valid",               "loom.shaft_valid",     wakes),
+        data("shaft.standing",            "loom.shaft_standing",  wakes),
+        data("can.faulted",               "loom.bus_faulted"),
+        data("network.operational",       "loom.nodes_operational", wakes),
+        data("io.drop_wire",              "loom.drop_wire",       wakes),
+        data("io.emergency_stop",         "loom.emergency_stop",  wakes),
+        data("utility.unit.oil_pressure", "loom.oil_pressure",    stale_after(15s), hold),
+        data("loom.pump",                 "utility.pump.on"),
+        data("loom.lamp_run",             "io.lamp_run",          wakes),
+        data("loom.lamp_stop",            "io.lamp_stop",         wakes),
+        data("loom.lamp_fault",           "io.lamp_fault",        wakes),
+        data("weft.cutter",               "io.yarn_cutter",       wakes),
+        data("loom.state",                "console.state"),
+        data("loom.cause",                "console.cause"),
+        data("shaft.speed_rpm",           "console.speed_rpm"),
+        data("shaft.angle_deg",           "console.angle_deg"),
+        data("shaft.stop_error_deg",      "console.stop_error_deg"),
+        data("shaft.stops",               "console.stops"),
+        data("weft.picks_woven",          "console.picks"),
+        data("can.load_cell.tension",     "console.tension_n"),
+        data("can.frames_lost",           "console.frames_lost"),
+        data("can.state",                 "console.bus_state"),
+        data("io.edges_lost",             "console.edges_lost"),
+        data("utility.unit.oil_pressure", "console.oil_bar"),
+        data("utility.outages",           "console.outages")),
+    reactions( // execution flow
+        when("shaft.weft_opens",     call("weft.on_release_angle")), // in the shaft's activity, here and now
+        when("shaft.weft_closes",    call("weft.on_close_angle")),
+        when("shaft.window_opens",   call("weft.on_window_opens")),
+        when("shaft.window_closes",  call("weft.on_window_closes")),
+        when("shaft.beat_up",        call("weft.on_beat_up")),
+        when("shaft.offer_pattern",  call("weft.on_offer_pattern")),
+        when("weft.open_valve",      tell("io.weft_release.set")),   // in the engine of io
+        when("weft.close_valve",     tell("io.weft_release.clear")),
+        when("io.weft_detector.rises", tell("weft.on_arrival")),
+        when("weft.missed",          call("shaft.stop_at_angle")),   // no detour: the brake's angle is near
+        when("shaft.brake_now",      tell("io.brake.set")),
+        when("shaft.brake_now",      tell("main.halt")),
+        when("shaft.brake_now",      call("weft.hold")),
+        when("loom.enable_drives",   tell("main.enable")),
+        when("loom.enable_drives",   tell("warp.enable")),
+        when("loom.disable_drives",  tell("main.disable")),
+        when("loom.disable_drives",  tell("warp.disable")),
+        when("loom.run_shaft",       tell("main.run")),
+        when("loom.stop_shaft",      tell("shaft.stop_at_angle")),
+        when("loom.quick_stop",      tell("main.quick_stop")),
+        when("loom.quick_stop",      tell("shaft.brake_was_set")),
+        when("loom.quick_stop",      tell("can.purge")),             // nothing stale follows an emergency stop
+        when("loom.set_brake",       tell("io.brake.set")),
+        when("loom.release_brake",   tell("io.brake.clear")),
+        when("loom.release_brake",   tell("shaft.release")),
+        when("loom.allow_weft",      tell("weft.allow")),
+        when("loom.inhibit_weft",    tell("weft.inhibit"))),
+    behaviours(
+        behaviour("loom", loom_cycle),
+        behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
+                               peers("shaft", "loom"), operations("weft.allow", "weft.hold"), events("shaft.beat_up")))));
+// clang-format on
+
+} // namespace tappet::loom

@@ -1,0 +1,223 @@
+// The main shaft: where it is between two encoder samples, the events of its angles, and the brake angle that is
+// learned from stop to stop (US4553569).
+#pragma once
+
+#include "apps/carpet_loom/cams.hpp"
+#include "apps/carpet_loom/change.hpp"
+#include "kernel/cam/estimator.hpp"
+#include "kernel/cam/schedule.hpp"
+#include "kernel/component/component.hpp"
+
+#include <algorithm>
+
+namespace tappet::loom {
+
+/// All real-time, in an activity that each encoder sample wakes.
+struct MainShaft {
+    Input<std::int64_t> code;
+    Output<ShaftMotion> motion;
+    Output<double> angle_deg;
+    Output<double> speed_rpm;
+    Output<bool> valid;
+    Output<bool> standing;
+    Output<double> stop_error_deg;
+    Output<std::int64_t> stops;
+    Output<double> brake_distance_deg;
+    Event<> beat_up, offer_pattern, weft_opens, weft_closes, window_opens, window_closes;
+    Event<> brake_now;
+    Event<double> stopped;
+    Timer cam_timer;
+    Timer brake_timer;
+    Timer watch_timer;
+    Property<double> stop_angle_deg{wires::nominal::stop_deg};
+    Property<double> first_brake_distance_deg{wires::nominal::brake_distance_deg};
+    Property<double> learning_rate{0.6};
+    Property<double> late_deg{25.0};
+    Property<Duration> stamp_latency{0us};
+
+    /// Brakes so that the shaft comes to stand at the stop angle: in this turn if it is still possible.
+    void stop_at_angle() noexcept TAPPET_REALTIME {
+        if (phase_ == Phase::free) phase_ = Phase::wanted;
+    }
+    /// Forgets a stop, or that the brake holds.
+    void release() noexcept TAPPET_REALTIME {
+        phase_ = Phase::free;
+        brake_timer.cancel();
+    }
+    /// The brake was set by somebody else (emergency): nothing is to be learned from this stop.
+    void brake_was_set() noexcept TAPPET_REALTIME {
+        phase_ = Phase::foreign;
+        brake_timer.cancel();
+    }
+
+    Sentence configure(Setup&) {
+        ShaftProperties properties;
+        properties.codes_per_turn = wires::encoder_codes_per_turn;
+        properties.stamp_latency = stamp_latency.get();
+        properties.stamp_jitter = 30us;
+        estimator_ = ShaftEstimator{properties};
+        // At the nominal speed the shaft still turns during the dead time; the rest is braking.
+        const double speed = wires::nominal::speed_rpm * 6.0;
+        deceleration_ = speed * speed / (2.0 * (first_brake_distance_deg.get() - speed * brake_dead_s));
+        return check(properties);
+    }
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        valid_.write(valid, false);
+        standing_.write(standing, true);
+        angle_deg.write(0.0);
+        speed_rpm.write(0.0);
+        brake_distance_deg.write(first_brake_distance_deg.get());
+        stops.write(0);
+    }
+
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        std::int64_t position = 0;
+        if (code.read(position) == Flow::fresh) estimator_.sample(static_cast<std::uint32_t>(position), code.stamp());
+        follow(cycle.now);
+    }
+
+    void fire_cams(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        schedule_.advance(cycle.now, [this](const CamEvent& event) noexcept TAPPET_REALTIME { fire(event); });
+        cam_timer.arm(schedule_.next_due());
+    }
+
+    /// No sample came in time: nothing else would tell.
+    void watch(const Cycle& cycle) noexcept TAPPET_REALTIME { follow(cycle.now); }
+
+    void brake_due(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        if (phase_ != Phase::wanted) return;
+        brake(cycle.now);
+    }
+
+    static constexpr auto interface() {
+        return facets(input<&MainShaft::code>("code", "", "encoder position, 0..4095 codes a turn"),
+                      output<&MainShaft::motion>("motion", "", "position, velocity and acceleration with their time"),
+                      output<&MainShaft::angle_deg>("angle_deg", "deg", "angle now"),
+                      output<&MainShaft::speed_rpm>("speed_rpm", "rpm", "speed now"),
+                      output<&MainShaft::valid>("valid", "", "the encoder can be relied on; written on change"),
+                      output<&MainShaft::standing>("standing", "", "the shaft stands; written on change"),
+                      output<&MainShaft::stop_error_deg>("stop_error_deg", "deg", "of the last stop, to the stop angle"),
+                      output<&MainShaft::stops>("stops", "", "at the stop angle, since start"),
+                      output<&MainShaft::brake_distance_deg>("brake_distance_deg", "deg", "learned, from the brake's edge to standstill at nominal speed"),
+                      event<&MainShaft::beat_up>("beat_up", "0 deg: a pick is complete"),
+                      event<&MainShaft::offer_pattern>("offer_pattern", "the dobby takes the next pattern from now on"),
+                      event<&MainShaft::weft_opens>("weft_opens", "the weft's valve must be driven now to open at its angle"),
+                      event<&MainShaft::weft_closes>("weft_closes", "the weft's valve is no longer needed"),
+                      event<&MainShaft::window_opens>("window_opens", "from here on the weft may arrive"),
+                      event<&MainShaft::window_closes>("window_closes", "by here the weft must have arrived"),
+                      event<&MainShaft::brake_now>("brake_now", "the brake must be driven now to stop at the stop angle"),
+                      event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
+                      operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle", required),
+                      operation<&MainShaft::release>("release", "forgets the stop", required),
+                      operation<&MainShaft::brake_was_set>("brake_was_set", "the brake holds, nothing is to be learned", required),
+                      timer<&MainShaft::cam_timer, &MainShaft::fire_cams>("cam_timer", "the next angle event"),
+                      timer<&MainShaft::brake_timer, &MainShaft::brake_due>("brake_timer", "the brake's edge"),
+                      timer<&MainShaft::watch_timer, &MainShaft::watch>("watch_timer", "when the encoder would be stale"),
+                      property<&MainShaft::stop_angle_deg>("stop_angle_deg", "deg", "harnesses level, least warp tension", range(0, 359.99)),
+                      property<&MainShaft::first_brake_distance_deg>("first_brake_distance_deg", "deg", "believed before the first stop", range(30, 180)),
+                      property<&MainShaft::learning_rate>("learning_rate", "", "of the last stop, into the brake angle", range(0, 1)),
+                      property<&MainShaft::late_deg>("late_deg", "deg", "so far behind the brake angle it still brakes in this turn", range(0, 90)),
+                      property<&MainShaft::stamp_latency>("stamp_latency", "s", "of the encoder's frame on the wire", range(0, 0.01)));
+    }
+
+private:
+    enum class Phase : std::uint8_t { free, wanted, braking, foreign };
+    static constexpr double brake_dead_s = 1e-6 * static_cast<double>(wires::nominal::brake_dead_us);
+    // Below this the brake bites at once and the distance says nothing of its torque.
+    static constexpr double least_learning_deg_s = 0.5 * wires::nominal::speed_rpm * 6.0;
+
+    void follow(Time now) noexcept TAPPET_REALTIME {
+        schedule_.update(estimator_, now);
+        cam_timer.arm(schedule_.next_due());
+        const ShaftState state = estimator_.at(now);
+        const bool is_valid = estimator_.valid(now);
+        watch_timer.arm(is_valid ? estimator_.valid_until() + 1us : never);
+        motion.write(estimator_.motion(), estimator_.motion().stamp);
+        angle_deg.write(state.position.angle().in_degrees());
+        speed_rpm.write(state.velocity_deg_s / 6.0);
+        valid_.write(valid, is_valid);
+        standing_.write(standing, estimator_.standing());
+        if (is_valid && phase_ == Phase::wanted) plan_brake(now, state);
+        if (phase_ == Phase::braking && estimator_.standing()) finish_stop(state);
+        if (phase_ == Phase::foreign && estimator_.standing()) {
+            phase_ = Phase::free;
+            stopped.emit(error_of(state));
+        }
+    }
+
+    void fire(const CamEvent& event) noexcept TAPPET_REALTIME {
+        switch (event.row) {
+        case beat_up_row: beat_up.emit(); break;
+        case offer_pattern_row: offer_pattern.emit(); break;
+        case weft_release_row:
+            if (event.kind == CamKind::enter) weft_opens.emit();
+            else weft_closes.emit();
+            break;
+        case arrival_window_row:
+            if (event.kind == CamKind::enter) window_opens.emit();
+            else window_closes.emit();
+            break;
+        default: break;
+        }
+    }
+
+    [[nodiscard]] double distance_at(double speed_deg_s) const noexcept TAPPET_REALTIME {
+        return speed_deg_s * brake_dead_s + speed_deg_s * speed_deg_s / (2.0 * deceleration_);
+    }
+    [[nodiscard]] double error_of(const ShaftState& state) const noexcept TAPPET_REALTIME {
+        return (state.position.angle() - Angle::degrees(stop_angle_deg.get())).in_degrees();
+    }
+
+    void plan_brake(Time now, const ShaftState& state) noexcept TAPPET_REALTIME {
+        const double speed = std::max(0.0, state.velocity_deg_s);
+        if (estimator_.standing()) {
+            brake(now);
+            return;
+        }
+        const Angle edge = Angle::degrees(stop_angle_deg.get() - distance_at(speed));
+        double ahead = forward_way(state.position.angle(), edge).in_degrees();
+        if (ahead > 360.0 - late_deg.get()) ahead = 0.0; // just behind: as soon as possible
+        const Time when = ahead == 0.0 ? now : estimator_.when(state.position + Rotation::degrees(ahead), now);
+        if (when <= now) brake(now);
+        else brake_timer.arm(when);
+    }
+
+    void brake(Time now) noexcept TAPPET_REALTIME {
+        const ShaftState state = estimator_.at(now);
+        phase_ = Phase::braking;
+        edge_ = state.position;
+        edge_speed_deg_s_ = state.velocity_deg_s;
+        brake_timer.cancel();
+        brake_now.emit();
+    }
+
+    void finish_stop(const ShaftState& state) noexcept TAPPET_REALTIME {
+        phase_ = Phase::free;
+        const double distance = (state.position - edge_).in_degrees();
+        const double braked = distance - edge_speed_deg_s_ * brake_dead_s;
+        if (edge_speed_deg_s_ >= least_learning_deg_s && braked > 1.0) {
+            const double seen = edge_speed_deg_s_ * edge_speed_deg_s_ / (2.0 * braked);
+            deceleration_ += learning_rate.get() * (seen - deceleration_);
+        }
+        brake_distance_deg.write(distance_at(wires::nominal::speed_rpm * 6.0));
+        stop_error_deg.write(error_of(state));
+        stops.write(stops.last() + 1);
+        stopped.emit(error_of(state));
+    }
+
+    static constexpr std::size_t beat_up_row = 0, offer_pattern_row = 1, weft_release_row = 2, arrival_window_row = 3;
+    static_assert(cams.rows[beat_up_row].name == "beat_up" && cams.rows[offer_pattern_row].name == "offer_pattern" && cams.rows[weft_release_row].name == "weft_release" &&
+                      cams.rows[arrival_window_row].name == "arrival_window" && cams.rows.size() == 4,
+                  "fire() gives each cam row its event");
+
+    ShaftEstimator estimator_{ShaftProperties{}};
+    CamSchedule<cams.size()> schedule_{cams};
+    Phase phase_ = Phase::free;
+    ShaftPosition edge_{};
+    double edge_speed_deg_s_ = 0.0;
+    double deceleration_ = 1.0;
+    Change<bool> valid_, standing_;
+};
+
+} // namespace tappet::loom

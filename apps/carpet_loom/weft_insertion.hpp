@@ -1,0 +1,103 @@
+// The weft: released at its angle, watched for in its window, and the pattern of each pick.
+#pragma once
+
+#include "apps/carpet_loom/wires.hpp"
+#include "kernel/cam/motion.hpp"
+#include "kernel/component/component.hpp"
+
+#include <array>
+
+namespace tappet::loom {
+
+/// All real-time. It stands in the shaft's activity, so that the angle events call it without a detour.
+struct WeftInsertion {
+    Input<ShaftMotion> shaft;
+    Output<std::int64_t> pick;
+    Output<std::int64_t> pattern;
+    Output<std::int64_t> picks_woven;
+    Output<double> arrival_deg;
+    Output<bool> cutter;
+    Event<> open_valve, close_valve, missed;
+
+    void allow() noexcept TAPPET_REALTIME { allowed_ = true; }
+    /// No weft in the turns to come; the one that flies is let fly.
+    void hold() noexcept TAPPET_REALTIME { allowed_ = ready_ = false; }
+    /// No weft from now on; an open valve closes.
+    void inhibit() noexcept TAPPET_REALTIME {
+        hold();
+        close_valve.emit();
+    }
+
+    void on_beat_up() noexcept TAPPET_REALTIME {
+        if (arrived_) picks_woven.write(picks_woven.last() + 1);
+        released_ = arrived_ = false;
+        ready_ = allowed_; // only a turn that began with permission gets a weft
+        cutter.write(false);
+    }
+    void on_offer_pattern() noexcept TAPPET_REALTIME {
+        const std::int64_t next = pick.last() + 1;
+        pattern.write(patterns[static_cast<std::size_t>(next) % patterns.size()]);
+        pick.write(next);
+    }
+    void on_release_angle() noexcept TAPPET_REALTIME {
+        if (!ready_ || released_) return;
+        released_ = true;
+        open_valve.emit();
+    }
+    void on_close_angle() noexcept TAPPET_REALTIME {
+        if (released_) close_valve.emit();
+    }
+    void on_window_opens() noexcept TAPPET_REALTIME { early_ = arrived_; }
+    void on_window_closes() noexcept TAPPET_REALTIME {
+        // A pulse before the window is no weft of this pick: it flew too short, or the detector chatters.
+        if (released_ && (!arrived_ || early_)) missed.emit();
+    }
+    void on_arrival(Time at) noexcept TAPPET_REALTIME {
+        if (!released_) return;
+        arrived_ = true;
+        arrival_deg.write(shaft.get().at(at).position.angle().in_degrees(), at);
+        cutter.write(true);
+    }
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        pick.write(0);
+        pattern.write(patterns[0]);
+        picks_woven.write(0);
+        cutter.write(false);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { cutter.write(false); }
+
+    static constexpr auto interface() {
+        return facets(input<&WeftInsertion::shaft>("shaft", "", "motion of the main shaft"),
+                      output<&WeftInsertion::pick>("pick", "", "number of the pick whose pattern is offered"),
+                      output<&WeftInsertion::pattern>("pattern", "", "harnesses to lift, one bit each"),
+                      output<&WeftInsertion::picks_woven>("picks_woven", "", "picks whose weft arrived, since start"),
+                      output<&WeftInsertion::arrival_deg>("arrival_deg", "deg", "of the last weft"),
+                      output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
+                      event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
+                      event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
+                      event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive"),
+                      operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
+                      operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
+                      operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),
+                      operation<&WeftInsertion::on_beat_up>("on_beat_up", "a pick begins", required),
+                      operation<&WeftInsertion::on_offer_pattern>("on_offer_pattern", "offers the next pattern", required),
+                      operation<&WeftInsertion::on_release_angle>("on_release_angle", "releases the weft", required),
+                      operation<&WeftInsertion::on_close_angle>("on_close_angle", "closes the valve", required),
+                      operation<&WeftInsertion::on_window_opens>("on_window_opens", "arrivals count from now on", required),
+                      operation<&WeftInsertion::on_window_closes>("on_window_closes", "judges the pick", required),
+                      operation<&WeftInsertion::on_arrival>("on_arrival", "the detector saw the weft at this time", required));
+    }
+
+private:
+    // Carpet, face to face: two harness pairs alternate, every fourth pick binds the pile.
+    static constexpr std::array<std::int64_t, 4> patterns{0x5A5A, 0xA5A5, 0x5A5A, 0xF0F0};
+
+    bool allowed_ = false;
+    bool ready_ = false;
+    bool released_ = false;
+    bool arrived_ = false;
+    bool early_ = false;
+};
+
+} // namespace tappet::loom
