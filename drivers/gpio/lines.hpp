@@ -19,7 +19,8 @@ public:
     /// Not real-time; allocates all that the real-time calls use. Outputs take their safe values. On failure
     /// nothing stays open, and the error says what is wrong and how to cure it.
     std::expected<void, Sentence> open(const Settings& settings);
-    /// Not real-time. Writes the safe values and releases the lines.
+    /// Not real-time. Writes the safe values and releases the lines. What a released line does is up to the
+    /// chip (some fall back to their pull): where it matters, the wiring pulls it to its safe value.
     void close() noexcept;
 
     EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME override;

@@ -1,0 +1,246 @@
+// The real SocketCAN device on a real kernel's virtual bus, with can-utils as peers. Runs on the bench:
+// interface can0.
+#include "drivers/can/signal_map.hpp"
+#include "drivers/can/socket_can.hpp"
+#include "tests/drivers/foreign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <ctime>
+#include <malloc.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+namespace tappet::can {
+namespace {
+
+constexpr std::array receives{standard(0x123), extended(0x18FF0102)};
+constexpr std::array sends = [] {
+    std::array<Identifier, 65> all{};
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = standard(0x200 + i);
+    return all;
+}();
+
+Time now() {
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+}
+
+Frame frame(std::uint32_t id, Time made = now()) {
+    Frame f;
+    f.id = id;
+    f.length = 2;
+    f.data = {0xAB, 0xCD};
+    f.stamp = made;
+    return f;
+}
+
+struct RealCan : testing::Test {
+    Settings settings{.interface = "can0", .receive = receives, .transmit = sends};
+    SocketCan can;
+    void open() {
+        const auto opened = can.open(settings);
+        ASSERT_TRUE(opened) << opened.error().view();
+    }
+    /// Reads and serves for a while; the frames that came.
+    std::vector<Frame> run_for(Duration how_long) {
+        std::vector<Frame> all;
+        const Time end = now() + how_long;
+        while (now() < end) {
+            Frame f;
+            const Receive got = can.receive(f);
+            if (got.what == Received::frame) all.push_back(f);
+            can.service(now());
+            if (got.what == Received::none) std::this_thread::sleep_for(1ms);
+        }
+        return all;
+    }
+};
+
+TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
+    open();
+    const Time before = now();
+    for (const char* one :
+         {"123#DEADBEEF", "124#00", "00000123#00", "123#R", "18FF0102#0102030405060708", "18FF0103#00"})
+        ASSERT_EQ(run(std::string{"cansend can0 "} + one), 0);
+    const Time after = now();
+    const auto got = run_for(20ms);
+    ASSERT_EQ(got.size(), 2u);
+    EXPECT_EQ(got[0].id, 0x123u);
+    EXPECT_EQ(got[0].length, 4);
+    EXPECT_EQ(got[0].data, (std::array<std::uint8_t, 8>{0xDE, 0xAD, 0xBE, 0xEF}));
+    EXPECT_EQ(got[1].id, 0x18FF0102u);
+    EXPECT_TRUE(got[1].extended);
+    for (const Frame& f : got) {
+        EXPECT_GE(f.stamp, before);
+        EXPECT_LE(f.stamp, after) << "stamped when it arrived, not when it was read";
+    }
+    EXPECT_LT(got[0].stamp, got[1].stamp);
+}
+
+TEST_F(RealCan, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
+    open();
+    Foreign dump{"candump -L can0"};
+    std::this_thread::sleep_for(200ms);
+    EXPECT_EQ(can.send(frame(0x201)), Send::queued);
+    EXPECT_TRUE(run_for(10ms).empty()) << "its own frame is a confirmation only";
+    EXPECT_TRUE(dump.says("can0 201#ABCD"));
+    EXPECT_EQ(can.counters().sent, 1u);
+    EXPECT_EQ(can.state(), State::active);
+}
+
+TEST_F(RealCan, sends_a_burst_in_the_order_of_identifiers_with_few_frames_in_flight) {
+    open();
+    Foreign dump{"candump -L can0"};
+    std::this_thread::sleep_for(200ms);
+    for (std::uint32_t i = 64; i > 0; --i) ASSERT_EQ(can.send(frame(0x200 + i)), Send::queued);
+    run_for(50ms);
+    EXPECT_EQ(can.counters().sent, 64u);
+    EXPECT_EQ(can.counters().dropped_stale, 0u);
+    ASSERT_TRUE(dump.says("240#ABCD"));
+    const std::string seen = dump.output();
+    std::size_t last = 0;
+    for (std::uint32_t i = 1; i <= 64; ++i) {
+        char id[16];
+        std::snprintf(id, sizeof id, " %X#", 0x200 + i);
+        const std::size_t at = seen.find(id);
+        ASSERT_NE(at, std::string::npos) << id;
+        EXPECT_GT(at, last) << id;
+        last = at;
+    }
+}
+
+TEST_F(RealCan, says_how_many_frames_an_overflow_cost) {
+    settings.receive_buffer_bytes = 8192;
+    open();
+    ASSERT_EQ(run("cangen can0 -g 0 -n 500 -I 123 -L 8"), 0);
+    std::uint64_t got = run_for(50ms).size();
+    EXPECT_LT(got, 500u);
+    ASSERT_EQ(run("cansend can0 123#00"), 0);
+    got += run_for(10ms).size();
+    EXPECT_GT(can.counters().lost_in_kernel, 0u);
+    EXPECT_EQ(got + can.counters().lost_in_kernel, 501u);
+}
+
+TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_clean) {
+    settings.restarts_allowed = 1;
+    open();
+    Foreign dump{"candump -L can0"};
+    std::this_thread::sleep_for(200ms);
+    ASSERT_EQ(run("cansend can0 20000040#0000000000000000"), 0);
+    EXPECT_EQ(can.send(frame(0x201)), Send::queued) << "the machine does not know yet";
+    Frame f;
+    ASSERT_EQ(can.receive(f).what, Received::error_frame);
+    EXPECT_EQ(can.state(), State::bus_off);
+    EXPECT_EQ(can.send(frame(0x202)), Send::refused_fault);
+    run_for(100ms);
+    EXPECT_EQ(can.state(), State::bus_off);
+    EXPECT_EQ(can.counters().sent, 0u);
+
+    const Time made_before = now();
+    EXPECT_EQ(can.restart(), Restart::done);
+    run_for(5ms);
+    EXPECT_EQ(can.state(), State::active);
+    EXPECT_EQ(can.send(frame(0x203, made_before)), Send::refused_stale);
+    EXPECT_EQ(can.send(frame(0x204)), Send::queued);
+    run_for(20ms);
+    EXPECT_EQ(can.counters().sent, 1u);
+    EXPECT_EQ(can.counters().restarts, 1u);
+
+    ASSERT_EQ(run("cansend can0 20000040#0000000000000000"), 0);
+    run_for(20ms);
+    EXPECT_EQ(can.state(), State::bus_off);
+    EXPECT_EQ(can.restart(), Restart::exhausted);
+    for (const char* never_sent : {" 201#", " 202#", " 203#"})
+        EXPECT_EQ(dump.output().find(never_sent), std::string::npos) << never_sent;
+}
+
+void set_up(bool up) {
+    const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
+    ifreq request{};
+    std::strcpy(request.ifr_name, "can0");
+    ASSERT_EQ(::ioctl(fd, SIOCGIFFLAGS, &request), 0);
+    request.ifr_flags = static_cast<short>(up ? request.ifr_flags | IFF_UP : request.ifr_flags & ~IFF_UP);
+    ASSERT_EQ(::ioctl(fd, SIOCSIFFLAGS, &request), 0);
+    ::close(fd);
+}
+
+TEST_F(RealCan, notices_an_interface_that_goes_down_and_costs_nothing_meanwhile) {
+    open();
+    set_up(false);
+    run_for(10ms);
+    EXPECT_EQ(can.state(), State::down);
+    std::uint64_t wakes = 0;
+    for (const Time end = now() + 200ms; now() < end;) {
+        Frame f;
+        EXPECT_EQ(can.receive(f).what, Received::none);
+        can.service(now());
+        std::this_thread::sleep_for(10ms);
+        ++wakes;
+    }
+    EXPECT_LE(wakes, 25u);
+    EXPECT_EQ(can.counters().faults, 1u) << "one fault, however often it is looked at";
+    EXPECT_EQ(can.next_service(), never);
+    EXPECT_EQ(can.restart(), Restart::done);
+    run_for(5ms);
+    EXPECT_EQ(can.state(), State::active);
+    EXPECT_EQ(can.send(frame(0x205)), Send::queued);
+    run_for(20ms);
+    EXPECT_EQ(can.counters().sent, 1u);
+}
+
+TEST_F(RealCan, reports_passive_and_active_and_keeps_sending) {
+    open();
+    ASSERT_EQ(run("cansend can0 20000004#0020000000008000"), 0); // transmit error passive
+    run_for(10ms);
+    EXPECT_EQ(can.state(), State::passive);
+    EXPECT_EQ(can.send(frame(0x201)), Send::queued);
+    ASSERT_EQ(run("cansend can0 20000004#0040000000000000"), 0);
+    run_for(10ms);
+    EXPECT_EQ(can.state(), State::active);
+    EXPECT_EQ(can.counters().sent, 1u);
+}
+
+TEST_F(RealCan, is_not_woken_by_a_storm_of_bus_errors) {
+    open();
+    for (int i = 0; i < 20; ++i) ASSERT_EQ(run("cansend can0 20000088#0000000000000000"), 0);
+    run_for(10ms);
+    EXPECT_EQ(can.counters().error_frames, 0u);
+}
+
+TEST_F(RealCan, counts_an_impostor) {
+    open();
+    ASSERT_EQ(run("cansend can0 201#11"), 0);
+    EXPECT_TRUE(run_for(10ms).empty());
+    EXPECT_EQ(can.counters().impostors, 1u);
+}
+
+TEST_F(RealCan, allocates_nothing_while_it_runs) {
+    open();
+    ASSERT_EQ(run("cangen can0 -g 0 -n 100 -I 123 -L 8"), 0);
+    const auto before = ::mallinfo2().uordblks;
+    Frame f;
+    std::uint64_t got = 0;
+    for (int i = 0; i < 1000; ++i) {
+        can.send(frame(0x200));
+        if (can.receive(f).what == Received::frame) ++got;
+        can.service(now());
+    }
+    EXPECT_EQ(::mallinfo2().uordblks, before);
+    EXPECT_EQ(got, 100u);
+}
+
+TEST_F(RealCan, refuses_an_interface_that_is_down_and_says_the_cure) {
+    set_up(false);
+    const auto opened = can.open(settings);
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().view(), "CAN interface \"can0\" is down: set it up (ip link set can0 up)");
+    set_up(true);
+    open();
+}
+
+} // namespace
+} // namespace tappet::can

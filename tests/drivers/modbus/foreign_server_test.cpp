@@ -1,0 +1,116 @@
+// The client and its transport against a device that is not ours (pymodbus), by TCP on loopback and by RTU on
+// a pair of terminals (socat): reading, writing, exceptions, and an outage of the whole process.
+#include "drivers/modbus/client.hpp"
+#include "drivers/modbus/libmodbus_transport.hpp"
+#include "tests/drivers/foreign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <memory>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+namespace tappet::modbus {
+namespace {
+
+constexpr auto map = register_map(
+    read("inputs", input_registers(10, 3), every(20ms), stale_after(300ms), word("a", 0), word("b", 2)),
+    read("contacts", discrete_inputs(4, 4), every(20ms), stale_after(300ms), bit("even", 0), bit("odd", 1)),
+    read("echo", holding_registers(20, 2), every(20ms), stale_after(300ms),
+         double_word("both", 0).as_signed()),
+    write("setpoint", holding_registers(20, 2), every(1s), stale_after(10s),
+          double_word("both", 0).as_signed()),
+    read("nowhere", holding_registers(5000, 1), every(100ms), stale_after(1s), word("w", 0)));
+static_assert(map.fault.empty());
+
+Time now() {
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+}
+
+std::string free_port() {
+    const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    ::close(fd);
+    return std::to_string(ntohs(address.sin_port));
+}
+
+class ForeignDevice : public testing::TestWithParam<const char*> {
+protected:
+    ForeignDevice() {
+        TransportSettings settings{.unit = 1, .answer_within = 400ms};
+        if (std::string{GetParam()} == "tcp") {
+            where = free_port();
+            settings.line = Tcp{"127.0.0.1", static_cast<std::uint16_t>(std::stoi(where))};
+        } else {
+            const std::string base = "/tmp/modbus_line." + std::to_string(::getpid());
+            where = base + ".server";
+            ours = base + ".client";
+            socat = std::make_unique<Foreign>("socat pty,raw,echo=0,link=" + where +
+                                              " pty,raw,echo=0,link=" + ours);
+            for (int i = 0; i < 300 && ::access(ours.c_str(), F_OK) != 0; ++i)
+                std::this_thread::sleep_for(10ms);
+            settings.line = Serial{ours, 19200, 'E', 1};
+        }
+        const auto opened = transport.open(settings);
+        EXPECT_TRUE(opened) << (opened ? "" : opened.error().view());
+        start();
+    }
+    void start() {
+        // The distribution's interpreter: it is the one that has pymodbus.
+        server = std::make_unique<Foreign>(
+            std::string{"/usr/bin/python3 -W ignore " TAPPET_FOREIGN_SERVER " "} + GetParam() + " " + where);
+        ASSERT_TRUE(server->says("ready"))
+            << server->output() << "is python3-pymodbus installed? ci/setup does it";
+    }
+    template <class Until> bool run_until(Until until) {
+        for (const Time end = now() + 15s; now() < end;) {
+            const Duration rest = client.step(now()) - now();
+            if (until()) return true;
+            if (rest > 0ns) std::this_thread::sleep_for(std::min<Duration>(rest, 5ms));
+        }
+        return false;
+    }
+    [[nodiscard]] Value value(std::string_view path) const { return client.value(map.value(path), now()); }
+
+    std::string where, ours;
+    std::unique_ptr<Foreign> socat, server;
+    LibmodbusTransport transport;
+    Client<5, 7> client{map, transport, {.first = 50ms, .most = 200ms}};
+};
+
+TEST_P(ForeignDevice, is_read_written_lost_and_found_again) {
+    ASSERT_TRUE(run_until([&] {
+        return value("inputs.b").quality == Quality::good && value("contacts.odd").quality == Quality::good;
+    })) << server->output();
+    EXPECT_EQ(value("inputs.a").value, 1010);
+    EXPECT_EQ(value("inputs.b").value, 1012);
+    EXPECT_EQ(value("contacts.even").value, 0);
+    EXPECT_EQ(value("contacts.odd").value, 1);
+    ASSERT_TRUE(run_until([&] { return value("nowhere.w").quality == Quality::exception; }));
+    EXPECT_EQ(value("nowhere.w").exception, 2) << "illegal data address";
+
+    ASSERT_TRUE(client.set(map.value("setpoint.both"), -123456, now()));
+    EXPECT_TRUE(run_until([&] { return value("echo.both").value == -123456; }));
+
+    server.reset();
+    EXPECT_TRUE(run_until([&] { return client.outage() && value("inputs.a").quality == Quality::stale; }));
+    start();
+    EXPECT_TRUE(run_until([&] { return value("inputs.a").quality == Quality::good; }));
+    EXPECT_EQ(client.counters().outages_survived, client.counters().outages);
+    EXPECT_TRUE(run_until([&] { return value("echo.both").value == -123456; }))
+        << "repeated to a device that forgot it";
+}
+
+INSTANTIATE_TEST_SUITE_P(Modbus, ForeignDevice, testing::Values("tcp", "rtu"),
+                         [](const auto& param) { return param.param; });
+
+} // namespace
+} // namespace tappet::modbus
