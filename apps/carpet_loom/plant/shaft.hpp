@@ -43,7 +43,7 @@ private:
         return full_torque_nm_ * (1.0 - worn_) * variation_;
     }
 
-    double full_torque_nm_ = 4400.0;
+    double full_torque_nm_ = 3900.0;
     double wear_per_stop_;
     double worn_ = 0.0;
     double variation_ = 1.0;
