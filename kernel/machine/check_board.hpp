@@ -28,19 +28,19 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board) {
             return text;
         }
         if (device->kind != row.type->device_kind)
-            return of_component(row.name, "drives a ", row.type->device_kind, " device but \"", row.device,
+            return of_component(row.name, " drives a ", row.type->device_kind, " device but \"", row.device,
                                 "\" of board \"", board.name, "\" is of kind ", device->kind,
                                 "; name another");
         for (std::size_t j = 0; j < c; ++j)
-            if (m.components[j].device == row.device)
-                return of_component(row.name, "drives device \"", row.device, "\", as component \"",
+            if (m.components[j].device == row.device && !row.type->shares_device && !m.components[j].type->shares_device)
+                return of_component(row.name, " drives device \"", row.device, "\", as component \"",
                                     m.components[j].name, "\" does; a device has one driver");
         for (const auto& wanted : row.type->device_lines) {
             bool found = false;
             Nearest nearest{wanted};
             for (const auto& line : device->lines) found |= line.name == wanted, nearest.consider(line.name);
             if (found) continue;
-            Sentence text = of_component(row.name, "device \"", row.device, "\" of board \"", board.name,
+            Sentence text = of_component(row.name, ": device \"", row.device, "\" of board \"", board.name,
                                          "\" has no line \"", wanted, "\"");
             detail::add_suggestion(text, nearest, "add line(\"...\", offset) to it");
             return text;
@@ -49,7 +49,7 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board) {
             for (std::size_t j = 0; j < i; ++j)
                 if (device->lines[i].offset == device->lines[j].offset ||
                     device->lines[i].name == device->lines[j].name)
-                    return of_component(row.name, "lines \"", device->lines[j].name, "\" and \"",
+                    return of_component(row.name, ": lines \"", device->lines[j].name, "\" and \"",
                                         device->lines[i].name, "\" of device \"", row.device,
                                         "\" of board \"", board.name,
                                         "\" share a name or an offset; correct one");
