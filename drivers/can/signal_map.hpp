@@ -6,6 +6,7 @@
 #include "kernel/base/text.hpp"
 
 #include <cstddef>
+#include <span>
 
 namespace tappet::can {
 
@@ -69,13 +70,19 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<FrameRow, F> frames{};
     std::array<Signal, S> signals{};
     std::array<std::size_t, S> frame_of{}; ///< the frame that holds a signal
-    std::array<Identifier, F>
-        received{}; ///< the first `received_count` are valid: what a filter lets through
+    std::array<Identifier, F> received{};  ///< the first `received_count` are valid
     std::array<Identifier, F> transmitted{};
     std::size_t received_count = 0;
     std::size_t transmitted_count = 0;
     Sentence fault{}; ///< empty when the table is right
 
+    /// What Settings::receive and Settings::transmit take; the map must outlive them.
+    [[nodiscard]] constexpr std::span<const Identifier> receives() const noexcept {
+        return std::span{received}.first(received_count);
+    }
+    [[nodiscard]] constexpr std::span<const Identifier> transmits() const noexcept {
+        return std::span{transmitted}.first(transmitted_count);
+    }
     [[nodiscard]] constexpr std::size_t frame(Identifier id) const noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < F; ++f)
             if (frames[f].identifier == id) return f;

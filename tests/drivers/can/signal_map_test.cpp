@@ -129,7 +129,8 @@ constexpr auto map =
                transmit(standard(0x201), "command", bytes(6), every(1ms), signal("controlword", 0, 16),
                         signal("target", 16, 32).as_signed().times(0.1)));
 static_assert(map.fault.empty());
-static_assert(map.received_count == 2 && map.transmitted_count == 1);
+static_assert(map.receives().size() == 2 && map.receives()[1] == extended(0x18FF0102));
+static_assert(map.transmits().size() == 1 && map.transmits()[0] == standard(0x201));
 static_assert(map.signal("drive.velocity") == 1 && map.signal("drive.torque") == no_such);
 static_assert(map.frame("command") == 2 && map.frame(standard(0x201)) == 2 &&
               map.frame(extended(0x201)) == no_such);

@@ -23,7 +23,7 @@ async def serve(line, where):
     if line == "tcp":
         await StartAsyncTcpServer(context=context, address=("127.0.0.1", int(where)))
     else:
-        await StartAsyncSerialServer(context=context, framer=ModbusRtuFramer, port=where, baudrate=19200, parity="E")
+        await StartAsyncSerialServer(context=context, framer=ModbusRtuFramer, port=where, baudrate=19200, parity="N")
 
 
 asyncio.run(serve(sys.argv[1], sys.argv[2]))

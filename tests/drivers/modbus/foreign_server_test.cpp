@@ -57,7 +57,7 @@ protected:
                                               " pty,raw,echo=0,link=" + ours);
             for (int i = 0; i < 300 && ::access(ours.c_str(), F_OK) != 0; ++i)
                 std::this_thread::sleep_for(10ms);
-            settings.line = Serial{ours, 19200, 'E', 1};
+            settings.line = Serial{ours, 19200, 'N', 1}; // a pseudo terminal has no parity
         }
         const auto opened = transport.open(settings);
         EXPECT_TRUE(opened) << (opened ? "" : opened.error().view());
