@@ -4,7 +4,9 @@
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/cam/table.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 namespace detail {
 
@@ -23,4 +25,4 @@ inline constexpr auto cams = cam_table(700_rpm,
 
 static_assert(check(cams.view()).empty(), "the cam table is refused: check(cams.view()) is the sentence");
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

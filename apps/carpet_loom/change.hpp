@@ -3,7 +3,7 @@
 
 #include "kernel/component/port.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
 
 /// The first call always writes.
 template <class T>
@@ -19,4 +19,4 @@ private:
     bool written_ = false;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

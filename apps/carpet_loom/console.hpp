@@ -5,7 +5,7 @@
 #include "kernel/component/component.hpp"
 #include "kernel/os/terminal.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
 
 /// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another program can
 /// pick them out of a serial console.
@@ -50,4 +50,4 @@ private:
     }
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -4,7 +4,9 @@
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
 
@@ -168,4 +170,4 @@ private:
     StopCause cause_ = StopCause::none;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

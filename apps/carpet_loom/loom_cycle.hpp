@@ -4,7 +4,7 @@
 #include "apps/carpet_loom/loom.hpp"
 #include "kernel/statechart/rows.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
 
 // clang-format off
 inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
@@ -45,4 +45,4 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         transition("fault",     "preparing", on("io.button_acknowledge.rises"), guard<&Loom::bus_is_back>)));
 // clang-format on
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -13,7 +13,7 @@
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "kernel/machine/machine.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
 
 // clang-format off
 inline constexpr auto carpet_loom = machine("carpet-loom",
@@ -125,4 +125,4 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
                                peers("shaft", "loom"), operations("weft.allow", "weft.hold"), events("shaft.beat_up")))));
 // clang-format on
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -6,7 +6,9 @@
 #include "drivers/canopen/cia402.hpp"
 #include "kernel/component/component.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 /// All real-time, each cycle of a periodic activity.
 struct MainDrive {
@@ -89,4 +91,4 @@ private:
     Change<bool> enabled_, at_speed_, fault_;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 /// All real-time, in an activity that each encoder sample wakes.
 struct MainShaft {
@@ -220,4 +222,4 @@ private:
     Change<bool> valid_, standing_;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -6,7 +6,9 @@
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/modbus/slave.hpp"
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 namespace detail {
 
@@ -78,4 +80,4 @@ inline constexpr auto utility_registers = modbus::register_map(
         modbus::bit("on", 0)));
 // clang-format on
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -7,7 +7,9 @@
 
 #include <array>
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 /// All real-time, in a periodic activity.
 struct Network {
@@ -75,4 +77,4 @@ private:
     Change<std::int64_t> silent_;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

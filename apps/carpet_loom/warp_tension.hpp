@@ -9,7 +9,9 @@
 
 #include <algorithm>
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 /// All real-time, each cycle of a periodic activity.
 struct WarpTension {
@@ -95,4 +97,4 @@ private:
     Change<bool> enabled_, in_band_, fault_;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

@@ -7,7 +7,9 @@
 
 #include <array>
 
-namespace tappet::loom {
+namespace tappet::carpet {
+
+namespace wires = loom::wires;
 
 /// All real-time. It stands in the shaft's activity, so that the angle events call it without a detour.
 struct WeftInsertion {
@@ -100,4 +102,4 @@ private:
     bool early_ = false;
 };
 
-} // namespace tappet::loom
+} // namespace tappet::carpet

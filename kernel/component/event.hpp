@@ -97,12 +97,18 @@ T unpack_one(const std::byte*& from) noexcept TAPPET_REALTIME {
 }
 
 template <class... A>
+inline constexpr bool fits_one_message = packed_bytes<A...> <= sizeof(Message::arguments);
+
+/// The check of the table refuses an asynchronous reaction to an event whose arguments do not fit; that event's
+/// synchronous reactions are good.
+template <class... A>
 void post(void* reaction, A... arguments) noexcept TAPPET_REALTIME {
-    static_assert(packed_bytes<A...> <= sizeof(Message::arguments), "the arguments of an asynchronous reaction fit one message");
-    auto& row = *static_cast<AsyncReaction*>(reaction);
-    Message message;
-    pack(message.arguments.data(), arguments...);
-    row.post(message);
+    if constexpr (fits_one_message<A...>) {
+        auto& row = *static_cast<AsyncReaction*>(reaction);
+        Message message;
+        pack(message.arguments.data(), arguments...);
+        row.post(message);
+    }
 }
 
 } // namespace detail

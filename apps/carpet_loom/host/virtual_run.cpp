@@ -1,0 +1,46 @@
+#include "apps/carpet_loom/host/virtual_run.hpp"
+
+#include "apps/carpet_loom/machine.hpp"
+#include "board/host/board.hpp"
+
+namespace tappet::carpet {
+
+VirtualRun::VirtualRun(const loom::Settings& settings, std::uint64_t seed, bool quiet)
+    : loom_{settings, seed}, instance_{Firmware<carpet_loom, board::host>::machine(), clock_}, world_{instance_}, quiet_{quiet} {}
+
+std::expected<void, Sentence> VirtualRun::start() {
+    if (auto opened = loom_.open(); !opened) return opened;
+    if (auto configured = instance_.configure(loom_.devices()); !configured) return configured;
+    instance_.find<Console>("console")->quiet.set(quiet_);
+    world_.add({this,
+                [](void* self) {
+                    auto& run = *static_cast<VirtualRun*>(self);
+                    // Whenever the machine has run it may have put something on the wires: the plant gets it at once.
+                    return run.seen_steps_ != run.world_.steps() ? run.clock_.now() : run.loom_.next();
+                },
+                [](void* self, Time now) {
+                    auto& run = *static_cast<VirtualRun*>(self);
+                    run.seen_steps_ = run.world_.steps();
+                    run.loom_.advance(now);
+                }});
+    world_.start();
+    return {};
+}
+
+bool VirtualRun::weave(std::uint64_t picks, Duration limit) {
+    const Time end = clock_.now() + limit;
+    while (clock_.now() < end && !instance_.stop_asked()) {
+        run_for(50ms);
+        if (loom_.plant().picks() >= picks && loom_.plant().speed_rpm() == 0.0) return true;
+    }
+    return false;
+}
+
+std::uint64_t VirtualRun::event_log_digest() {
+    Digest digest;
+    digest.add(instance_.event_log_digest());
+    digest.add(loom_.plant().report().digest);
+    return digest.value();
+}
+
+} // namespace tappet::carpet

@@ -1,0 +1,103 @@
+// JSON text into a buffer of fixed size.
+#pragma once
+
+#include <charconv>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// Appends fields to an object or values to an array. What does not fit makes size() 0: never half a text.
+class JsonText {
+public:
+    explicit JsonText(std::span<char> buffer) noexcept : buffer_{buffer} {}
+
+    JsonText& open(char bracket) noexcept {
+        separate();
+        put({&bracket, 1});
+        first_ = true;
+        return *this;
+    }
+    JsonText& close(char bracket) noexcept {
+        put({&bracket, 1});
+        first_ = false;
+        return *this;
+    }
+    /// "key": with a value, an object or an array to follow.
+    JsonText& key(std::string_view name) noexcept {
+        value(name);
+        put(": ");
+        first_ = true; // no comma before what follows
+        return *this;
+    }
+    JsonText& value(std::string_view text) noexcept {
+        separate();
+        put("\"");
+        for (const char letter : text) {
+            if (letter == '"' || letter == '\\') put("\\");
+            const bool control = static_cast<unsigned char>(letter) < 0x20;
+            put(control ? std::string_view{" "} : std::string_view{&letter, 1});
+        }
+        put("\"");
+        return *this;
+    }
+    JsonText& value(const char* text) noexcept { return value(std::string_view{text}); }
+    template <class T>
+        requires std::integral<T> || std::floating_point<T>
+    JsonText& value(T number) noexcept {
+        separate();
+        if constexpr (std::same_as<T, bool>) {
+            put(number ? "true" : "false");
+        } else {
+            char digits[32];
+            const auto end = format(digits, number);
+            put({digits, static_cast<std::size_t>(end.ptr - digits)});
+        }
+        return *this;
+    }
+    template <class T>
+    JsonText& field(std::string_view name, const T& content) noexcept {
+        return key(name).value(content);
+    }
+    JsonText& raw(std::string_view text) noexcept {
+        put(text);
+        return *this;
+    }
+
+    /// Characters written; 0 when they did not all fit.
+    [[nodiscard]] std::size_t size() const noexcept { return full_ ? 0 : used_; }
+    [[nodiscard]] std::string_view view() const noexcept { return {buffer_.data(), size()}; }
+
+private:
+    template <std::size_t N>
+    static std::to_chars_result format(char (&digits)[N], double number) noexcept {
+        return std::to_chars(digits, digits + N, number, std::chars_format::general, 6);
+    }
+    template <std::size_t N, std::integral T>
+    static std::to_chars_result format(char (&digits)[N], T number) noexcept {
+        return std::to_chars(digits, digits + N, number);
+    }
+    void separate() noexcept {
+        if (!first_) put(", ");
+        first_ = false;
+    }
+    void put(std::string_view text) noexcept {
+        if (full_ || used_ + text.size() > buffer_.size()) {
+            full_ = true;
+            return;
+        }
+        std::memcpy(buffer_.data() + used_, text.data(), text.size());
+        used_ += text.size();
+    }
+
+    std::span<char> buffer_;
+    std::size_t used_ = 0;
+    bool first_ = true;
+    bool full_ = false;
+};
+
+} // namespace tappet
