@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/can/device.hpp"
-#include "drivers/can/signal_map.hpp"
+#include "drivers/can/facet_names.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "kernel/component/component.hpp"
 
@@ -12,48 +12,18 @@
 
 namespace tappet::can {
 
-/// A signal is a whole number unless a factor, an offset or a float makes it a physical value.
-constexpr bool is_whole(const Signal& s) noexcept {
-    return s.factor == 1 && s.offset == 0 &&
-           (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
-}
-
-/// The names of a map's facets, "frame.signal" and "frame.received", as text that lives as long as the
-/// program.
-template <const auto& map> struct FacetNames {
-    static constexpr std::size_t longest = 63;
-    struct Name {
-        std::array<char, longest + 1> letters{};
-        std::size_t length = 0;
-        constexpr void add(std::string_view piece) {
-            for (const char letter : piece)
-                letters[length++] = letter; // longer than `longest` does not compile
-        }
-        [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters.data(), length}; }
-    };
-    static constexpr auto signals = [] {
-        std::array<Name, map.signals.size()> names{};
-        for (std::size_t s = 0; s < names.size(); ++s) {
-            names[s].add(map.frames[map.frame_of[s]].name);
-            names[s].add(".");
-            names[s].add(map.signals[s].name);
-        }
-        return names;
-    }();
-    static constexpr auto received = [] {
-        std::array<Name, map.frames.size()> names{};
-        for (std::size_t f = 0; f < names.size(); ++f) {
-            names[f].add(map.frames[f].name);
-            names[f].add(".received");
-        }
-        return names;
-    }();
-};
-
 /// Facets: an output or an input for each signal, an event for each received frame, and the state of the bus.
-/// Runs in an activity that is on_device. A frame goes out at its period or, on demand, when one of its
-/// signals is written; one of whose signals was never written, or is stale, does not go out: nothing stale
-/// leaves, and the receiver's own time-out notices. All real-time.
+/// Runs in an activity that is on_device. All real-time.
+///
+/// A cyclic frame goes out at its period, with the last values of its inputs. When a writer was interrupted
+/// between two of them (their stamps differ where they agreed before), the values sent last go out once more.
+/// A frame on demand goes out once for each writing; all of its signals are written in one cycle of one
+/// writer, so that no command leaves with the arguments of another. A row that wakes makes it leave at once.
+/// A frame with an input that was never written, is stale by its row, or is no number does not go out: the
+/// receiver's own time-out notices.
+///
+/// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
+/// what is written after it leaves. It looks for that restart every now and then and rests in between.
 template <const auto& map> struct Bus {
     static_assert(map.fault.empty(), "the signal map is refused: its member `fault` says why");
     static constexpr std::size_t signal_count = map.signals.size();
@@ -61,6 +31,9 @@ template <const auto& map> struct Bus {
     static constexpr std::string_view device_kind = "can";
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
+    static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through
+    static constexpr Duration retry_after = 1ms;         ///< when the kernel had no room for a frame
+    static constexpr Duration shortest_wait = 100us;     ///< a device that asks for less cannot spin us
 
     // One port of each sort for each signal: those that the signal's direction and type do not ask for stay
     // unused.
@@ -93,8 +66,10 @@ template <const auto& map> struct Bus {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
-        tell_state();
-        arm();
+        told_ = now_told();
+        write_state();
+        arm(cycle.now);
+        waiter_->wake(); // for what arrived before
     }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -103,11 +78,18 @@ template <const auto& map> struct Bus {
         finish(cycle.now);
     }
 
-    /// The last values of every frame once more: the machine has written safe ones by now.
+    /// The cyclic frames once more: the machine has written safe values by now.
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
-            if (map.frames[f].direction == Direction::transmit) send(f, cycle.now);
+            if (is_cyclic(f)) send(f, cycle.now);
+        send_on_demand(cycle.now);
         device_->service(cycle.now);
+        // They wait for the frames in flight, and nobody serves the device after this.
+        Frame ignored;
+        for (int n = 0; n < max_passes_at_stop && device_->next_service() != never; ++n) {
+            static_cast<void>(device_->receive(ignored));
+            device_->service(cycle.now);
+        }
     }
 
     /// Drops what waits to be sent.
@@ -117,10 +99,7 @@ template <const auto& map> struct Bus {
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (due_[f] > cycle.now) continue;
             send(f, cycle.now);
-            // Absolute times: a late cycle does not move the ones behind it. Whole periods that were missed
-            // are left out.
-            const Duration behind = cycle.now - due_[f];
-            due_[f] += (behind / map.frames[f].every + 1) * map.frames[f].every;
+            next_period(f, cycle.now);
         }
         finish(cycle.now);
     }
@@ -142,29 +121,35 @@ template <const auto& map> struct Bus {
             facet.index = f;
             list[n++] = facet;
         }
-        for (const Facet& facet : {
-                 output<&Bus::is_faulted>("faulted", "", "nothing is sent or received"),
-                 output<&Bus::bus_state>(
-                     "state", "", "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 down"),
-                 output<&Bus::frames_lost>("frames_lost", "", "arrived but never read, since start"),
-                 output<&Bus::frames_received>("frames_received", "", "since start"),
-                 tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
-                 tappet::event<&Bus::bus_recovered>("bus_recovered",
-                                                    "the bus works again, with empty queues"),
-                 operation<&Bus::purge>("purge", "drops what waits to be sent"),
-                 timer<&Bus::next_send, &Bus::send_cyclic>("next_send", "the next cyclic frame"),
-                 timer<&Bus::next_service, &Bus::serve_device>("next_service",
-                                                               "the next time-out of a frame"),
-             })
+        for (
+            const Facet& facet : {
+                output<&Bus::is_faulted>("faulted", "", "nothing is sent; written on change"),
+                output<&Bus::bus_state>(
+                    "state", "",
+                    "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 down; written on change"),
+                output<&Bus::frames_lost>("frames_lost", "",
+                                          "arrived but never read, since start; written on change"),
+                output<&Bus::frames_received>("frames_received", "", "since start; written on change"),
+                tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
+                tappet::event<&Bus::bus_recovered>("bus_recovered", "the bus works again, with empty queues"),
+                operation<&Bus::purge>("purge", "drops what waits to be sent"),
+                timer<&Bus::next_send, &Bus::send_cyclic>("next_send", "the next cyclic frame"),
+                timer<&Bus::next_service, &Bus::serve_device>("next_service", "the next time-out of a frame"),
+            })
             list[n++] = facet;
         return list;
     }
 
 private:
     static constexpr std::size_t fixed_facets = 9;
+    static constexpr int max_passes_at_stop = 4096; // some milliseconds; four frames at 125 kbit/s take 5 ms
 
     static constexpr bool is_cyclic(std::size_t f) noexcept {
         return map.frames[f].direction == Direction::transmit && map.frames[f].every > Duration::zero();
+    }
+
+    static constexpr bool is_on_demand(std::size_t f) noexcept {
+        return map.frames[f].direction == Direction::transmit && map.frames[f].every == Duration::zero();
     }
 
     static constexpr Facet signal_facet(std::size_t s) {
@@ -202,18 +187,20 @@ private:
         return facet;
     }
 
+    /// Absolute times: a late cycle does not move the ones behind it, and whole periods missed are left out.
+    void next_period(std::size_t f, Time now) noexcept TAPPET_REALTIME {
+        const Duration every = map.frames[f].every;
+        due_[f] += ((now - due_[f]) / every + 1) * every;
+    }
+
     void take_frames() noexcept TAPPET_REALTIME {
         Frame frame;
         for (int n = 0; n < max_frames_per_cycle; ++n) {
             const Receive got = device_->receive(frame);
             lost_ += got.lost;
-            if (got.what == Received::none) {
-                tell_state();
-                return;
-            }
             if (got.what == Received::frame) take(frame);
+            if (got.what == Received::none && got.lost == 0) return;
         }
-        tell_state();
         waiter_->wake();
     }
 
@@ -231,76 +218,144 @@ private:
         frame_received[f].emit();
     }
 
-    void tell_state() noexcept TAPPET_REALTIME {
-        const State state = device_->state();
-        const bool bad = faulted(state);
-        if (bad != was_faulted_) {
-            was_faulted_ = bad;
-            if (bad)
-                bus_fault.emit();
-            else
-                bus_recovered.emit();
-        }
-        is_faulted.write(bad);
-        bus_state.write(static_cast<std::int64_t>(state));
-        frames_lost.write(static_cast<std::int64_t>(lost_));
-        frames_received.write(static_cast<std::int64_t>(taken_));
+    /// What the outputs say of the bus.
+    struct Told {
+        State state = State::active;
+        std::uint64_t lost = 0;
+        std::uint64_t taken = 0;
+    };
+    [[nodiscard]] Told now_told() const noexcept TAPPET_REALTIME { return {device_->state(), lost_, taken_}; }
+
+    void write_state() noexcept TAPPET_REALTIME {
+        is_faulted.write(faulted(told_.state));
+        bus_state.write(static_cast<std::int64_t>(told_.state));
+        frames_lost.write(static_cast<std::int64_t>(told_.lost));
+        frames_received.write(static_cast<std::int64_t>(told_.taken));
     }
 
-    /// Takes the signals of a frame from its inputs. False when one of them must not be sent.
-    bool gather(std::size_t f, bool& fresh) noexcept TAPPET_REALTIME {
-        const FrameRow& row = map.frames[f];
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            Flow flow = Flow::never_written;
-            if (is_whole(map.signals[s])) {
-                std::int64_t value = 0;
-                flow = whole_in[s].read(value);
-                store_.set_bits(s, static_cast<std::uint64_t>(value));
-            } else {
-                double value = 0;
-                flow = physical_in[s].read(value);
-                store_.set_physical(s, value);
-            }
-            if (flow == Flow::never_written || flow == Flow::stale) return false;
-            fresh |= flow == Flow::fresh;
+    void tell_state(Time now) noexcept TAPPET_REALTIME {
+        const Told before = told_;
+        told_ = now_told();
+        if (told_.lost != before.lost) frames_lost.write(static_cast<std::int64_t>(told_.lost));
+        if (told_.taken != before.taken) frames_received.write(static_cast<std::int64_t>(told_.taken));
+        if (told_.state != before.state) bus_state.write(static_cast<std::int64_t>(told_.state));
+        const bool bad = faulted(told_.state);
+        if (bad == was_faulted_) return;
+        was_faulted_ = bad;
+        is_faulted.write(bad);
+        if (bad) {
+            bus_fault.emit();
+            return;
         }
-        return true;
+        forget_demands();
+        for (std::size_t f = 0; f < frame_count; ++f)
+            if (due_[f] <= now) next_period(f, now);
+        bus_recovered.emit();
+    }
+
+    /// What reading the inputs of a frame found.
+    struct Reading {
+        bool usable = true; ///< each was written, none is stale
+        bool fresh = false; ///< one was written since the last reading
+        bool agreed = true; ///< all are of the same time
+    };
+
+    Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
+        Reading found;
+        const FrameRow& row = map.frames[f];
+        Time first{};
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            const bool whole = is_whole(map.signals[s]);
+            const Flow flow = whole ? whole_in[s].read(whole_[s]) : physical_in[s].read(physical_[s]);
+            const Time stamp = whole ? whole_in[s].stamp() : physical_in[s].stamp();
+            found.usable &= flow == Flow::fresh || flow == Flow::old;
+            found.fresh |= flow == Flow::fresh;
+            if (s == row.first) first = stamp;
+            found.agreed &= stamp == first;
+        }
+        return found;
+    }
+
+    /// Takes over what was read; false when one of the values is no number.
+    bool keep_inputs(std::size_t f) noexcept TAPPET_REALTIME {
+        const FrameRow& row = map.frames[f];
+        const std::uint64_t refused = store_.count.refused;
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            if (is_whole(map.signals[s]))
+                store_.set_bits(s, static_cast<std::uint64_t>(whole_[s]));
+            else
+                store_.set_physical(s, physical_[s]);
+        }
+        return store_.count.refused == refused;
     }
 
     void send(std::size_t f, Time now) noexcept TAPPET_REALTIME {
-        bool fresh = false;
-        if (gather(f, fresh))
-            static_cast<void>(
-                device_->send(store_.encode(f, now), is_cyclic(f) ? Keep::latest : Keep::every));
+        const Reading found = read_inputs(f);
+        const bool repeats = found.usable && !found.agreed && may_repeat_[f];
+        may_repeat_[f] = found.usable && found.agreed;
+        if (!found.usable) return;
+        if (!repeats && !keep_inputs(f)) {
+            may_repeat_[f] = false;
+            return;
+        }
+        static_cast<void>(device_->send(store_.encode(f, now), Keep::latest));
     }
 
     void send_on_demand(Time now) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f) {
-            if (map.frames[f].direction != Direction::transmit || is_cyclic(f)) continue;
-            bool fresh = false;
-            if (gather(f, fresh) && fresh)
-                static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
+            if (!is_on_demand(f)) continue;
+            const Reading found = read_inputs(f);
+            demanded_[f] |= found.fresh;
+            if (!demanded_[f] || !found.usable || !found.agreed) continue;
+            demanded_[f] = false;
+            if (keep_inputs(f)) static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
+        }
+    }
+    void forget_demands() noexcept TAPPET_REALTIME {
+        for (std::size_t f = 0; f < frame_count; ++f) {
+            if (!is_on_demand(f)) continue;
+            static_cast<void>(read_inputs(f));
+            demanded_[f] = false;
         }
     }
 
     void finish(Time now) noexcept TAPPET_REALTIME {
         device_->service(now);
-        tell_state();
-        arm();
+        tell_state(now);
+        arm(now);
     }
-    void arm() noexcept TAPPET_REALTIME {
+    void arm(Time now) noexcept TAPPET_REALTIME {
+        if (faulted(told_.state)) {
+            next_send.cancel();
+            // The look keeps its time when something else wakes us meanwhile.
+            if (next_service.when() <= now || next_service.when() > now + look_while_faulted)
+                next_service.arm(now + look_while_faulted);
+            return;
+        }
         Time next = never;
         for (const Time due : due_) next = due < next ? due : next;
         next_send.arm(next);
-        next_service.arm(device_->next_service());
+        Time service = device_->next_service();
+        if (service < now + shortest_wait) service = now + shortest_wait;
+        // A frame that found no room has no confirmation to wait for: only time brings it out.
+        const std::uint64_t pressed = device_->counters().back_pressure;
+        if (pressed != pressed_ && service > now + retry_after) service = now + retry_after;
+        pressed_ = pressed;
+        next_service.arm(service);
     }
 
     SignalStore<frame_count, signal_count> store_{map};
+    std::array<std::int64_t, signal_count> whole_{};
+    std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
+    std::array<bool, frame_count> demanded_{};   // written since it was last sent
+    std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
     std::uint64_t lost_ = 0;
     std::uint64_t taken_ = 0;
+    std::uint64_t pressed_ = 0;
+    Told told_{};
     bool was_faulted_ = false;
 };
 

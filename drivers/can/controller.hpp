@@ -10,10 +10,14 @@ namespace tappet::can {
 /// The owner's calls are real-time; `recovery` is also used by restart().
 class Controller {
 public:
+    /// Not real-time. Begins anew, whatever was before.
     void configure(const Settings& settings) noexcept {
+        transmitter_ = {};
         transmitter_.configure(settings);
         transmit_ = settings.transmit;
-        recovery.allow(settings.restarts_allowed);
+        recovery.reset(settings.restarts_allowed);
+        state_ = State::active;
+        count = {};
     }
     Send accept(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
         if (faulted(state_)) return refuse(Send::refused_fault);

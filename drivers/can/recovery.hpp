@@ -11,7 +11,11 @@ namespace tappet::can {
 /// (begin, end).
 class Recovery {
 public:
-    void allow(std::uint32_t restarts) noexcept { left_.store(restarts, std::memory_order_relaxed); }
+    /// Before either runs.
+    void reset(std::uint32_t restarts_allowed) noexcept {
+        left_.store(restarts_allowed, std::memory_order_relaxed);
+        phase_.store(Phase::running, std::memory_order_release);
+    }
 
     /// Owner: the bus is faulted. False when it was already known.
     bool fault() noexcept TAPPET_REALTIME {

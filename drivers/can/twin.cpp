@@ -10,6 +10,7 @@ std::expected<void, Sentence> Twin::open(const Settings& settings) noexcept {
                 return std::unexpected{Sentence{"CAN twin \"", settings.interface, "\": identifier ", one.id,
                                                 " is out of range; correct the signal map"}};
     settings_ = settings;
+    off_bus_.store(false, std::memory_order_release);
     controller_.configure(settings);
     return {};
 }

@@ -61,21 +61,24 @@ inline constexpr std::uint16_t fault_reset = 0x80; ///< acts on its rising edge
 /// What is wanted of a drive.
 enum class DriveGoal : std::uint8_t { off, enabled, quick_stop };
 
-/// Leads a drive to its goal, one controlword a cycle. A fault is reset only as often as it was asked for.
+/// Leads a drive to its goal, one controlword a cycle. A fault is reset only as often as it was asked for;
+/// the goal stays what it was, so a drive whose goal is `enabled` is enabled again after the reset.
 class DriveControl {
 public:
     void want(DriveGoal goal) noexcept TAPPET_REALTIME { goal_ = goal; }
     [[nodiscard]] DriveGoal goal() const noexcept TAPPET_REALTIME { return goal_; }
-    /// Lets one fault be reset.
-    void acknowledge() noexcept TAPPET_REALTIME { reset_asked_ = true; }
+    /// Lets one fault be reset; without effect when there is none. Again, when the fault outlived the last
+    /// one: the bit comes down and rises once more.
+    void acknowledge() noexcept TAPPET_REALTIME {
+        if (reset_ == Reset::raised) low_cycles_left_ = low_cycles;
+        reset_ = Reset::asked;
+    }
 
     [[nodiscard]] std::uint16_t controlword(std::uint16_t statusword) noexcept TAPPET_REALTIME {
         const DriveState state = drive_state(statusword);
-        if (state == DriveState::fault) {
-            // The bit stays up until the fault is gone: a frame that is lost does not lose the edge.
-            return reset_asked_ ? controlword::fault_reset : controlword::disable_voltage;
-        }
-        reset_asked_ = false;
+        if (state == DriveState::fault) return controlword_in_fault();
+        // An acknowledgement during the reaction is meant for the fault behind it.
+        if (state != DriveState::fault_reaction_active) reset_ = Reset::none;
         if (goal_ == DriveGoal::off) return controlword::disable_voltage;
         if (goal_ == DriveGoal::quick_stop)
             return state == DriveState::operation_enabled || state == DriveState::quick_stop_active
@@ -96,9 +99,27 @@ public:
         }
     }
 
+    /// How long the reset bit stays down before it rises again: the drive must see it down, and frames leave
+    /// every few cycles only, and may be lost.
+    static constexpr int low_cycles = 20;
+
 private:
+    enum class Reset : std::uint8_t { none, asked, raised };
+
+    std::uint16_t controlword_in_fault() noexcept TAPPET_REALTIME {
+        if (reset_ == Reset::none) return controlword::disable_voltage;
+        if (low_cycles_left_ > 0) {
+            --low_cycles_left_;
+            return controlword::disable_voltage;
+        }
+        // The bit stays up until the fault is gone: a frame that is lost does not lose the edge.
+        reset_ = Reset::raised;
+        return controlword::fault_reset;
+    }
+
     DriveGoal goal_ = DriveGoal::off;
-    bool reset_asked_ = false;
+    Reset reset_ = Reset::none;
+    int low_cycles_left_ = 0;
 };
 
 } // namespace tappet::canopen

@@ -40,14 +40,22 @@ template <const auto& map> struct LineNames {
 };
 
 /// For each sensor: an output with its level and the edge's time, and the events rises and falls with that
-/// time. For each lamp: a required input. For each actuator: the required operations set and clear. Lost
-/// edges are counted, told, and the levels read anew. Runs in an activity that is on_device. All real-time.
+/// time. For each lamp: a required input, whose row should wake this activity. For each actuator: the
+/// required operations set and clear. Runs in an activity that is on_device. All real-time.
+///
+/// A line that is active already when the machine starts has no edge: its output tells it, `rises` is silent.
+/// Lost edges are counted and told before what follows them. Once the kernel's buffer is empty the levels are
+/// read anew; one that differs from what the edges said is told as an edge of that moment, and the true edge,
+/// should it come after all, is not told again.
+///
+/// After stop every output has its safe value and keeps it.
 template <const auto& map> struct LinePort {
     static_assert(map.fault.empty(), "the line map is refused: its member `fault` says why");
     static constexpr std::size_t count = map.rows.size();
     static constexpr std::string_view device_kind = "gpio";
     static constexpr std::span<const std::string_view> device_lines() { return LineNames<map>::plain; }
     static constexpr std::size_t edges_per_cycle = 64;
+    static constexpr std::size_t most_batches_before_start = 32; ///< twice what the kernel's buffer holds
 
     std::array<Output<bool>, count> level{};
     std::array<Event<Time>, count> rises{};
@@ -70,33 +78,42 @@ template <const auto& map> struct LinePort {
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         edges_lost.write(0);
-        const Levels now = device_->levels();
-        if (!now.known) return;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (map.rows[i].line.role != Role::input) continue;
-            level[i].write(bit(now.mask, i), cycle.now);
-            levels_ = with_bit(levels_, i, bit(now.mask, i));
-        }
+        // What happened before the start is told by the levels, not by edges of another time.
+        for (std::size_t n = 0; n < most_batches_before_start; ++n)
+            if (device_->read_edges(edges_).count < edges_.size()) break;
+        read_levels(cycle.now);
+        waiter_->wake(); // for what arrives in between
     }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const EdgeBatch batch = device_->read_edges(edges_);
-        for (std::size_t i = 0; i < batch.count && i < edges_.size(); ++i) take(edges_[i]);
-        if (batch.gap.missed != 0) mend(batch.gap, cycle.now);
-        if (batch.count == edges_.size()) waiter_->wake();
+        const std::size_t n = batch.count < edges_.size() ? batch.count : edges_.size();
+        bool loss_told = batch.gap.missed == 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!loss_told && edges_[i].missed != 0) {
+                loss_told = true;
+                tell_loss(batch.gap.missed);
+            }
+            take(edges_[i]);
+        }
+        if (!loss_told) tell_loss(batch.gap.missed);
+        if (n == edges_.size())
+            waiter_->wake();
+        else if (doubtful_)
+            read_levels(cycle.now);
         write_outputs();
     }
 
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        write_outputs();
+        stopped_ = true;
         static_cast<void>(device_->make_safe());
     }
 
     template <std::size_t line> void set() noexcept TAPPET_REALTIME {
-        static_cast<void>(device_->write(Mask{1} << line, Mask{1} << line));
+        if (!stopped_) static_cast<void>(device_->write(Mask{1} << line, Mask{1} << line));
     }
     template <std::size_t line> void clear() noexcept TAPPET_REALTIME {
-        static_cast<void>(device_->write(Mask{1} << line, 0));
+        if (!stopped_) static_cast<void>(device_->write(Mask{1} << line, 0));
     }
 
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
@@ -184,24 +201,47 @@ private:
 
     void take(const Edge& edge) noexcept TAPPET_REALTIME {
         if (edge.line >= count) return;
-        levels_ = with_bit(levels_, edge.line, edge.rising);
-        level[edge.line].write(edge.rising, edge.stamp);
-        if (edge.rising)
-            rises[edge.line].emit(edge.stamp);
-        else
-            falls[edge.line].emit(edge.stamp);
+        const Mask line = Mask{1} << edge.line;
+        const bool told_already = (from_reading_ & line) != 0 && bit(levels_, edge.line) == edge.rising;
+        from_reading_ &= ~line;
+        if (!told_already) tell(edge.line, edge.rising, edge.stamp);
     }
 
-    // What the lost edges left behind: a level that differs is an edge whose time is not known better than
-    // now.
-    void mend(const Gap& gap, Time now) noexcept TAPPET_REALTIME {
-        lost_ += gap.missed;
+    void tell(std::size_t line, bool rising, Time stamp) noexcept TAPPET_REALTIME {
+        levels_ = with_bit(levels_, line, rising);
+        level[line].write(rising, stamp);
+        if (rising)
+            rises[line].emit(stamp);
+        else
+            falls[line].emit(stamp);
+    }
+
+    void tell_loss(std::uint32_t missed) noexcept TAPPET_REALTIME {
+        doubtful_ = true;
+        lost_ += missed;
         edges_lost.write(lost_);
         edges_were_lost.emit();
-        if (!gap.levels_known) return;
-        for (std::size_t i = 0; i < count; ++i)
-            if (map.rows[i].line.role == Role::input && bit(gap.levels, i) != bit(levels_, i))
-                take({static_cast<std::uint32_t>(i), bit(gap.levels, i), now, 0, 0});
+    }
+
+    // An edge that waits in the kernel while the levels are read shows in them already.
+    void read_levels(Time now) noexcept TAPPET_REALTIME {
+        const Levels read = device_->levels();
+        doubtful_ = !read.known;
+        if (!read.known) return;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (map.rows[i].line.role != Role::input) continue;
+            const bool active = bit(read.mask, i);
+            if (!known_) {
+                levels_ = with_bit(levels_, i, active);
+                level[i].write(active, now);
+            } else if (active != bit(levels_, i)) {
+                tell(i, active, now);
+            } else {
+                continue;
+            }
+            from_reading_ |= Mask{1} << i;
+        }
+        known_ = true;
     }
 
     void write_outputs() noexcept TAPPET_REALTIME {
@@ -210,17 +250,27 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             if (map.rows[i].line.role != Role::output || map.rows[i].driven != Driven::by_port) continue;
             bool value = false;
-            if (wanted[i].read(value) != Flow::fresh) continue;
+            // Stale: the row's own answer, which is the last value or its substitute.
+            if (wanted[i].read(value) == Flow::never_written) continue;
+            if (bit(written_, i) && bit(driven_, i) == value) continue;
             mask |= Mask{1} << i;
             values = with_bit(values, i, value);
         }
-        if (mask != 0) static_cast<void>(device_->write(mask, values));
+        if (mask == 0 || !device_->write(mask, values)) return; // refused: tried again in the next cycle
+        written_ |= mask;
+        driven_ = (driven_ & ~mask) | values;
     }
 
     std::array<Edge, edges_per_cycle> edges_{};
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
-    Mask levels_ = 0;
+    Mask levels_ = 0;       // as told
+    Mask from_reading_ = 0; // told from the levels, and no edge came since
+    Mask written_ = 0;      // outputs that were written once
+    Mask driven_ = 0;       // and their values
+    bool known_ = false;    // the levels were read once
+    bool doubtful_ = false; // edges were lost since, or the levels could not be read
+    bool stopped_ = false;
     std::int64_t lost_ = 0;
 };
 

@@ -34,8 +34,10 @@ template <const auto& map> struct RegisterNames {
 };
 
 /// For each register read an output, stamped when the answer came and written only then, so that its age
-/// tells of an outage; for each register written a required input. It blocks for one request at most: it runs
-/// in an activity of its own that is not_real_time.
+/// tells of an outage; for each register written a required input. It blocks for the requests that are due,
+/// until one is not answered or a period has gone by: it runs in an activity of its own, one server each,
+/// that is not_real_time. At stop, values written since go out; what the server does when it hears no more is
+/// its own time-out's business.
 template <const auto& map> struct Slave {
     static_assert(map.fault.empty(), "the register map is refused: its member `fault` says why");
     static constexpr std::size_t count = map.registers.size();
@@ -56,15 +58,14 @@ template <const auto& map> struct Slave {
         return {};
     }
 
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        connected.write(false);
+        outages.write(0);
+        outages_survived.write(0);
+    }
+
     void work(const Cycle& cycle) {
-        for (std::size_t v = 0; v < count; ++v) {
-            double value = 0;
-            if (is_written(v) && wanted[v].read(value) == Flow::fresh)
-                static_cast<void>(client_->set(v, value, cycle.now));
-        }
-        // As many requests as are due; each is bounded by the transport's time-out.
-        for (std::size_t n = 0; n < map.rows.size() && client_->step(cycle.now) <= cycle.now; ++n) {
-        }
+        exchange(cycle);
         for (std::size_t v = 0; v < count; ++v) {
             const Value value = client_->value(v, cycle.now);
             if (is_written(v) || value.stamp == seen_[v] || value.quality != Quality::good) continue;
@@ -80,6 +81,12 @@ template <const auto& map> struct Slave {
             lost.emit();
         else
             back.emit();
+    }
+
+    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        // A server that is silent now would only hold the machine's stop up.
+        if (client_->connected() && !client_->outage())
+            TAPPET_ESCAPE("this activity is not real-time", exchange(cycle));
     }
 
     [[nodiscard]] Counters counters() const noexcept { return client_->counters(); }
@@ -117,6 +124,27 @@ template <const auto& map> struct Slave {
 
 private:
     static constexpr bool is_written(std::size_t v) noexcept { return map.rows[map.row_of[v]].write; }
+
+    void exchange(const Cycle& cycle) noexcept {
+        for (std::size_t v = 0; v < count; ++v) {
+            double value = 0;
+            if (is_written(v) && wanted[v].read(value) == Flow::fresh)
+                static_cast<void>(client_->set(v, value, cycle.now));
+        }
+        // The client says when a request ended; the next one begins then.
+        Time at = cycle.now;
+        for (std::size_t n = 0; n <= map.rows.size(); ++n) {
+            const std::uint64_t before = tried();
+            const Time next = client_->step(at);
+            if (tried() == before && next > at) return; // nothing is due
+            if (client_->outage() || next > cycle.now + cycle.period) return;
+            at = next;
+        }
+    }
+    [[nodiscard]] std::uint64_t tried() const noexcept {
+        const Counters count_now = client_->counters();
+        return count_now.requests + count_now.connects + count_now.refused;
+    }
 
     std::optional<Client<map.rows.size(), map.registers.size()>> client_{};
     std::array<Time, count> seen_ = [] {

@@ -189,6 +189,7 @@ TEST_F(TwinBusTest, goes_silent_at_bus_off_and_comes_back_only_when_restarted) {
     ASSERT_EQ(machine.receive(f).what, Received::error_frame);
     EXPECT_EQ(f.error.state, State::bus_off);
     EXPECT_EQ(machine.state(), State::bus_off);
+    EXPECT_EQ(machine.counters().dropped_stale, 1u) << "what waited is gone at once";
     EXPECT_EQ(machine.send(frame(0x201, Time{2ms})), Send::refused_fault);
     for (Time now{2ms}; now < Time{500ms}; now += 10ms) step(now);
     EXPECT_TRUE(drain(plant).empty());
@@ -204,6 +205,29 @@ TEST_F(TwinBusTest, goes_silent_at_bus_off_and_comes_back_only_when_restarted) {
     ASSERT_EQ(arrived.size(), 1u) << "nothing from before the restart is ever sent";
     EXPECT_EQ(arrived[0].id, 0x205u);
     EXPECT_EQ(machine.counters().dropped_stale, 3u);
+}
+
+TEST_F(TwinBusTest, drops_what_waits_when_told_to) {
+    for (const Identifier& one : machine_sends)
+        EXPECT_EQ(machine.send(frame(one.id, Time{1ms})), Send::queued);
+    machine.service(Time{1ms});
+    machine.purge();
+    bus.deliver_until(Time{1ms});
+    drain(machine);
+    step(Time{2ms});
+    EXPECT_EQ(drain(plant).size(), 2u) << "two were in the controller already";
+    EXPECT_EQ(machine.counters().dropped_stale, 3u);
+}
+
+TEST_F(TwinBusTest, begins_anew_when_it_is_opened_again) {
+    bus.bus_off(machine);
+    drain(machine);
+    EXPECT_EQ(machine.state(), State::bus_off);
+    ASSERT_TRUE(machine.open({.interface = "machine", .receive = plant_sends, .transmit = machine_sends}));
+    EXPECT_EQ(machine.state(), State::active);
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
+    step(Time{1ms});
+    EXPECT_EQ(drain(plant).size(), 1u);
 }
 
 TEST_F(TwinBusTest, restarts_no_more_often_than_allowed) {

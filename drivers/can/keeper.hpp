@@ -1,0 +1,88 @@
+// Brings a faulted CAN bus back: deliberately, after a pause, and only so many times.
+#pragma once
+
+#include "drivers/can/device.hpp"
+#include "kernel/component/component.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet::can {
+
+/// Stands beside the Bus on the same device, in a background activity that is not_real_time: a restart
+/// blocks. Connect its input to the bus' `faulted`. Attempts count from the machine's start and are never
+/// given back: a bus that fails again and again needs hands, not restarts. The device's own bound holds as
+/// well.
+struct Keeper {
+    static constexpr std::string_view device_kind = "can";
+    static constexpr bool shares_device = true;
+
+    Property<std::int64_t> attempts{3};
+    Property<Duration> pause{1s};
+    Input<bool> faulted{};
+    Output<std::int64_t> restarts{};
+    Event<> gave_up{};
+
+    Sentence configure(Setup& setup) {
+        device_ = setup.device<Device>();
+        return device_ == nullptr ? setup.no_device() : Sentence{};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME { restarts.write(0); }
+
+    void work(const Cycle& cycle) {
+        if (!faulted.get()) {
+            phase_ = Phase::watching;
+            return;
+        }
+        if (phase_ == Phase::gave_up) return;
+        if (phase_ == Phase::watching) {
+            phase_ = Phase::pausing;
+            next_attempt_ = cycle.now + pause.get();
+            if (tried_ >= attempts.get()) return give_up();
+        }
+        if (cycle.now < next_attempt_) return;
+        if (tried_ >= attempts.get()) return give_up();
+        // What the last attempt brought is seen after a pause: the bus has taken it up by then, or it failed.
+        next_attempt_ = cycle.now + pause.get();
+        switch (device_->restart()) {
+        case Restart::done:
+            ++tried_;
+            restarts.write(++done_);
+            return;
+        case Restart::failed:
+            ++tried_;
+            return;
+        case Restart::not_needed: // the bus has not taken up the last one yet
+            return;
+        case Restart::exhausted:
+            return give_up();
+        }
+    }
+
+    static constexpr auto interface() {
+        return facets(
+            input<&Keeper::faulted>("faulted", "", "the bus' state, of its component"),
+            output<&Keeper::restarts>("restarts", "", "restarts that the controller took, since start"),
+            event<&Keeper::gave_up>("gave_up", "the bus stays faulted: nobody restarts it any more"),
+            property<&Keeper::attempts>("attempts", "", "restarts tried at most, since start",
+                                        range(0, 1000)),
+            property<&Keeper::pause>("pause", "s", "from a fault to a restart, and from one to the next",
+                                     range(0.01, 3600)));
+    }
+
+private:
+    enum class Phase : std::uint8_t { watching, pausing, gave_up };
+
+    void give_up() noexcept TAPPET_REALTIME {
+        phase_ = Phase::gave_up;
+        gave_up.emit();
+    }
+
+    Device* device_ = nullptr;
+    Phase phase_ = Phase::watching;
+    Time next_attempt_{};
+    std::int64_t tried_ = 0;
+    std::int64_t done_ = 0;
+};
+
+} // namespace tappet::can
