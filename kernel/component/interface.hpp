@@ -127,6 +127,8 @@ constexpr Facet event(std::string_view name, std::string_view doc) {
 /// A member function `void f(A...) noexcept TAPPET_REALTIME`.
 template <auto Method, class... Options>
 constexpr Facet operation(std::string_view name, std::string_view doc, Options... options) {
+    static_assert(OperationCall<Method>::is_operation, "an operation is a member function that returns void, declared noexcept "
+                                                       "TAPPET_REALTIME: it runs in the real-time activity");
     return detail::with({.name = name, .doc = doc, .kind = FacetKind::operation, .type = type_id<typename OperationCall<Method>::Signature>, .operation = &detail::operation_of<Method>}, options...);
 }
 

@@ -11,11 +11,19 @@
 namespace tappet {
 
 /// `Method` is a `void (Component::*)(A...) noexcept TAPPET_REALTIME`.
-template <auto Method>
-struct OperationCall;
+template <auto Method, class = decltype(Method)>
+struct OperationCall {
+    static constexpr bool is_operation = false;
+    // So that saying so stays the only error.
+    using Signature = Arguments<>;
+    using Call = void (*)(void*) noexcept TAPPET_REALTIME;
+    static void call(void*) noexcept TAPPET_REALTIME {}
+    static void run(void*, const std::byte*) noexcept TAPPET_REALTIME {}
+};
 
-template <class Component, class... A, void (Component::*Method)(A...) noexcept>
-struct OperationCall<Method> {
+template <auto Method, class Component, class... A>
+struct OperationCall<Method, void (Component::*)(A...) noexcept TAPPET_REALTIME> {
+    static constexpr bool is_operation = true;
     using Signature = Arguments<A...>;
     static constexpr std::size_t packed_bytes = detail::packed_bytes<A...>;
     /// Names the signature as plain data: the element type is what a Subscriber<A...> takes.

@@ -23,7 +23,7 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board) {
             for (const auto& each : board.devices)
                 if (each.kind == row.type->device_kind) nearest.consider(each.name);
             Sentence text =
-                of_component(row.name, "board \"", board.name, "\" has no device \"", row.device, "\"");
+                of_component(row.name, ": board \"", board.name, "\" has no device \"", row.device, "\"");
             detail::add_suggestion(text, nearest, "add it to the board's devices");
             return text;
         }
@@ -32,7 +32,8 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board) {
                                 "\" of board \"", board.name, "\" is of kind ", device->kind,
                                 "; name another");
         for (std::size_t j = 0; j < c; ++j)
-            if (m.components[j].device == row.device && !row.type->shares_device && !m.components[j].type->shares_device)
+            if (m.components[j].device == row.device && !row.type->shares_device &&
+                !m.components[j].type->shares_device)
                 return of_component(row.name, " drives device \"", row.device, "\", as component \"",
                                     m.components[j].name, "\" does; a device has one driver");
         for (const auto& wanted : row.type->device_lines) {

@@ -9,10 +9,10 @@ namespace tappet::checks {
 
 /// What is said of a row: which one, and what is wrong with it.
 template <class... Pieces> constexpr Sentence of_component(std::string_view name, const Pieces&... fault) {
-    return Sentence{"component \"", name, "\": ", fault...};
+    return Sentence{"component \"", name, "\"", fault...};
 }
 template <class... Pieces> constexpr Sentence of_activity(std::string_view name, const Pieces&... fault) {
-    return Sentence{"activity \"", name, "\": ", fault...};
+    return Sentence{"activity \"", name, "\"", fault...};
 }
 
 /// The engine remembers so many wakes to hold a sporadic activity to its promise.
@@ -24,35 +24,119 @@ constexpr bool fits(const Facet& property, const PropertySetting& setting) noexc
            (wanted == PropertySetting::Kind::real && setting.kind == PropertySetting::Kind::whole);
 }
 
+/// A number as an engineer writes it, to the third decimal.
+constexpr Sentence decimal(double value) {
+    constexpr double largest = 1e15; // in thousandths still a whole number of 64 bits
+    if (!(value > -largest && value < largest))
+        return Sentence{value < 0 ? "less than -1e15" : "more than 1e15"};
+    const double size = value < 0 ? -value : value;
+    auto thousandths = static_cast<std::int64_t>(size * 1000 + 0.5);
+    Sentence text{value < 0 ? "-" : "", thousandths / 1000};
+    thousandths %= 1000;
+    if (thousandths != 0) text.add(".");
+    for (std::int64_t digit = 100; thousandths != 0; digit /= 10) {
+        text.add(thousandths / digit);
+        thousandths %= digit;
+    }
+    return text;
+}
+
+/// In the unit of a range: seconds for a time.
+constexpr double value_of(const PropertySetting& setting) noexcept {
+    switch (setting.kind) {
+    case PropertySetting::Kind::real:
+        return setting.real;
+    case PropertySetting::Kind::duration:
+        return static_cast<double>(setting.whole) * 1e-9;
+    case PropertySetting::Kind::whole:
+    case PropertySetting::Kind::truth:
+        break;
+    }
+    return static_cast<double>(setting.whole);
+}
+
+constexpr Sentence value_text(const PropertySetting& setting) {
+    switch (setting.kind) {
+    case PropertySetting::Kind::real:
+        return decimal(setting.real);
+    case PropertySetting::Kind::duration:
+        return decimal(value_of(setting)).add(" s");
+    case PropertySetting::Kind::truth:
+        return Sentence{setting.whole != 0 ? "true" : "false"};
+    case PropertySetting::Kind::whole:
+        break;
+    }
+    return Sentence{setting.whole};
+}
+
+constexpr std::string_view kind_text(PropertySetting::Kind kind) noexcept {
+    switch (kind) {
+    case PropertySetting::Kind::real:
+        return "a number";
+    case PropertySetting::Kind::whole:
+        return "a whole number";
+    case PropertySetting::Kind::truth:
+        return "true or false";
+    case PropertySetting::Kind::duration:
+        break;
+    }
+    return "a time";
+}
+
+constexpr std::string_view example_of(PropertySetting::Kind kind) noexcept {
+    switch (kind) {
+    case PropertySetting::Kind::real:
+        return "it like 2.5";
+    case PropertySetting::Kind::whole:
+        return "it like 2";
+    case PropertySetting::Kind::truth:
+        return "true or false";
+    case PropertySetting::Kind::duration:
+        break;
+    }
+    return "it with its unit, like 2ms";
+}
+
+constexpr Sentence unknown_property(const ComponentRow& row, std::string_view name) {
+    Nearest nearest{name};
+    for (const auto& facet : row.type->facets)
+        if (facet.kind == FacetKind::property) nearest.consider(facet.name);
+    Sentence text = of_component(row.name, " has no property \"", name, "\"");
+    detail::add_suggestion(text, nearest, "add it to the component's interface");
+    return text;
+}
+
 constexpr Sentence check_settings(const ComponentRow& row) {
     if (row.too_many_settings)
-        return of_component(row.name, "sets more than ", ComponentRow::max_settings,
+        return of_component(row.name, " sets more than ", ComponentRow::max_settings,
                             " properties; give the others their default in the component");
     for (std::size_t i = 0; i < row.settings.size(); ++i) {
         const PropertyRow& setting = row.settings[i];
         for (std::size_t j = 0; j < i; ++j)
             if (row.settings[j].name == setting.name)
-                return of_component(row.name, "sets property \"", setting.name, "\" twice; keep one");
+                return of_component(row.name, " sets property \"", setting.name, "\" twice; keep one");
         const std::size_t found = find_facet(row, setting.name);
-        if (found == nowhere || row.type->facets[found].kind != FacetKind::property) {
-            Nearest nearest{setting.name};
-            for (const auto& facet : row.type->facets)
-                if (facet.kind == FacetKind::property) nearest.consider(facet.name);
-            Sentence text = of_component(row.name, "has no property \"", setting.name, "\"");
-            detail::add_suggestion(text, nearest, "add it to the component's interface");
-            return text;
-        }
+        if (found == nowhere) return unknown_property(row, setting.name);
         const Facet& facet = row.type->facets[found];
+        if (facet.kind != FacetKind::property)
+            return of_component(row.name, " sets \"", setting.name, "\", which is ", to_text(facet.kind),
+                                ", not a property; set one of its properties");
         if (!fits(facet, setting.setting))
-            return of_component(row.name, "property \"", setting.name, "\" is of type ", facet.type->name,
-                                "; set it to a value of that type");
-        const double value = setting.setting.kind == PropertySetting::Kind::real ? setting.setting.real
-                             : setting.setting.kind == PropertySetting::Kind::duration
-                                 ? static_cast<double>(setting.setting.whole) * 1e-9
-                                 : static_cast<double>(setting.setting.whole);
-        if (!(value >= facet.range.low && value <= facet.range.high))
-            return of_component(row.name, "property \"", setting.name,
-                                "\" is set outside its range; see range(...) in the component's interface");
+            return of_component(row.name, " sets property \"", setting.name, "\" to ",
+                                value_text(setting.setting), ", but it is ", kind_text(facet.property->kind),
+                                "; write ", example_of(facet.property->kind));
+        const double value = value_of(setting.setting);
+        if (!(value >= facet.range.low && value <= facet.range.high)) {
+            Sentence text = of_component(row.name, " sets property \"", setting.name, "\" to ",
+                                         value_text(setting.setting), ", which is ");
+            if (value < facet.range.low)
+                text.add("under its least value ").add(decimal(facet.range.low));
+            else
+                text.add("over its greatest value ").add(decimal(facet.range.high));
+            if (facet.property->kind == PropertySetting::Kind::duration) text.add(" s");
+            return text.add("; set a value in its range, or widen range(...) in the interface of ")
+                .add(row.type->tag->name);
+        }
     }
     return {};
 }
@@ -60,12 +144,13 @@ constexpr Sentence check_settings(const ComponentRow& row) {
 constexpr Sentence check_interface(const ComponentRow& row) {
     const auto& facets = row.type->facets;
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        if (facets[f].name.empty() || facets[f].name.find('.') != std::string_view::npos)
-            return of_component(row.name, "its interface names a facet \"", facets[f].name,
-                                "\"; a name is not empty and has no dot: rename it in ", row.type->tag->name);
+        // A facet's name may have dots: a table row's path is cut at its first one, behind the component.
+        if (facets[f].name.empty())
+            return of_component(row.name, ": its interface has a facet without a name; name it in ",
+                                row.type->tag->name);
         for (std::size_t g = 0; g < f; ++g)
             if (facets[f].name == facets[g].name)
-                return of_component(row.name, "its interface names \"", facets[f].name,
+                return of_component(row.name, ": its interface names \"", facets[f].name,
                                     "\" twice; rename one in ", row.type->tag->name);
     }
     return {};
@@ -78,60 +163,90 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
     for (std::size_t i = 0; i < m.components.size(); ++i) {
         const ComponentRow& row = m.components[i];
         if (row.name.empty() || row.name.find('.') != std::string_view::npos)
-            return of_component(row.name, "a component's name is not empty and has no dot; rename it");
+            return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
         if (!row.type->device_kind.empty() && row.device.empty())
-            return of_component(row.name, "drives a ", row.type->device_kind,
+            return of_component(row.name, " drives a ", row.type->device_kind,
                                 " device but its row names none; add device(\"...\")");
         if (row.type->device_kind.empty() && !row.device.empty())
-            return of_component(row.name, "drives no device; remove device(\"", row.device, "\")");
+            return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
     }
     sort_by_name(m, r.by_name);
     for (std::size_t i = 1; i < r.by_name.size(); ++i)
         if (const std::string_view name = m.components[r.by_name[i]].name;
             name == m.components[r.by_name[i - 1]].name)
-            return of_component(name, "stands in components(...) twice (rows ", r.by_name[i - 1] + 1, " and ",
-                                r.by_name[i] + 1, "); rename or remove one");
+            return of_component(name, " stands in components(...) twice (rows ", r.by_name[i - 1] + 1,
+                                " and ", r.by_name[i] + 1, "); rename or remove one");
     return {};
 }
 
+/// How many rows of the other sections name a component, in any of their places.
+constexpr std::size_t count_uses(const MachineView& m, std::string_view name) noexcept {
+    const auto starts = [name](std::string_view path) {
+        return path.size() > name.size() && path[name.size()] == '.' && path.substr(0, name.size()) == name;
+    };
+    std::size_t uses = 0;
+    for (const auto& row : m.activities) {
+        uses += row.device == name;
+        for (const auto& each : row.runs) uses += each == name;
+    }
+    for (const auto& row : m.connections) uses += starts(row.from) || starts(row.to);
+    for (const auto& row : m.reactions) uses += starts(row.event) || starts(row.target.operation);
+    for (const auto& row : m.behaviours) uses += row.component == name;
+    return uses;
+}
+
+/// Where an activity names no component: when several rows agree on the name and none uses the nearest, it is
+/// the row in components(...) that is misspelt.
+constexpr Sentence unknown_to_activity(const MachineView& m, const ActivityRow& row, std::string_view name) {
+    Nearest nearest{name};
+    for (const auto& each : m.components)
+        if (count_uses(m, each.name) == 0) nearest.consider(each.name);
+    const std::size_t uses = count_uses(m, name);
+    if (nearest.best().empty() || uses < 2) return of_activity(row.name, ": ", unknown_component(m, name));
+    return of_component(nearest.best(), " is named by no other row, but ", uses, " rows name \"", name,
+                        "\", which components(...) has not; rename it to that");
+}
+
 constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
+    if (!row.twice.empty()) return of_activity(row.name, " is given ", row.twice, " twice; keep one");
     if (!row.has_trigger)
-        return of_activity(row.name, "nothing wakes it; add every(...), on_work() or on_device(\"...\")");
+        return of_activity(row.name, ": nothing wakes it; add every(...), on_work() or on_device(\"...\")");
     if (row.too_many_runs)
-        return of_activity(row.name, "runs more than ", ActivityRow::max_runs, " components; divide it");
+        return of_activity(row.name, " runs more than ", ActivityRow::max_runs, " components; divide it");
     if (row.runs.empty())
-        return of_activity(row.name, "runs no component; add runs(\"...\") or remove the row");
+        return of_activity(row.name, " runs no component; add runs(\"...\") or remove the row");
     if (row.periodic() && row.period <= Duration::zero())
-        return of_activity(row.name, "its period is not positive; write every(1ms) or the like");
+        return of_activity(row.name, ": its period is not positive; write every(1ms) or the like");
     if (row.trigger == Trigger::on_device) {
         const std::size_t driver = find_component(m, row.device);
-        if (driver == nowhere) return of_activity(row.name, unknown_component(m, row.device));
+        if (driver == nowhere) return unknown_to_activity(m, row, row.device);
         if (m.components[driver].type->device_kind.empty())
-            return of_activity(row.name, "component \"", row.device,
+            return of_activity(row.name, ": component \"", row.device,
                                "\" drives no device to wake it; name a driver in on_device(...)");
         bool runs_it = false;
         for (const auto& name : row.runs) runs_it |= name == row.device;
         if (!runs_it)
-            return of_activity(row.name, "is woken by the device of \"", row.device,
+            return of_activity(row.name, " is woken by the device of \"", row.device,
                                "\" but does not run it; add it to runs(...)");
     }
     if (row.real_time) {
         if (row.shortest_period() <= Duration::zero())
-            return of_activity(row.name, "says not how often it may be woken; add at_most(n, per)");
+            return of_activity(row.name, " does not say how often it may be woken; add at_most(n, per)");
         if (row.at_most_n < 1)
-            return of_activity(row.name, "at_most needs at least one wake; write at_most(1, ...)");
+            return of_activity(row.name, ": at_most needs at least one wake; write at_most(1, ...)");
         if (row.at_most_n > max_wakes_together)
-            return of_activity(row.name, "promises more than ", max_wakes_together,
+            return of_activity(row.name, " promises more than ", max_wakes_together,
                                " wakes in one window; shorten the window of at_most");
         if (row.budget_each <= Duration::zero())
-            return of_activity(row.name, "has no budget; add budget(...), or not_real_time");
+            return of_activity(row.name, " has no budget; add budget(...), or not_real_time");
         if (row.deadline_after < Duration::zero())
-            return of_activity(row.name, "its deadline is negative; correct deadline(...)");
+            return of_activity(row.name, ": its deadline is negative; correct deadline(...)");
     }
     if (row.stack < 16 * 1024)
-        return of_activity(row.name, "its stack of ", row.stack, " bytes is under 16384; enlarge stack(...)");
+        return of_activity(row.name, ": its stack of ", row.stack,
+                           " bytes is under 16384; enlarge stack(...)");
     return {};
 }
 
@@ -142,31 +257,33 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
         const ActivityRow& row = m.activities[a];
         for (std::size_t j = 0; j < a; ++j)
             if (m.activities[j].name == row.name)
-                return of_activity(row.name, "stands in activities(...) twice (rows ", j + 1, " and ", a + 1,
+                return of_activity(row.name, " stands in activities(...) twice (rows ", j + 1, " and ", a + 1,
                                    "); rename or remove one");
         if (Sentence fault = check_trigger(m, row); !fault.empty()) return fault;
         for (const auto& name : row.runs) {
             const std::size_t c = find_component(m, r.by_name, name);
-            if (c == nowhere) return of_activity(row.name, unknown_component(m, name));
+            if (c == nowhere) return unknown_to_activity(m, row, name);
+            if (r.activity[c] == a)
+                return of_component(name, " is run twice by activity \"", row.name, "\"; remove it once");
             if (r.activity[c] != nowhere)
-                return of_component(name, "is run by activity \"", m.activities[r.activity[c]].name,
+                return of_component(name, " is run by activity \"", m.activities[r.activity[c]].name,
                                     "\" and by activity \"", row.name, "\"; keep it in one");
             r.activity[c] = a;
             for (const auto& facet : m.components[c].type->facets)
                 if (facet.kind == FacetKind::timer && row.real_time && row.periodic())
-                    return of_activity(row.name, "is periodic but component \"", name, "\" has the timer \"",
+                    return of_activity(row.name, " is periodic but component \"", name, "\" has the timer \"",
                                        facet.name,
                                        "\", which runs between periods; run it on_work() with at_most(n, "
                                        "per), so that the analysis counts it");
             if (m.components[c].type->work != nullptr && row.real_time)
                 return of_activity(
-                    row.name, "is real-time but component \"", name,
+                    row.name, " is real-time but component \"", name,
                     "\" may block (it has work()); run it in an activity that is not_real_time");
         }
     }
     for (std::size_t c = 0; c < m.components.size(); ++c)
         if (r.activity[c] == nowhere)
-            return of_component(m.components[c].name, "no activity runs it; add it to runs(...) of one");
+            return of_component(m.components[c].name, ": no activity runs it; add it to runs(...) of one");
     return {};
 }
 

@@ -8,29 +8,29 @@ namespace tappet::checks {
 
 template <class... Pieces>
 constexpr Sentence of_connection(const ConnectionRow& row, const Pieces&... fault) {
-    return Sentence{"connection \"", row.from, "\" -> \"", row.to, "\": ", fault...};
+    return Sentence{"connection \"", row.from, "\" -> \"", row.to, "\"", fault...};
 }
 
 constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, const Facet& to) {
     const bool from_is_input = from.kind == FacetKind::input || from.kind == FacetKind::buffer_input;
     const bool to_is_output = to.kind == FacetKind::output || to.kind == FacetKind::buffer_output;
     if (from_is_input && to_is_output)
-        return of_connection(row, "runs from an input to an output; exchange the two");
+        return of_connection(row, " runs from an input to an output; exchange the two");
     const FacetKind wanted_from = row.buffered ? FacetKind::buffer_output : FacetKind::output;
     const FacetKind wanted_to = row.buffered ? FacetKind::buffer_input : FacetKind::input;
     if (from.kind != wanted_from)
-        return of_connection(row, "\"", row.from, "\" is ", to_text(from.kind), ", not ",
+        return of_connection(row, ": \"", row.from, "\" is ", to_text(from.kind), ", not ",
                              to_text(wanted_from),
                              from.kind == FacetKind::buffer_output ? "; write buffer<n>(...)"
                              : from.kind == FacetKind::output      ? "; write data(...)"
                                                                    : "; name an output first");
     if (to.kind != wanted_to)
-        return of_connection(row, "\"", row.to, "\" is ", to_text(to.kind), ", not ", to_text(wanted_to),
+        return of_connection(row, ": \"", row.to, "\" is ", to_text(to.kind), ", not ", to_text(wanted_to),
                              to.kind == FacetKind::buffer_input ? "; write buffer<n>(...)"
                              : to.kind == FacetKind::input      ? "; write data(...)"
                                                                 : "; name an input second");
     if (from.type != to.type)
-        return of_connection(row, "\"", row.from, "\" is of type ", from.type->name, " but \"", row.to,
+        return of_connection(row, ": \"", row.from, "\" is of type ", from.type->name, " but \"", row.to,
                              "\" is of type ", to.type->name, "; connect ports of one type");
     return {};
 }
@@ -38,22 +38,23 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
 constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row, const Facet& to,
                                   std::size_t writer, std::size_t reader) {
     if (row.buffered && row.capacity == 0)
-        return of_connection(row, "holds no value; write buffer<n> with n of at least 1");
+        return of_connection(row, " holds no value; write buffer<n> with n of at least 1");
     if (row.has_substitute && !to.type->arithmetic)
-        return of_connection(row, "a value of type ", to.type->name,
+        return of_connection(row, ": a value of type ", to.type->name,
                              " has no substitute number; use hold or stop_machine");
     if (row.when_stale != WhenStale::hold && row.max_age == Duration::zero() && !row.has_substitute)
         return of_connection(row,
-                             "says what a stale value means but not when it is stale; add stale_after(...)");
+                             " says what a stale value means but not when it is stale; add stale_after(...)");
     if (row.buffered && (row.max_age != Duration::zero() || row.has_substitute))
-        return of_connection(row, "values in a buffer have no age; remove stale_after and substitute");
+        return of_connection(row, ": values in a buffer have no age; remove stale_after and substitute");
     if (row.wakes_reader && m.activities[reader].periodic())
-        return of_connection(row, "wakes activity \"", m.activities[reader].name,
+        return of_connection(row, " wakes activity \"", m.activities[reader].name,
                              "\", which is periodic; remove wakes");
     if (row.wakes_reader && writer == reader)
-        return of_connection(row, "wakes its own activity \"", m.activities[reader].name, "\"; remove wakes");
+        return of_connection(row, " wakes its own activity \"", m.activities[reader].name,
+                             "\"; remove wakes");
     if (row.delayed_step && writer != reader)
-        return of_connection(row, "delayed means one cycle of one activity, but this row crosses from \"",
+        return of_connection(row, ": delayed means one cycle of one activity, but this row crosses from \"",
                              m.activities[writer].name, "\" to \"", m.activities[reader].name,
                              "\"; remove delayed");
     return {};
@@ -68,9 +69,10 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
          j = r.connections_into.next[j]) {
         if (!(r.connections[j].to == link.to)) continue;
         if (r.connections[j].from == link.from)
-            return of_connection(row, "stands in connections(...) twice; remove one");
+            return of_connection(row, " stands in connections(...) twice (rows ", j + 1, " and ", x + 1,
+                                 "); remove one");
         if (!row.buffered)
-            return of_connection(row, "\"", row.to, "\" is written by \"", m.connections[j].from,
+            return of_connection(row, ": \"", row.to, "\" is written by \"", m.connections[j].from,
                                  "\" already; an input has one writer: remove one row, or use a buffer");
         ++rows_there;
     }
@@ -79,7 +81,7 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
     for (std::size_t j = 0; j < x; ++j)
         if (m.connections[j].buffered && r.connections[j].from == link.from) ++rows_here;
     if (rows_here >= max_buffer_rows || rows_there >= max_buffer_rows)
-        return of_connection(row, "is one more than the ", max_buffer_rows,
+        return of_connection(row, " is one more than the ", max_buffer_rows,
                              " buffer rows a port may have; merge some");
     return {};
 }
@@ -93,9 +95,9 @@ constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
         const FacetKind from_kind = row.buffered ? FacetKind::buffer_output : FacetKind::output;
         const FacetKind to_kind = row.buffered ? FacetKind::buffer_input : FacetKind::input;
         if (Sentence fault = resolve(m, r.by_name, row.from, from_kind, link.from); !fault.empty())
-            return of_connection(row, fault);
+            return of_connection(row, ": ", fault);
         if (Sentence fault = resolve(m, r.by_name, row.to, to_kind, link.to); !fault.empty())
-            return of_connection(row, fault);
+            return of_connection(row, ": ", fault);
         const Facet& to = facet_at(m, link.to);
         if (Sentence fault = check_direction(row, facet_at(m, link.from), to); !fault.empty()) return fault;
         if (Sentence fault =
@@ -115,7 +117,7 @@ constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
                  x = r.connections_into.next[x])
                 connected = r.connections[x].to.facet == f;
             if (!connected)
-                return of_component(m.components[c].name, "its required input \"", facet.name,
+                return of_component(m.components[c].name, ": its required input \"", facet.name,
                                     "\" is not connected; add ",
                                     facet.kind == FacetKind::input ? "data" : "buffer<n>", "(\"...\", \"",
                                     m.components[c].name, ".", facet.name, "\")");
@@ -192,9 +194,10 @@ private:
             for (std::size_t x = r_.connections_into.first[c]; x != nowhere; x = r_.connections_into.next[x])
                 if (r_.connections[x].from.component == c && !m_.connections[x].delayed_step &&
                     !m_.connections[x].buffered)
-                    return of_connection(m_.connections[x],
-                                         "a component's own output feeds its own input; add delayed, or keep "
-                                         "the value in the component");
+                    return of_connection(
+                        m_.connections[x],
+                        ": a component's own output feeds its own input; add delayed, or keep "
+                        "the value in the component");
         return {};
     }
 
@@ -214,7 +217,7 @@ private:
             if (edge.row > last) last = edge.row;
             way = Sentence{m_.components[members_[at]].name, " -> ", way};
         } while (at != met);
-        return of_connection(m_.connections[last], "closes a data-flow cycle inside activity \"",
+        return of_connection(m_.connections[last], " closes a data-flow cycle inside activity \"",
                              m_.activities[activity].name, "\" (", way,
                              "); add delayed to the row whose reader shall see the last cycle's value");
     }

@@ -9,10 +9,10 @@
 namespace tappet::checks {
 
 template <class... Pieces> constexpr Sentence of_reaction(const ReactionRow& row, const Pieces&... fault) {
-    return Sentence{"reaction \"", row.event, "\" -> \"", row.target.operation, "\": ", fault...};
+    return Sentence{"reaction \"", row.event, "\" -> \"", row.target.operation, "\"", fault...};
 }
 template <class... Pieces> constexpr Sentence of_behaviour(const BehaviourRow& row, const Pieces&... fault) {
-    return Sentence{"behaviour of \"", row.component, "\": ", fault...};
+    return Sentence{"behaviour of \"", row.component, "\"", fault...};
 }
 
 /// Fills the ends of each reaction.
@@ -22,41 +22,44 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
         const ReactionRow& row = m.reactions[i];
         Link& link = r.reactions[i];
         if (Sentence fault = resolve(m, r.by_name, row.event, FacetKind::event, link.from); !fault.empty())
-            return of_reaction(row, fault);
+            return of_reaction(row, ": ", fault);
         if (Sentence fault = resolve(m, r.by_name, row.target.operation, FacetKind::operation, link.to);
             !fault.empty())
-            return of_reaction(row, fault);
+            return of_reaction(row, ": ", fault);
         const Facet& event = facet_at(m, link.from);
         const Facet& operation = facet_at(m, link.to);
+        if (event.kind == FacetKind::operation && operation.kind == FacetKind::event)
+            return of_reaction(row, " runs from an operation to an event; exchange the two");
         if (event.kind != FacetKind::event)
-            return of_reaction(row, "\"", row.event, "\" is ", to_text(event.kind),
+            return of_reaction(row, ": \"", row.event, "\" is ", to_text(event.kind),
                                ", not an event; name an event first");
         if (operation.kind != FacetKind::operation)
-            return of_reaction(row, "\"", row.target.operation, "\" is ", to_text(operation.kind),
+            return of_reaction(row, ": \"", row.target.operation, "\" is ", to_text(operation.kind),
                                ", not an operation; name an operation second");
         if (event.type != operation.type)
-            return of_reaction(row, "the event carries (", event.type->name, ") but the operation takes (",
+            return of_reaction(row, ": the event carries (", event.type->name, ") but the operation takes (",
                                operation.type->name, "); give both the same arguments");
         const std::size_t emitter = r.activity[link.from.component];
         const std::size_t receiver = r.activity[link.to.component];
         if (row.target.synchronous && emitter != receiver && !operation.any_thread)
-            return of_reaction(row, "a synchronous call would run \"", row.target.operation,
+            return of_reaction(row, ": a synchronous call would run \"", row.target.operation,
                                "\" of activity \"", m.activities[receiver].name, "\" in activity \"",
                                m.activities[emitter].name,
                                "\"; use tell(...), or declare the operation any_thread if it is safe there");
         if (row.target.synchronous && m.activities[emitter].real_time &&
             m.components[link.to.component].type->work != nullptr)
-            return of_reaction(row, "component \"", m.components[link.to.component].name,
+            return of_reaction(row, ": component \"", m.components[link.to.component].name,
                                "\" may block; use tell(...)");
         if (!row.target.synchronous && row.target.quota == 0)
-            return of_reaction(row, "no emission may wait; write queue(n) with n of at least 1");
+            return of_reaction(row, ": no emission may wait; write queue(n) with n of at least 1");
         if (event.type->size > sizeof(Message::arguments) && !row.target.synchronous)
-            return of_reaction(row, "its arguments exceed the ", sizeof(Message::arguments),
-                               " bytes of a message; send them through a port");
+            return of_reaction(row, ": its ", event.type->size, " bytes of arguments exceed the ",
+                               sizeof(Message::arguments), " bytes of a message; send them through a port");
         for (std::size_t j = r.reactions_into.first[link.to.component]; j != nowhere;
              j = r.reactions_into.next[j])
             if (r.reactions[j].from == link.from && r.reactions[j].to == link.to)
-                return of_reaction(row, "stands in reactions(...) twice; remove one");
+                return of_reaction(row, " stands in reactions(...) twice (rows ", j + 1, " and ", i + 1,
+                                   "); remove one");
         r.reactions_into.add(i, link.to.component);
     }
     for (std::size_t c = 0; c < m.components.size(); ++c)
@@ -68,7 +71,7 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                  i = r.reactions_into.next[i])
                 named = r.reactions[i].to.facet == f;
             if (!named)
-                return of_component(m.components[c].name, "no reaction names its required operation \"",
+                return of_component(m.components[c].name, ": no reaction names its required operation \"",
                                     facet.name, "\"; add when(\"...\", tell(\"", m.components[c].name, ".",
                                     facet.name, "\"))");
         }
@@ -102,24 +105,24 @@ constexpr Sentence resolve_trigger(const MachineView& m, const BehaviourRow& row
 constexpr Sentence check_slot(const MachineView& m, const BehaviourRow& row) {
     const Slot& slot = row.slot;
     if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
-        return of_behaviour(row, "its slot reserves no nodes, data or depth; state all three");
+        return of_behaviour(row, ": its slot reserves no nodes, data or depth; state all three");
     for (const auto& peer : slot.peers)
         if (find_component(m, peer) == nowhere)
-            return of_behaviour(row, "its slot's peer: ", unknown_component(m, peer));
+            return of_behaviour(row, ": its slot's peer: ", unknown_component(m, peer));
     End found;
     for (const auto& name : slot.operations) {
         if (Sentence fault = resolve(m, name, FacetKind::operation, found); !fault.empty())
-            return of_behaviour(row, "its slot's operation: ", fault);
+            return of_behaviour(row, ": its slot's operation: ", fault);
         if (facet_at(m, found).kind != FacetKind::operation)
-            return of_behaviour(row, "its slot's operation \"", name, "\" is ",
+            return of_behaviour(row, ": its slot's operation \"", name, "\" is ",
                                 to_text(facet_at(m, found).kind), "; name an operation");
     }
     for (const auto& name : slot.events) {
         if (Sentence fault = resolve(m, name, FacetKind::event, found); !fault.empty())
-            return of_behaviour(row, "its slot's event: ", fault);
+            return of_behaviour(row, ": its slot's event: ", fault);
         if (facet_at(m, found).kind != FacetKind::event)
-            return of_behaviour(row, "its slot's event \"", name, "\" is ", to_text(facet_at(m, found).kind),
-                                "; name an event");
+            return of_behaviour(row, ": its slot's event \"", name, "\" is ",
+                                to_text(facet_at(m, found).kind), "; name an event");
     }
     return {};
 }
@@ -128,25 +131,25 @@ constexpr Sentence check_behaviours(const MachineView& m) {
     for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
         const BehaviourRow& row = m.behaviours[b];
         const std::size_t component = find_component(m, row.component);
-        if (component == nowhere) return of_behaviour(row, unknown_component(m, row.component));
+        if (component == nowhere) return of_behaviour(row, ": ", unknown_component(m, row.component));
         for (std::size_t j = 0; j < b; ++j)
             if (m.behaviours[j].component == row.component && (m.behaviours[j].is_slot() == row.is_slot()))
-                return of_behaviour(row, "stands in behaviours(...) twice; a component has one ",
+                return of_behaviour(row, " stands in behaviours(...) twice; a component has one ",
                                     row.is_slot() ? "slot" : "behaviour", ": remove one");
         if (row.is_slot()) {
             if (Sentence fault = check_slot(m, row); !fault.empty()) return fault;
             continue;
         }
         if (row.machine.component != m.components[component].type->tag)
-            return of_behaviour(row, "state machine \"", row.machine.name, "\" is written for ",
+            return of_behaviour(row, ": state machine \"", row.machine.name, "\" is written for ",
                                 row.machine.component->name, " but \"", row.component, "\" is a ",
                                 m.components[component].type->tag->name, "; name a component of its type");
-        if (Sentence fault = check(row.machine); !fault.empty()) return of_behaviour(row, fault);
+        if (Sentence fault = check(row.machine); !fault.empty()) return of_behaviour(row, ": ", fault);
         for (const auto& transition : row.machine.transitions) {
             if (!transition.on_event) continue;
             End found;
             if (Sentence fault = resolve_trigger(m, row, transition.event, found); !fault.empty())
-                return of_behaviour(row, "state machine \"", row.machine.name, "\", transition \"",
+                return of_behaviour(row, ": state machine \"", row.machine.name, "\", transition \"",
                                     transition.from, "\" -> \"", transition.to, "\": ", fault);
         }
     }
@@ -156,7 +159,7 @@ constexpr Sentence check_behaviours(const MachineView& m) {
         for (const auto& behaviour : m.behaviours)
             driven |= behaviour.component == row.name && !behaviour.is_slot();
         if (!driven)
-            return of_component(row.name, "no behaviour drives it; add behaviour(\"", row.name,
+            return of_component(row.name, ": no behaviour drives it; add behaviour(\"", row.name,
                                 "\", ...) to behaviours(...)");
     }
     return {};

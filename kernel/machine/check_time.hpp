@@ -43,9 +43,18 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
                         " activities; merge those of equal period"};
     for (std::size_t i = 0; i < board.placement.size(); ++i) {
         const BoardPlacement& place = board.placement[i];
+        if (find_activity(m, place.activity) == nowhere) {
+            Nearest nearest{place.activity};
+            for (const auto& row : m.activities) nearest.consider(row.name);
+            Sentence text{"board \"", board.name, "\" places activity \"", place.activity,
+                          "\", which the table has not"};
+            detail::add_suggestion(text, nearest, "remove the placement");
+            return text;
+        }
         if (place.processor < 0 || place.processor >= board.processors)
-            return of_activity(place.activity, "board \"", board.name, "\" places it on processor ",
-                               place.processor, " of ", board.processors, "; correct its placement");
+            return of_activity(place.activity, ": board \"", board.name, "\" places it on processor ",
+                               place.processor, " but has processors 0 to ", board.processors - 1,
+                               "; correct its placement");
     }
     rank_activities(m, r);
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
@@ -67,12 +76,12 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
             }
         const Response response = response_time(std::span{tasks}.first(count), count - 1);
         if (!response.bounded)
-            return of_activity(row.name, "is not schedulable on processor ", processor_of(board, row.name),
+            return of_activity(row.name, " is not schedulable on processor ", processor_of(board, row.name),
                                " of board \"", board.name,
                                "\": the activities there take more than all of its time; lower budgets, "
                                "lengthen periods, or place it elsewhere");
         if (!response.within(row.deadline().count()))
-            return of_activity(row.name, "is not schedulable on processor ", processor_of(board, row.name),
+            return of_activity(row.name, " is not schedulable on processor ", processor_of(board, row.name),
                                " of board \"", board.name, "\": its worst response is ",
                                in_us(response.worst_ns), ", its deadline ", in_us(row.deadline().count()),
                                "; lower the budget of it or of a more urgent activity, lengthen its "

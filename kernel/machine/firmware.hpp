@@ -5,8 +5,6 @@
 #include "kernel/machine/check.hpp"
 #include "kernel/machine/plan.hpp"
 
-#include <type_traits>
-
 namespace tappet {
 
 /// The verdict on a table: the sentence, and what was found out on the way.
@@ -23,9 +21,12 @@ constexpr Verdict<C, A, X, R> judge(const Machine<C, A, X, R, B>& table, const B
     return verdict;
 }
 
-/// Never defined: a compiler that prints no message objects prints the sentence as the argument of this name.
+/// Not defined: a compiler that prints no message objects prints the sentence as the argument of this name.
 template <text sentence>
 struct machine_table;
+/// Nothing to say: the table is accepted.
+template <>
+struct machine_table<text<0>{}> {};
 
 template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
 constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, const Board& board, TableIndex<C, A, X, R> index) {
@@ -36,9 +37,10 @@ constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, cons
     return plan;
 }
 
-constexpr Sentence over_budget(const MachineView& m, const Board& board, std::size_t bytes) {
+constexpr Sentence over_budget(const MachineView& m, const Board& board, std::size_t machine_bytes, std::size_t stack_bytes) {
+    const std::size_t bytes = machine_bytes + board.heap_bytes;
     if (bytes <= board.memory_budget_bytes) return {};
-    return Sentence{m.name, ": board \"", board.name, "\": the machine takes ", bytes, " bytes of static memory but the board's budget is ", board.memory_budget_bytes,
+    return Sentence{m.name, ": board \"", board.name, "\": the machine takes ", bytes, " bytes of static memory (", stack_bytes, " of them stacks, ", board.heap_bytes, " the heap) but the board's budget is ", board.memory_budget_bytes,
                     "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
 }
 
@@ -52,16 +54,6 @@ struct AcceptedMachine {
 };
 
 namespace detail {
-
-template <const auto& refusal>
-constexpr bool accept() {
-#if defined(__clang__)
-    static_assert(refusal.empty(), refusal);
-#else
-    if constexpr (!refusal.empty()) return sizeof(machine_table<text<refusal.size()>{refusal.view()}>) != 0;
-#endif
-    return refusal.empty();
-}
 
 template <const auto& table, const Board& board>
 struct Judged {
@@ -77,7 +69,7 @@ template <const auto& table, const Board& board>
 struct Planned<table, board, true> {
     static constexpr auto& verdict = Judged<table, board>::verdict;
     static constexpr auto plan = plan_for<count_subscriptions(table.view())>(table, board, verdict.index);
-    static constexpr Sentence refusal = over_budget(table.view(), board, plan.bytes + board.heap_bytes);
+    static constexpr Sentence refusal = over_budget(table.view(), board, plan.bytes, plan.stack_bytes);
 };
 
 template <const auto& table, const Board& board, bool good>
@@ -103,8 +95,13 @@ struct Instance<table, board, true> {
 template <const auto& table, const Board& board>
 struct Firmware {
     static constexpr bool sound = detail::Judged<table, board>::verdict.refusal.empty();
-    using Planned = detail::Planned<table, board, sound>;
-    static constexpr bool accepted = detail::accept<Planned::refusal>();
+    static constexpr const Sentence& refusal = detail::Planned<table, board, sound>::refusal;
+    static constexpr bool accepted = refusal.empty();
+#if defined(__clang__)
+    static_assert(accepted, refusal);
+#else
+    static_assert(sizeof(machine_table<text<refusal.size()>{refusal.view()}>) != 0);
+#endif
 
     static AcceptedMachine machine() { return detail::Instance<table, board, accepted>::machine(); }
 };

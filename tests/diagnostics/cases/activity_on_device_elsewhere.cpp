@@ -1,0 +1,16 @@
+// An activity waits for the device of a component that it does not run.
+// refused: loom: activity "field" is woken by the device of "encoder" but does not run it; add it to runs(...)
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+constexpr auto table =
+    loom(good_components,
+         activities(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                             runs("lamps")),
+                    activity("motion", every(1ms), budget(120us), runs("shaft", "tension")),
+                    activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
+                             runs("weft", "encoder")),
+                    activity("hall", every(250ms), not_real_time, runs("climate"))),
+         good_connections, good_reactions, good_behaviours);
+template struct tappet::Firmware<table, good_board>;

@@ -1,0 +1,16 @@
+// An activity runs a component that is misspelt.
+// refused: loom: activity "motion": there is no component "tensoin"; did you mean "tension"?
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+constexpr auto table =
+    loom(good_components,
+         activities(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                             runs("encoder")),
+                    activity("motion", every(1ms), budget(120us), runs("shaft", "tensoin")),
+                    activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
+                             runs("weft", "lamps")),
+                    activity("hall", every(250ms), not_real_time, runs("climate"))),
+         good_connections, good_reactions, good_behaviours);
+template struct tappet::Firmware<table, good_board>;

@@ -1,0 +1,16 @@
+// A stack is too small.
+// refused: loom: activity "motion": its stack of 4096 bytes is under 16384; enlarge stack(...)
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+constexpr auto table =
+    loom(good_components,
+         activities(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                             runs("encoder")),
+                    activity("motion", every(1ms), budget(120us), stack(4096), runs("shaft", "tension")),
+                    activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
+                             runs("weft", "lamps")),
+                    activity("hall", every(250ms), not_real_time, runs("climate"))),
+         good_connections, good_reactions, good_behaviours);
+template struct tappet::Firmware<table, good_board>;

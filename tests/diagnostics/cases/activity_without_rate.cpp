@@ -1,0 +1,15 @@
+// A sporadic activity does not say how often it may be woken.
+// refused: loom: activity "logic" does not say how often it may be woken; add at_most(n, per)
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+constexpr auto table =
+    loom(good_components,
+         activities(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                             runs("encoder")),
+                    activity("motion", every(1ms), budget(120us), runs("shaft", "tension")),
+                    activity("logic", on_work(), deadline(2ms), budget(80us), runs("weft", "lamps")),
+                    activity("hall", every(250ms), not_real_time, runs("climate"))),
+         good_connections, good_reactions, good_behaviours);
+template struct tappet::Firmware<table, good_board>;

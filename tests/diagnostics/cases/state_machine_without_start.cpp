@@ -1,0 +1,13 @@
+// No state is initial.
+// refused: loom: behaviour of "weft": state machine "faulty_cycle": no top state is initial; mark the one to start in
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+constexpr auto faulty_cycle =
+    state_machine<Weft>("faulty_cycle", states(state("idle"), state("weaving"), state("safe", final)),
+                        transitions(transition("idle", "weaving", on("shaft.window")),
+                                    transition("weaving", "safe", on("broken"))));
+
+constexpr auto table = loom(good_components, good_activities, good_connections, good_reactions,
+                            behaviours(behaviour("weft", faulty_cycle)));
+template struct tappet::Firmware<table, good_board>;
