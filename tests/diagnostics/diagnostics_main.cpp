@@ -1,6 +1,6 @@
 // Compiles every faulty case with the compiler of this build and compares what it says with the case's golden
 // sentence.
-//     diagnostics --compiler PATH --flags FLAGS --source DIR --build DIR [--only TEXT] [--write]
+//     diagnostics --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--only TEXT] [--write]
 // A case states in its second line what is expected:
 //     // refused: <the sentence, the same from both compilers; # stands for any number>
 //     // refused by clang: <a part of the first error, or of the line it points at: the function that is not
@@ -239,6 +239,13 @@ int main(int count, char** words) {
             return 2;
         }
         *place = words[++i];
+    }
+    if (options.flags.starts_with('@')) {
+        std::ifstream file{options.flags.substr(1)};
+        if (!std::getline(file, options.flags)) {
+            std::cerr << "the file of flags cannot be read\n";
+            return 2;
+        }
     }
     return judge_all(options);
 }

@@ -3,8 +3,9 @@
 
 #include <cstddef>
 #include <ostream>
+#include <string>
 
-namespace tappet::scale {
+namespace tappet::diagnostics {
 
 struct Size {
     std::size_t types = 20;
@@ -91,4 +92,4 @@ inline void write_machine(std::ostream& out, const Size& size) {
         << "AcceptedMachine accepted() { return Firmware<large, host>::machine(); }\n";
 }
 
-} // namespace tappet::scale
+} // namespace tappet::diagnostics
