@@ -34,7 +34,7 @@ struct MainShaft {
     Property<double> stop_angle_deg{wires::nominal::stop_deg};
     Property<double> first_brake_distance_deg{wires::nominal::brake_distance_deg};
     Property<double> learning_rate{0.6};
-    Property<double> late_deg{25.0};
+    Property<double> late_deg{8.0};
     Property<Duration> stamp_latency{0us};
 
     /// Brakes so that the shaft comes to stand at the stop angle: in this turn if it is still possible.

@@ -7,6 +7,7 @@ namespace {
 constexpr double proportional_nm_s = 40.0; // of the drive's velocity loop
 constexpr double integral_nm_per_rad = 400.0;
 constexpr double static_over_coulomb = 1.5;
+constexpr double stick_rad_s = 0.02;
 constexpr double viscous_nm_s = 0.14;
 constexpr double sley_nm = 12.0; // load of the sley's inertia at nominal speed
 constexpr double nominal_rad_s = wires::nominal::speed_rpm * rad_s_per_rpm;
@@ -38,6 +39,13 @@ void MainShaft::begin_step(Power power, double target_rad_s, double brake_nm, do
         acceleration_ = 0.0;
         if (motor > hold) acceleration_ = (motor - hold) / inertia_kg_m2_;
         if (motor < -hold) acceleration_ = (motor + hold) / inertia_kg_m2_;
+        return;
+    }
+    // A shaft that hardly turns is caught by the friction of rest, or it would creep for ever under a motor that holds.
+    const double hold = brake_nm + coulomb_nm_ * static_over_coulomb;
+    if (speed_rad_s_ < stick_rad_s && -speed_rad_s_ < stick_rad_s && motor <= hold && -motor <= hold) {
+        acceleration_ = -speed_rad_s_ / dt_s;
+        stops_ = true;
         return;
     }
     const double part = speed_rad_s_ / nominal_rad_s;
