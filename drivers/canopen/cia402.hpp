@@ -77,8 +77,10 @@ public:
     [[nodiscard]] std::uint16_t controlword(std::uint16_t statusword) noexcept TAPPET_REALTIME {
         const DriveState state = drive_state(statusword);
         if (state == DriveState::fault) return controlword_in_fault();
-        // An acknowledgement during the reaction is meant for the fault behind it.
-        if (state != DriveState::fault_reaction_active) reset_ = Reset::none;
+        // An acknowledgement during the reaction is meant for the fault behind it; one that acted before is
+        // not.
+        if (state != DriveState::fault_reaction_active || reset_ == Reset::raised) reset_ = Reset::none;
+        low_cycles_left_ = 0;
         if (goal_ == DriveGoal::off) return controlword::disable_voltage;
         if (goal_ == DriveGoal::quick_stop)
             return state == DriveState::operation_enabled || state == DriveState::quick_stop_active

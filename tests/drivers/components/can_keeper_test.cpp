@@ -1,0 +1,76 @@
+// The keeper of a CAN bus: restarts are deliberate, a pause apart, and end.
+#include "tests/drivers/components/can_machine.hpp"
+
+namespace tappet::test {
+namespace {
+
+using CanKeeper = CanMachine; // two attempts, 100 ms apart
+
+TEST_F(CanKeeper, restarts_a_faulted_bus_after_its_pause) {
+    run_until(20ms);
+    wire.bus_off(twin);
+    run_until(115ms);
+    EXPECT_EQ(twin.counters().restarts, 0u) << "not before the pause is over";
+    EXPECT_EQ(keeper->restarts.last(), 0);
+    run_until(160ms);
+    EXPECT_EQ(keeper->restarts.last(), 1);
+    EXPECT_EQ(twin.counters().restarts, 1u);
+    EXPECT_EQ(master->recoveries, 1);
+    EXPECT_EQ(master->surrenders, 0);
+}
+
+TEST_F(CanKeeper, gives_up_when_the_bus_faults_again_and_again) {
+    run_until(20ms);
+    wire.set_acknowledged(false); // each restart ends in the same fault
+    run_until(5s);
+    EXPECT_EQ(keeper->restarts.last(), 2);
+    EXPECT_EQ(master->faults, 3);
+    EXPECT_EQ(master->recoveries, 2);
+    EXPECT_EQ(master->surrenders, 1) << "told once";
+    EXPECT_TRUE(master->was_faulted);
+    const auto silent = heard.size();
+    wire.set_acknowledged(true);
+    run_until(6s);
+    EXPECT_LE(heard.size(), silent + 4) << "what the controller itself held; nothing new";
+    EXPECT_TRUE(master->was_faulted) << "it stays so";
+}
+
+TEST_F(CanKeeper, gives_up_when_restarts_fail) {
+    twin.make_restarts_fail(true);
+    run_until(20ms);
+    wire.bus_off(twin);
+    run_until(2s);
+    EXPECT_EQ(keeper->restarts.last(), 0);
+    EXPECT_EQ(master->surrenders, 1);
+}
+
+TEST_F(CanKeeper, gives_up_when_its_device_allows_no_more_restarts) {
+    keeper->attempts.set(100);
+    run_until(20ms);
+    wire.set_acknowledged(false);
+    run_until(5s);
+    EXPECT_EQ(keeper->restarts.last(), 3);
+    EXPECT_EQ(master->surrenders, 1);
+}
+
+TEST_F(CanKeeper, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_up) {
+    run_until(20ms);
+    for (int i = 0; i < 2; ++i) {
+        wire.bus_off(twin);
+        run_until(clock.now().time_since_epoch() + 300ms);
+        ASSERT_EQ(master->recoveries, i + 1);
+    }
+    wire.bus_off(twin);
+    run_until(clock.now().time_since_epoch() + 50ms);
+    EXPECT_EQ(master->surrenders, 1);
+    EXPECT_EQ(keeper->restarts.last(), 2);
+}
+
+TEST_F(CanKeeper, leaves_a_healthy_bus_alone) {
+    run_until(3s);
+    EXPECT_EQ(twin.counters().restarts, 0u);
+    EXPECT_EQ(master->surrenders, 0);
+}
+
+} // namespace
+} // namespace tappet::test

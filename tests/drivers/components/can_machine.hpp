@@ -1,0 +1,207 @@
+// A machine with one CAN bus: a master that writes and reads its signals, a bus, a keeper; and the far end of
+// the wire.
+#pragma once
+
+#include "drivers/can/bus.hpp"
+#include "drivers/can/keeper.hpp"
+#include "drivers/can/twin_bus.hpp"
+#include "kernel/machine/virtual_world.hpp"
+#include "tests/drivers/components/board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tappet::test {
+
+inline constexpr auto signals =
+    can::signal_map(can::receive(can::standard(0x181), "drive", can::bytes(6), can::stale_after(20ms),
+                                 can::signal("statusword", 0, 16),
+                                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+                    can::transmit(can::standard(0x201), "drive_command", can::bytes(6), can::every(2ms),
+                                  can::signal("controlword", 0, 16),
+                                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+                    can::transmit(can::standard(0x000), "nmt", can::bytes(2), can::on_demand,
+                                  can::signal("command", 0, 8), can::signal("node", 8, 8)));
+
+/// Does in each cycle what the test has set.
+struct Master {
+    struct Demand {
+        std::int64_t command = 0;
+        std::int64_t node = 0;
+        bool operator==(const Demand&) const = default;
+    };
+    Input<std::int64_t> statusword{};
+    Input<double> velocity{};
+    Input<bool> faulted{};
+    Input<std::int64_t> lost{};
+    Input<std::int64_t> received{};
+    Output<std::int64_t> controlword{};
+    Output<double> target{};
+    Output<std::int64_t> command{};
+    Output<std::int64_t> node{};
+
+    bool writes_controlword = true;
+    bool writes_target = true;
+    std::int64_t word = 1;
+    double rpm = 100;
+    Bounded<Demand, 16> demands{}; // one a cycle
+    Bounded<std::int64_t, 4> commands_alone{};
+    Duration overrun{};
+    os::Clock* clock = nullptr;
+    bool was_faulted = false;
+
+    int frames = 0, faults = 0, recoveries = 0, surrenders = 0;
+    void on_frame() noexcept TAPPET_REALTIME { ++frames; }
+    void on_fault() noexcept TAPPET_REALTIME { ++faults; }
+    void on_recovery() noexcept TAPPET_REALTIME { ++recoveries; }
+    void on_surrender() noexcept TAPPET_REALTIME { ++surrenders; }
+
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        was_faulted = faulted.get();
+        if (writes_controlword) controlword.write(word);
+        if (writes_target) target.write(rpm);
+        if (!demands.empty()) {
+            command.write(demands[0].command);
+            node.write(demands[0].node);
+            for (std::size_t i = 1; i < demands.size(); ++i) demands[i - 1] = demands[i];
+            --demands.used;
+        }
+        for (const std::int64_t each : commands_alone) command.write(each);
+        commands_alone.clear();
+        if (overrun > 0ns) clock->consume(overrun);
+        overrun = 0ns;
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        controlword.write(2);
+        target.write(0.0);
+    }
+
+    static constexpr auto interface() {
+        return facets(
+            input<&Master::statusword>("statusword", "", ""), input<&Master::velocity>("velocity", "rpm", ""),
+            input<&Master::faulted>("faulted", "", ""), input<&Master::lost>("lost", "", ""),
+            input<&Master::received>("received", "", ""), output<&Master::controlword>("controlword", "", ""),
+            output<&Master::target>("target", "rpm", ""), output<&Master::command>("command", "", ""),
+            output<&Master::node>("node", "", ""), operation<&Master::on_frame>("on_frame", ""),
+            operation<&Master::on_fault>("on_fault", ""), operation<&Master::on_recovery>("on_recovery", ""),
+            operation<&Master::on_surrender>("on_surrender", ""));
+    }
+};
+
+using Bus = can::Bus<signals>;
+
+// clang-format off
+inline constexpr auto can_machine = machine("can-machine",
+    components(
+        component<Bus>("can", device("wire")),
+        component<Master>("master"),
+        component<can::Keeper>("keeper", device("wire"), set("attempts", 2), set("pause", 100ms))),
+    activities(
+        activity("can",    on_device("can"), at_most(8, 1ms), runs("can"), deadline(500us), budget(20us)),
+        activity("master", every(1ms), runs("master"), budget(20us)),
+        activity("keeper", every(10ms), runs("keeper"), not_real_time)),
+    connections(
+        data("can.drive.statusword", "master.statusword"),
+        data("can.drive.velocity",   "master.velocity"),
+        data("can.faulted",          "master.faulted"),
+        data("can.frames_lost",      "master.lost"),
+        data("can.frames_received",  "master.received"),
+        data("can.faulted",          "keeper.faulted"),
+        data("master.controlword",   "can.drive_command.controlword", stale_after(10ms), hold),
+        data("master.target",        "can.drive_command.velocity",    stale_after(10ms), hold),
+        data("master.command",       "can.nmt.command", wakes),
+        data("master.node",          "can.nmt.node",    wakes)),
+    reactions(
+        when("can.drive.received",  tell("master.on_frame", queue(64))),
+        when("can.bus_fault",       tell("master.on_fault")),
+        when("can.bus_recovered",   tell("master.on_recovery")),
+        when("keeper.gave_up",      tell("master.on_surrender"))),
+    behaviours());
+// clang-format on
+
+/// The machine, the wire and its far end, which hears everything and sends what a test gives it.
+struct CanMachine : testing::Test {
+    static constexpr std::array machine_sends{can::standard(0x201), can::standard(0x000)};
+    static constexpr std::array machine_hears{can::standard(0x181),
+                                              can::standard(0x555)}; // one more than its map
+    static constexpr std::array far_end_sends{can::standard(0x181), can::standard(0x555)};
+    static constexpr Duration tick = 50us;
+
+    CanMachine() {
+        EXPECT_TRUE(twin.open({.interface = "machine",
+                               .receive = machine_hears,
+                               .transmit = machine_sends,
+                               .restarts_allowed = 3}));
+        EXPECT_TRUE(
+            far_end.open({.interface = "far end", .receive = machine_sends, .transmit = far_end_sends}));
+        EXPECT_TRUE(wire.attach(twin));
+        EXPECT_TRUE(wire.attach(far_end));
+        begin(twin);
+    }
+    void begin(can::Device& device) {
+        const ProvidedDevice provided{type_id<can::Device>, "wire", &device};
+        const auto configured = instance.configure({&provided, 1});
+        ASSERT_TRUE(configured) << configured.error().view();
+        bus = instance.find<Bus>("can");
+        master = instance.find<Master>("master");
+        keeper = instance.find<can::Keeper>("keeper");
+    }
+    /// Runs to `end`, counted from the start.
+    void run_until(Duration end) {
+        if (!started) {
+            world.add({this, [](void* self) { return static_cast<CanMachine*>(self)->next_tick; },
+                       [](void* self, Time now) { static_cast<CanMachine*>(self)->carry(now); }});
+            world.start();
+        }
+        started = true;
+        EXPECT_TRUE(world.run_until(Time{end}));
+    }
+    void carry(Time now) {
+        next_tick = now + tick;
+        far_end.service(now);
+        wire.deliver_until(now);
+        can::Frame frame;
+        while (far_end.receive(frame).what != can::Received::none)
+            if (!frame.error.restarted) heard.push_back(frame);
+    }
+    /// From the far end, at the next tick.
+    void send(std::uint32_t id, std::uint8_t length, std::array<std::uint8_t, 8> data) {
+        can::Frame frame;
+        frame.id = id;
+        frame.length = length;
+        frame.data = data;
+        frame.stamp = clock.now();
+        EXPECT_EQ(far_end.send(frame, can::Keep::every), can::Send::queued);
+    }
+    /// The master writes it in one of its next cycles.
+    void demand(std::int64_t command, std::int64_t node) {
+        EXPECT_TRUE(master->demands.push({command, node}));
+    }
+    [[nodiscard]] std::vector<can::Frame> heard_of(std::uint32_t id) const {
+        std::vector<can::Frame> some;
+        for (const auto& frame : heard)
+            if (frame.id == id) some.push_back(frame);
+        return some;
+    }
+    [[nodiscard]] std::uint64_t bus_cycles() const { return instance.engines()[0].statistics().cycles; }
+
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    can::TwinBus wire{1};
+    can::Twin twin;
+    can::Twin far_end;
+    MachineInstance instance{Firmware<can_machine, board>::machine(), clock};
+    VirtualWorld world{instance};
+    bool started = false;
+    Time next_tick{};
+    std::vector<can::Frame> heard;
+    Bus* bus = nullptr;
+    Master* master = nullptr;
+    can::Keeper* keeper = nullptr;
+};
+
+} // namespace tappet::test

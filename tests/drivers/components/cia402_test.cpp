@@ -1,0 +1,191 @@
+// The controller's side of CiA 402 against a model of the drive's automaton.
+#include "drivers/canopen/cia402.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace tappet::canopen {
+namespace {
+
+constexpr std::array every_state{DriveState::not_ready,
+                                 DriveState::switch_on_disabled,
+                                 DriveState::ready_to_switch_on,
+                                 DriveState::switched_on,
+                                 DriveState::operation_enabled,
+                                 DriveState::quick_stop_active,
+                                 DriveState::fault_reaction_active,
+                                 DriveState::fault};
+
+/// The statusword of a state; bits that do not belong to the state are set by `noise`.
+constexpr std::uint16_t statusword(DriveState state, std::uint16_t noise = 0) {
+    constexpr std::array<std::uint16_t, 8> patterns{0x00, 0x40, 0x21, 0x23, 0x27, 0x07, 0x0F, 0x08};
+    const std::uint16_t mask = state == DriveState::ready_to_switch_on || state == DriveState::switched_on ||
+                                       state == DriveState::operation_enabled ||
+                                       state == DriveState::quick_stop_active
+                                   ? 0x6F
+                                   : 0x4F;
+    return static_cast<std::uint16_t>(patterns[static_cast<std::size_t>(state)] | (noise & ~mask));
+}
+
+/// The drive's automaton, CiA 402-2 figure 8; a quick stop ends in "switch on disabled" after a while.
+struct Drive {
+    DriveState state = DriveState::not_ready;
+    bool cause_persists = false;
+    int resets = 0;
+    std::uint16_t last = 0;
+
+    void take(std::uint16_t word) {
+        const bool rising = (word & 0x80) != 0 && (last & 0x80) == 0;
+        last = word;
+        if (state == DriveState::not_ready)
+            state = DriveState::switch_on_disabled;
+        else if (state == DriveState::fault_reaction_active)
+            state = DriveState::fault;
+        else if (state == DriveState::fault) {
+            if (!rising) return;
+            ++resets;
+            if (!cause_persists) state = DriveState::switch_on_disabled;
+        } else if ((word & 0x02) == 0)
+            state = DriveState::switch_on_disabled;
+        else if ((word & 0x04) == 0)
+            state = state == DriveState::operation_enabled || state == DriveState::quick_stop_active
+                        ? DriveState::quick_stop_active
+                        : DriveState::switch_on_disabled;
+        else if (state == DriveState::switch_on_disabled)
+            state = (word & 0x07) == 0x06 ? DriveState::ready_to_switch_on : state;
+        else if (state == DriveState::ready_to_switch_on)
+            state = (word & 0x07) == 0x07 ? DriveState::switched_on : state;
+        else if (state == DriveState::switched_on && (word & 0x0F) == 0x0F)
+            state = DriveState::operation_enabled;
+    }
+};
+
+void run(DriveControl& control, Drive& drive, int cycles) {
+    for (int i = 0; i < cycles; ++i) drive.take(control.controlword(statusword(drive.state, 0xFFFF)));
+}
+
+TEST(Cia402, tells_every_state_from_the_statusword_whatever_its_other_bits_are) {
+    for (const DriveState state : every_state)
+        for (const std::uint16_t noise :
+             {std::uint16_t{0}, std::uint16_t{0xFFFF}, std::uint16_t{0x1230}, std::uint16_t{0x0290}})
+            EXPECT_EQ(drive_state(statusword(state, noise)), state);
+}
+
+TEST(Cia402, leads_every_state_to_enabled) {
+    for (const DriveState state : every_state) {
+        DriveControl control;
+        Drive drive{state};
+        control.want(DriveGoal::enabled);
+        control.acknowledge();
+        run(control, drive, 6);
+        EXPECT_EQ(drive.state, DriveState::operation_enabled) << static_cast<int>(state);
+    }
+}
+
+TEST(Cia402, leads_every_state_to_off) {
+    for (const DriveState state : every_state) {
+        DriveControl control;
+        Drive drive{state};
+        control.acknowledge();
+        run(control, drive, 6);
+        EXPECT_EQ(drive.state, DriveState::switch_on_disabled) << static_cast<int>(state);
+    }
+}
+
+TEST(Cia402, stops_a_running_drive_quickly_and_powers_no_other_one) {
+    for (const DriveState state : every_state) {
+        DriveControl control;
+        Drive drive{state};
+        control.want(DriveGoal::quick_stop);
+        run(control, drive, 6);
+        const bool moved = state == DriveState::operation_enabled || state == DriveState::quick_stop_active;
+        const bool broken = state == DriveState::fault || state == DriveState::fault_reaction_active;
+        EXPECT_EQ(drive.state, moved    ? DriveState::quick_stop_active
+                               : broken ? DriveState::fault
+                                        : DriveState::switch_on_disabled);
+    }
+}
+
+TEST(Cia402, leaves_a_fault_alone_until_it_is_acknowledged) {
+    DriveControl control;
+    Drive drive{DriveState::fault};
+    control.want(DriveGoal::enabled);
+    run(control, drive, 1000);
+    EXPECT_EQ(drive.state, DriveState::fault);
+    EXPECT_EQ(drive.resets, 0);
+    control.acknowledge();
+    run(control, drive, 6);
+    EXPECT_EQ(drive.state, DriveState::operation_enabled);
+    EXPECT_EQ(drive.resets, 1);
+}
+
+TEST(Cia402, keeps_no_acknowledgement_for_a_later_fault) {
+    DriveControl control;
+    Drive drive;
+    control.want(DriveGoal::enabled);
+    control.acknowledge(); // there is no fault
+    run(control, drive, 10);
+    drive.state = DriveState::fault_reaction_active;
+    run(control, drive, 100);
+    EXPECT_EQ(drive.state, DriveState::fault);
+    EXPECT_EQ(drive.resets, 0);
+}
+
+TEST(Cia402, takes_an_acknowledgement_during_the_fault_reaction) {
+    DriveControl control;
+    control.want(DriveGoal::enabled);
+    control.acknowledge();
+    EXPECT_EQ(control.controlword(statusword(DriveState::fault_reaction_active)) & 0x80, 0);
+    EXPECT_EQ(control.controlword(statusword(DriveState::fault)) & 0x80, 0x80);
+}
+
+TEST(Cia402, holds_the_reset_bit_up_so_that_a_lost_frame_loses_no_edge) {
+    DriveControl control;
+    control.acknowledge();
+    for (int i = 0; i < 10; ++i)
+        EXPECT_EQ(control.controlword(statusword(DriveState::fault)), controlword::fault_reset);
+}
+
+TEST(Cia402, makes_a_new_edge_for_each_acknowledgement_of_a_fault_that_persists) {
+    DriveControl control;
+    Drive drive{DriveState::fault, true};
+    control.want(DriveGoal::enabled);
+    for (int i = 1; i <= 3; ++i) {
+        control.acknowledge();
+        run(control, drive, 100);
+        EXPECT_EQ(drive.resets, i);
+    }
+    drive.cause_persists = false;
+    run(control, drive, 100);
+    EXPECT_EQ(drive.state, DriveState::fault) << "nobody acknowledged since";
+    control.acknowledge();
+    run(control, drive, 100);
+    EXPECT_EQ(drive.state, DriveState::operation_enabled);
+}
+
+TEST(Cia402, holds_the_reset_bit_down_long_enough_for_frames_to_show_it) {
+    DriveControl control;
+    control.acknowledge();
+    static_cast<void>(control.controlword(statusword(DriveState::fault)));
+    control.acknowledge();
+    int down = 0;
+    while (control.controlword(statusword(DriveState::fault)) == controlword::disable_voltage && down < 1000)
+        ++down;
+    EXPECT_EQ(down, DriveControl::low_cycles);
+}
+
+TEST(Cia402, resets_once_for_one_acknowledgement_though_the_drive_faults_anew) {
+    DriveControl control;
+    Drive drive{DriveState::fault};
+    control.want(DriveGoal::enabled);
+    control.acknowledge();
+    run(control, drive, 1);
+    drive.state = DriveState::fault_reaction_active; // before anything else was seen
+    run(control, drive, 100);
+    EXPECT_EQ(drive.state, DriveState::fault);
+    EXPECT_EQ(drive.resets, 1);
+}
+
+} // namespace
+} // namespace tappet::canopen
