@@ -1,0 +1,107 @@
+// The carpet loom's firmware: one machine, one board, one static binary.
+#include "apps/carpet_loom/firmware/devices.hpp"
+#include "apps/carpet_loom/machine.hpp"
+#include "apps/carpet_loom/summary.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/real_world.hpp"
+#include "kernel/os/box.hpp"
+#include "kernel/os/heap.hpp"
+#include "kernel/os/terminal.hpp"
+
+#include TAPPET_BOARD_HEADER
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+TAPPET_HEAP_ARENA(tappet::board::TAPPET_BOARD.heap_bytes)
+
+namespace {
+
+using namespace tappet;
+
+constexpr const Board& board_here = board::TAPPET_BOARD;
+using LoomFirmware = Firmware<carpet::carpet_loom, board_here>;
+
+enum Ending : int { ended_well = 0, wrong_set_up = 2, refused_to_arm = 3, stopped_by_fault = 4 };
+
+// Large, and there once: in static memory, not on main's stack.
+constinit os::Clock machine_clock{os::Clock::Kind::real};
+std::array<char, 64 * 1024> summary_text;
+
+int fail(Ending ending, const Sentence& why) {
+    static_cast<void>(os::write_all(2, Sentence{"carpet-loom: ", why, "\n"}.view()));
+    return ending;
+}
+
+/// `--summary FILE` is the only option: everything else is in the table and in the board.
+struct Options {
+    const char* summary = nullptr;
+    Sentence error{};
+};
+
+Options parse(int count, char** words) {
+    Options options;
+    for (int i = 1; i < count; ++i) {
+        if (std::strcmp(words[i], "--summary") != 0) options.error = Sentence{"option ", std::string_view{words[i]}, " is unknown; the only one is --summary FILE"};
+        else if (i + 1 == count) options.error = Sentence{"option --summary needs a file behind it"};
+        else options.summary = words[++i];
+    }
+    return options;
+}
+
+int write_summary(const MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices, const Sentence& reason, const char* path) {
+    const auto* utility = const_cast<MachineInstance&>(instance).find<modbus::Slave<carpet::utility_registers>>("utility");
+    carpet::RunFacts facts;
+    facts.world = board_here.world;
+    facts.realtime = os::kernel_is_realtime();
+    facts.page_faults_after_arming = world.page_faults_in_real_time_threads();
+    facts.can_frames_lost = devices.can().counters().lost_in_kernel;
+    facts.gpio_edges_lost = devices.lines().counters().missed;
+    facts.modbus_outages_survived = utility->counters().outages_survived;
+    facts.stop_reason = reason.view();
+    const std::size_t length = carpet::write_machine_summary(instance, facts, summary_text);
+    if (length == 0 || length + 2 > summary_text.size()) return fail(wrong_set_up, Sentence{"the summary does not fit its buffer"});
+    summary_text[length] = '}';
+    summary_text[length + 1] = '\n';
+    if (!os::replace_file(path, {summary_text.data(), length + 2})) return fail(wrong_set_up, Sentence{"the summary cannot be written to \"", std::string_view{path}, "\""});
+    return ended_well;
+}
+
+void list_misses(const MachineInstance& instance) {
+    for (const Engine& engine : instance.engines()) {
+        const EngineStatistics& seen = engine.statistics();
+        if (seen.misses == 0) continue;
+        const Miss& last = seen.recent_misses[(seen.misses - 1) % seen.recent_misses.size()];
+        const std::string_view culprit = last.function == Miss::nobody ? std::string_view{"it began late"} : engine.plan().parts[last.function / functions_per_part].name;
+        os::print(Sentence{"carpet-loom: activity \"", engine.name(), "\" missed its deadline ", static_cast<std::int64_t>(seen.misses), " times; the last time ", culprit, " took ", last.took.count() / 1000, " us, usually ", last.usual.count() / 1000, " us\n"}.view());
+    }
+}
+
+} // namespace
+
+int main(int count, char** words) {
+    const Options options = parse(count, words);
+    if (!options.error.empty()) return fail(wrong_set_up, options.error);
+
+    static carpet::Devices devices;
+    if (const auto opened = devices.open(board_here); !opened) return fail(wrong_set_up, opened.error());
+    static MachineInstance instance{LoomFirmware::machine(), machine_clock};
+    if (const auto configured = instance.configure(devices.provided()); !configured) return fail(wrong_set_up, configured.error());
+
+    static RealWorld world{instance};
+    static os::ArmingReport arming{{board_here.only_warned.begin(), board_here.only_warned.end()}};
+    if (can::faulted(devices.can().state())) arming.fault("can-bus", Sentence{"the CAN bus is faulted"}, Sentence{"look at its wiring and at the other nodes' power"});
+    if (!world.arm(arming, 2)) return refused_to_arm;
+    if (!world.start()) return fail(stopped_by_fault, Sentence{"an activity did not start in time"});
+    os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ", static_cast<std::int64_t>(arming.warnings()), " warnings\n"}.view());
+    while (world.supervise(1s)) {}
+
+    const int hung = world.stop();
+    const Sentence reason = world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
+    os::print(Sentence{"carpet-loom: stopped: ", reason, "\n"}.view());
+    list_misses(instance);
+    if (options.summary != nullptr)
+        if (const int written = write_summary(instance, world, devices, reason, options.summary); written != ended_well) return written;
+    return hung == 0 && instance.stop_request().reason == StopReason::requested ? ended_well : stopped_by_fault;
+}
