@@ -1,0 +1,286 @@
+// Digital lines as a component: edges and their times, levels, losses, and what stays behind at stop.
+#include "drivers/gpio/line_port.hpp"
+#include "drivers/gpio/twin.hpp"
+#include "kernel/machine/virtual_world.hpp"
+#include "tests/drivers/components/board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tappet::test {
+namespace {
+
+inline constexpr auto lines =
+    gpio::line_map(gpio::sensor("stop_button"), gpio::sensor("weft"), gpio::lamp("lamp"),
+                   gpio::actuator("valve"), gpio::actuator("brake", gpio::safe_high));
+constexpr std::size_t stop_button = 0, weft = 1, lamp = 2, valve = 3, brake = 4;
+constexpr gpio::Mask at(std::size_t line) { return gpio::Mask{1} << line; }
+
+/// Remembers what it is told, in order.
+struct Listener {
+    enum class What : std::uint8_t { stop_rose, stop_fell, weft_rose, weft_fell, edges_lost };
+    struct Heard {
+        What what{};
+        Time when{};
+        bool operator==(const Heard&) const = default;
+    };
+    Input<bool> stop_level{};
+    Input<bool> weft_level{};
+    Input<std::int64_t> lost{};
+    Output<bool> lamp_wanted{};
+    Event<> open{};
+    Event<> close{};
+    Event<> hold{};
+    Event<> let_go{};
+    Bounded<Heard, 512> heard{};
+    int lamp_next = -1; // 0, 1: written in the next cycle
+    bool opens = false;
+
+    void note(What what, Time when) noexcept TAPPET_REALTIME { static_cast<void>(heard.push({what, when})); }
+    void stop_rose(Time when) noexcept TAPPET_REALTIME { note(What::stop_rose, when); }
+    void stop_fell(Time when) noexcept TAPPET_REALTIME { note(What::stop_fell, when); }
+    void weft_rose(Time when) noexcept TAPPET_REALTIME { note(What::weft_rose, when); }
+    void weft_fell(Time when) noexcept TAPPET_REALTIME { note(What::weft_fell, when); }
+    void edges_lost() noexcept TAPPET_REALTIME { note(What::edges_lost, {}); }
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (lamp_next >= 0) lamp_wanted.write(lamp_next != 0);
+        lamp_next = -1;
+        if (opens) {
+            open.emit();
+            let_go.emit();
+        }
+        opens = false;
+    }
+    static constexpr auto interface() {
+        return facets(input<&Listener::stop_level>("stop_level", "", ""),
+                      input<&Listener::weft_level>("weft_level", "", ""),
+                      input<&Listener::lost>("lost", "", ""), output<&Listener::lamp_wanted>("lamp", "", ""),
+                      event<&Listener::open>("open", ""), event<&Listener::close>("close", ""),
+                      event<&Listener::hold>("hold", ""), event<&Listener::let_go>("let_go", ""),
+                      operation<&Listener::stop_rose>("stop_rose", ""),
+                      operation<&Listener::stop_fell>("stop_fell", ""),
+                      operation<&Listener::weft_rose>("weft_rose", ""),
+                      operation<&Listener::weft_fell>("weft_fell", ""),
+                      operation<&Listener::edges_lost>("edges_lost", ""));
+    }
+};
+using What = Listener::What;
+using Heard = Listener::Heard;
+using Port = gpio::LinePort<lines>;
+
+// clang-format off
+inline constexpr auto line_machine = machine("line-machine",
+    components(
+        component<Port>("io", device("lines")),
+        component<Listener>("listener")),
+    activities(
+        activity("io", on_device("io"), at_most(8, 1ms), runs("io"), deadline(500us), budget(10us)),
+        activity("listener", every(1ms), runs("listener"), budget(20us))),
+    connections(
+        data("io.stop_button", "listener.stop_level"),
+        data("io.weft",        "listener.weft_level"),
+        data("io.edges_lost",  "listener.lost"),
+        data("listener.lamp",  "io.lamp", wakes, stale_after(50ms), substitute(0))),
+    reactions(
+        when("io.stop_button.rises", tell("listener.stop_rose", queue(256))),
+        when("io.stop_button.falls", tell("listener.stop_fell", queue(256))),
+        when("io.weft.rises",        tell("listener.weft_rose", queue(256))),
+        when("io.weft.falls",        tell("listener.weft_fell", queue(256))),
+        when("io.edges_were_lost",   tell("listener.edges_lost", queue(256))),
+        when("listener.open",        tell("io.valve.set")),
+        when("listener.close",       tell("io.valve.clear")),
+        when("listener.hold",        tell("io.brake.set")),
+        when("listener.let_go",      tell("io.brake.clear"))),
+    behaviours());
+// clang-format on
+
+constexpr std::array<gpio::Line, lines.rows.size()> placed_lines = [] {
+    auto all = gpio::placed(lines, [](std::string_view name) {
+        for (const auto& each : board.devices[1].lines)
+            if (each.name == name) return static_cast<int>(each.offset);
+        return -1;
+    });
+    return all.value();
+}();
+
+struct Lines : testing::Test {
+    static constexpr Duration tick = 100us;
+
+    Lines() { EXPECT_TRUE(twin.open({.chip = "twin", .lines = placed_lines})); }
+    void begin(gpio::Device& device) {
+        const ProvidedDevice provided{type_id<gpio::Device>, "lines", &device};
+        const auto configured = instance.configure({&provided, 1});
+        ASSERT_TRUE(configured) << configured.error().view();
+        listener = instance.find<Listener>("listener");
+    }
+    void run_until(Duration end) {
+        if (listener == nullptr) begin(twin);
+        if (!started) {
+            world.add({this, [](void* self) { return static_cast<Lines*>(self)->next_tick; },
+                       [](void* self, Time now) {
+                           static_cast<Lines*>(self)->next_tick = now + tick;
+                           static_cast<Lines*>(self)->twin.deliver_until(now);
+                       }});
+            world.start();
+        }
+        started = true;
+        EXPECT_TRUE(world.run_until(Time{end}));
+    }
+    [[nodiscard]] std::vector<Heard> heard() const {
+        return {listener->heard.begin(), listener->heard.end()};
+    }
+    [[nodiscard]] bool driven(std::size_t line) const { return (twin.outputs() & at(line)) != 0; }
+
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    gpio::Twin twin{7};
+    MachineInstance instance{Firmware<line_machine, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Listener* listener = nullptr;
+    bool started = false;
+    Time next_tick{};
+};
+
+TEST_F(Lines, tell_edges_with_their_times_in_their_order) {
+    run_until(1ms);
+    EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{2030us}));
+    EXPECT_TRUE(twin.drive(weft, false, Time{2050us}));
+    run_until(5ms);
+    EXPECT_EQ(heard(), (std::vector<Heard>{{What::weft_rose, Time{2010us}},
+                                           {What::stop_rose, Time{2030us}},
+                                           {What::weft_fell, Time{2050us}}}));
+    EXPECT_TRUE(listener->stop_level.get());
+    EXPECT_EQ(listener->stop_level.stamp(), Time{2030us});
+    EXPECT_FALSE(listener->weft_level.get());
+    EXPECT_EQ(listener->weft_level.stamp(), Time{2050us});
+}
+
+TEST_F(Lines, tell_by_its_level_alone_a_button_that_is_pressed_before_the_start) {
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{}));
+    twin.deliver_until(Time{});
+    run_until(5ms);
+    EXPECT_TRUE(listener->stop_level.get());
+    EXPECT_TRUE(heard().empty()) << "the edge was before the machine's time";
+    EXPECT_EQ(listener->lost.get(), 0);
+    EXPECT_TRUE(twin.drive(stop_button, false, Time{6ms}));
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{7ms}));
+    run_until(10ms);
+    EXPECT_EQ(heard(), (std::vector<Heard>{{What::stop_fell, Time{6ms}}, {What::stop_rose, Time{7ms}}}));
+}
+
+TEST_F(Lines, forget_the_edges_before_the_start_however_many) {
+    for (int i = 0; i < 1500; ++i) { // more than the kernel's buffer holds
+        EXPECT_TRUE(twin.drive(weft, i % 2 == 0, at_ns(i)));
+        twin.deliver_until(at_ns(i));
+    }
+    run_until(5ms);
+    EXPECT_TRUE(heard().empty());
+    EXPECT_EQ(listener->lost.get(), 0) << "nobody missed them";
+    EXPECT_FALSE(listener->weft_level.get());
+}
+
+TEST_F(Lines, read_the_levels_anew_after_lost_edges_and_tell_the_loss_first) {
+    run_until(1ms);
+    twin.faults(stop_button).lose_next = 1;
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us})); // lost: seen when the next edge arrives
+    run_until(3ms);
+    EXPECT_FALSE(listener->stop_level.get());
+    EXPECT_TRUE(twin.drive(weft, true, Time{3010us}));
+    run_until(5ms);
+    EXPECT_EQ(listener->lost.get(), 1);
+    EXPECT_TRUE(listener->stop_level.get());
+    EXPECT_EQ(heard(),
+              (std::vector<Heard>{
+                  {What::edges_lost, {}}, {What::weft_rose, Time{3010us}}, {What::stop_rose, Time{3100us}}}));
+}
+
+TEST_F(Lines, tell_every_edge_of_a_burst_that_did_arrive_though_others_were_lost) {
+    run_until(1ms);
+    twin.faults(stop_button).lose_next = 1;
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{2001us}));
+    for (int i = 0; i < 200; ++i) { // more than one batch: the levels are newer than what still waits
+        EXPECT_TRUE(twin.drive(weft, i % 2 == 0, Time{2002us} + i * 100ns));
+        if (i % 50 == 49) twin.deliver_until(Time{2002us} + i * 100ns);
+    }
+    run_until(5ms);
+    const auto all = heard();
+    ASSERT_EQ(all.size(), 202u);
+    EXPECT_EQ(all[0].what, What::edges_lost);
+    for (std::size_t i = 0; i < 200; ++i)
+        ASSERT_EQ(all[i + 1], (Heard{i % 2 == 0 ? What::weft_rose : What::weft_fell,
+                                     Time{2002us} + static_cast<std::int64_t>(i) * 100ns}));
+    EXPECT_EQ(all.back().what, What::stop_rose);
+    EXPECT_EQ(listener->lost.get(), 1);
+    EXPECT_FALSE(listener->weft_level.get());
+}
+
+TEST_F(Lines, tell_no_edge_twice_that_arrives_after_the_levels_were_read) {
+    run_until(1ms);
+    twin.faults(stop_button).delay = 1ms; // its level shows at once, its edge comes late
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us}));
+    twin.faults(weft).lose_next = 1;
+    EXPECT_TRUE(twin.drive(weft, true, Time{2020us}));
+    EXPECT_TRUE(twin.drive(weft, false, Time{2030us}));
+    run_until(10ms);
+    int rises = 0;
+    for (const Heard& each : heard()) rises += each.what == What::stop_rose;
+    EXPECT_EQ(rises, 1);
+    EXPECT_TRUE(twin.drive(stop_button, false, Time{11ms}));
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{12ms}));
+    run_until(15ms);
+    EXPECT_EQ(heard().back(), (Heard{What::stop_rose, Time{12ms}})) << "later edges count as ever";
+}
+
+TEST_F(Lines, drive_a_lamp_only_when_it_was_written_and_at_once) {
+    run_until(2500us);
+    EXPECT_EQ(twin.counters().writes, 1u) << "the safe values at opening";
+    listener->lamp_next = 1;
+    run_until(2900us);
+    EXPECT_FALSE(driven(lamp));
+    run_until(3ms);
+    EXPECT_TRUE(driven(lamp)) << "the row wakes the lines";
+    EXPECT_TRUE(driven(brake)) << "others stay as they are";
+}
+
+TEST_F(Lines, drive_what_the_row_says_when_the_wish_is_stale) {
+    run_until(1ms);
+    listener->lamp_next = 1;
+    run_until(60ms);                                 // good for 50 ms
+    EXPECT_TRUE(twin.drive(weft, true, Time{61ms})); // anything that wakes
+    run_until(62ms);
+    EXPECT_FALSE(driven(lamp));
+}
+
+TEST_F(Lines, drive_actuators_by_events) {
+    run_until(1ms);
+    EXPECT_TRUE(driven(brake)) << "its safe value";
+    listener->opens = true;
+    run_until(3ms);
+    EXPECT_TRUE(driven(valve));
+    EXPECT_FALSE(driven(brake));
+}
+
+TEST_F(Lines, leave_safe_values_behind_and_keep_them) {
+    run_until(1ms);
+    listener->opens = true;
+    listener->lamp_next = 1;
+    run_until(3ms);
+    world.stop();
+    const auto safe = at(brake);
+    EXPECT_EQ(twin.outputs(), safe);
+    auto* port = instance.find<Port>("io");
+    port->set<valve>();
+    port->clear<brake>();
+    EXPECT_EQ(twin.outputs(), safe);
+}
+
+TEST_F(Lines, refuse_to_start_without_their_chip) {
+    const auto refused = instance.configure({});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().view().find("\"lines\""), std::string_view::npos);
+}
+
+} // namespace
+} // namespace tappet::test

@@ -1,0 +1,217 @@
+// A Modbus server as a component: values with their age, outages, back-off, and who is held up by it.
+#include "drivers/modbus/slave.hpp"
+#include "drivers/modbus/twin.hpp"
+#include "kernel/machine/virtual_world.hpp"
+#include "tests/drivers/components/board.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::test {
+namespace {
+
+inline constexpr auto registers = modbus::register_map(
+    modbus::read("unit", modbus::input_registers(0, 2), modbus::every(100ms), modbus::stale_after(1s),
+                 modbus::word("temperature", 0).as_signed().times(0.1).in("degC"),
+                 modbus::word("pressure", 1).times(0.01).in("bar")),
+    modbus::write("pump", modbus::coils(0, 1), modbus::every(1s), modbus::stale_after(5s),
+                  modbus::bit("on", 0)));
+
+struct Reader {
+    Input<double> temperature{};
+    Input<bool> connected{};
+    Input<std::int64_t> outages{};
+    Input<std::int64_t> survived{};
+    Output<double> pump{};
+    int pump_next = -1; // 0, 1: written in the next cycle
+    int lost = 0, back = 0;
+    Flow flow = Flow::never_written;
+    Duration age{};
+    double value = 0;
+
+    void on_lost() noexcept TAPPET_REALTIME { ++lost; }
+    void on_back() noexcept TAPPET_REALTIME { ++back; }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        flow = temperature.read(value);
+        age = cycle.now - temperature.stamp();
+        if (pump_next >= 0) pump.write(pump_next);
+        pump_next = -1;
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { pump.write(0); }
+    static constexpr auto interface() {
+        return facets(input<&Reader::temperature>("temperature", "degC", ""),
+                      input<&Reader::connected>("connected", "", ""),
+                      input<&Reader::outages>("outages", "", ""),
+                      input<&Reader::survived>("survived", "", ""), output<&Reader::pump>("pump", "", ""),
+                      operation<&Reader::on_lost>("on_lost", ""), operation<&Reader::on_back>("on_back", ""));
+    }
+};
+using Slave = modbus::Slave<registers>;
+
+// clang-format off
+inline constexpr auto utility_machine = machine("utility-machine",
+    components(
+        component<Slave>("server", device("server")),
+        component<Reader>("reader")),
+    activities( // the reader stops first, so that what it writes last reaches the server
+        activity("server", every(50ms), runs("server"), not_real_time),
+        activity("reader", every(1ms), runs("reader"), budget(20us))),
+    connections(
+        data("server.unit.temperature", "reader.temperature", stale_after(500ms), hold),
+        data("server.connected",        "reader.connected"),
+        data("server.outages",          "reader.outages"),
+        data("server.outages_survived", "reader.survived"),
+        data("reader.pump",             "server.pump.on")),
+    reactions(
+        when("server.lost", tell("reader.on_lost")),
+        when("server.back", tell("reader.on_back"))),
+    behaviours());
+// clang-format on
+
+struct Utility : testing::Test {
+    Utility() {
+        twin.set(modbus::Table::input_registers, 0, static_cast<std::uint16_t>(-55)); // -5.5 degC
+        const ProvidedDevice provided{type_id<modbus::Transport>, "server",
+                                      static_cast<modbus::Transport*>(&twin)};
+        const auto configured = instance.configure({&provided, 1});
+        EXPECT_TRUE(configured);
+        reader = instance.find<Reader>("reader");
+        server = instance.find<Slave>("server");
+        world.start();
+    }
+    void run_until(Duration end) { EXPECT_TRUE(world.run_until(Time{end})); }
+    [[nodiscard]] bool pump_runs() const { return twin.get(modbus::Table::coils, 0) != 0; }
+
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    modbus::Twin twin{300ms, 2ms};
+    MachineInstance instance{Firmware<utility_machine, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Reader* reader = nullptr;
+    Slave* server = nullptr;
+};
+
+TEST_F(Utility, gives_values_the_time_of_their_answer) {
+    run_until(1s);
+    EXPECT_DOUBLE_EQ(reader->value, -5.5);
+    EXPECT_LE(reader->age, 100ms + 50ms) << "its period and the activity's";
+    EXPECT_TRUE(reader->connected.get());
+    EXPECT_EQ(reader->outages.get(), 0);
+    EXPECT_EQ(reader->lost, 0);
+    EXPECT_GE(server->counters().answers, 9u);
+}
+
+TEST_F(Utility, writes_a_change_soon_and_nothing_that_nobody_set) {
+    run_until(1s);
+    const auto before = server->counters().requests;
+    EXPECT_FALSE(pump_runs());
+    reader->pump_next = 1;
+    run_until(1060ms);
+    EXPECT_TRUE(pump_runs());
+    EXPECT_GE(server->counters().requests, before + 1);
+}
+
+TEST_F(Utility, reads_and_writes_in_one_cycle_when_both_are_due) {
+    run_until(1020ms);
+    reader->pump_next = 1;
+    const auto before = server->counters().answers;
+    run_until(1120ms); // two cycles
+    EXPECT_TRUE(pump_runs());
+    EXPECT_GE(server->counters().answers - before, 2u);
+}
+
+TEST_F(Utility, lets_the_age_grow_while_the_server_is_silent) {
+    run_until(1s);
+    twin.inject(modbus::Fault::silent);
+    const double last = reader->value;
+    twin.set(modbus::Table::input_registers, 0, 999);
+    run_until(1400ms);
+    EXPECT_GT(reader->age, 300ms);
+    EXPECT_NE(reader->flow, Flow::stale);
+    run_until(3s);
+    EXPECT_GT(reader->age, 1900ms);
+    EXPECT_EQ(reader->flow, Flow::stale);
+    EXPECT_EQ(reader->value, last) << "the row says hold";
+    EXPECT_FALSE(reader->connected.get());
+    EXPECT_EQ(reader->outages.get(), 1);
+    EXPECT_EQ(reader->lost, 1) << "told once";
+    EXPECT_EQ(reader->back, 0);
+}
+
+TEST_F(Utility, asks_a_silent_server_ever_more_seldom) {
+    run_until(1s);
+    twin.inject(modbus::Fault::silent);
+    run_until(11s);
+    const auto first = server->counters().timeouts;
+    EXPECT_LE(first, 8u) << "waits of 100, 200, 400 ... ms";
+    run_until(60s);
+    EXPECT_LE(server->counters().timeouts - first, 6u) << "10 s apart at most";
+    EXPECT_GE(server->counters().timeouts - first, 3u) << "and never given up";
+}
+
+TEST_F(Utility, reconnects_and_reads_fresh_values) {
+    run_until(1s);
+    twin.inject(modbus::Fault::down);
+    run_until(5s);
+    EXPECT_FALSE(reader->connected.get());
+    twin.inject(modbus::Fault::none);
+    twin.set(modbus::Table::input_registers, 0, 123);
+    run_until(16s);
+    EXPECT_TRUE(reader->connected.get());
+    EXPECT_DOUBLE_EQ(reader->value, 12.3);
+    EXPECT_LE(reader->age, 150ms);
+    EXPECT_EQ(reader->survived.get(), 1);
+    EXPECT_EQ(reader->lost, 1);
+    EXPECT_EQ(reader->back, 1);
+}
+
+TEST_F(Utility, writes_nothing_that_grew_stale_during_an_outage) {
+    run_until(1s);
+    twin.inject(modbus::Fault::down);
+    run_until(2s);
+    reader->pump_next = 1;
+    run_until(12s); // good for 5 s
+    twin.inject(modbus::Fault::none);
+    run_until(30s);
+    EXPECT_TRUE(reader->connected.get());
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(Utility, gives_no_fresh_value_for_an_exception) {
+    run_until(1s);
+    twin.inject(modbus::Fault::exception);
+    run_until(3s);
+    EXPECT_EQ(reader->flow, Flow::stale);
+    EXPECT_GT(reader->age, 1900ms);
+    EXPECT_TRUE(reader->connected.get()) << "it does answer";
+}
+
+TEST_F(Utility, waits_for_one_answer_only_when_the_server_is_silent_and_two_rows_are_due) {
+    run_until(1s);
+    twin.inject(modbus::Fault::silent);
+    reader->pump_next = 1;
+    run_until(1100ms); // both are due
+    EXPECT_EQ(server->counters().timeouts, 1u);
+    EXPECT_EQ(reader->lost, 1);
+}
+
+TEST_F(Utility, brings_what_was_written_last_to_the_server_at_stop) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(2s);
+    EXPECT_TRUE(pump_runs());
+    world.stop();
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(2s);
+    twin.inject(modbus::Fault::silent);
+    run_until(4s);
+    const auto before = server->counters().requests;
+    world.stop();
+    EXPECT_EQ(server->counters().requests, before);
+}
+
+} // namespace
+} // namespace tappet::test
