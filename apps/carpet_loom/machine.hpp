@@ -29,7 +29,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
         component<Console>("console")),
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
-        activity("can",     on_device("can"), at_most(16, 1ms), runs("can"),           deadline(500us), budget(12us)),
+        activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
         activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(12us)),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),

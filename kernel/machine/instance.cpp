@@ -228,7 +228,7 @@ void MachineInstance::place_behaviours() {
         const ResolvedSizes& sizes = plan.sizes;
         const ResolvedRoom room{{at<StatePlan>(plan.plans_at), sizes.states},
                                 {at<std::string_view>(plan.triggers_at), sizes.triggers},
-                                {at<StateSlice>(plan.cells_at), sizes.states * sizes.triggers},
+                                {at<ArcIndex>(plan.cells_at), sizes.states * sizes.triggers},
                                 {at<StateArc>(plan.arcs_at), sizes.arcs},
                                 {at<StateProgram>(plan.programs_at), sizes.programs}};
         static_cast<void>(resolve_into(row.machine, room));

@@ -198,7 +198,7 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
         plan.execution_at = ground.take<StateMachineExecution>();
         plan.plans_at = ground.take<StatePlan>(plan.sizes.states);
         plan.triggers_at = ground.take<std::string_view>(plan.sizes.triggers);
-        plan.cells_at = ground.take<StateSlice>(plan.sizes.states * plan.sizes.triggers);
+        plan.cells_at = ground.take<ArcIndex>(plan.sizes.states * plan.sizes.triggers);
         plan.arcs_at = ground.take<StateArc>(plan.sizes.arcs);
         plan.programs_at = ground.take<StateProgram>(plan.sizes.programs);
         ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;

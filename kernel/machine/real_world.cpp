@@ -55,6 +55,7 @@ bool RealWorld::arm(os::ArmingReport& report, int file) {
     const auto engines = instance_.engines();
     int highest = 1;
     Bounded<int, checks::max_activities> processors;
+    os::minimise_timer_slack(); // threads inherit it
     for (std::size_t a = 0; a < engines.size(); ++a) {
         const ActivityPlan& plan = machine.plan.activities[a];
         if (const auto created = activities_[a].create(engines[a], instance_.clock(), plan.priority, plan.processor, instance_.stack_of(a)); !created)
@@ -65,7 +66,6 @@ bool RealWorld::arm(os::ArmingReport& report, int file) {
     os::touch(machine.memory);
     if (const auto locked = os::lock_memory(); !locked) report.fault("memory-lock", locked.error(), Sentence{"see the reason"});
     if (auto held = os::hold_cpu_dma_latency(); held) latency_ = std::move(*held);
-    os::minimise_timer_slack();
     os::heap::seal();
     os::ArmingOptions options;
     options.processors = {processors.begin(), processors.end()};

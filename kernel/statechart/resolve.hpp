@@ -21,7 +21,6 @@ struct ProgramSlice {
 using ArcIndex = std::uint16_t;
 inline constexpr ArcIndex start_arc = 0;
 inline constexpr ArcIndex reset_arc = 1;
-using StateSlice = ArcIndex;                  ///< what a cell holds: the first arc of its list
 inline constexpr ArcIndex no_arc = start_arc; ///< in a list of arcs, where no start stands
 
 /// One way out of one leaf.
