@@ -14,27 +14,32 @@ VirtualWorld::VirtualWorld(MachineInstance& instance) noexcept : instance_{insta
 }
 
 void VirtualWorld::start() {
-    for (Engine& engine : instance_.engines()) engine.start(instance_.clock().now());
+    const auto engines = instance_.engines();
+    for (Engine& engine : engines) engine.start(instance_.clock().now());
+    for (std::size_t a = 0; a < engines.size(); ++a) wake_at_[a] = engines[a].next_wake();
 }
 
 Time VirtualWorld::next_time() const {
     Time next = never;
     for (const VirtualProcess& process : processes_) next = std::min(next, process.next(process.self));
-    for (Engine& engine : instance_.engines()) {
-        if (engine.waiter().is_woken()) return instance_.clock().now();
-        next = std::min(next, engine.next_wake());
+    const auto engines = instance_.engines();
+    for (std::size_t a = 0; a < engines.size(); ++a) {
+        if (engines[a].waiter().is_woken()) return instance_.clock().now();
+        next = std::min(next, wake_at_[a]);
     }
     return next;
 }
 
 void VirtualWorld::run_engines(Time now) {
+    const auto engines = instance_.engines();
     for (int round = 0; round < max_rounds_per_instant; ++round) {
         bool ran = false;
         for (const std::size_t a : by_urgency_) {
-            Engine& engine = instance_.engines()[a];
-            const bool woken = engine.waiter().take();
-            if (!woken && engine.next_wake() > now) continue;
+            Engine& engine = engines[a];
+            const bool woken = engine.waiter().is_woken() && engine.waiter().take();
+            if (!woken && wake_at_[a] > now) continue;
             engine.run(woken);
+            wake_at_[a] = engine.next_wake();
             ++steps_;
             ran = true;
             break; // the most urgent of those that are ready now runs next

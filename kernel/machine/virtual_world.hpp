@@ -5,6 +5,8 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/machine/instance.hpp"
 
+#include <array>
+
 namespace tappet {
 
 /// Something beside the machine that lives in virtual time: a plant, a twin that delays frames.
@@ -40,6 +42,8 @@ private:
     MachineInstance& instance_;
     Bounded<VirtualProcess, 8> processes_{};
     Bounded<std::size_t, checks::max_activities> by_urgency_{};
+    // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at all its timers.
+    std::array<Time, checks::max_activities> wake_at_{};
     std::uint64_t steps_ = 0;
 };
 

@@ -77,6 +77,7 @@ void InProcessLoom::frames_to_machine(Time now) {
 
 void InProcessLoom::lines_to_plant(Time now) {
     const gpio::Mask outputs = lines_.outputs();
+    if (outputs == seen_outputs_) return;
     for (std::size_t i = 0; i < line_settings_.size(); ++i)
         if (line_settings_[i].role == gpio::Role::output && ((outputs ^ seen_outputs_) >> i & 1u) != 0)
             plant_.set_line(line_settings_[i].offset, (outputs >> i & 1u) != 0, now);
