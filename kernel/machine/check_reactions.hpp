@@ -12,7 +12,7 @@ template <class... Pieces> constexpr Sentence of_reaction(const ReactionRow& row
     return Sentence{"reaction \"", row.event, "\" -> \"", row.target.operation, "\"", fault...};
 }
 template <class... Pieces> constexpr Sentence of_behaviour(const BehaviourRow& row, const Pieces&... fault) {
-    return Sentence{"behaviour of \"", row.component, "\"", fault...};
+    return Sentence{row.is_slot() ? "slot of \"" : "behaviour of \"", row.component, "\"", fault...};
 }
 
 /// Fills the ends of each reaction.
@@ -105,24 +105,24 @@ constexpr Sentence resolve_trigger(const MachineView& m, const BehaviourRow& row
 constexpr Sentence check_slot(const MachineView& m, const BehaviourRow& row) {
     const Slot& slot = row.slot;
     if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
-        return of_behaviour(row, ": its slot reserves no nodes, data or depth; state all three");
+        return of_behaviour(row, " reserves no nodes, data or depth; state all three");
     for (const auto& peer : slot.peers)
         if (find_component(m, peer) == nowhere)
-            return of_behaviour(row, ": its slot's peer: ", unknown_component(m, peer));
+            return of_behaviour(row, ": among its peers, ", unknown_component(m, peer));
     End found;
     for (const auto& name : slot.operations) {
         if (Sentence fault = resolve(m, name, FacetKind::operation, found); !fault.empty())
-            return of_behaviour(row, ": its slot's operation: ", fault);
+            return of_behaviour(row, ": among its operations, ", fault);
         if (facet_at(m, found).kind != FacetKind::operation)
-            return of_behaviour(row, ": its slot's operation \"", name, "\" is ",
-                                to_text(facet_at(m, found).kind), "; name an operation");
+            return of_behaviour(row, ": among its operations, \"", name, "\" is ",
+                                to_text(facet_at(m, found).kind), ", not an operation; name an operation");
     }
     for (const auto& name : slot.events) {
         if (Sentence fault = resolve(m, name, FacetKind::event, found); !fault.empty())
-            return of_behaviour(row, ": its slot's event: ", fault);
+            return of_behaviour(row, ": among its events, ", fault);
         if (facet_at(m, found).kind != FacetKind::event)
-            return of_behaviour(row, ": its slot's event \"", name, "\" is ",
-                                to_text(facet_at(m, found).kind), "; name an event");
+            return of_behaviour(row, ": among its events, \"", name, "\" is ",
+                                to_text(facet_at(m, found).kind), ", not an event; name an event");
     }
     return {};
 }
@@ -145,12 +145,14 @@ constexpr Sentence check_behaviours(const MachineView& m) {
                                 row.machine.component->name, " but \"", row.component, "\" is a ",
                                 m.components[component].type->tag->name, "; name a component of its type");
         if (Sentence fault = check(row.machine); !fault.empty()) return of_behaviour(row, ": ", fault);
-        for (const auto& transition : row.machine.transitions) {
+        for (std::size_t t = 0; t < row.machine.transitions.size(); ++t) {
+            const TransitionRow& transition = row.machine.transitions[t];
             if (!transition.on_event) continue;
             End found;
             if (Sentence fault = resolve_trigger(m, row, transition.event, found); !fault.empty())
-                return of_behaviour(row, ": state machine \"", row.machine.name, "\", transition \"",
-                                    transition.from, "\" -> \"", transition.to, "\": ", fault);
+                return of_behaviour(row, ": state machine \"", row.machine.name, "\": transition ", t + 1,
+                                    " (\"", transition.from, "\" to \"", transition.to, "\" on \"",
+                                    transition.event, "\"): ", fault);
         }
     }
     for (const auto& row : m.components) {

@@ -1,0 +1,130 @@
+// The check of a whole table, on mutated copies of two machines: the small one of the golden tests, and the
+// carpet loom.
+#include "apps/carpet_loom/machine.hpp"
+#include "board/host/board.hpp"
+#include "tests/diagnostics/mutations.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace tappet;
+using testing::UnorderedElementsAreArray;
+
+constexpr auto small_loom =
+    small::loom(small::good_components, small::good_activities, small::good_connections,
+                small::good_reactions, small::good_behaviours);
+
+diagnostics::Tally mutate(const MachineView& table, const Board& board) {
+    const diagnostics::Tally tally = diagnostics::Mutations{table, board}.run();
+    std::cout << table.name << ": " << tally << '\n';
+    return tally;
+}
+
+TEST(Check, accepts_the_machines_that_are_mutated) {
+    EXPECT_EQ(diagnostics::refusal_of(small_loom.view(), small::good_board), "");
+    EXPECT_EQ(diagnostics::refusal_of(carpet::carpet_loom.view(), board::host), "");
+}
+
+TEST(Check, refuses_every_mutation_of_the_small_machine_and_names_its_row) {
+    const diagnostics::Tally tally = mutate(small_loom.view(), small::good_board);
+    EXPECT_GT(tally.all(), 1000u);
+    for (const auto& each : tally.wrong) ADD_FAILURE() << each;
+}
+
+TEST(Check, refuses_every_mutation_of_the_carpet_loom_and_names_its_row) {
+    const diagnostics::Tally tally = mutate(carpet::carpet_loom.view(), board::host);
+    EXPECT_GT(tally.all(), 5000u);
+    for (const auto& each : tally.wrong) ADD_FAILURE() << each;
+}
+
+TEST(Check, lets_only_these_rows_of_the_carpet_loom_be_dropped) {
+    EXPECT_THAT(mutate(carpet::carpet_loom.view(), board::host).may_be_dropped,
+                UnorderedElementsAreArray<std::string>({
+                    // The operation is required, and another row names it too.
+                    R"(reaction "weft.missed" -> "shaft.stop_at_angle")",
+                    R"(reaction "loom.stop_shaft" -> "shaft.stop_at_angle")",
+                    // What a driver offers is not demanded: it knows no machine.
+                    R"(reaction "shaft.brake_now" -> "io.brake.set")",
+                    R"(reaction "loom.set_brake" -> "io.brake.set")",
+                    R"(reaction "loom.quick_stop" -> "can.purge")",
+                    // Room for a behaviour that is loaded later.
+                    R"(slot of "weft")",
+                }));
+}
+
+TEST(Check, lets_only_these_rows_of_the_small_machine_be_dropped) {
+    EXPECT_THAT(mutate(small_loom.view(), small::good_board).may_be_dropped,
+                UnorderedElementsAreArray<std::string>({
+                    R"(connection "weft.reference" -> "shaft.reference")", // the input is optional
+                    // None of these operations is required.
+                    R"(reaction "shaft.window" -> "tension.pre_tension")",
+                    R"(reaction "weft.inserted" -> "lamps.green")",
+                    R"(reaction "weft.broken" -> "shaft.clear")",
+                    R"(reaction "weft.broken" -> "tension.relax")",
+                }));
+}
+
+// What no table row can say, since only the sizes of a table decide it.
+
+TEST(Check, refuses_more_buffers_on_a_port_than_it_has_room_for) {
+    std::vector<ComponentRow> components{component<small::Shaft>("shaft")};
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i <= max_buffer_rows; ++i) names.push_back("encoder_" + std::to_string(i));
+    std::vector<std::string> paths;
+    for (const auto& name : names) paths.push_back(name + ".samples");
+    for (const auto& name : names) components.push_back(component<small::Encoder>(name, device(name)));
+    std::vector<ActivityRow> activities{activity("all", every(1ms), budget(1us), runs("shaft"))};
+    for (const auto& name : names) ASSERT_TRUE(activities[0].runs.push(name));
+    std::vector<ConnectionRow> connections;
+    for (const auto& path : paths) connections.push_back(buffer<4>(path, "shaft.samples"));
+    const MachineView table{"many", components, activities, connections, {}, {}};
+    EXPECT_EQ(diagnostics::refusal_of(table, small::good_board),
+              "many: connection \"encoder_8.samples\" -> \"shaft.samples\" is one more than the 8 buffer "
+              "rows a port "
+              "may have; merge some");
+}
+
+TEST(Check, names_the_whole_way_round_a_data_flow_cycle) {
+    const std::vector<ComponentRow> components{component<small::Shaft>("a"), component<small::Shaft>("b"),
+                                               component<small::Shaft>("c"), component<small::Shaft>("led"),
+                                               component<small::Shaft>("leading")};
+    const std::vector<ActivityRow> activities{
+        activity("all", every(1ms), budget(1us), runs("led", "c", "b", "a", "leading"))};
+    const std::vector<ConnectionRow> connections{
+        data("leading.speed", "a.reference"), data("a.speed", "b.measured"),
+        data("b.speed", "c.measured"),        data("c.speed", "a.measured"),
+        data("c.speed", "led.measured"),      data("led.speed", "leading.measured", delayed)};
+    const MachineView table{"ring", components, activities, connections, {}, {}};
+    EXPECT_EQ(
+        diagnostics::refusal_of(table, small::good_board),
+        "ring: connection \"c.speed\" -> \"a.measured\" closes a data-flow cycle inside activity \"all\" "
+        "(a -> b -> c -> a); add delayed to the row whose reader shall see the last cycle's value");
+}
+
+TEST(Check, orders_the_components_of_an_activity_by_data_flow_whatever_their_order_in_the_row) {
+    const std::vector<ComponentRow> components{component<small::Tension>("last"),
+                                               component<small::Shaft>("middle"),
+                                               component<small::Shaft>("first")};
+    const std::vector<ActivityRow> activities{
+        activity("all", every(1ms), budget(1us), runs("last", "middle", "first"))};
+    const std::vector<ConnectionRow> connections{data("middle.speed", "last.speed"),
+                                                 data("first.speed", "middle.measured"),
+                                                 data("last.torque", "first.measured", delayed)};
+    const std::vector<ReactionRow> reactions{};
+    TableIndex<3, 1, 3, 0> index;
+    const MachineView table{"row", components, activities, connections, reactions, {}};
+    ASSERT_EQ(checks::check_components(table, index.view()).view(), "");
+    ASSERT_EQ(checks::check_activities(table, index.view()).view(), "");
+    ASSERT_EQ(checks::check_connections(table, index.view()).view(), "");
+    ASSERT_EQ(checks::order_components(table, index.view()).view(), "");
+    // last, middle, first; the delayed row lets its reader run first.
+    EXPECT_THAT(index.position, testing::ElementsAre(2, 1, 0));
+}
+
+} // namespace
