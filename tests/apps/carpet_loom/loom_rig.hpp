@@ -1,0 +1,99 @@
+// The carpet loom on the host under virtual time, as a test sees it: run until something is so, ask for the state and
+// its reason, and what the plant says of the run.
+#pragma once
+
+#include "apps/carpet_loom/host/virtual_run.hpp"
+#include "apps/carpet_loom/machine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+namespace tappet::carpet {
+
+/// Only what a test asks for goes wrong; the operator is at work.
+inline loom::Settings no_faults() { return {}; }
+
+class LoomRig {
+public:
+    explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = no_faults()) : run_{std::make_unique<VirtualRun>(settings, seed)} {
+        const auto started = run_->start();
+        EXPECT_TRUE(started) << started.error().view();
+    }
+    ~LoomRig() { run_->stop(); }
+    LoomRig(const LoomRig&) = delete;
+    LoomRig& operator=(const LoomRig&) = delete;
+
+    void run_for(Duration time) { static_cast<void>(run_->run_for(time)); }
+    /// Looks every millisecond. False when `limit` passed first.
+    template <class Condition>
+    bool run_until(Condition condition, Duration limit) {
+        for (const Time end = now() + limit; now() < end; run_for(1ms))
+            if (condition()) return true;
+        return condition();
+    }
+    bool run_until_state(std::string_view wanted, Duration limit) {
+        return run_until([&] { return state() == wanted; }, limit);
+    }
+    /// Prepared, started by the operator, and some picks on its way.
+    bool weave(std::uint64_t picks = 5) {
+        const std::uint64_t wanted = plant().picks() + picks;
+        return run_until([&] { return state() == "weave" && plant().picks() >= wanted; }, 30s);
+    }
+
+    [[nodiscard]] Time now() { return run_->clock().now(); }
+    [[nodiscard]] std::string_view state() {
+        const auto path = execution().path();
+        return path.empty() ? std::string_view{} : path[path.size() - 1];
+    }
+    /// Of the last transition that gave one.
+    [[nodiscard]] std::string_view reason() { return execution().reason(); }
+    [[nodiscard]] const StateMachineExecution& execution() { return *run_->instance().state_machine_of("loom"); }
+
+    template <class T>
+    [[nodiscard]] T& component(std::string_view name) {
+        return *run_->instance().find<T>(name);
+    }
+    [[nodiscard]] StopCause cause() { return static_cast<StopCause>(component<Loom>("loom").cause.last()); }
+    [[nodiscard]] VirtualRun& run() { return *run_; }
+    [[nodiscard]] InProcessLoom& wires() { return run_->loom(); }
+    [[nodiscard]] loom::Plant& plant() { return run_->loom().plant(); }
+    [[nodiscard]] loom::Report report() { return plant().report(); }
+    /// The machine's output line of this offset, as it is on the wire.
+    [[nodiscard]] bool output(unsigned offset) {
+        return (wires().lines().outputs() >> line_index(offset) & 1u) != 0;
+    }
+    /// Of the twin's lines, by the wire's offset.
+    [[nodiscard]] static std::size_t line_index(unsigned offset) {
+        namespace line = wires::line;
+        constexpr std::array<unsigned, 12> offsets{line::emergency_stop, line::drop_wire, line::weft_detector, line::button_start, line::button_stop, line::button_acknowledge,
+                                                   line::weft_release,   line::brake,     line::lamp_run,      line::lamp_stop,    line::lamp_fault,  line::yarn_cutter};
+        for (std::size_t i = 0; i < offsets.size(); ++i)
+            if (offsets[i] == offset) return i;
+        ADD_FAILURE() << "no line of offset " << offset;
+        return 0;
+    }
+
+private:
+    std::unique_ptr<VirtualRun> run_;
+};
+
+/// Every stop for a weft or a warp end within the tolerance of the stop angle.
+inline void expect_stops_in_tolerance(const loom::Report& report) {
+    for (const loom::Stop& stop : report.stops) {
+        const bool is_guided = stop.cause == loom::StopCause::weft || stop.cause == loom::StopCause::warp || stop.cause == loom::StopCause::operator_stop;
+        if (!is_guided) continue;
+        EXPECT_LE(std::abs(stop.error_deg), wires::nominal::stop_tolerance_deg) << "seed " << report.seed << ": a stop by " << name_of(stop.cause) << " at pick " << stop.at_pick << " stood at " << stop.angle_deg << " deg";
+    }
+}
+
+inline void expect_no_damage(const loom::Report& report) {
+    const loom::Damage& damage = report.damage;
+    EXPECT_EQ(damage.total(), 0u) << "seed " << report.seed << ": closed_shed_wefts " << damage.closed_shed_wefts << ", double_wefts " << damage.double_wefts << ", late_wefts " << damage.late_wefts << ", valve_after_emergency " << damage.valve_after_emergency
+                                  << ", tension_high " << damage.tension_high << ", tension_low " << damage.tension_low << ", moved_unpowered " << damage.moved_unpowered << ", motor_blocked " << damage.motor_blocked << ", ran_dry " << damage.ran_dry;
+}
+
+} // namespace tappet::carpet
