@@ -67,6 +67,7 @@ template <const auto& map> struct LinePort {
     Sentence configure(Setup& setup) {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
+        clock_ = setup.clock;
         if (device_ == nullptr) return setup.no_device();
         if (const int handle = device_->wait_handle(); handle < 0)
             device_->set_listener(&os::Waiter::wake_thunk, waiter_);
@@ -202,7 +203,8 @@ private:
     void take(const Edge& edge) noexcept TAPPET_REALTIME {
         if (edge.line >= count) return;
         const Mask line = Mask{1} << edge.line;
-        const bool told_already = (from_reading_ & line) != 0 && bit(levels_, edge.line) == edge.rising;
+        const bool told_already =
+            (from_reading_ & line) != 0 && edge.stamp <= read_at_ && bit(levels_, edge.line) == edge.rising;
         from_reading_ &= ~line;
         if (!told_already) tell(edge.line, edge.rising, edge.stamp);
     }
@@ -226,6 +228,7 @@ private:
     // An edge that waits in the kernel while the levels are read shows in them already.
     void read_levels(Time now) noexcept TAPPET_REALTIME {
         const Levels read = device_->levels();
+        read_at_ = clock_->now();
         doubtful_ = !read.known;
         if (!read.known) return;
         for (std::size_t i = 0; i < count; ++i) {
@@ -264,6 +267,8 @@ private:
     std::array<Edge, edges_per_cycle> edges_{};
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
+    os::Clock* clock_ = nullptr;
+    Time read_at_{};        // the levels, last
     Mask levels_ = 0;       // as told
     Mask from_reading_ = 0; // told from the levels, and no edge came since
     Mask written_ = 0;      // outputs that were written once

@@ -14,15 +14,16 @@
 
 namespace tappet::test {
 
-inline constexpr auto signals =
-    can::signal_map(can::receive(can::standard(0x181), "drive", can::bytes(6), can::stale_after(20ms),
-                                 can::signal("statusword", 0, 16),
-                                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-                    can::transmit(can::standard(0x201), "drive_command", can::bytes(6), can::every(2ms),
-                                  can::signal("controlword", 0, 16),
-                                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-                    can::transmit(can::standard(0x000), "nmt", can::bytes(2), can::on_demand,
-                                  can::signal("command", 0, 8), can::signal("node", 8, 8)));
+inline constexpr auto signals = can::signal_map(
+    can::receive(can::standard(0x181), "drive", can::bytes(6), can::stale_after(20ms),
+                 can::signal("statusword", 0, 16),
+                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+    can::transmit(can::standard(0x201), "drive_command", can::bytes(6), can::every(2ms),
+                  can::signal("controlword", 0, 16),
+                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+    can::transmit(can::standard(0x000), "nmt", can::bytes(2), can::on_demand, can::signal("command", 0, 8),
+                  can::signal("node", 8, 8)),
+    can::transmit(can::standard(0x080), "sync", can::bytes(1), can::on_demand, can::signal("count", 0, 8)));
 
 /// Does in each cycle what the test has set.
 struct Master {
@@ -40,6 +41,7 @@ struct Master {
     Output<double> target{};
     Output<std::int64_t> command{};
     Output<std::int64_t> node{};
+    Output<std::int64_t> sync{};
 
     bool writes_controlword = true;
     bool writes_target = true;
@@ -47,6 +49,7 @@ struct Master {
     double rpm = 100;
     Bounded<Demand, 16> demands{}; // one a cycle
     Bounded<std::int64_t, 4> commands_alone{};
+    int sync_next = -1; // written in the next cycle
     Duration overrun{};
     os::Clock* clock = nullptr;
     bool was_faulted = false;
@@ -73,6 +76,8 @@ struct Master {
         }
         for (const std::int64_t each : commands_alone) command.write(each);
         commands_alone.clear();
+        if (sync_next >= 0) sync.write(sync_next);
+        sync_next = -1;
         if (overrun > 0ns) clock->consume(overrun);
         overrun = 0ns;
     }
@@ -87,8 +92,9 @@ struct Master {
             input<&Master::faulted>("faulted", "", ""), input<&Master::lost>("lost", "", ""),
             input<&Master::received>("received", "", ""), output<&Master::controlword>("controlword", "", ""),
             output<&Master::target>("target", "rpm", ""), output<&Master::command>("command", "", ""),
-            output<&Master::node>("node", "", ""), operation<&Master::on_frame>("on_frame", ""),
-            operation<&Master::on_fault>("on_fault", ""), operation<&Master::on_recovery>("on_recovery", ""),
+            output<&Master::node>("node", "", ""), output<&Master::sync>("sync", "", ""),
+            operation<&Master::on_frame>("on_frame", ""), operation<&Master::on_fault>("on_fault", ""),
+            operation<&Master::on_recovery>("on_recovery", ""),
             operation<&Master::on_surrender>("on_surrender", ""));
     }
 };
@@ -115,7 +121,8 @@ inline constexpr auto can_machine = machine("can-machine",
         data("master.controlword",   "can.drive_command.controlword", stale_after(10ms), hold),
         data("master.target",        "can.drive_command.velocity",    stale_after(10ms), hold),
         data("master.command",       "can.nmt.command", wakes),
-        data("master.node",          "can.nmt.node",    wakes)),
+        data("master.node",          "can.nmt.node",    wakes),
+        data("master.sync",          "can.sync.count")),
     reactions(
         when("can.drive.received",  tell("master.on_frame", queue(64))),
         when("can.bus_fault",       tell("master.on_fault")),
@@ -126,7 +133,8 @@ inline constexpr auto can_machine = machine("can-machine",
 
 /// The machine, the wire and its far end, which hears everything and sends what a test gives it.
 struct CanMachine : testing::Test {
-    static constexpr std::array machine_sends{can::standard(0x201), can::standard(0x000)};
+    static constexpr std::array machine_sends{can::standard(0x201), can::standard(0x000),
+                                              can::standard(0x080)};
     static constexpr std::array machine_hears{can::standard(0x181),
                                               can::standard(0x555)}; // one more than its map
     static constexpr std::array far_end_sends{can::standard(0x181), can::standard(0x555)};

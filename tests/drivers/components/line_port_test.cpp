@@ -218,19 +218,20 @@ TEST_F(Lines, tell_every_edge_of_a_burst_that_did_arrive_though_others_were_lost
 
 TEST_F(Lines, tell_no_edge_twice_that_arrives_after_the_levels_were_read) {
     run_until(1ms);
-    twin.faults(stop_button).delay = 1ms; // its level shows at once, its edge comes late
-    EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us}));
     twin.faults(weft).lose_next = 1;
-    EXPECT_TRUE(twin.drive(weft, true, Time{2020us}));
-    EXPECT_TRUE(twin.drive(weft, false, Time{2030us}));
+    EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
+    EXPECT_TRUE(twin.drive(weft, false, Time{2020us})); // shows the gap
+    twin.faults(stop_button).delay = 1ms;               // its level shows at once, its edge comes late
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{2030us}));
     run_until(10ms);
-    int rises = 0;
-    for (const Heard& each : heard()) rises += each.what == What::stop_rose;
-    EXPECT_EQ(rises, 1);
+    EXPECT_EQ(heard(),
+              (std::vector<Heard>{
+                  {What::edges_lost, {}}, {What::weft_fell, Time{2020us}}, {What::stop_rose, Time{2100us}}}));
     EXPECT_TRUE(twin.drive(stop_button, false, Time{11ms}));
     EXPECT_TRUE(twin.drive(stop_button, true, Time{12ms}));
     run_until(15ms);
-    EXPECT_EQ(heard().back(), (Heard{What::stop_rose, Time{12ms}})) << "later edges count as ever";
+    ASSERT_EQ(heard().size(), 5u) << "later edges count as ever";
+    EXPECT_EQ(heard().back(), (Heard{What::stop_rose, Time{12ms}}));
 }
 
 TEST_F(Lines, drive_a_lamp_only_when_it_was_written_and_at_once) {

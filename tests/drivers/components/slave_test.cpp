@@ -25,6 +25,7 @@ struct Reader {
     int pump_next = -1; // 0, 1: written in the next cycle
     int lost = 0, back = 0;
     Flow flow = Flow::never_written;
+    std::uint64_t fresh = 0;
     Duration age{};
     double value = 0;
 
@@ -32,6 +33,7 @@ struct Reader {
     void on_back() noexcept TAPPET_REALTIME { ++back; }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         flow = temperature.read(value);
+        fresh += flow == Flow::fresh ? 1u : 0u;
         age = cycle.now - temperature.stamp();
         if (pump_next >= 0) pump.write(pump_next);
         pump_next = -1;
@@ -97,6 +99,7 @@ TEST_F(Utility, gives_values_the_time_of_their_answer) {
     EXPECT_EQ(reader->outages.get(), 0);
     EXPECT_EQ(reader->lost, 0);
     EXPECT_GE(server->counters().answers, 9u);
+    EXPECT_LE(reader->fresh, server->counters().answers) << "one answer is fresh once";
 }
 
 TEST_F(Utility, writes_a_change_soon_and_nothing_that_nobody_set) {
@@ -193,6 +196,13 @@ TEST_F(Utility, waits_for_one_answer_only_when_the_server_is_silent_and_two_rows
     EXPECT_EQ(reader->lost, 1);
 }
 
+TEST_F(Utility, keeps_its_back_off_however_long_its_period_is) {
+    run_until(1s);
+    twin.inject(modbus::Fault::silent);
+    server->work({clock.now(), clock.now(), 10s});
+    EXPECT_LE(server->counters().timeouts, 1u);
+}
+
 TEST_F(Utility, brings_what_was_written_last_to_the_server_at_stop) {
     run_until(1s);
     reader->pump_next = 1;
@@ -208,6 +218,7 @@ TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
     run_until(2s);
     twin.inject(modbus::Fault::silent);
     run_until(4s);
+    clock.advance_to(clock.now() + 20s); // it would be asked again now
     const auto before = server->counters().requests;
     world.stop();
     EXPECT_EQ(server->counters().requests, before);
