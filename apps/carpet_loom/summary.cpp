@@ -15,7 +15,7 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
         const EngineStatistics& seen = engine.statistics();
         json.open('{').field("name", engine.name()).field("cycles", seen.cycles).field("longest_busy_us", static_cast<double>(seen.longest_busy.count()) * 1e-3);
         json.field("longest_response_us", static_cast<double>(seen.longest_response.count()) * 1e-3).field("deadline_misses", seen.misses).field("skipped_periods", seen.skipped_periods);
-        json.field("wakes_too_many", seen.wakes_too_many);
+        json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3).field("wakes_too_many", seen.wakes_too_many);
         json.key("functions").open('[');
         const EnginePlan& plan = engine.plan();
         constexpr std::string_view kinds[] = {"step", "timers", "reactions", "behaviour"};

@@ -60,6 +60,7 @@ struct EnginePlan {
     bool real_time = true;
     Duration period{};
     Duration deadline{};
+    Duration budget{}; ///< claimed by the table; compare with EngineStatistics::longest_busy
     std::int64_t at_most_n = 1;
     Duration at_most_per{};
     bool stop_when_late = false;

@@ -97,6 +97,7 @@ void MachineInstance::place_engines() {
         engine.real_time = row.real_time;
         engine.period = row.period;
         engine.deadline = row.real_time ? row.deadline() : Duration::zero();
+        engine.budget = row.budget_each;
         engine.at_most_n = row.at_most_n;
         engine.at_most_per = row.at_most_per;
         engine.stop_when_late = row.when_late == WhenLate::stop;
