@@ -209,15 +209,16 @@ private:
         // After as many steps as there are members the walk is inside a cycle, whatever led to it.
         for (std::size_t steps = 0; steps < members_.size(); ++steps) at = edge_into(at).before;
         const std::size_t met = at;
-        std::size_t last = 0;
-        Sentence way{m_.components[members_[met]].name};
+        Edge last = edge_into(at);
+        for (at = last.before; at != met; at = edge_into(at).before)
+            if (edge_into(at).row > last.row) last = edge_into(at);
+        at = last.after;
+        Sentence way{m_.components[members_[at]].name};
         do {
-            const Edge edge = edge_into(at);
-            at = edge.before;
-            if (edge.row > last) last = edge.row;
+            at = edge_into(at).before;
             way = Sentence{m_.components[members_[at]].name, " -> ", way};
-        } while (at != met);
-        return of_connection(m_.connections[last], " closes a data-flow cycle inside activity \"",
+        } while (at != last.after);
+        return of_connection(m_.connections[last.row], " closes a data-flow cycle inside activity \"",
                              m_.activities[activity].name, "\" (", way,
                              "); add delayed to the row whose reader shall see the last cycle's value");
     }

@@ -1,5 +1,5 @@
 // A transition waits for an operation.
-// refused: loom: behaviour of "weft": state machine "faulty_cycle", transition "idle" -> "weaving": "shaft.clear" is an operation, not an event; name an event in on(...)
+// refused: loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.clear"): "shaft.clear" is an operation, not an event; name an event in on(...)
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

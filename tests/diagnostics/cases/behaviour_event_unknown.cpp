@@ -1,5 +1,5 @@
 // A transition waits for an event that is misspelt.
-// refused: loom: behaviour of "weft": state machine "faulty_cycle", transition "weaving" -> "safe": component "weft" has no event "brokn"; did you mean "broken"?
+// refused: loom: behaviour of "weft": state machine "faulty_cycle": transition 2 ("weaving" to "safe" on "brokn"): component "weft" has no event "brokn"; did you mean "broken"?
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

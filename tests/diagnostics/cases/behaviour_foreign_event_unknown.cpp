@@ -1,5 +1,5 @@
 // A transition waits for another component's event that is misspelt.
-// refused: loom: behaviour of "weft": state machine "faulty_cycle", transition "idle" -> "weaving": component "shaft" has no event "windw"; did you mean "window"?
+// refused: loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.windw"): component "shaft" has no event "windw"; did you mean "window"?
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

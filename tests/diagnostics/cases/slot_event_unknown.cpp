@@ -1,5 +1,5 @@
 // A slot's reach names an event that is none.
-// refused: loom: behaviour of "shaft": its slot's event "weft.release" is an operation; name an event
+// refused: loom: slot of "shaft": among its events, "weft.release" is an operation, not an event; name an event
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

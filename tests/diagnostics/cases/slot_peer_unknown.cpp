@@ -1,5 +1,5 @@
 // A slot's reach names a component that is misspelt.
-// refused: loom: behaviour of "shaft": its slot's peer: there is no component "wefft"; did you mean "weft"?
+// refused: loom: slot of "shaft": among its peers, there is no component "wefft"; did you mean "weft"?
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

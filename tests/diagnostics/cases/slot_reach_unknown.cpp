@@ -1,5 +1,5 @@
 // A slot's reach names an operation that is misspelt.
-// refused: loom: behaviour of "shaft": its slot's operation: component "weft" has no operation "relase"; did you mean "release"?
+// refused: loom: slot of "shaft": among its operations, component "weft" has no operation "relase"; did you mean "release"?
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

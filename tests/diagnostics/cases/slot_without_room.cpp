@@ -1,5 +1,5 @@
 // A slot reserves nothing.
-// refused: loom: behaviour of "shaft": its slot reserves no nodes, data or depth; state all three
+// refused: loom: slot of "shaft" reserves no nodes, data or depth; state all three
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;
