@@ -283,20 +283,24 @@ Report read_results(const fs::path& path, const std::vector<File>& wanted) {
     return report;
 }
 
-enum class End { complete, emulator_gone, timeout };
+enum class End { complete, emulator_gone, timeout, cancelled };
 
 // Hands the guest's output on until it says that nothing more will come, then answers, upon which it switches
 // off.
 End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output& output,
-           double& boot_wall_s) {
+           const Cancelled& cancelled, double& boot_wall_s) {
     std::array<char, 65536> piece{};
     for (;;) {
+        if (cancelled && cancelled()) {
+            return End::cancelled;
+        }
         const double left = timeout_s - seconds_since(start);
         if (left <= 0) {
             return End::timeout;
         }
         pollfd descriptor{emulator.output, POLLIN, 0};
-        const int ready = ::poll(&descriptor, 1, static_cast<int>(std::min(left, 3600.0) * 1000) + 1);
+        const double patience_s = cancelled ? 0.1 : 3600.0;
+        const int ready = ::poll(&descriptor, 1, static_cast<int>(std::min(left, patience_s) * 1000) + 1);
         if (ready <= 0) {
             continue;
         }
@@ -350,7 +354,7 @@ void check(const Scenario& scenario, const fs::path& kernel) {
     }
 }
 
-Outcome run_checked(const Scenario& scenario, const Output& output) {
+Outcome run_checked(const Scenario& scenario, const Output& output, const Cancelled& cancelled) {
     const fs::path kernel = cache_folder() / "kernel" / scenario.kernel;
     check(scenario, kernel);
     const WorkFolder work(scenario.keep);
@@ -360,12 +364,15 @@ Outcome run_checked(const Scenario& scenario, const Output& output) {
     Emulator emulator;
     emulator.start(emulator_arguments(scenario, kernel, work), work / "emulator.log");
     Outcome outcome;
-    const End end = stream(emulator, start, scenario.timeout_s, output, outcome.boot_wall_s);
+    const End end = stream(emulator, start, scenario.timeout_s, output, cancelled, outcome.boot_wall_s);
     const bool stopped = end == End::complete ? wait_for_end(emulator, 10) : end == End::emulator_gone;
     outcome.total_wall_s = seconds_since(start);
     const Report report = read_results(work / "results", scenario.collect);
     outcome.exit_code = report.exit_code;
-    if (!report.fault.empty()) {
+    if (end == End::cancelled) {
+        outcome.cancelled = true;
+        outcome.fault = "the run was cancelled";
+    } else if (!report.fault.empty()) {
         outcome.fault = "the guest could not be set up: " + report.fault;
     } else if (end == End::timeout) {
         outcome.fault =
@@ -395,9 +402,9 @@ Outcome run_checked(const Scenario& scenario, const Output& output) {
 
 } // namespace
 
-Outcome run(const Scenario& scenario, const Output& output) {
+Outcome run(const Scenario& scenario, const Output& output, const Cancelled& cancelled) {
     try {
-        return run_checked(scenario, output);
+        return run_checked(scenario, output, cancelled);
     } catch (const std::exception& error) {
         Outcome outcome;
         outcome.fault = error.what();

@@ -47,7 +47,7 @@ struct Scenario {
     // end of the scenario. "- " in front: its exit code does not count. Steps of the bench itself: "@sleep
     // SECONDS",
     // "@write PATH TEXT", "@link NAME up|down", "@signal NAME SIGNAL", "@wait NAME" (the code of a background
-    // command).
+    // command), "@wait NAME while OTHER" (the same, but when OTHER ends first, that has failed).
     std::vector<std::string> commands;
     std::vector<File> collect; // copied out of the guest at the end, whatever the outcome
     double timeout_s = 120;    // of wall time
@@ -58,6 +58,7 @@ struct Scenario {
 struct Outcome {
     // The bench itself worked: it booted, ran every step it had to run, and switched off.
     bool completed = false;
+    bool cancelled = false; // by the caller
     int exit_code = -1;     // of the first command that failed, or 0
     std::string fault;      // what, where and cure when not completed
     double boot_wall_s = 0; // power on to the first command
@@ -66,7 +67,10 @@ struct Outcome {
 
 using Output = std::function<void(std::string_view bytes)>;
 
+// Asked ten times a second and after every output; true ends the run at once, and nothing is collected.
+using Cancelled = std::function<bool()>;
+
 // Boots, runs, powers off. Output of the guest's commands is handed on as it comes.
-Outcome run(const Scenario& scenario, const Output& output);
+Outcome run(const Scenario& scenario, const Output& output, const Cancelled& cancelled = {});
 
 } // namespace tappet::bench

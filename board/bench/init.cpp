@@ -397,6 +397,22 @@ BackgroundCommand* find_background(const std::string& name) {
     return nullptr;
 }
 
+// Ends when `wanted` ends, with its code; when `other` ends first, with that one's, which then is a failure.
+int wait_while(const BackgroundCommand& wanted, const BackgroundCommand& other) {
+    while (wanted.pid > 0 && other.pid > 0) {
+        int status = 0;
+        if (const pid_t pid = ::waitpid(-1, &status, 0); pid > 0) {
+            note_end_of(pid, status);
+        }
+    }
+    if (wanted.pid < 0) {
+        return wanted.exit_code;
+    }
+    ::dprintf(console, "bench: '%s' ended with exit code %d while '%s' was still at work\n",
+              other.name.c_str(), other.exit_code, wanted.name.c_str());
+    return other.exit_code != 0 ? other.exit_code : 1;
+}
+
 int signal_number(const std::string& name) {
     if (name == "TERM" || name.empty()) return SIGTERM;
     if (name == "INT") return SIGINT;
@@ -435,6 +451,13 @@ int run_builtin(const std::vector<std::string>& words) {
         if (command == nullptr) {
             return report_misuse(name + ": no command '" + first + "' was started with '&'");
         }
+        if (name == "@wait" && second == "while") {
+            const BackgroundCommand* other = find_background(words.size() > 3 ? words[3] : "");
+            if (other == nullptr) {
+                return report_misuse("@wait NAME while OTHER: OTHER was not started with '&'");
+            }
+            return wait_while(*command, *other);
+        }
         if (name == "@wait") {
             if (command->pid > 0) {
                 const int code = wait_for(command->pid);
@@ -458,7 +481,7 @@ int run_builtin(const std::vector<std::string>& words) {
     }
     return report_misuse(
         "unknown step '" + name +
-        "'; use @sleep S, @write PATH TEXT, @link NAME up|down, @signal NAME SIGNAL or @wait NAME");
+        "'; use @sleep S, @write PATH TEXT, @link NAME up|down, @signal NAME SIGNAL or @wait NAME [while OTHER]");
 }
 
 int run(const std::string& line) {

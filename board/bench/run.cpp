@@ -20,7 +20,7 @@ constexpr int bench_fault = 125;
 constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --run COMMAND          run in the guest, in order; may be given often. "COMMAND &" runs in the background,
                          "- COMMAND" may fail. Also: @sleep S, @write PATH TEXT, @link NAME up|down,
-                         @signal NAME TERM|INT|KILL|STOP|CONT|USR1|HUP, @wait NAME
+                         @signal NAME TERM|INT|KILL|STOP|CONT|USR1|HUP, @wait NAME [while OTHER]
   --file HOST=GUEST      a file or folder for the guest; programs bring their shared libraries
   --tool NAME            a program of this machine for the guest's /bin; python3 brings its standard library
   --can NAME             a virtual CAN interface

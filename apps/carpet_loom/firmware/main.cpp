@@ -68,6 +68,20 @@ int write_summary(const MachineInstance& instance, const RealWorld& world, const
     return ended_well;
 }
 
+/// One line: each real-time activity's worst response and its deadline, in us.
+void print_timing(const MachineInstance& instance) {
+    Sentence line{"timing"};
+    std::uint64_t misses = 0;
+    for (const Engine& engine : instance.engines()) {
+        if (!engine.plan().real_time) continue;
+        const EngineStatistics& seen = engine.statistics();
+        misses += seen.misses;
+        line.add(" ").add(engine.name()).add("=").add(seen.longest_response.count() / 1000).add("/").add(engine.plan().deadline.count() / 1000).add("us");
+    }
+    line.add(" misses=").add(misses).add("\n");
+    os::print(line.view());
+}
+
 void list_misses(const MachineInstance& instance) {
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
@@ -95,7 +109,7 @@ int main(int count, char** words) {
     if (!world.arm(arming, 2)) return refused_to_arm;
     if (!world.start()) return fail(stopped_by_fault, Sentence{"an activity did not start in time"});
     os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ", static_cast<std::int64_t>(arming.warnings()), " warnings\n"}.view());
-    while (world.supervise(1s)) {}
+    while (world.supervise(1s)) print_timing(instance);
 
     const int hung = world.stop();
     const Sentence reason = world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
