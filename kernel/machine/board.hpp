@@ -52,4 +52,32 @@ constexpr BoardDevice board_device(std::string_view name, std::string_view kind,
 
 constexpr BoardLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
 
+constexpr BoardPlacement place(std::string_view activity, int processor) noexcept { return {activity, processor}; }
+
+namespace detail {
+
+template <class T, std::size_t N, class... Items>
+constexpr Bounded<T, N> list_of(const Items&... items) {
+    static_assert(sizeof...(Items) <= N, "a board's list is longer than its room: raise the bound in kernel/machine/board.hpp");
+    Bounded<T, N> list;
+    (static_cast<void>(list.push(T{items})), ...);
+    return list;
+}
+
+} // namespace detail
+
+template <class... Devices>
+constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
+    return detail::list_of<BoardDevice, 16>(devices...);
+}
+template <class... Places>
+constexpr Bounded<BoardPlacement, 32> placements(const Places&... places) {
+    return detail::list_of<BoardPlacement, 32>(places...);
+}
+/// Arming checks, by name, that this development board downgrades to warnings.
+template <class... Names>
+constexpr Bounded<std::string_view, 16> warn_only(const Names&... names) {
+    return detail::list_of<std::string_view, 16>(names...);
+}
+
 } // namespace tappet
