@@ -180,8 +180,8 @@ TEST_F(CanBus, drops_at_a_fault_what_waited_and_what_is_demanded_until_the_resta
     const auto before = heard.size();
     wire.bus_off(twin);
     demand(1, 1);          // demanded into the fault
-    master->sync_next = 1; // and this, which wakes nobody
     run_until(25ms);
+    master->sync_next = 1; // and this, which wakes nobody
     EXPECT_EQ(master->faults, 1);
     EXPECT_TRUE(master->was_faulted);
     master->word = 9;
