@@ -179,7 +179,7 @@ TEST_F(CanBus, drops_at_a_fault_what_waited_and_what_is_demanded_until_the_resta
     run_until(20300us); // off the grid of the frames
     const auto before = heard.size();
     wire.bus_off(twin);
-    demand(1, 1);          // demanded into the fault
+    demand(1, 1); // demanded into the fault
     run_until(25ms);
     master->sync_next = 1; // and this, which wakes nobody
     EXPECT_EQ(master->faults, 1);
