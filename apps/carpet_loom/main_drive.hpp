@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/carpet_loom/change.hpp"
+#include "apps/carpet_loom/drive_axis.hpp"
 #include "apps/carpet_loom/wires.hpp"
-#include "drivers/canopen/cia402.hpp"
 #include "kernel/component/component.hpp"
 
 namespace tappet::carpet {
@@ -23,17 +23,14 @@ struct MainDrive {
     Property<double> at_speed_within_rpm{12.0};
     Property<Duration> brake_release{15ms};
 
-    void enable() noexcept TAPPET_REALTIME {
-        control_.want(canopen::DriveGoal::enabled);
-        control_.acknowledge();
-    }
+    void enable() noexcept TAPPET_REALTIME { axis_.enable(); }
     void disable() noexcept TAPPET_REALTIME {
         running_ = false;
-        control_.want(canopen::DriveGoal::off);
+        axis_.disable();
     }
     void quick_stop() noexcept TAPPET_REALTIME {
         running_ = false;
-        control_.want(canopen::DriveGoal::quick_stop);
+        axis_.quick_stop();
     }
     void run() noexcept TAPPET_REALTIME { running_ = start_asked_ = true; }
     void halt() noexcept TAPPET_REALTIME { running_ = false; }
@@ -43,27 +40,17 @@ struct MainDrive {
         target.write(0.0);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        std::int64_t word = 0;
-        const Flow flow = statusword.read(word);
-        const auto status = static_cast<std::uint16_t>(word);
-        const bool heard = flow == Flow::fresh || flow == Flow::old;
-        const canopen::DriveState state = canopen::drive_state(status);
         if (start_asked_) {
             start_asked_ = false;
             run_from_ = cycle.now + brake_release.get(); // against a brake that still holds the motor would be blocked
         }
         const bool runs = running_ && cycle.now >= run_from_;
-        controlword.write(heard ? control_.controlword(status) : canopen::controlword::disable_voltage);
+        static_cast<void>(axis_.lead(statusword, controlword, enabled, fault));
         target.write(runs ? speed_rpm.get() : 0.0);
-        enabled_.write(enabled, heard && state == canopen::DriveState::operation_enabled);
-        fault_.write(fault, !heard || state == canopen::DriveState::fault || state == canopen::DriveState::fault_reaction_active);
         const double off = velocity.get() - speed_rpm.get();
         at_speed_.write(at_speed, runs && off < at_speed_within_rpm.get() && -off < at_speed_within_rpm.get());
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        controlword.write(canopen::controlword::quick_stop);
-        target.write(0.0);
-    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { DriveAxis::stop(controlword, target); }
 
     static constexpr auto interface() {
         return facets(input<&MainDrive::statusword>("statusword", "", "CiA 402 statusword of the drive"),
@@ -84,11 +71,11 @@ struct MainDrive {
     }
 
 private:
-    canopen::DriveControl control_{};
+    DriveAxis axis_{};
     bool running_ = false;
     bool start_asked_ = false;
     Time run_from_{};
-    Change<bool> enabled_, at_speed_, fault_;
+    Change<bool> at_speed_;
 };
 
 } // namespace tappet::carpet

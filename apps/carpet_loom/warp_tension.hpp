@@ -3,8 +3,8 @@
 #pragma once
 
 #include "apps/carpet_loom/change.hpp"
+#include "apps/carpet_loom/drive_axis.hpp"
 #include "apps/carpet_loom/wires.hpp"
-#include "drivers/canopen/cia402.hpp"
 #include "kernel/component/component.hpp"
 
 #include <algorithm>
@@ -29,32 +29,18 @@ struct WarpTension {
     Property<double> integral_gain{0.02};
     Property<double> beam_radius_mm{wires::nominal::beam_radius_mm};
 
-    void enable() noexcept TAPPET_REALTIME {
-        control_.want(canopen::DriveGoal::enabled);
-        control_.acknowledge();
-    }
-    void disable() noexcept TAPPET_REALTIME { control_.want(canopen::DriveGoal::off); }
+    void enable() noexcept TAPPET_REALTIME { axis_.enable(); }
+    void disable() noexcept TAPPET_REALTIME { axis_.disable(); }
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         controlword.write(canopen::controlword::disable_voltage);
         target.write(0.0);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        std::int64_t word = 0;
-        const Flow flow = statusword.read(word);
-        const auto status = static_cast<std::uint16_t>(word);
-        const bool heard = flow == Flow::fresh || flow == Flow::old;
-        const canopen::DriveState state = canopen::drive_state(status);
-        const bool on = heard && state == canopen::DriveState::operation_enabled;
-        controlword.write(heard ? control_.controlword(status) : canopen::controlword::disable_voltage);
+        const bool on = axis_.lead(statusword, controlword, enabled, fault);
         target.write(on ? controlled(cycle) : 0.0);
-        enabled_.write(enabled, on);
-        fault_.write(fault, !heard || state == canopen::DriveState::fault || state == canopen::DriveState::fault_reaction_active);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        controlword.write(canopen::controlword::quick_stop);
-        target.write(0.0);
-    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { DriveAxis::stop(controlword, target); }
 
     static constexpr auto interface() {
         return facets(input<&WarpTension::measured>("measured", "N", "warp tension at the back rest"),
@@ -92,9 +78,9 @@ private:
         return forward + gain.get() * error + integral_rpm_;
     }
 
-    canopen::DriveControl control_{};
+    DriveAxis axis_{};
     double integral_rpm_ = 0.0;
-    Change<bool> enabled_, in_band_, fault_;
+    Change<bool> in_band_;
 };
 
 } // namespace tappet::carpet

@@ -1,0 +1,46 @@
+// What the loom's two CiA 402 drives have in common: led to their goal each cycle, enabled and fault told on change.
+#pragma once
+
+#include "apps/carpet_loom/change.hpp"
+#include "drivers/canopen/cia402.hpp"
+#include "kernel/component/port.hpp"
+
+namespace tappet::carpet {
+
+/// A part of a component; real-time.
+class DriveAxis {
+public:
+    void enable() noexcept TAPPET_REALTIME {
+        control_.want(canopen::DriveGoal::enabled);
+        control_.acknowledge();
+    }
+    void disable() noexcept TAPPET_REALTIME { control_.want(canopen::DriveGoal::off); }
+    void quick_stop() noexcept TAPPET_REALTIME { control_.want(canopen::DriveGoal::quick_stop); }
+
+    /// One cycle: from the statusword to the controlword. True when the drive follows its target.
+    bool lead(Input<std::int64_t>& statusword, Output<std::int64_t>& controlword, Output<bool>& enabled,
+              Output<bool>& fault) noexcept TAPPET_REALTIME {
+        std::int64_t word = 0;
+        const Flow flow = statusword.read(word);
+        const bool heard = flow == Flow::fresh || flow == Flow::old;
+        const auto status = static_cast<std::uint16_t>(word);
+        const canopen::DriveState state = canopen::drive_state(status);
+        const bool follows = heard && state == canopen::DriveState::operation_enabled;
+        controlword.write(heard ? control_.controlword(status) : canopen::controlword::disable_voltage);
+        enabled_.write(enabled, follows);
+        fault_.write(fault, !heard || state == canopen::DriveState::fault ||
+                                state == canopen::DriveState::fault_reaction_active);
+        return follows;
+    }
+    /// The last word of a machine that stops.
+    static void stop(Output<std::int64_t>& controlword, Output<double>& target) noexcept TAPPET_REALTIME {
+        controlword.write(canopen::controlword::quick_stop);
+        target.write(0.0);
+    }
+
+private:
+    canopen::DriveControl control_{};
+    Change<bool> enabled_, fault_;
+};
+
+} // namespace tappet::carpet
