@@ -10,28 +10,32 @@ namespace tappet::carpet {
 /// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another program can
 /// pick them out of a serial console.
 struct Console {
-    Input<std::int64_t> state, cause, stops, picks, frames_lost, bus_state, edges_lost, outages;
+    Input<std::int64_t> state, cause, waits_for, stops, picks, frames_lost, bus_state, bus_restarts, edges_lost, outages;
     Input<double> speed_rpm, angle_deg, stop_error_deg, tension_n, oil_bar;
     Property<bool> quiet{false};
 
     static constexpr std::array<std::string_view, 10> states{"off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
     static constexpr std::array<std::string_view, 6> causes{"none", "weft", "warp", "operator", "emergency", "fault"};
 
+    static constexpr std::array<std::string_view, 9> waits{"nothing", "emergency-stop", "can-nodes", "encoder", "main-drive", "let-off-drive", "oil-pressure", "warp-tension", "drop-wire"};
+
     void work(const Cycle& cycle) {
         if (quiet.get()) return;
         Sentence line{"loom t=", to_ns(cycle.now) / 1'000'000, "ms state=", name(states, state.get()), " speed=", whole(speed_rpm.get()), "rpm angle=", whole(angle_deg.get()), "deg picks=", picks.get(), " tension=", whole(tension_n.get()),
                       "N oil=", whole(oil_bar.get() * 100.0), "cbar stops=", stops.get(), " cause=", name(causes, cause.get()), " stop_error=", whole(stop_error_deg.get() * 10.0), "ddeg bus=", bus_state.get(), " frames_lost=", frames_lost.get(),
-                      " edges_lost=", edges_lost.get(), " outages=", outages.get(), "\n"};
+                      " edges_lost=", edges_lost.get(), " outages=", outages.get(), " restarts=", bus_restarts.get(), " waits_for=", name(waits, waits_for.get()), "\n"};
         os::print(line.view());
     }
 
     static constexpr auto interface() {
         return facets(input<&Console::state>("state", "", "number of the loom's state"),
                       input<&Console::cause>("cause", "", "of the last stop"),
+                      input<&Console::waits_for>("waits_for", "", "number of what is missing before the loom may start"),
                       input<&Console::stops>("stops", "", "at the stop angle"),
                       input<&Console::picks>("picks", "", "woven"),
                       input<&Console::frames_lost>("frames_lost", "", "on the CAN bus"),
                       input<&Console::bus_state>("bus_state", "", "of the CAN bus"),
+                      input<&Console::bus_restarts>("bus_restarts", "", "of the CAN bus, since start"),
                       input<&Console::edges_lost>("edges_lost", "", "on the GPIO lines"),
                       input<&Console::outages>("outages", "", "of the utility unit"),
                       input<&Console::speed_rpm>("speed_rpm", "rpm", "of the main shaft"),

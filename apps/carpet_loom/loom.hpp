@@ -1,6 +1,7 @@
 // The loom as a whole: what its state machine asks of the other components, and what it must know to decide.
 #pragma once
 
+#include "apps/carpet_loom/change.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
 
@@ -9,6 +10,8 @@ namespace tappet::carpet {
 namespace wires = loom::wires;
 
 enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
+/// What the loom waits for before it may start; the first that is missing.
+enum class WaitsFor : std::int64_t { nothing, emergency_stop, can_nodes, encoder, main_drive, let_off_drive, oil_pressure, warp_tension, drop_wire };
 
 /// Its states are in loom_cycle.hpp. All real-time.
 struct Loom {
@@ -25,6 +28,7 @@ struct Loom {
     Output<std::int64_t> feeder_colour, feeder_speed;
     Output<std::int64_t> state;
     Output<std::int64_t> cause;
+    Output<std::int64_t> waits_for;
     Event<> enable_drives, disable_drives, run_shaft, stop_shaft, quick_stop;
     Event<> set_brake, release_brake;
     Event<> allow_weft, inhibit_weft;
@@ -35,9 +39,10 @@ struct Loom {
 
     // Guards.
     [[nodiscard]] bool prepared() noexcept TAPPET_REALTIME {
-        return nodes_operational.get() && main_enabled.get() && let_off_enabled.get() && tension_in_band.get() && shaft_valid.get() && oil_good() && !emergency_stop.get();
+        const WaitsFor missing = first_missing();
+        return missing == WaitsFor::nothing || missing == WaitsFor::drop_wire;
     }
-    [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return prepared() && !drop_wire.get(); }
+    [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return first_missing() == WaitsFor::nothing; }
     [[nodiscard]] bool at_speed() noexcept TAPPET_REALTIME { return main_at_speed.get(); }
     [[nodiscard]] bool stands() noexcept TAPPET_REALTIME { return shaft_standing.get(); }
     [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get(); }
@@ -46,6 +51,8 @@ struct Loom {
     [[nodiscard]] bool bus_is_off() noexcept TAPPET_REALTIME { return bus_faulted.get(); }
     [[nodiscard]] bool bus_is_back() noexcept TAPPET_REALTIME { return !bus_faulted.get(); }
     [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
+    /// The drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
+    [[nodiscard]] bool encoder_stands() noexcept TAPPET_REALTIME { return main_at_speed.get() && shaft_standing.get(); }
     [[nodiscard]] bool node_is_silent() noexcept TAPPET_REALTIME { return !nodes_operational.get(); }
     [[nodiscard]] bool drive_is_faulty() noexcept TAPPET_REALTIME { return main_fault.get() || let_off_fault.get(); }
     [[nodiscard]] bool oil_is_lost() noexcept TAPPET_REALTIME { return !oil_good(); }
@@ -92,7 +99,10 @@ struct Loom {
     void because_operator() noexcept TAPPET_REALTIME { set_cause(StopCause::operator_stop); }
 
     /// What grows stale makes no noise: the state machine looks at its conditions this often at least.
-    void look(const Cycle& cycle) noexcept TAPPET_REALTIME { look_timer.arm(cycle.now + look_every.get()); }
+    void look(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        look_timer.arm(cycle.now + look_every.get());
+        waits_for_.write(waits_for, static_cast<std::int64_t>(first_missing()));
+    }
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         look(cycle);
@@ -125,6 +135,7 @@ struct Loom {
             output<&Loom::feeder_colour>("feeder_colour", "", "yarn of the feeder"),
             output<&Loom::feeder_speed>("feeder_speed", "1/min", "windings of the feeder"),
             output<&Loom::state>("state", "", "number of the state"),
+            output<&Loom::waits_for>("waits_for", "", "what is missing before it may start: WaitsFor; written on change"),
             output<&Loom::cause>("cause", "", "of the last stop: 1 weft, 2 warp, 3 operator, 4 emergency, 5 fault"),
             event<&Loom::enable_drives>("enable_drives", "drives on, tension loop closed"),
             event<&Loom::disable_drives>("disable_drives", "drives off"),
@@ -150,6 +161,16 @@ private:
         const Flow flow = oil_pressure.read(bar);
         return (flow == Flow::fresh || flow == Flow::old) && bar >= least_oil_bar.get();
     }
+    [[nodiscard]] WaitsFor first_missing() noexcept TAPPET_REALTIME {
+        if (emergency_stop.get()) return WaitsFor::emergency_stop;
+        if (!nodes_operational.get()) return WaitsFor::can_nodes;
+        if (!shaft_valid.get()) return WaitsFor::encoder;
+        if (!main_enabled.get()) return WaitsFor::main_drive;
+        if (!let_off_enabled.get()) return WaitsFor::let_off_drive;
+        if (!oil_good()) return WaitsFor::oil_pressure;
+        if (!tension_in_band.get()) return WaitsFor::warp_tension;
+        return drop_wire.get() ? WaitsFor::drop_wire : WaitsFor::nothing;
+    }
     void set_cause(StopCause why) noexcept TAPPET_REALTIME {
         cause_ = why;
         cause.write(static_cast<std::int64_t>(why));
@@ -168,6 +189,7 @@ private:
     }
 
     StopCause cause_ = StopCause::none;
+    Change<std::int64_t> waits_for_;
 };
 
 } // namespace tappet::carpet

@@ -11,6 +11,7 @@
 #include "apps/carpet_loom/network.hpp"
 #include "apps/carpet_loom/warp_tension.hpp"
 #include "apps/carpet_loom/weft_insertion.hpp"
+#include "drivers/can/keeper.hpp"
 #include "kernel/machine/machine.hpp"
 
 namespace tappet::carpet {
@@ -26,6 +27,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0)),
         component<Network>("network"),                       // CANopen: starts and watches the nodes
         component<Loom>("loom"),                             // the states of the whole
+        component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
         component<Console>("console")),
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
@@ -35,6 +37,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("utility", every(100ms),     runs("utility"), not_real_time),
+        activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("console"), not_real_time)),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
@@ -69,6 +72,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("shaft.valid",               "loom.shaft_valid",     wakes),
         data("shaft.standing",            "loom.shaft_standing",  wakes),
         data("can.faulted",               "loom.bus_faulted",     wakes),
+        data("can.faulted",               "keeper.faulted"),
         data("network.operational",       "loom.nodes_operational", wakes),
         data("io.drop_wire",              "loom.drop_wire",       wakes),
         data("io.emergency_stop",         "loom.emergency_stop",  wakes),
@@ -80,6 +84,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("weft.cutter",               "io.yarn_cutter",       wakes),
         data("loom.state",                "console.state"),
         data("loom.cause",                "console.cause"),
+        data("loom.waits_for",            "console.waits_for"),
         data("shaft.speed_rpm",           "console.speed_rpm"),
         data("shaft.angle_deg",           "console.angle_deg"),
         data("shaft.stop_error_deg",      "console.stop_error_deg"),
@@ -88,6 +93,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("can.load_cell.tension",     "console.tension_n"),
         data("can.frames_lost",           "console.frames_lost"),
         data("can.state",                 "console.bus_state"),
+        data("keeper.restarts",           "console.bus_restarts"),
         data("io.edges_lost",             "console.edges_lost"),
         data("utility.unit.oil_pressure", "console.oil_bar"),
         data("utility.outages",           "console.outages")),

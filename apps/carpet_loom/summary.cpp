@@ -40,6 +40,8 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
     json.open('{').field("machine", machine.table.name).field("board", machine.board->name).field("world", facts.world);
     json.field("kernel_release", os::kernel_release().view()).field("realtime", facts.realtime).field("machine_seed", facts.seed).field("stop_reason", facts.stop_reason);
     json.field("can_frames_lost", facts.can_frames_lost).field("gpio_edges_lost", facts.gpio_edges_lost).field("modbus_outages_survived", facts.modbus_outages_survived);
+    json.field("can_faults", facts.wires.can_faults).field("can_restarts", facts.wires.can_restarts).field("can_wrong_lengths", facts.wires.can_wrong_lengths);
+    json.field("can_impostors", facts.wires.can_impostors).field("can_malformed", facts.wires.can_malformed);
     json.field("emissions_lost", instance.lost_emissions());
     json.field("heap_allocations_after_arming", os::heap::allocations_after_seal() + os::heap::mappings_after_seal()).field("page_faults_after_arming", facts.page_faults_after_arming);
     json.field("deadline_misses", misses).field("binary_bytes", os::binary_bytes()).field("static_memory_bytes", machine.plan.bytes + machine.board->heap_bytes);

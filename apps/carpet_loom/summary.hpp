@@ -18,6 +18,14 @@ struct RunFacts {
     std::uint64_t can_frames_lost = 0;
     std::uint64_t gpio_edges_lost = 0;
     std::uint64_t modbus_outages_survived = 0;
+    /// What came on the wires and was not as it must be.
+    struct {
+        std::uint64_t can_faults = 0;
+        std::uint64_t can_restarts = 0;
+        std::uint64_t can_wrong_lengths = 0;
+        std::uint64_t can_impostors = 0;
+        std::uint64_t can_malformed = 0;
+    } wires;
     std::string_view stop_reason;
     bool with_digest = false; ///< virtual time only: elsewhere no two runs are alike
 };

@@ -9,6 +9,7 @@ void StateMachineExecution::give_reason(TransitionIndex transition, std::string_
     status_.reason = transition;
     status_.reason_at = now;
     reason_ = text;
+    std::atomic_ref{news_}.store((news().number + 1) << transition_bits | transition, std::memory_order_relaxed);
 }
 
 StateOutcome StateMachineExecution::queue(std::size_t trigger, Time now) noexcept TAPPET_REALTIME {

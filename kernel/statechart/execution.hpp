@@ -30,6 +30,7 @@
 #include "kernel/statechart/resolve.hpp"
 
 #include <array>
+#include <atomic>
 
 namespace tappet {
 
@@ -70,6 +71,7 @@ public:
         mode_ = inactive;
         status_ = {};
         reason_ = {};
+        news_ = 0;
         stepped_at_ = {};
         conditions_left_ = false;
         raised_.clear();
@@ -115,6 +117,17 @@ public:
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME;
     /// The last reason that a transition gave, and still gives until another one does.
     [[nodiscard]] std::string_view reason() const noexcept TAPPET_REALTIME { return reason_; }
+    /// The last transition that gave a reason, for observers on any thread, with how many did before it since
+    /// bind(): two readings that differ are two reasons.
+    struct News {
+        std::uint64_t number = 0; ///< 0: no reason was given yet
+        TransitionIndex transition = 0;
+        bool operator==(const News&) const = default;
+    };
+    [[nodiscard]] News news() const noexcept TAPPET_REALTIME {
+        const std::uint64_t word = std::atomic_ref{news_}.load(std::memory_order_relaxed);
+        return {word >> transition_bits, static_cast<TransitionIndex>(word)};
+    }
     /// The last call reached a bound with more to do: a condition
     /// that still held, or an event that still waits.
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME {
@@ -158,6 +171,9 @@ private:
     bool conditions_left_ = false;
     StateMachineStatus status_;
     std::string_view reason_;
+    static constexpr int transition_bits = 16;
+    static_assert(sizeof(TransitionIndex) * 8 == transition_bits, "news_ holds a transition in its lowest bits");
+    alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t news_ = 0; // mutable: atomic_ref reads it
     std::string_view final_reason_;
     Time stepped_at_{};
     Trace trace_ = nullptr;

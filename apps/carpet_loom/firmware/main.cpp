@@ -51,7 +51,9 @@ Options parse(int count, char** words) {
 }
 
 int write_summary(const MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices, const Sentence& reason, const char* path) {
-    const auto* utility = const_cast<MachineInstance&>(instance).find<modbus::Slave<carpet::utility_registers>>("utility");
+    auto& machine = const_cast<MachineInstance&>(instance); // find() hands out what can be written
+    const auto* bus = machine.find<can::Bus<carpet::can_signals>>("can");
+    const auto* utility = machine.find<modbus::Slave<carpet::utility_registers>>("utility");
     carpet::RunFacts facts;
     facts.world = board_here.world;
     facts.realtime = os::kernel_is_realtime();
@@ -59,6 +61,8 @@ int write_summary(const MachineInstance& instance, const RealWorld& world, const
     facts.can_frames_lost = devices.can().counters().lost_in_kernel;
     facts.gpio_edges_lost = devices.lines().counters().missed;
     facts.modbus_outages_survived = utility->counters().outages_survived;
+    const can::Counters seen = devices.can().counters();
+    facts.wires = {seen.faults, seen.restarts, bus->decoding().wrong_lengths, seen.impostors, seen.malformed};
     facts.stop_reason = reason.view();
     const std::size_t length = carpet::write_machine_summary(instance, facts, summary_text);
     if (length == 0 || length + 2 > summary_text.size()) return fail(wrong_set_up, Sentence{"the summary does not fit its buffer"});
@@ -80,6 +84,16 @@ void print_timing(const MachineInstance& instance) {
     }
     line.add(" misses=").add(misses).add("\n");
     os::print(line.view());
+}
+
+/// Says once why the loom left its state, for each transition that gives a reason.
+void tell_reason(const StateMachineExecution& loom, StateMachineExecution::News& told) {
+    const StateMachineExecution::News news = loom.news();
+    if (news == told) return;
+    told = news;
+    const auto rows = loom.machine().table.transitions;
+    if (news.transition >= rows.size()) return; // to the final state: the machine's own stop says why
+    os::print(Sentence{"carpet-loom: the loom goes to \"", rows[news.transition].to, "\": ", rows[news.transition].because, "\n"}.view());
 }
 
 void list_misses(const MachineInstance& instance) {
@@ -109,7 +123,11 @@ int main(int count, char** words) {
     if (!world.arm(arming, 2)) return refused_to_arm;
     if (!world.start()) return fail(stopped_by_fault, Sentence{"an activity did not start in time"});
     os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ", static_cast<std::int64_t>(arming.warnings()), " warnings\n"}.view());
-    while (world.supervise(1s)) print_timing(instance);
+    StateMachineExecution::News told;
+    for (int look = 1; world.supervise(100ms); ++look) {
+        tell_reason(*instance.state_machine_of("loom"), told);
+        if (look % 10 == 0) print_timing(instance);
+    }
 
     const int hung = world.stop();
     const Sentence reason = world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();

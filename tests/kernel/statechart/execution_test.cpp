@@ -245,6 +245,21 @@ TEST(StateMachine, keeps_the_last_reason_until_another_is_given) {
     EXPECT_EQ(m.execution.status().reason_at, given);
 }
 
+TEST(StateMachine, numbers_its_reasons_so_that_an_observer_tells_one_from_the_next) {
+    Running<tree> m;
+    EXPECT_EQ(m.execution.news().number, 0u);
+    std::uint64_t seen = 0;
+    for (int round = 0; round < 2; ++round) {
+        m.send("go");
+        m.send("far");
+        m.send("back");
+        EXPECT_EQ(m.execution.news().number, ++seen);
+        EXPECT_EQ(m.execution.machine().table.transitions[m.execution.news().transition].because, "sent back");
+    }
+    m.execution.request_final(m.now, "bus off");
+    EXPECT_EQ(m.execution.news(), (StateMachineExecution::News{seen + 1, final_transition}));
+}
+
 TEST(StateMachine, traces_every_change) {
     struct Change {
         StateIndex from, to;
