@@ -1,3 +1,4 @@
+// Writes the summary: activities, budgets, stops and counters, as the machine has them at the end.
 #include "apps/carpet_loom/summary.hpp"
 
 #include "kernel/os/box.hpp"

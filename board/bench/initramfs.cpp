@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "initramfs.hpp"
+#include "board/bench/initramfs.hpp"
 
 #include <array>
 #include <cstdlib>

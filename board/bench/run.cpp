@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "bench.hpp"
+#include "board/bench/bench.hpp"
 
 namespace tappet::bench {
 namespace {

@@ -1,3 +1,4 @@
+// The life of an activity's thread: initialised on the starter's, cycles on its own, a stop that waits.
 #include "kernel/activity/activity.hpp"
 
 #include "kernel/os/memory.hpp"

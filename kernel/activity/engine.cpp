@@ -1,3 +1,4 @@
+// One cycle of an engine: timers, components, messages, behaviours, and the account of their time.
 #include "kernel/activity/engine.hpp"
 
 #include <algorithm>

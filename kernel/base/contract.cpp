@@ -89,7 +89,7 @@ void break_contract(const Breach& breach) noexcept TAPPET_REALTIME {
         handler(breach);
         const ContractText* row = find_text(breach.id);
         if (row != nullptr && row->after == AfterBreach::thread_goes_on) {
-            TAPPET_ESCAPE("as above", inside_handler = false);
+            TAPPET_ESCAPE("constant-initialised thread storage, as at the entry", inside_handler = false);
             return;
         }
     }

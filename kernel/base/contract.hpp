@@ -134,7 +134,7 @@ template <Contract id, ContractValue... Values>
 
 } // namespace tappet
 
-/// TAPPET_CONTRACT(slots.size() >= depth, Contract::ring_storage_too_small, depth, slots.size());
+///     TAPPET_CONTRACT(slots.size() >= depth, Contract::ring_storage_too_small, depth, slots.size());
 #define TAPPET_CONTRACT(condition, id, ...)                                                                  \
     do {                                                                                                     \
         if (!(condition)) [[unlikely]]                                                                       \

@@ -1,3 +1,4 @@
+// Makes a machine out of its plan: constructs, sets properties, places engines and wires every row.
 #include "kernel/machine/instance.hpp"
 
 #include <new>

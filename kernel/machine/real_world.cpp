@@ -1,3 +1,4 @@
+// Arms, starts, supervises and stops the threads of a machine.
 #include "kernel/machine/real_world.hpp"
 
 #include "kernel/base/contract.hpp"

@@ -1,3 +1,4 @@
+// The order of virtual time: of what is ready at an instant, the most urgent activity runs next.
 #include "kernel/machine/virtual_world.hpp"
 
 #include "kernel/base/contract.hpp"

@@ -1,3 +1,4 @@
+// Asks the kernel for its release and the file system for the size of this program.
 #include "kernel/os/box.hpp"
 
 #include "kernel/os/arming.hpp"

@@ -1,3 +1,4 @@
+// Reads CLOCK_MONOTONIC; load that is injected moves virtual time and occupies the processor in real time.
 #include "kernel/os/clock.hpp"
 
 #include <ctime>

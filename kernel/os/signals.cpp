@@ -1,3 +1,4 @@
+// SIGINT and SIGTERM as one request to end.
 #include "kernel/os/signals.hpp"
 
 #include <csignal>

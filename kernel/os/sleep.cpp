@@ -1,3 +1,4 @@
+// Sleeps on, whatever signal interrupts it, until the time is over.
 #include "kernel/os/sleep.hpp"
 
 #include <cerrno>

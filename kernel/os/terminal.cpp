@@ -1,3 +1,4 @@
+// Writes whole texts by write(2), whatever interrupts it.
 #include "kernel/os/terminal.hpp"
 
 #include <cerrno>

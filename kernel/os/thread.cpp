@@ -1,3 +1,4 @@
+// Starts a pthread on the stack, processor and priority of its plan; a refusal names the cure.
 #include "kernel/os/thread.hpp"
 
 #include <cerrno>

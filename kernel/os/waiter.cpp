@@ -1,3 +1,4 @@
+// The wait on a futex, or by poll on an eventfd beside devices when there are any.
 #include "kernel/os/waiter.hpp"
 
 #include "kernel/os/clock.hpp"

@@ -1,3 +1,4 @@
+// Opening the real devices: each is looked up by its name in the board, and a wrong board is a sentence.
 #include "apps/carpet_loom/firmware/devices.hpp"
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// Carries frames, levels and registers between the twins and the plant, step by step of virtual time.
 #include "apps/carpet_loom/host/in_process_loom.hpp"
 
 namespace tappet::carpet {

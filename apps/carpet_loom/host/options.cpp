@@ -1,3 +1,4 @@
+// Reads the command line: every option once, every number whole, a refusal with its cure.
 #include "apps/carpet_loom/host/options.hpp"
 
 #include "kernel/base/nearest.hpp"

@@ -1,3 +1,4 @@
+// A run under virtual time: configure, weave until the picks are done, digest the event log.
 #include "apps/carpet_loom/host/virtual_run.hpp"
 
 #include "apps/carpet_loom/machine.hpp"

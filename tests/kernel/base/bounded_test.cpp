@@ -1,3 +1,4 @@
+// Bounded: a list of at most N elements in its own memory.
 #include "kernel/base/bounded.hpp"
 
 #include <gtest/gtest.h>

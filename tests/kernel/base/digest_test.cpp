@@ -1,3 +1,4 @@
+// Digest: one number that tells whether two logs are the same.
 #include "kernel/base/digest.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The nearest name to a misspelt one, by its edit distance.
 #include "kernel/base/nearest.hpp"
 
 #include "kernel/base/random.hpp"

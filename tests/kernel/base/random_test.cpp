@@ -1,3 +1,4 @@
+// Random: the numbers of its generator, and distributions within their bounds.
 #include "kernel/base/random.hpp"
 
 #include <gtest/gtest.h>

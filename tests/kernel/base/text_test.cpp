@@ -1,3 +1,4 @@
+// Sentence and Text: messages and names without a heap.
 #include "kernel/base/text.hpp"
 
 #include <gtest/gtest.h>

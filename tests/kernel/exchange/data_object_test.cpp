@@ -1,3 +1,4 @@
+// DataObject: the last value of one writer for many readers, by itself and under chosen interleavings.
 #include "kernel/exchange/data_object.hpp"
 
 #include "tests/kernel/exchange/preemption.hpp"

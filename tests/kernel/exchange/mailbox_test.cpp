@@ -1,3 +1,4 @@
+// Inbox: messages of many senders to one engine, each sender's order kept.
 #include "kernel/exchange/mailbox.hpp"
 
 #include "tests/kernel/exchange/stress.hpp"

@@ -1,3 +1,4 @@
+// Ring: a buffer of one writer and one reader, and what it does when it is full.
 #include "kernel/exchange/ring.hpp"
 
 #include "tests/kernel/exchange/preemption.hpp"

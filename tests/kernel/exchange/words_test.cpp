@@ -1,3 +1,4 @@
+// Words: a value carried through atomic words, byte by byte the same.
 #include "kernel/exchange/words.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Response-time analysis against worked examples and a simulation.
 #include "kernel/machine/schedulability.hpp"
 
 #include "kernel/base/random.hpp"
