@@ -1,0 +1,380 @@
+// The execution engine under virtual time: the order of a cycle, timers, messages, deadlines and who missed
+// them.
+#include "kernel/activity/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+/// What happened, in order, in one list for all.
+struct Log {
+    std::vector<std::string> lines;
+    void add(std::string_view line) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", lines.emplace_back(line));
+    }
+};
+
+/// A component that takes a given time for each of its functions.
+struct Worker {
+    Log* log = nullptr;
+    os::Clock* clock = nullptr;
+    std::string_view name;
+    Duration load{};
+    Duration reaction_load{};
+    Timer timer;
+    Cycle last{};
+    void note(std::string_view what) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", log->lines.push_back(std::string{name} + " " + std::string{what}));
+        clock->consume(load);
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME { note("starts"); }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        last = cycle;
+        note("steps");
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { note("stops"); }
+    void ring(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        last = cycle;
+        note("rings");
+    }
+    void hear() noexcept TAPPET_REALTIME {
+        note("hears");
+        clock->consume(reaction_load);
+    }
+    static constexpr auto interface() {
+        return facets(tappet::timer<&Worker::timer, &Worker::ring>("timer", "rings"),
+                      operation<&Worker::hear>("hear", "hears"));
+    }
+};
+
+struct ExecutionEngine : testing::Test {
+    static constexpr Duration period = 1ms;
+
+    ExecutionEngine() {
+        for (std::size_t i = 0; i < workers.size(); ++i) {
+            workers[i].log = &log;
+            workers[i].clock = &clock;
+            workers[i].name = names[i];
+            parts[i] = {names[i], &workers[i], &component_type<Worker>};
+            timers[i] = {&workers[i].timer, detail::TimerCall<&Worker::ring>::operations.fire,
+                         static_cast<std::uint32_t>(i)};
+        }
+        plan.name = "motion";
+        plan.periodic = true;
+        plan.period = period;
+        plan.deadline = period;
+        plan.parts = parts;
+        plan.functions = functions;
+        plan.timers = timers;
+        void* at = storage.data();
+        std::size_t room = storage.size();
+        std::align(Mailbox::alignment, Mailbox::bytes_for(4), at, room);
+        mailboxes[0].place(static_cast<std::byte*>(at), 4, Overflow::reject);
+        engine.inbox().place(mailboxes);
+    }
+    void begin() {
+        engine.place(plan, clock);
+        engine.on_stop(
+            [](void* self, StopReason reason, std::uint64_t detail, const Engine&) noexcept TAPPET_REALTIME {
+                auto& test = *static_cast<ExecutionEngine*>(self);
+                TAPPET_ESCAPE("a test remembers", test.stops.emplace_back(reason, detail));
+            },
+            this);
+        engine.start(clock.now());
+        log.lines.clear();
+    }
+    /// The time of the next cycle comes, and it runs.
+    void next_cycle() {
+        clock.advance_to(engine.next_wake());
+        engine.run(false);
+    }
+    void tell(std::uint32_t part) {
+        Message message;
+        message.run = &OperationCall<&Worker::hear>::run;
+        message.object = &workers[part];
+        message.id = part;
+        ASSERT_TRUE(engine.inbox().post(0, message));
+    }
+    static constexpr std::uint32_t index(std::uint32_t part, FunctionKind kind) {
+        return part * functions_per_part + static_cast<std::uint32_t>(kind);
+    }
+    const EngineStatistics& statistics() const { return engine.statistics(); }
+    const Miss& last_miss() const {
+        return statistics().recent_misses[(statistics().misses - 1) % statistics().recent_misses.size()];
+    }
+
+    Log log;
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    std::array<std::string_view, 2> names{"a", "b"};
+    std::array<Worker, 2> workers{};
+    std::array<EnginePart, 2> parts{};
+    std::array<EngineTimer, 2> timers{};
+    std::array<FunctionTiming, 2 * functions_per_part> functions{};
+    std::vector<std::byte> storage = std::vector<std::byte>(Mailbox::bytes_for(4) + Mailbox::alignment);
+    std::array<Mailbox, 1> mailboxes;
+    EnginePlan plan;
+    Engine engine;
+    std::vector<std::pair<StopReason, std::uint64_t>> stops;
+};
+
+/// A behaviour that wants a step at a time.
+struct Wish {
+    Log* log;
+    Time at = never;
+    static Behaviour behaviour(Wish& wish) {
+        Behaviour each;
+        each.self = &wish;
+        each.start = [](void*, Time) noexcept TAPPET_REALTIME {};
+        each.step = [](void* self, Time) noexcept TAPPET_REALTIME {
+            static_cast<Wish*>(self)->at = never;
+            static_cast<Wish*>(self)->log->add("behaviour");
+        };
+        each.stop = [](void* self, Time) noexcept
+            TAPPET_REALTIME { static_cast<Wish*>(self)->log->add("behaviour stops"); };
+        each.next = [](const void* self) noexcept
+            TAPPET_REALTIME { return static_cast<const Wish*>(self)->at; };
+        return each;
+    }
+};
+
+using Lines = std::vector<std::string>;
+
+TEST_F(ExecutionEngine, runs_timers_then_components_then_messages_then_behaviours) {
+    Wish wish{&log};
+    std::array behaviours{Wish::behaviour(wish)};
+    plan.behaviours = behaviours;
+    begin();
+    workers[1].timer.arm(at_ns(0) + period);
+    tell(0);
+    next_cycle();
+    EXPECT_EQ(log.lines, (Lines{"b rings", "a steps", "b steps", "a hears", "behaviour"}));
+    EXPECT_EQ(statistics().messages, 1u);
+}
+
+TEST_F(ExecutionEngine, starts_components_before_behaviours_and_stops_behaviours_first) {
+    Wish wish{&log};
+    std::array behaviours{Wish::behaviour(wish)};
+    plan.behaviours = behaviours;
+    engine.place(plan, clock);
+    engine.start(clock.now());
+    EXPECT_EQ(log.lines, (Lines{"a starts", "b starts"}));
+    log.lines.clear();
+    engine.stop(clock.now());
+    EXPECT_EQ(log.lines, (Lines{"behaviour stops", "a stops", "b stops"}));
+}
+
+TEST_F(ExecutionEngine, releases_periodic_cycles_at_whole_periods_whenever_they_begin) {
+    begin();
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + period);
+    clock.advance_to(at_ns(0) + period + 70us);
+    engine.run(false);
+    EXPECT_EQ(workers[0].last.release, at_ns(0) + period);
+    EXPECT_EQ(workers[0].last.now, at_ns(0) + period + 70us);
+    EXPECT_EQ(workers[0].last.period, period);
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + 2 * period);
+}
+
+TEST_F(ExecutionEngine, runs_a_timer_between_two_periods_and_no_component_with_it) {
+    begin();
+    workers[0].timer.arm(at_ns(0) + 300us);
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + 300us);
+    next_cycle();
+    EXPECT_EQ(log.lines, (Lines{"a rings"}));
+    EXPECT_EQ(workers[0].last.release, at_ns(0) + 300us);
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + period) << "a one-shot timer";
+}
+
+TEST_F(ExecutionEngine, serves_a_message_that_wakes_a_periodic_activity_without_stepping_its_components) {
+    begin();
+    tell(1);
+    engine.run(true);
+    EXPECT_EQ(log.lines, (Lines{"b hears"}));
+}
+
+TEST_F(ExecutionEngine, steps_the_components_of_a_sporadic_activity_when_it_is_woken_and_not_for_a_timer) {
+    plan.periodic = false;
+    begin();
+    EXPECT_EQ(engine.next_wake(), never);
+    engine.run(true);
+    EXPECT_EQ(log.lines, (Lines{"a steps", "b steps"}));
+    log.lines.clear();
+    workers[1].timer.arm(clock.now() + 10us);
+    next_cycle();
+    EXPECT_EQ(log.lines, (Lines{"b rings"}));
+}
+
+TEST_F(ExecutionEngine, steps_a_behaviour_when_it_asked_for_it) {
+    Wish wish{&log};
+    std::array behaviours{Wish::behaviour(wish)};
+    plan.periodic = false;
+    plan.behaviours = behaviours;
+    begin();
+    wish.at = at_ns(0) + 250us;
+    EXPECT_EQ(engine.next_wake(), wish.at);
+    next_cycle();
+    EXPECT_EQ(log.lines, (Lines{"behaviour"}));
+}
+
+TEST_F(ExecutionEngine, times_every_function_of_every_component) {
+    begin();
+    workers[0].load = 20us;
+    workers[1].load = 30us;
+    next_cycle();
+    next_cycle();
+    tell(1);
+    next_cycle();
+    EXPECT_EQ(functions[index(0, FunctionKind::step)].passes, 3u);
+    EXPECT_EQ(functions[index(0, FunctionKind::step)].longest, 20us);
+    EXPECT_EQ(functions[index(1, FunctionKind::step)].usual(), 30us);
+    EXPECT_EQ(functions[index(1, FunctionKind::reactions)].last, 30us);
+    EXPECT_EQ(functions[index(0, FunctionKind::reactions)].passes, 0u);
+    EXPECT_EQ(statistics().longest_busy, 80us);
+    EXPECT_EQ(statistics().misses, 0u);
+}
+
+TEST_F(ExecutionEngine, blames_a_missed_deadline_on_the_function_that_took_more_than_usual) {
+    plan.deadline = 200us;
+    workers[0].load = 100us; // always slow: not the culprit
+    workers[1].load = 10us;
+    begin();
+    for (int i = 0; i < 5; ++i) next_cycle();
+    ASSERT_EQ(statistics().misses, 0u);
+    workers[1].load = 150us;
+    next_cycle();
+    ASSERT_EQ(statistics().misses, 1u);
+    EXPECT_EQ(last_miss().function, index(1, FunctionKind::step));
+    EXPECT_EQ(last_miss().response, 250us);
+    EXPECT_EQ(last_miss().took, 150us);
+    EXPECT_EQ(last_miss().usual, 10us);
+    EXPECT_EQ(last_miss().release, at_ns(0) + 6 * period);
+    EXPECT_EQ(functions[index(1, FunctionKind::step)].blamed, 1u);
+    EXPECT_EQ(functions[index(0, FunctionKind::step)].blamed, 0u);
+    EXPECT_TRUE(stops.empty()) << "counted, unless the row says stop_when_late";
+}
+
+TEST_F(ExecutionEngine, blames_nobody_when_the_cycle_itself_began_late) {
+    plan.deadline = 200us;
+    workers[0].load = 10us;
+    begin();
+    for (int i = 0; i < 3; ++i) next_cycle();
+    clock.advance_to(engine.next_wake() + 300us);
+    engine.run(false);
+    ASSERT_EQ(statistics().misses, 1u);
+    EXPECT_EQ(last_miss().function, Miss::nobody);
+    EXPECT_EQ(last_miss().took, 300us);
+    EXPECT_EQ(statistics().longest_lateness, 300us);
+    for (const FunctionTiming& each : functions) EXPECT_EQ(each.blamed, 0u);
+}
+
+TEST_F(ExecutionEngine, blames_a_reaction_as_it_blames_a_step) {
+    plan.deadline = 200us;
+    workers[0].load = 100us;
+    begin();
+    for (int i = 0; i < 3; ++i) {
+        tell(1);
+        next_cycle();
+    }
+    ASSERT_EQ(statistics().misses, 0u);
+    tell(1);
+    workers[1].reaction_load = 130us;
+    next_cycle();
+    ASSERT_EQ(statistics().misses, 1u);
+    EXPECT_EQ(last_miss().function, index(1, FunctionKind::reactions));
+    EXPECT_EQ(last_miss().took, 130us);
+}
+
+TEST_F(ExecutionEngine, asks_for_a_stop_when_the_row_says_that_a_late_cycle_stops_the_machine) {
+    plan.deadline = 50us;
+    plan.stop_when_late = true;
+    begin();
+    next_cycle();
+    EXPECT_TRUE(stops.empty());
+    workers[0].load = 60us;
+    next_cycle();
+    ASSERT_EQ(stops.size(), 1u);
+    EXPECT_EQ(stops[0].first, StopReason::missed_deadline);
+    EXPECT_EQ(stops[0].second, index(0, FunctionKind::step));
+}
+
+TEST_F(ExecutionEngine, counts_no_deadline_of_an_activity_that_is_not_real_time) {
+    plan.real_time = false;
+    plan.deadline = 10us;
+    workers[0].load = 500us;
+    begin();
+    next_cycle();
+    next_cycle();
+    EXPECT_EQ(statistics().misses, 0u);
+}
+
+TEST_F(ExecutionEngine, skips_and_counts_the_periods_that_an_overrun_swallowed) {
+    begin();
+    next_cycle();
+    workers[0].load = 3500us;
+    next_cycle(); // from 2 ms to 5.5 ms: the cycles of 3, 4 and 5 ms are lost
+    EXPECT_EQ(statistics().skipped_periods, 3u);
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + 6 * period);
+    workers[0].load = 0us;
+    next_cycle();
+    EXPECT_EQ(workers[0].last.release, at_ns(0) + 6 * period);
+    EXPECT_EQ(statistics().skipped_periods, 3u);
+}
+
+TEST_F(ExecutionEngine, counts_wakes_beyond_the_promise_of_the_row) {
+    plan.periodic = false;
+    plan.at_most_n = 2;
+    plan.at_most_per = 1ms;
+    begin();
+    const auto woken_at = [this](Duration when) {
+        clock.advance_to(at_ns(0) + when);
+        engine.run(true);
+    };
+    woken_at(0us);
+    woken_at(100us);
+    EXPECT_EQ(statistics().wakes_too_many, 0u) << "two may come together";
+    woken_at(1ms); // the first one's window is just over
+    EXPECT_EQ(statistics().wakes_too_many, 0u);
+    woken_at(1050us); // the third within 1 ms from 100 us on
+    EXPECT_EQ(statistics().wakes_too_many, 1u);
+    woken_at(5ms);
+    EXPECT_EQ(statistics().wakes_too_many, 1u);
+}
+
+TEST_F(ExecutionEngine, asks_for_a_stop_when_a_guarded_input_that_was_good_becomes_stale) {
+    Flow flow = Flow::never_written;
+    std::array guarded{GuardedInput{
+        &flow, [](void* at) noexcept TAPPET_REALTIME { return *static_cast<Flow*>(at); }, 17, false}};
+    plan.guarded = guarded;
+    begin();
+    next_cycle();
+    flow = Flow::stale;
+    next_cycle();
+    EXPECT_TRUE(stops.empty()) << "it never was good: the machine is still starting";
+    flow = Flow::fresh;
+    next_cycle();
+    flow = Flow::old;
+    next_cycle();
+    EXPECT_TRUE(stops.empty());
+    flow = Flow::stale;
+    next_cycle();
+    ASSERT_EQ(stops.size(), 1u);
+    EXPECT_EQ(stops[0].first, StopReason::stale_input);
+    EXPECT_EQ(stops[0].second, 17u) << "the connection's row";
+    next_cycle();
+    EXPECT_EQ(stops.size(), 1u) << "asked once for one loss";
+}
+
+TEST_F(ExecutionEngine, shows_an_even_generation_between_two_cycles) {
+    begin();
+    const std::uint64_t before = engine.generation();
+    EXPECT_EQ(before % 2, 0u);
+    next_cycle();
+    EXPECT_EQ(engine.generation(), before + 2);
+}
+
+} // namespace
