@@ -1,0 +1,203 @@
+// Which folder may include which: one table. Arrows point downwards only, and nothing includes itself in a circle.
+#include "tests/house/tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <set>
+
+namespace tappet::house {
+namespace {
+
+struct Row {
+    std::string_view folder;
+    /// Folders, or single headers, that this one stands on; what those stand on is allowed with them.
+    std::vector<std::string_view> stands_on;
+};
+
+// A file belongs to the longest row that names a folder above it.
+// clang-format off
+const std::vector<Row> house{
+    {"kernel/base",       {}},
+    {"kernel/os",         {"kernel/base"}},
+    {"kernel/exchange",   {"kernel/base"}},
+    {"kernel/cam",        {"kernel/base"}},
+    {"kernel/control",    {"kernel/base"}},
+    {"kernel/component",  {"kernel/os", "kernel/exchange"}},
+    {"kernel/activity",   {"kernel/component"}},
+    {"kernel/program",    {"kernel/activity"}},
+    {"kernel/statechart", {"kernel/program"}},
+    {"kernel/script",     {"kernel/statechart"}},
+    {"kernel/machine",    {"kernel/script"}},
+    {"kernel/services",   {"kernel/machine"}},
+
+    {"drivers/twin",      {"kernel/base"}},
+    {"drivers/can",       {"kernel/component", "drivers/twin"}},
+    {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
+    {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
+    {"drivers/canopen",   {"drivers/can"}},
+    {"drivers/dbc",       {"drivers/can"}},
+
+    {"board",             {"kernel/services", "kernel/cam", "kernel/control", "drivers/can", "drivers/gpio", "drivers/modbus",
+                           "drivers/canopen", "drivers/dbc"}},
+    {"apps",              {"board"}},
+    // A plant meets its machine at frames, lines and registers only.
+    {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
+
+    {"tests",             {"apps", "apps/carpet_loom/plant"}},
+    {"toolchain",         {}},
+};
+// clang-format on
+
+const Row* row_of(std::string_view path) {
+    const Row* best = nullptr;
+    for (const Row& row : house) {
+        const bool above = path.starts_with(row.folder) && path.size() > row.folder.size() && path[row.folder.size()] == '/';
+        if (above && (best == nullptr || row.folder.size() > best->folder.size())) best = &row;
+    }
+    return best;
+}
+
+/// What a row may include: itself, what it stands on, and so on down. The machine's program may hold its plant.
+std::set<std::string_view> reach(const Row& row) {
+    std::set<std::string_view> found{row.folder};
+    std::vector<std::string_view> open(row.stands_on);
+    while (!open.empty()) {
+        const std::string_view next = open.back();
+        open.pop_back();
+        if (!found.insert(next).second) continue;
+        for (const Row& below : house)
+            if (below.folder == next) open.insert(open.end(), below.stands_on.begin(), below.stands_on.end());
+    }
+    if (row.folder == "apps") found.insert("apps/carpet_loom/plant");
+    return found;
+}
+
+bool is_ours(std::string_view include) {
+    return std::ranges::any_of(house, [&](const Row& row) {
+        return include.substr(0, include.find('/')) == row.folder.substr(0, row.folder.find('/'));
+    });
+}
+
+Findings wrong_arrows(const Tree& files) {
+    Findings found;
+    for (const File& file : files) {
+        if (!file.is_cpp()) continue;
+        const Row* from = row_of(file.path);
+        if (from == nullptr) {
+            found.push_back({file.path, 1, "no row of the house holds this folder", "add one to tests/house/arrows_test.cpp"});
+            continue;
+        }
+        const auto allowed = reach(*from);
+        for (const Include& include : includes(file)) {
+            if (!include.quoted || !is_ours(include.name)) continue;
+            const Row* to = row_of(include.name);
+            if (allowed.contains(include.name) || (to != nullptr && allowed.contains(to->folder))) continue;
+            found.push_back({file.path, include.line,
+                             std::string(from->folder) + " includes " + include.name + ", which it does not stand on",
+                             "move what is shared to a folder that both stand on"});
+        }
+    }
+    return found;
+}
+
+Findings foreign_quotes(const Tree& files) {
+    Findings found;
+    for (const File& file : files)
+        for (const Include& include : includes(file)) {
+            if (include.quoted != is_ours(include.name) && !file.is_under("board/bench/gpio_sim"))
+                found.push_back({file.path, include.line, "\"" + include.name + "\" is spelt against the house",
+                                 "our headers are in quotes and written from the root, all others in angle brackets"});
+        }
+    return found;
+}
+
+/// Follows the includes from each file in depth; a file met again while it is open closes a circle.
+class Circles {
+public:
+    explicit Circles(const Tree& files) {
+        for (const File& file : files) by_path_[file.path] = &file;
+        for (const File& file : files) visit(file);
+    }
+    [[nodiscard]] const Findings& found() const { return found_; }
+
+private:
+    void visit(const File& file) {
+        if (done_.contains(file.path)) return;
+        open_.insert(file.path);
+        for (const Include& include : includes(file)) {
+            const auto next = by_path_.find(include.name);
+            if (next == by_path_.end()) continue;
+            if (open_.contains(include.name))
+                found_.push_back({file.path, include.line, "including " + include.name + " closes a circle",
+                                  "move what both need into a third header"});
+            else
+                visit(*next->second);
+        }
+        open_.erase(file.path);
+        done_.insert(file.path);
+    }
+
+    std::map<std::string, const File*> by_path_;
+    std::set<std::string> open_;
+    std::set<std::string> done_;
+    Findings found_;
+};
+
+TEST(Arrows, point_downwards_only) { expect_none(wrong_arrows(tree())); }
+TEST(Arrows, make_no_circle) { expect_none(Circles(tree()).found()); }
+TEST(Arrows, are_spelt_from_the_root_in_quotes) { expect_none(foreign_quotes(tree())); }
+
+TEST(ArrowsRule, refuses_a_lower_folder_that_includes_a_higher_one) {
+    const auto found = wrong_arrows({file("kernel/os/clock.hpp", "// A clock.\n#include \"kernel/machine/plan.hpp\"\n")});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].line, 2u);
+}
+
+TEST(ArrowsRule, follows_the_table_over_several_steps) {
+    EXPECT_TRUE(wrong_arrows({file("drivers/canopen/x.hpp", "#include \"kernel/base/time.hpp\"\n")}).empty());
+    EXPECT_TRUE(wrong_arrows({file("kernel/services/x.hpp", "#include \"kernel/os/clock.hpp\"\n")}).empty());
+}
+
+TEST(ArrowsRule, refuses_drivers_that_include_each_other_and_the_machine) {
+    EXPECT_EQ(wrong_arrows({file("drivers/can/x.hpp", "#include \"drivers/gpio/lines.hpp\"\n")}).size(), 1u);
+    EXPECT_EQ(wrong_arrows({file("drivers/can/x.hpp", "#include \"kernel/machine/plan.hpp\"\n")}).size(), 1u);
+}
+
+TEST(ArrowsRule, refuses_whatever_includes_an_app_and_a_plant_that_knows_its_machine) {
+    EXPECT_EQ(wrong_arrows({file("board/bench/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")}).size(), 1u);
+    EXPECT_EQ(wrong_arrows({file("apps/carpet_loom/plant/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")}).size(), 1u);
+}
+
+TEST(ArrowsRule, refuses_a_folder_without_a_row) {
+    EXPECT_EQ(wrong_arrows({file("kernel/attic/x.hpp", "// Old.\n")}).size(), 1u);
+}
+
+TEST(ArrowsRule, does_not_take_a_comment_for_an_include) {
+    EXPECT_TRUE(wrong_arrows({file("kernel/os/x.hpp", "// #include \"apps/carpet_loom/loom.hpp\"\n")}).empty());
+}
+
+TEST(ArrowsRule, finds_a_circle_of_three) {
+    const Tree three{file("a/a.hpp", "#include \"a/b.hpp\"\n"), file("a/b.hpp", "#include \"a/c.hpp\"\n"),
+                     file("a/c.hpp", "#include \"a/a.hpp\"\n")};
+    EXPECT_EQ(Circles(three).found().size(), 1u);
+}
+
+TEST(ArrowsRule, refuses_a_foreign_header_in_quotes) {
+    EXPECT_EQ(foreign_quotes({file("kernel/os/x.hpp", "#include \"unistd.h\"\n")}).size(), 1u);
+    EXPECT_EQ(foreign_quotes({file("kernel/os/x.hpp", "#include <kernel/base/time.hpp>\n")}).size(), 1u);
+}
+
+TEST(ArrowsTable, has_no_circle_itself) {
+    for (const Row& row : house)
+        for (const std::string_view below : reach(row))
+            for (const Row& other : house) {
+                if (other.folder != below || &other == &row) continue;
+                EXPECT_FALSE(reach(other).contains(row.folder)) << row.folder << " and " << below << " stand on each other";
+            }
+}
+
+} // namespace
+} // namespace tappet::house

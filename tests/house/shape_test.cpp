@@ -1,0 +1,140 @@
+// The shape of files: one idea that its first line says, of a size that can be read at once, where a reader looks for it.
+#include "tests/house/tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace tappet::house {
+namespace {
+
+constexpr std::size_t most_lines = 500;
+constexpr std::size_t most_columns = 140; // code is held at 110 by its layout; this catches what the layout may not touch
+
+Findings too_long(const Tree& files) {
+    Findings found;
+    for (const File& file : files)
+        if (file.lines.size() > most_lines)
+            found.push_back({file.path, file.lines.size(), "has more than " + std::to_string(most_lines) + " lines",
+                             "a file is one idea: part it"});
+    return found;
+}
+
+/// Unbroken words and tables whose layout is switched off may be longer than the layout's own limit, but not without end.
+Findings too_wide(const Tree& files) {
+    Findings found;
+    for (const File& file : files) {
+        if (!file.is_cpp()) continue;
+        bool is_table = false;
+        for (std::size_t i = 0; i < file.lines.size(); ++i) {
+            if (file.comments[i].contains("clang-format off")) is_table = true;
+            if (file.comments[i].contains("clang-format on")) is_table = false;
+            if (!is_table && file.lines[i].size() > most_columns)
+                found.push_back({file.path, i + 1, std::to_string(file.lines[i].size()) + " columns", "lay it out: the limit is 110"});
+        }
+    }
+    return found;
+}
+
+Findings without_idea(const Tree& files) {
+    Findings found;
+    for (const File& file : files) {
+        if (file.lines.empty()) {
+            found.push_back({file.path, 1, "the file is empty", "remove it"});
+        } else if (file.is_cpp() && !file.is_under("tests/diagnostics/cases")) {
+            const std::string& first = file.lines[0];
+            if (!first.starts_with("// ") && !first.starts_with("/* "))
+                found.push_back({file.path, 1, "does not begin with its idea", "say in one or two comment lines what it holds"});
+        } else if (file.is_cmake() || file.lines[0].starts_with("#!")) {
+            const std::size_t line = file.lines[0].starts_with("#!") ? 1 : 0;
+            if (file.lines.size() <= line || file.lines[line] != "# SPDX-License-Identifier: Apache-2.0")
+                found.push_back({file.path, line + 1, "does not state its license", "begin with # SPDX-License-Identifier: Apache-2.0"});
+        }
+    }
+    return found;
+}
+
+Findings untidy_ends(const Tree& files) {
+    Findings found;
+    for (const File& file : files)
+        for (std::size_t i = 0; i < file.lines.size(); ++i)
+            if (file.lines[i].starts_with('\t') && (file.is_cpp() || file.is_cmake()))
+                found.push_back({file.path, i + 1, "a tab", "indent with spaces"});
+            else if (file.lines[i].ends_with(' ') || file.lines[i].ends_with('\r'))
+                found.push_back({file.path, i + 1, "white space at the end of the line", "remove it"});
+    return found;
+}
+
+Findings unguarded(const Tree& files) {
+    Findings found;
+    for (const File& file : files)
+        if (file.path.ends_with(".hpp") && std::ranges::find(file.lines, "#pragma once") == file.lines.end())
+            found.push_back({file.path, 1, "the header can be included twice", "write #pragma once below its idea"});
+    return found;
+}
+
+/// Folders of tests that mirror none of the tree.
+constexpr std::array own_folders{
+    std::string_view{"tests/house"},              // holds for the whole tree
+    std::string_view{"tests/diagnostics"},        // machines that must not compile
+    std::string_view{"tests/bench"},              // what needs a booted kernel
+    std::string_view{"tests/drivers/components"}, // the drivers' components inside machines
+};
+
+Findings unmirrored(const Tree& files) {
+    std::set<std::string> folders;
+    for (const File& file : files)
+        for (std::string folder = file.folder(); !folder.empty();
+             folder.resize(folder.contains('/') ? folder.rfind('/') : 0))
+            folders.insert(folder);
+    Findings found;
+    for (const File& file : files) {
+        if (!file.is_under("tests") || !file.is_cpp()) continue;
+        const bool own = std::ranges::any_of(own_folders, [&](auto folder) { return file.is_under(folder); });
+        const std::string mirrored = file.folder() == "tests" ? "" : file.folder().substr(std::string_view{"tests/"}.size());
+        if (!own && !folders.contains(mirrored))
+            found.push_back({file.path, 1, "mirrors no folder of the tree", "move it to tests/<the folder that it tests>"});
+    }
+    return found;
+}
+
+TEST(Shape, no_file_is_too_long) { expect_none(too_long(tree())); }
+TEST(Shape, no_line_is_too_wide) { expect_none(too_wide(tree())); }
+TEST(Shape, every_file_begins_with_its_idea) { expect_none(without_idea(tree())); }
+TEST(Shape, lines_end_where_they_end) { expect_none(untidy_ends(tree())); }
+TEST(Shape, headers_are_included_once) { expect_none(unguarded(tree())); }
+TEST(Shape, tests_mirror_the_tree) { expect_none(unmirrored(tree())); }
+
+TEST(ShapeRule, finds_what_is_too_long_or_too_wide) {
+    std::string many;
+    for (std::size_t i = 0; i <= most_lines; ++i) many += "\n";
+    EXPECT_EQ(too_long({file("a.cpp", many)}).size(), 1u);
+    const std::string wide(most_columns + 1, 'x');
+    EXPECT_EQ(too_wide({file("a.cpp", wide)}).size(), 1u);
+    EXPECT_TRUE(too_wide({file("a.cpp", "// clang-format off\n" + wide + "\n// clang-format on\n")}).empty());
+    EXPECT_EQ(too_wide({file("a.cpp", "// clang-format off\n// clang-format on\n" + wide)}).size(), 1u);
+}
+
+TEST(ShapeRule, finds_files_that_do_not_say_their_idea) {
+    EXPECT_EQ(without_idea({file("a.cpp", "#include <array>\n")}).size(), 1u);
+    EXPECT_EQ(without_idea({file("a.cpp", "")}).size(), 1u);
+    EXPECT_EQ(without_idea({file("CMakeLists.txt", "project(x)\n")}).size(), 1u);
+    EXPECT_EQ(without_idea({file("ci/x", "#!/bin/sh\nexit 0\n")}).size(), 1u);
+    EXPECT_TRUE(without_idea({file("ci/x", "#!/bin/sh\n# SPDX-License-Identifier: Apache-2.0\n")}).empty());
+}
+
+TEST(ShapeRule, finds_tabs_trailing_spaces_and_unguarded_headers) {
+    EXPECT_EQ(untidy_ends({file("a.cpp", "\tint a;\n")}).size(), 1u);
+    EXPECT_EQ(untidy_ends({file("a.cpp", "int a; \n")}).size(), 1u);
+    EXPECT_EQ(unguarded({file("a.hpp", "// A.\n")}).size(), 1u);
+}
+
+TEST(ShapeRule, finds_a_test_of_no_folder) {
+    EXPECT_EQ(unmirrored({file("tests/kernel/attic/a_test.cpp", "// A.\n")}).size(), 1u);
+    EXPECT_TRUE(unmirrored({file("kernel/os/sub/a.hpp", "// A.\n"), file("tests/kernel/os/a_test.cpp", "// A.\n")}).empty());
+}
+
+} // namespace
+} // namespace tappet::house
