@@ -133,7 +133,8 @@ private:
         schedule_.update(estimator_, now);
         cam_timer.arm(schedule_.next_due());
         const ShaftState state = estimator_.at(now);
-        const bool is_valid = estimator_.valid(now);
+        watch_jumps(now);
+        const bool is_valid = estimator_.valid(now) && now >= distrusted_until_;
         watch_timer.arm(is_valid ? estimator_.valid_until() + 1us : never);
         motion.write(estimator_.motion(), estimator_.motion().stamp);
         angle_deg.write(state.position.angle().in_degrees());
@@ -146,6 +147,19 @@ private:
             phase_ = Phase::free;
             stopped.emit(error_of(state));
         }
+    }
+
+    /// A code that no shaft could have reached is a late frame; some of them in a row are two shafts, and nobody knows
+    /// which of the two is ours.
+    void watch_jumps(Time now) noexcept TAPPET_REALTIME {
+        const std::uint64_t jumps = estimator_.counters().implausible;
+        if (jumps == jumps_seen_) return;
+        if (now - jumps_since_ > jumps_within) {
+            jumps_since_ = now;
+            jumps_before_ = jumps_seen_;
+        }
+        jumps_seen_ = jumps;
+        if (jumps - jumps_before_ >= most_jumps) distrusted_until_ = now + distrust;
     }
 
     void fire(const CamEvent& event) noexcept TAPPET_REALTIME {
@@ -213,12 +227,21 @@ private:
                       cams.rows[arrival_window_row].name == "arrival_window" && cams.rows.size() == 4,
                   "fire() gives each cam row its event");
 
+    static constexpr std::uint64_t most_jumps = 4;
+    static constexpr Duration jumps_within = 50ms;
+    static constexpr Duration distrust = 200ms; // without another jump the encoder is believed again
+    static_assert(distrust > jumps_within, "an encoder that goes on jumping stays distrusted");
+
     ShaftEstimator estimator_{ShaftProperties{}};
     CamSchedule<cams.size()> schedule_{cams};
     Phase phase_ = Phase::free;
     ShaftPosition edge_{};
     double edge_speed_deg_s_ = 0.0;
     double deceleration_ = 1.0;
+    std::uint64_t jumps_seen_ = 0;
+    std::uint64_t jumps_before_ = 0; // the window's beginning
+    Time jumps_since_{};
+    Time distrusted_until_{};
     Change<bool> valid_, standing_;
 };
 

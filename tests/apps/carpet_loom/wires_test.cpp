@@ -1,0 +1,270 @@
+// The carpet loom on bad wires: frames and edges lost, repeated, torn and late, a babbling node, a line that is stuck, a
+// Modbus server that is silent. What can be woven through is woven through and counted; the rest is safe.
+#include "tests/apps/carpet_loom/loom_rig.hpp"
+
+namespace tappet::carpet {
+namespace {
+
+using loom::Fault;
+namespace cob = wires::cob;
+namespace line = wires::line;
+
+constexpr std::uint64_t seeds = 4;
+
+class Wires : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(seed, Wires, testing::Range<std::uint64_t>(1, seeds + 1));
+
+using CanBus = can::Bus<can_signals>;
+using LinePort = gpio::LinePort<io_lines>;
+using Utility = modbus::Slave<utility_registers>;
+
+loom::Settings breaks_of_yarn(std::uint64_t last_pick) {
+    loom::Settings settings;
+    settings.weft_break_one_in = 15;
+    settings.warp_break_one_in = 40;
+    settings.last_pick = last_pick;
+    return settings;
+}
+
+void expect_woven(LoomRig& rig, std::uint64_t picks) {
+    EXPECT_TRUE(rig.run().weave(picks, 300s)) << "in state " << rig.state() << ": " << rig.reason();
+    const loom::Report report = rig.report();
+    expect_stops_in_tolerance(report);
+    expect_no_damage(report);
+}
+
+// --- CAN
+
+TEST_P(Wires, one_lost_frame_in_fifty_is_woven_through) {
+    LoomRig rig{GetParam(), breaks_of_yarn(60)};
+    rig.wires().bus().faults.lose.one_in = 50;
+    expect_woven(rig, 60);
+    EXPECT_GT(rig.wires().bus().frames_lost(), 1000u);
+    // What is lost on the wire reaches no counter of this machine: the kernel never had it.
+    EXPECT_EQ(rig.wires().machine_can().counters().lost_in_kernel, 0u);
+}
+
+TEST_P(Wires, repeated_frames_are_woven_through) {
+    LoomRig rig{GetParam(), breaks_of_yarn(60)};
+    rig.wires().bus().faults.duplicate.one_in = 10;
+    expect_woven(rig, 60);
+}
+
+TEST_P(Wires, frames_of_a_wrong_length_are_refused_and_counted_and_the_loom_weaves_on) {
+    LoomRig rig{GetParam(), breaks_of_yarn(60)};
+    rig.wires().bus().faults.corrupt_length.one_in = 50;
+    expect_woven(rig, 60);
+    EXPECT_GT(rig.component<CanBus>("can").decoding().wrong_lengths, 100u);
+}
+
+TEST_P(Wires, frames_that_come_late_are_woven_through) {
+    LoomRig rig{GetParam(), breaks_of_yarn(60)};
+    rig.wires().bus().faults.delay.one_in = 100;
+    rig.wires().bus().faults.delay_by = 1500us;
+    rig.wires().bus().faults.only = can::standard(cob::load_cell_tension);
+    expect_woven(rig, 60);
+}
+
+TEST_P(Wires, frames_of_unknown_identifiers_are_counted_and_nobodys_business) {
+    LoomRig rig{GetParam(), breaks_of_yarn(30)};
+    can::Frame strange;
+    strange.id = 0x333;
+    strange.length = 8;
+    rig.wires().bus().babble(strange, 1ms, rig.now());
+    expect_woven(rig, 30);
+}
+
+TEST_P(Wires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    can::Frame lie; // the shaft stands at code 0, it says
+    lie.id = cob::encoder_position;
+    lie.length = wires::length::encoder_position;
+    rig.wires().bus().babble(lie, 300us, rig.now());
+    EXPECT_TRUE(rig.run_until_state("fault", 50ms)) << rig.state();
+    EXPECT_EQ(rig.reason(), "the encoder is stale");
+    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 500ms));
+    rig.run_for(5s);
+    EXPECT_NE(rig.state(), "weave"); // acknowledged by the operator, and still contradicted
+    rig.wires().bus().babble(lie, 0us, rig.now());
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    expect_no_damage(rig.report());
+}
+
+TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_safe) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    can::Frame frozen;
+    frozen.id = cob::encoder_position;
+    frozen.length = wires::length::encoder_position;
+    frozen.data[1] = 0x08; // half a turn
+    rig.plant().inject({.fault = Fault::node_lost, .lasts = 500ms, .node = wires::node::encoder});
+    rig.wires().bus().babble(frozen, 1ms, rig.now());
+    EXPECT_TRUE(rig.run_until_state("fault", 300ms)) << rig.state();
+    EXPECT_TRUE(rig.reason() == "the encoder stands while the drive turns" || rig.reason() == "the encoder is stale") << rig.reason();
+    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 500ms));
+    expect_no_damage(rig.report());
+}
+
+TEST_P(Wires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().bus().overflow(rig.wires().machine_can(), 3);
+    rig.run_for(200ms);
+    EXPECT_EQ(rig.component<CanBus>("can").frames_lost.last(), 3);
+    EXPECT_EQ(rig.wires().machine_can().counters().lost_in_kernel, 3u);
+    EXPECT_EQ(rig.state(), "weave");
+    rig.wires().bus().overflow(rig.wires().machine_can(), 2);
+    rig.run_for(200ms);
+    EXPECT_EQ(rig.component<CanBus>("can").frames_lost.last(), 5);
+    expect_no_damage(rig.report());
+}
+
+TEST_P(Wires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().bus().faults.lose.next = 20;
+    rig.wires().bus().faults.only = can::standard(cob::encoder_position);
+    ASSERT_TRUE(rig.run_until_state("fault", 30ms));
+    EXPECT_EQ(rig.reason(), "the encoder is stale");
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    expect_no_damage(rig.report());
+}
+
+TEST_P(Wires, two_lost_encoder_frames_are_no_reason_to_stop) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().bus().faults.lose.next = 2;
+    rig.wires().bus().faults.only = can::standard(cob::encoder_position);
+    rig.run_for(1s);
+    EXPECT_EQ(rig.state(), "weave");
+    EXPECT_LE(rig.report().cam_error_max_deg, 1.0);
+}
+
+TEST_P(Wires, commands_that_are_lost_are_said_again) {
+    LoomRig rig{GetParam(), breaks_of_yarn(40)};
+    rig.wires().bus().faults.lose.one_in = 4;
+    rig.wires().bus().faults.only = can::standard(cob::main_drive_command);
+    expect_woven(rig, 40);
+}
+
+TEST_P(Wires, a_start_command_to_a_node_that_is_lost_is_said_again) {
+    LoomRig rig{GetParam()};
+    rig.wires().bus().faults.lose.next = 5;
+    rig.wires().bus().faults.only = can::standard(cob::nmt);
+    EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state();
+}
+
+// --- GPIO
+
+TEST_P(Wires, bouncing_lines_are_one_edge_each) {
+    LoomRig rig{GetParam(), breaks_of_yarn(40)};
+    for (const unsigned each : {line::drop_wire, line::button_start, line::button_stop, line::button_acknowledge, line::emergency_stop}) rig.wires().lines().faults(LoomRig::line_index(each)).bounces = 4;
+    expect_woven(rig, 40);
+}
+
+TEST_P(Wires, a_bouncing_emergency_stop_is_an_emergency_stop) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().lines().faults(LoomRig::line_index(line::emergency_stop)).bounces = 5;
+    rig.plant().inject({.fault = Fault::emergency_stop});
+    ASSERT_TRUE(rig.run_until_state("emergency", 5ms));
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    expect_no_damage(rig.report());
+}
+
+TEST_P(Wires, lost_edges_are_counted_and_the_levels_read_anew) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    // The edge of the emergency stop itself is lost; the next edge of any line shows the gap.
+    rig.wires().lines().faults(LoomRig::line_index(line::emergency_stop)).lose_next = 1;
+    rig.plant().inject({.fault = Fault::emergency_stop});
+    ASSERT_TRUE(rig.run_until_state("emergency", 150ms)) << rig.state();
+    EXPECT_EQ(rig.component<LinePort>("io").edges_lost.last(), 1);
+    EXPECT_EQ(rig.wires().lines().counters().missed, 1u);
+    EXPECT_EQ(rig.report().damage.closed_shed_wefts, 0u);
+}
+
+TEST_P(Wires, a_lost_pulse_of_the_weft_detector_stops_the_loom_at_its_angle) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().lines().faults(LoomRig::line_index(line::weft_detector)).lose_next = 2;
+    ASSERT_TRUE(rig.run_until_state("stopped", 1s)) << rig.state();
+    EXPECT_EQ(rig.cause(), StopCause::weft);
+    const loom::Report report = rig.report();
+    ASSERT_EQ(report.stops.size(), 1u);
+    EXPECT_LE(std::abs(report.stops[0].error_deg), wires::nominal::stop_tolerance_deg);
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    expect_no_damage(rig.report());
+}
+
+TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
+    for (const bool active : {false, true}) {
+        LoomRig rig{GetParam()};
+        ASSERT_TRUE(rig.weave());
+        rig.wires().lines().stick(LoomRig::line_index(line::weft_detector), active, rig.now());
+        ASSERT_TRUE(rig.run_until_state("stopped", 1s)) << (active ? "active" : "inactive") << ": " << rig.state();
+        EXPECT_EQ(rig.cause(), StopCause::weft);
+        rig.wires().lines().release(LoomRig::line_index(line::weft_detector));
+        EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    }
+}
+
+TEST_P(Wires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().lines().stick(LoomRig::line_index(line::drop_wire), true, rig.now());
+    ASSERT_TRUE(rig.run_until_state("stopped", 1s));
+    EXPECT_EQ(rig.cause(), StopCause::warp);
+    rig.run_for(5s); // acknowledged again and again, in vain
+    EXPECT_EQ(rig.state(), "stopped");
+    rig.wires().lines().release(LoomRig::line_index(line::drop_wire));
+    static_cast<void>(rig.wires().lines().drive(LoomRig::line_index(line::drop_wire), false, rig.now()));
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+}
+
+// --- Modbus
+
+TEST_P(Wires, an_outage_of_the_utility_unit_of_ten_seconds_is_survived) {
+    for (const modbus::Fault fault : {modbus::Fault::down, modbus::Fault::silent}) {
+        LoomRig rig{GetParam()};
+        ASSERT_TRUE(rig.weave());
+        rig.wires().utility().inject(fault);
+        rig.run_for(10s);
+        EXPECT_EQ(rig.state(), "weave");
+        EXPECT_EQ(rig.component<Utility>("utility").outages.last(), 1);
+        EXPECT_FALSE(rig.component<Utility>("utility").connected.last() && fault == modbus::Fault::down);
+        rig.wires().utility().inject(modbus::Fault::none);
+        rig.run_for(8s);
+        EXPECT_EQ(rig.component<Utility>("utility").outages_survived.last(), 1);
+        EXPECT_TRUE(rig.component<Utility>("utility").connected.last());
+        EXPECT_EQ(rig.state(), "weave");
+        expect_no_damage(rig.report());
+    }
+}
+
+TEST_P(Wires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_knows_the_oil_pressure) {
+    LoomRig rig{GetParam()};
+    ASSERT_TRUE(rig.weave());
+    rig.wires().utility().inject(modbus::Fault::down);
+    ASSERT_TRUE(rig.run_until_state("fault", 20s));
+    EXPECT_EQ(rig.reason(), "the oil pressure is lost");
+    rig.wires().utility().inject(modbus::Fault::none);
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+}
+
+TEST_P(Wires, slow_answers_and_exceptions_of_the_utility_unit_are_woven_through) {
+    for (const modbus::Fault fault : {modbus::Fault::slow, modbus::Fault::exception, modbus::Fault::wrong_transaction, modbus::Fault::garbage_length}) {
+        LoomRig rig{GetParam()};
+        ASSERT_TRUE(rig.weave());
+        rig.wires().utility().set_slow_by(700ms);
+        rig.wires().utility().inject(fault, 5);
+        rig.run_for(8s);
+        EXPECT_EQ(rig.state(), "weave") << "fault " << static_cast<int>(fault) << ": " << rig.reason();
+        EXPECT_LT(rig.component<Utility>("utility").counters().outages, 6u);
+        expect_no_damage(rig.report());
+    }
+}
+
+} // namespace
+} // namespace tappet::carpet
