@@ -274,7 +274,7 @@ Sentence MachineInstance::describe_stop() const {
     case StopReason::behaviour: return Sentence{"asked for by a behaviour in activity \"", who, "\""};
     case StopReason::missed_deadline: {
         const auto function = static_cast<std::uint32_t>(stop_.detail);
-        if (function == Miss::nobody) return Sentence{"activity \"", who, "\" missed its deadline: it began late"};
+        if (function == Miss::nobody || stop_.from == nullptr) return Sentence{"activity \"", who, "\" missed its deadline: it began late"};
         return Sentence{"activity \"", who, "\" missed its deadline: component \"", stop_.from->plan().parts[function / functions_per_part].name, "\" took the time"};
     }
     case StopReason::stale_input: {

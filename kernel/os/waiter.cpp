@@ -42,7 +42,7 @@ void Waiter::wake() noexcept TAPPET_REALTIME {
 
 bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     if (take()) return true;
-    if (devices_.size() != 0) return wait_on_devices(until);
+    if (!devices_.empty()) return wait_on_devices(until);
     std::uint32_t expected = idle;
     if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
         const timespec end = to_timespec(to_ns(until));
