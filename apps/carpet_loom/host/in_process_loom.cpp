@@ -46,7 +46,7 @@ void InProcessLoom::advance(Time now) {
     lines_to_plant(now);
     bus_.deliver_until(now);
     frames_to_plant(now);
-    plant_.advance(now);
+    plant_.advance(now - origin_);
     frames_to_machine(now);
     bus_.deliver_until(now);
     lines_to_machine(now);
@@ -58,20 +58,36 @@ void InProcessLoom::frames_to_plant(Time now) {
     while (true) {
         const can::Receive got = plant_can_.receive(frame);
         if (got.what == can::Received::none) return;
-        if (got.what == can::Received::frame) plant_.receive({frame.id, frame.length, frame.data}, now);
+        if (got.what == can::Received::frame) plant_.receive({frame.id, frame.length, frame.data}, now - origin_);
     }
 }
 
 void InProcessLoom::frames_to_machine(Time now) {
-    loom::CanFrame frame;
-    Time due;
-    while (plant_.transmit(frame, due)) {
+    const auto send = [this, now](const loom::CanFrame& frame) {
         can::Frame out;
         out.id = frame.id;
         out.length = frame.length;
         out.data = frame.data;
         out.stamp = now;
         static_cast<void>(plant_can_.send(out, can::Keep::every));
+    };
+    loom::CanFrame frame;
+    loom::CanFrame sample;
+    bool is_sampled = false;
+    Time due;
+    while (plant_.transmit(frame, due)) {
+        if (frame.id != loom::wires::cob::encoder_position) {
+            send(frame);
+            continue;
+        }
+        sample = frame;
+        is_sampled = true;
+    }
+    if (is_sampled) { // who comes late sends the shaft as it is, once, not as it was
+        const std::uint16_t code = plant_.encoder_code();
+        sample.data[0] = static_cast<std::uint8_t>(code & 0xFFu);
+        sample.data[1] = static_cast<std::uint8_t>(code >> 8);
+        send(sample);
     }
     plant_can_.service(now);
 }
@@ -81,7 +97,7 @@ void InProcessLoom::lines_to_plant(Time now) {
     if (outputs == seen_outputs_) return;
     for (std::size_t i = 0; i < line_settings_.size(); ++i)
         if (line_settings_[i].role == gpio::Role::output && ((outputs ^ seen_outputs_) >> i & 1u) != 0)
-            plant_.set_line(line_settings_[i].offset, (outputs >> i & 1u) != 0, now);
+            plant_.set_line(line_settings_[i].offset, (outputs >> i & 1u) != 0, now - origin_);
     seen_outputs_ = outputs;
 }
 
@@ -89,7 +105,7 @@ void InProcessLoom::lines_to_machine(Time now) {
     loom::Edge edge;
     while (plant_.next_edge(edge))
         for (std::size_t i = 0; i < line_settings_.size(); ++i)
-            if (line_settings_[i].offset == edge.line) static_cast<void>(lines_.drive(i, edge.level, edge.at));
+            if (line_settings_[i].offset == edge.line) static_cast<void>(lines_.drive(i, edge.level, edge.at + origin_));
     lines_.deliver_until(now);
 }
 

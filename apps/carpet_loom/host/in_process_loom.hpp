@@ -25,10 +25,12 @@ public:
     /// For MachineInstance::configure.
     [[nodiscard]] std::span<const ProvidedDevice> devices() const noexcept { return provided_; }
 
-    /// Moves plant and wires to `now`.
+    /// Before the first advance(): the plant's time begins here. The epoch unless told.
+    void begin_at(Time origin) noexcept { origin_ = origin.time_since_epoch(); }
+    /// Moves plant and wires to `now`. One thread, the plant's; the machine's may be others.
     void advance(Time now);
     /// When advance() has something to do: the plant's next event.
-    [[nodiscard]] Time next() const noexcept { return plant_.next_event(); }
+    [[nodiscard]] Time next() const noexcept { return plant_.next_event() + origin_; }
 
     [[nodiscard]] loom::Plant& plant() noexcept { return plant_; }
     [[nodiscard]] can::TwinBus& bus() noexcept { return bus_; }
@@ -53,6 +55,7 @@ private:
     std::array<gpio::Line, io_lines.rows.size()> line_settings_{};
     std::array<ProvidedDevice, 3> provided_{};
     gpio::Mask seen_outputs_ = 0;
+    Duration origin_{};
 };
 
 } // namespace tappet::carpet

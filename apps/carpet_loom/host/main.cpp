@@ -1,5 +1,6 @@
 // The carpet loom on the host: machine and plant in one process.
 #include "apps/carpet_loom/host/options.hpp"
+#include "apps/carpet_loom/host/real_run.hpp"
 #include "apps/carpet_loom/host/virtual_run.hpp"
 #include "apps/carpet_loom/summary.hpp"
 #include "kernel/os/box.hpp"
@@ -18,32 +19,82 @@ int fail(const Sentence& why) {
     return 2;
 }
 
-int report(carpet::VirtualRun& run, const carpet::Options& options, bool woven) {
-    static std::array<char, 256 * 1024> text;
+struct Outcome {
+    bool woven = false;
+    std::uint64_t page_faults = 0;
+    Sentence broken_contract{};
+    std::uint64_t event_log_digest = 0; ///< virtual time only
+};
+
+std::array<char, 256 * 1024> text;
+
+/// The machine's object, and the plant's as more fields of it. 0 when the buffer is too small.
+std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options, const Outcome& outcome) {
+    const auto& bus = *instance.find<can::Bus<carpet::can_signals>>("can");
+    const can::Counters seen = bus.counters();
     carpet::RunFacts facts;
     facts.world = "host";
-    facts.realtime = false;
+    facts.realtime = !options.virtual_time && os::kernel_is_realtime();
     facts.seed = options.seed;
-    facts.can_frames_lost = run.loom().machine_can().counters().lost_in_kernel;
-    facts.gpio_edges_lost = run.loom().lines().counters().missed;
-    const Sentence stop = run.instance().stop_asked() ? run.instance().describe_stop() : Sentence{woven ? "the picks are woven" : "the picks were not woven in time"};
-    facts.stop_reason = stop.view();
-    facts.with_digest = true;
-    const std::size_t machine = carpet::write_machine_summary(run.instance(), facts, text);
-    const std::size_t plant = machine == 0 ? 0 : loom::write_json(run.loom().plant().report(), std::span{text}.subspan(machine));
-    if (plant == 0) return fail(Sentence{"the summary does not fit its buffer"});
-    // The plant's object becomes the machine's fields: its opening brace turns into a comma.
-    text[machine] = ',';
+    facts.page_faults_after_arming = outcome.page_faults;
+    facts.can_frames_lost = seen.lost_in_kernel;
+    facts.gpio_edges_lost = loom.lines().counters().missed;
+    facts.modbus_outages_survived = instance.find<modbus::Slave<carpet::utility_registers>>("utility")->counters().outages_survived;
+    facts.wires = {seen.faults, seen.restarts, bus.decoding().wrong_lengths, seen.impostors, seen.malformed};
+    Sentence reason{outcome.woven ? "the picks are woven" : "the picks were not woven in time"};
+    if (!outcome.broken_contract.empty()) reason = outcome.broken_contract;
+    else if (instance.stop_asked()) reason = instance.describe_stop();
+    facts.stop_reason = reason.view();
+    facts.with_digest = options.virtual_time;
+    const std::size_t machine = carpet::write_machine_summary(instance, facts, text);
+    const std::size_t plant = machine == 0 ? 0 : loom::write_json(loom.plant().report(), std::span{text}.subspan(machine));
+    if (plant == 0) return 0;
+    text[machine] = ','; // the plant's opening brace
     std::size_t length = machine + plant;
     while (length > 0 && text[length - 1] != '}') --length;
     JsonText ending{std::span{text}.subspan(length - 1)};
-    ending.raw(", \"event_log_digest\": \"").raw(Sentence{static_cast<std::int64_t>(run.event_log_digest() >> 1)}.view()).raw("\"}\n");
-    const std::string_view whole{text.data(), length - 1 + ending.size()};
-    if (!options.summary.empty()) {
-        const std::string path{options.summary};
-        if (!os::replace_file(path.c_str(), whole)) return fail(Sentence{"the summary cannot be written to \"", options.summary, "\"; name a file in a folder that exists"});
+    if (options.virtual_time) {
+        char digits[16] = {};
+        for (std::size_t i = 0; i < 16; ++i) digits[i] = "0123456789abcdef"[outcome.event_log_digest >> (60 - 4 * i) & 0xF];
+        ending.raw(", \"event_log_digest\": \"").raw({digits, 16}).raw("\"");
     }
-    return woven ? 0 : 1;
+    ending.raw("}\n");
+    return ending.size() == 0 ? 0 : length - 1 + ending.size();
+}
+
+int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options, const Outcome& outcome) {
+    if (!outcome.broken_contract.empty()) os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
+    if (!options.summary.empty()) {
+        const std::size_t length = write_summary(instance, loom, options, outcome);
+        if (length == 0) return fail(Sentence{"the summary does not fit its buffer"});
+        const std::string path{options.summary};
+        if (!os::replace_file(path.c_str(), {text.data(), length})) return fail(Sentence{"the summary cannot be written to \"", options.summary, "\"; name a file in a folder that exists"});
+    }
+    return outcome.woven ? 0 : 1;
+}
+
+Duration time_for(std::uint64_t picks) { return 30s + picks * 2s; }
+
+int run_virtual(const carpet::Options& options) {
+    static carpet::VirtualRun run{options.plant, options.seed, options.quiet};
+    if (const auto started = run.start(); !started) return fail(started.error());
+    Outcome outcome;
+    outcome.woven = run.weave(options.picks, time_for(options.picks));
+    run.stop();
+    outcome.event_log_digest = run.event_log_digest();
+    return report(run.instance(), run.loom(), options, outcome);
+}
+
+int run_real(const carpet::Options& options) {
+    static carpet::RealRun run{options.plant, options.seed, options.quiet};
+    if (const auto started = run.start(2); !started) return fail(started.error());
+    Outcome outcome;
+    outcome.woven = run.weave(options.picks, time_for(options.picks));
+    const int hung = run.stop();
+    outcome.page_faults = run.world().page_faults_in_real_time_threads();
+    outcome.broken_contract = run.world().broken_contract();
+    outcome.woven &= hung == 0;
+    return report(run.instance(), run.loom(), options, outcome);
 }
 
 } // namespace
@@ -55,10 +106,5 @@ int main(int count, char** words) {
         os::print(carpet::usage);
         return 0;
     }
-    if (!options->virtual_time) return fail(Sentence{"real time"});
-    static carpet::VirtualRun run{options->plant, options->seed, options->quiet};
-    if (const auto started = run.start(); !started) return fail(started.error());
-    const bool woven = run.weave(options->picks, 30s + options->picks * 2s);
-    run.stop();
-    return report(run, *options, woven);
+    return options->virtual_time ? run_virtual(*options) : run_real(*options);
 }

@@ -1,13 +1,13 @@
 // A run under virtual time: configure, weave until the picks are done, digest the event log.
 #include "apps/carpet_loom/host/virtual_run.hpp"
 
-#include "apps/carpet_loom/machine.hpp"
-#include "board/host/board.hpp"
+#include "apps/carpet_loom/console.hpp"
+#include "apps/carpet_loom/host/loom_on_host.hpp"
 
 namespace tappet::carpet {
 
 VirtualRun::VirtualRun(const loom::Settings& settings, std::uint64_t seed, bool quiet)
-    : loom_{settings, seed}, instance_{Firmware<carpet_loom, board::host>::machine(), clock_}, world_{instance_}, quiet_{quiet} {}
+    : loom_{settings, seed}, instance_{loom_on_host(), clock_}, world_{instance_}, quiet_{quiet} {}
 
 std::expected<void, Sentence> VirtualRun::start() {
     if (auto opened = loom_.open(); !opened) return opened;
