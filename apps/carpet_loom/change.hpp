@@ -1,4 +1,5 @@
-// Writing an output only when its value changes, so that a connection that wakes its reader wakes it for news only.
+// Writing an output only when its value changes, so that a connection that wakes its reader wakes it for news
+// only.
 #pragma once
 
 #include "kernel/component/port.hpp"

@@ -1,5 +1,5 @@
-// The loom's console: what an engineer at the box's terminal sees of the machine, one line at a time. It also is the
-// record that the summary reads.
+// The loom's console: what an engineer at the box's terminal sees of the machine, one line at a time. It also
+// is the record that the summary reads.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -7,30 +7,66 @@
 
 namespace tappet::carpet {
 
-/// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another program can
-/// pick them out of a serial console.
+/// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another
+/// program can pick them out of a serial console.
 struct Console {
-    Input<std::int64_t> state, cause, waits_for, stops, picks, frames_lost, bus_state, bus_restarts, edges_lost, outages;
+    Input<std::int64_t> state, cause, waits_for, stops, picks, frames_lost, bus_state, bus_restarts,
+        edges_lost, outages;
     Input<double> speed_rpm, angle_deg, stop_error_deg, tension_n, oil_bar;
     Property<bool> quiet{false};
 
-    static constexpr std::array<std::string_view, 10> states{"off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
-    static constexpr std::array<std::string_view, 6> causes{"none", "weft", "warp", "operator", "emergency", "fault"};
+    static constexpr std::array<std::string_view, 10> states{
+        "off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
+    static constexpr std::array<std::string_view, 6> causes{"none",     "weft",      "warp",
+                                                            "operator", "emergency", "fault"};
 
-    static constexpr std::array<std::string_view, 9> waits{"nothing", "emergency-stop", "can-nodes", "encoder", "main-drive", "let-off-drive", "oil-pressure", "warp-tension", "drop-wire"};
+    static constexpr std::array<std::string_view, 9> waits{"nothing",      "emergency-stop", "can-nodes",
+                                                           "encoder",      "main-drive",     "let-off-drive",
+                                                           "oil-pressure", "warp-tension",   "drop-wire"};
 
     void work(const Cycle& cycle) {
         if (quiet.get()) return;
-        Sentence line{"loom t=", to_ns(cycle.now) / 1'000'000, "ms state=", name(states, state.get()), " speed=", whole(speed_rpm.get()), "rpm angle=", whole(angle_deg.get()), "deg picks=", picks.get(), " tension=", whole(tension_n.get()),
-                      "N oil=", whole(oil_bar.get() * 100.0), "cbar stops=", stops.get(), " cause=", name(causes, cause.get()), " stop_error=", whole(stop_error_deg.get() * 10.0), "ddeg bus=", bus_state.get(), " frames_lost=", frames_lost.get(),
-                      " edges_lost=", edges_lost.get(), " outages=", outages.get(), " restarts=", bus_restarts.get(), " waits_for=", name(waits, waits_for.get()), "\n"};
+        Sentence line{"loom t=",
+                      to_ns(cycle.now) / 1'000'000,
+                      "ms state=",
+                      name(states, state.get()),
+                      " speed=",
+                      whole(speed_rpm.get()),
+                      "rpm angle=",
+                      whole(angle_deg.get()),
+                      "deg picks=",
+                      picks.get(),
+                      " tension=",
+                      whole(tension_n.get()),
+                      "N oil=",
+                      whole(oil_bar.get() * 100.0),
+                      "cbar stops=",
+                      stops.get(),
+                      " cause=",
+                      name(causes, cause.get()),
+                      " stop_error=",
+                      whole(stop_error_deg.get() * 10.0),
+                      "ddeg bus=",
+                      bus_state.get(),
+                      " frames_lost=",
+                      frames_lost.get(),
+                      " edges_lost=",
+                      edges_lost.get(),
+                      " outages=",
+                      outages.get(),
+                      " restarts=",
+                      bus_restarts.get(),
+                      " waits_for=",
+                      name(waits, waits_for.get()),
+                      "\n"};
         os::print(line.view());
     }
 
     static constexpr auto interface() {
         return facets(input<&Console::state>("state", "", "number of the loom's state"),
                       input<&Console::cause>("cause", "", "of the last stop"),
-                      input<&Console::waits_for>("waits_for", "", "number of what is missing before the loom may start"),
+                      input<&Console::waits_for>("waits_for", "",
+                                                 "number of what is missing before the loom may start"),
                       input<&Console::stops>("stops", "", "at the stop angle"),
                       input<&Console::picks>("picks", "", "woven"),
                       input<&Console::frames_lost>("frames_lost", "", "on the CAN bus"),
@@ -47,10 +83,13 @@ struct Console {
     }
 
 private:
-    static std::int64_t whole(double value) { return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5)); }
+    static std::int64_t whole(double value) {
+        return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5));
+    }
     template <std::size_t N>
     static std::string_view name(const std::array<std::string_view, N>& names, std::int64_t index) {
-        return index >= 0 && index < static_cast<std::int64_t>(N) ? names[static_cast<std::size_t>(index)] : "?";
+        return index >= 0 && index < static_cast<std::int64_t>(N) ? names[static_cast<std::size_t>(index)]
+                                                                  : "?";
     }
 };
 

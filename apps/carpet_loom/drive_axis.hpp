@@ -1,4 +1,5 @@
-// What the loom's two CiA 402 drives have in common: led to their goal each cycle, enabled and fault told on change.
+// What the loom's two CiA 402 drives have in common: led to their goal each cycle, enabled and fault told on
+// change.
 #pragma once
 
 #include "apps/carpet_loom/change.hpp"

@@ -11,7 +11,17 @@ namespace wires = loom::wires;
 
 enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
 /// What the loom waits for before it may start; the first that is missing.
-enum class WaitsFor : std::int64_t { nothing, emergency_stop, can_nodes, encoder, main_drive, let_off_drive, oil_pressure, warp_tension, drop_wire };
+enum class WaitsFor : std::int64_t {
+    nothing,
+    emergency_stop,
+    can_nodes,
+    encoder,
+    main_drive,
+    let_off_drive,
+    oil_pressure,
+    warp_tension,
+    drop_wire
+};
 
 /// Its states are in loom_cycle.hpp. All real-time.
 struct Loom {
@@ -52,11 +62,17 @@ struct Loom {
     [[nodiscard]] bool bus_is_back() noexcept TAPPET_REALTIME { return !bus_faulted.get(); }
     [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
     /// The drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
-    [[nodiscard]] bool encoder_stands() noexcept TAPPET_REALTIME { return main_at_speed.get() && shaft_standing.get(); }
+    [[nodiscard]] bool encoder_stands() noexcept TAPPET_REALTIME {
+        return main_at_speed.get() && shaft_standing.get();
+    }
     [[nodiscard]] bool node_is_silent() noexcept TAPPET_REALTIME { return !nodes_operational.get(); }
-    [[nodiscard]] bool drive_is_faulty() noexcept TAPPET_REALTIME { return main_fault.get() || let_off_fault.get(); }
+    [[nodiscard]] bool drive_is_faulty() noexcept TAPPET_REALTIME {
+        return main_fault.get() || let_off_fault.get();
+    }
     [[nodiscard]] bool oil_is_lost() noexcept TAPPET_REALTIME { return !oil_good(); }
-    [[nodiscard]] bool operator_stopped() noexcept TAPPET_REALTIME { return cause_ == StopCause::operator_stop; }
+    [[nodiscard]] bool operator_stopped() noexcept TAPPET_REALTIME {
+        return cause_ == StopCause::operator_stop;
+    }
 
     // Programs of the state machine.
     void enter_preparing() noexcept TAPPET_REALTIME {

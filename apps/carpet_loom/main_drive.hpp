@@ -42,32 +42,38 @@ struct MainDrive {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         if (start_asked_) {
             start_asked_ = false;
-            run_from_ = cycle.now + brake_release.get(); // against a brake that still holds the motor would be blocked
+            run_from_ = cycle.now +
+                        brake_release.get(); // against a brake that still holds the motor would be blocked
         }
         const bool runs = running_ && cycle.now >= run_from_;
         static_cast<void>(axis_.lead(statusword, controlword, enabled, fault));
         target.write(runs ? speed_rpm.get() : 0.0);
         const double off = velocity.get() - speed_rpm.get();
-        at_speed_.write(at_speed, runs && off < at_speed_within_rpm.get() && -off < at_speed_within_rpm.get());
+        at_speed_.write(at_speed,
+                        runs && off < at_speed_within_rpm.get() && -off < at_speed_within_rpm.get());
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { DriveAxis::stop(controlword, target); }
 
     static constexpr auto interface() {
-        return facets(input<&MainDrive::statusword>("statusword", "", "CiA 402 statusword of the drive"),
-                      input<&MainDrive::velocity>("velocity", "rpm", "actual velocity of the drive"),
-                      output<&MainDrive::controlword>("controlword", "", "CiA 402 controlword for the drive"),
-                      output<&MainDrive::target>("target", "rpm", "target velocity for the drive"),
-                      output<&MainDrive::enabled>("enabled", "", "operation enabled; written on change"),
-                      output<&MainDrive::at_speed>("at_speed", "", "runs at its speed; written on change"),
-                      output<&MainDrive::fault>("fault", "", "the drive is faulty or silent; written on change"),
-                      property<&MainDrive::speed_rpm>("speed_rpm", "rpm", "weaving speed", range(30, 700)),
-                      property<&MainDrive::at_speed_within_rpm>("at_speed_within_rpm", "rpm", "how near counts as at speed", range(1, 100)),
-                      property<&MainDrive::brake_release>("brake_release", "s", "the brake holds so long after its line fell", range(0, 0.5)),
-                      operation<&MainDrive::enable>("enable", "leads the drive to operation enabled; resets one fault", required),
-                      operation<&MainDrive::disable>("disable", "takes the voltage away", required),
-                      operation<&MainDrive::quick_stop>("quick_stop", "brakes with the drive's quick stop", required),
-                      operation<&MainDrive::run>("run", "turns at the weaving speed", required),
-                      operation<&MainDrive::halt>("halt", "target velocity zero", required));
+        return facets(
+            input<&MainDrive::statusword>("statusword", "", "CiA 402 statusword of the drive"),
+            input<&MainDrive::velocity>("velocity", "rpm", "actual velocity of the drive"),
+            output<&MainDrive::controlword>("controlword", "", "CiA 402 controlword for the drive"),
+            output<&MainDrive::target>("target", "rpm", "target velocity for the drive"),
+            output<&MainDrive::enabled>("enabled", "", "operation enabled; written on change"),
+            output<&MainDrive::at_speed>("at_speed", "", "runs at its speed; written on change"),
+            output<&MainDrive::fault>("fault", "", "the drive is faulty or silent; written on change"),
+            property<&MainDrive::speed_rpm>("speed_rpm", "rpm", "weaving speed", range(30, 700)),
+            property<&MainDrive::at_speed_within_rpm>("at_speed_within_rpm", "rpm",
+                                                      "how near counts as at speed", range(1, 100)),
+            property<&MainDrive::brake_release>("brake_release", "s",
+                                                "the brake holds so long after its line fell", range(0, 0.5)),
+            operation<&MainDrive::enable>("enable", "leads the drive to operation enabled; resets one fault",
+                                          required),
+            operation<&MainDrive::disable>("disable", "takes the voltage away", required),
+            operation<&MainDrive::quick_stop>("quick_stop", "brakes with the drive's quick stop", required),
+            operation<&MainDrive::run>("run", "turns at the weaving speed", required),
+            operation<&MainDrive::halt>("halt", "target velocity zero", required));
     }
 
 private:

@@ -1,5 +1,5 @@
-// The main shaft: where it is between two encoder samples, the events of its angles, and the brake angle that is
-// learned from stop to stop (US4553569).
+// The main shaft: where it is between two encoder samples, the events of its angles, and the brake angle that
+// is learned from stop to stop (US4553569).
 #pragma once
 
 #include "apps/carpet_loom/cams.hpp"
@@ -75,7 +75,8 @@ struct MainShaft {
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         std::int64_t position = 0;
-        if (code.read(position) == Flow::fresh) estimator_.sample(static_cast<std::uint32_t>(position), code.stamp());
+        if (code.read(position) == Flow::fresh)
+            estimator_.sample(static_cast<std::uint32_t>(position), code.stamp());
         follow(cycle.now);
     }
 
@@ -93,34 +94,48 @@ struct MainShaft {
     }
 
     static constexpr auto interface() {
-        return facets(input<&MainShaft::code>("code", "", "encoder position, 0..4095 codes a turn"),
-                      output<&MainShaft::motion>("motion", "", "position, velocity and acceleration with their time"),
-                      output<&MainShaft::angle_deg>("angle_deg", "deg", "angle now"),
-                      output<&MainShaft::speed_rpm>("speed_rpm", "rpm", "speed now"),
-                      output<&MainShaft::valid>("valid", "", "the encoder can be relied on; written on change"),
-                      output<&MainShaft::standing>("standing", "", "the shaft stands; written on change"),
-                      output<&MainShaft::stop_error_deg>("stop_error_deg", "deg", "of the last stop, to the stop angle"),
-                      output<&MainShaft::stops>("stops", "", "at the stop angle, since start"),
-                      output<&MainShaft::brake_distance_deg>("brake_distance_deg", "deg", "learned, from the brake's edge to standstill at nominal speed"),
-                      event<&MainShaft::beat_up>("beat_up", "0 deg: a pick is complete"),
-                      event<&MainShaft::offer_pattern>("offer_pattern", "the dobby takes the next pattern from now on"),
-                      event<&MainShaft::weft_opens>("weft_opens", "the weft's valve must be driven now to open at its angle"),
-                      event<&MainShaft::weft_closes>("weft_closes", "the weft's valve is no longer needed"),
-                      event<&MainShaft::window_opens>("window_opens", "from here on the weft may arrive"),
-                      event<&MainShaft::window_closes>("window_closes", "by here the weft must have arrived"),
-                      event<&MainShaft::brake_now>("brake_now", "the brake must be driven now to stop at the stop angle"),
-                      event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
-                      operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle", required),
-                      operation<&MainShaft::release>("release", "forgets the stop", required),
-                      operation<&MainShaft::brake_was_set>("brake_was_set", "the brake holds, nothing is to be learned", required),
-                      timer<&MainShaft::cam_timer, &MainShaft::fire_cams>("cam_timer", "the next angle event"),
-                      timer<&MainShaft::brake_timer, &MainShaft::brake_due>("brake_timer", "the brake's edge"),
-                      timer<&MainShaft::watch_timer, &MainShaft::watch>("watch_timer", "when the encoder would be stale"),
-                      property<&MainShaft::stop_angle_deg>("stop_angle_deg", "deg", "harnesses level, least warp tension", range(0, 359.99)),
-                      property<&MainShaft::first_brake_distance_deg>("first_brake_distance_deg", "deg", "believed before the first stop", range(30, 180)),
-                      property<&MainShaft::learning_rate>("learning_rate", "", "of the last stop, into the brake angle", range(0, 1)),
-                      property<&MainShaft::late_deg>("late_deg", "deg", "so far behind the brake angle it still brakes in this turn", range(0, 90)),
-                      property<&MainShaft::stamp_latency>("stamp_latency", "s", "of the encoder's frame on the wire", range(0, 0.01)));
+        return facets(
+            input<&MainShaft::code>("code", "", "encoder position, 0..4095 codes a turn"),
+            output<&MainShaft::motion>("motion", "", "position, velocity and acceleration with their time"),
+            output<&MainShaft::angle_deg>("angle_deg", "deg", "angle now"),
+            output<&MainShaft::speed_rpm>("speed_rpm", "rpm", "speed now"),
+            output<&MainShaft::valid>("valid", "", "the encoder can be relied on; written on change"),
+            output<&MainShaft::standing>("standing", "", "the shaft stands; written on change"),
+            output<&MainShaft::stop_error_deg>("stop_error_deg", "deg",
+                                               "of the last stop, to the stop angle"),
+            output<&MainShaft::stops>("stops", "", "at the stop angle, since start"),
+            output<&MainShaft::brake_distance_deg>(
+                "brake_distance_deg", "deg", "learned, from the brake's edge to standstill at nominal speed"),
+            event<&MainShaft::beat_up>("beat_up", "0 deg: a pick is complete"),
+            event<&MainShaft::offer_pattern>("offer_pattern", "the dobby takes the next pattern from now on"),
+            event<&MainShaft::weft_opens>("weft_opens",
+                                          "the weft's valve must be driven now to open at its angle"),
+            event<&MainShaft::weft_closes>("weft_closes", "the weft's valve is no longer needed"),
+            event<&MainShaft::window_opens>("window_opens", "from here on the weft may arrive"),
+            event<&MainShaft::window_closes>("window_closes", "by here the weft must have arrived"),
+            event<&MainShaft::brake_now>("brake_now",
+                                         "the brake must be driven now to stop at the stop angle"),
+            event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
+            operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle",
+                                                 required),
+            operation<&MainShaft::release>("release", "forgets the stop", required),
+            operation<&MainShaft::brake_was_set>("brake_was_set", "the brake holds, nothing is to be learned",
+                                                 required),
+            timer<&MainShaft::cam_timer, &MainShaft::fire_cams>("cam_timer", "the next angle event"),
+            timer<&MainShaft::brake_timer, &MainShaft::brake_due>("brake_timer", "the brake's edge"),
+            timer<&MainShaft::watch_timer, &MainShaft::watch>("watch_timer",
+                                                              "when the encoder would be stale"),
+            property<&MainShaft::stop_angle_deg>("stop_angle_deg", "deg",
+                                                 "harnesses level, least warp tension", range(0, 359.99)),
+            property<&MainShaft::first_brake_distance_deg>("first_brake_distance_deg", "deg",
+                                                           "believed before the first stop", range(30, 180)),
+            property<&MainShaft::learning_rate>("learning_rate", "", "of the last stop, into the brake angle",
+                                                range(0, 1)),
+            property<&MainShaft::late_deg>("late_deg", "deg",
+                                           "so far behind the brake angle it still brakes in this turn",
+                                           range(0, 90)),
+            property<&MainShaft::stamp_latency>("stamp_latency", "s", "of the encoder's frame on the wire",
+                                                range(0, 0.01)));
     }
 
 private:
@@ -149,8 +164,8 @@ private:
         }
     }
 
-    /// A code that no shaft could have reached is a late frame; some of them in a row are two shafts, and nobody knows
-    /// which of the two is ours.
+    /// A code that no shaft could have reached is a late frame; some of them in a row are two shafts, and
+    /// nobody knows which of the two is ours.
     void watch_jumps(Time now) noexcept TAPPET_REALTIME {
         const std::uint64_t jumps = estimator_.counters().implausible;
         if (jumps == jumps_seen_) return;
@@ -167,12 +182,16 @@ private:
         case beat_up_row: beat_up.emit(); break;
         case offer_pattern_row: offer_pattern.emit(); break;
         case weft_release_row:
-            if (event.kind == CamKind::enter) weft_opens.emit();
-            else weft_closes.emit();
+            if (event.kind == CamKind::enter)
+                weft_opens.emit();
+            else
+                weft_closes.emit();
             break;
         case arrival_window_row:
-            if (event.kind == CamKind::enter) window_opens.emit();
-            else window_closes.emit();
+            if (event.kind == CamKind::enter)
+                window_opens.emit();
+            else
+                window_closes.emit();
             break;
         default: break;
         }
@@ -194,9 +213,12 @@ private:
         const Angle edge = Angle::degrees(stop_angle_deg.get() - distance_at(speed));
         double ahead = forward_way(state.position.angle(), edge).in_degrees();
         if (ahead > 360.0 - late_deg.get()) ahead = 0.0; // just behind: as soon as possible
-        const Time when = ahead == 0.0 ? now : estimator_.when(state.position + Rotation::degrees(ahead), now);
-        if (when <= now) brake(now);
-        else brake_timer.arm(when);
+        const Time when =
+            ahead == 0.0 ? now : estimator_.when(state.position + Rotation::degrees(ahead), now);
+        if (when <= now)
+            brake(now);
+        else
+            brake_timer.arm(when);
     }
 
     void brake(Time now) noexcept TAPPET_REALTIME {
@@ -222,8 +244,11 @@ private:
         stopped.emit(error_of(state));
     }
 
-    static constexpr std::size_t beat_up_row = 0, offer_pattern_row = 1, weft_release_row = 2, arrival_window_row = 3;
-    static_assert(cams.rows[beat_up_row].name == "beat_up" && cams.rows[offer_pattern_row].name == "offer_pattern" && cams.rows[weft_release_row].name == "weft_release" &&
+    static constexpr std::size_t beat_up_row = 0, offer_pattern_row = 1, weft_release_row = 2,
+                                 arrival_window_row = 3;
+    static_assert(cams.rows[beat_up_row].name == "beat_up" &&
+                      cams.rows[offer_pattern_row].name == "offer_pattern" &&
+                      cams.rows[weft_release_row].name == "weft_release" &&
                       cams.rows[arrival_window_row].name == "arrival_window" && cams.rows.size() == 4,
                   "fire() gives each cam row its event");
 

@@ -13,7 +13,9 @@ namespace wires = loom::wires;
 namespace detail {
 
 constexpr auto heartbeat(std::string_view name, std::uint8_t node) {
-    return can::receive(can::standard(wires::cob::heartbeat + node), name, can::bytes(wires::length::heartbeat), can::stale_after(350ms), can::signal("state", 0, 8));
+    return can::receive(can::standard(wires::cob::heartbeat + node), name,
+                        can::bytes(wires::length::heartbeat), can::stale_after(350ms),
+                        can::signal("state", 0, 8));
 }
 
 } // namespace detail

@@ -46,14 +46,25 @@ struct Network {
 
     static constexpr auto interface() {
         std::array<Facet, wires::node::count + 4> list{};
-        constexpr std::array<std::string_view, wires::node::count> names{"heartbeat_1", "heartbeat_2", "heartbeat_3", "heartbeat_4", "heartbeat_5", "heartbeat_6"};
+        constexpr std::array<std::string_view, wires::node::count> names{
+            "heartbeat_1", "heartbeat_2", "heartbeat_3", "heartbeat_4", "heartbeat_5", "heartbeat_6"};
         std::size_t n = 0;
         for (std::size_t i = 0; i < names.size(); ++i)
-            list[n++] = {.name = names[i], .doc = "state of the node", .kind = FacetKind::input, .type = type_id<std::int64_t>, .required = true, .index = i, .at = [](void* self, std::size_t k) noexcept -> void* { return &static_cast<Network*>(self)->heartbeat[k]; }, .port = &PortAccess::data<std::int64_t>};
+            list[n++] = {.name = names[i],
+                         .doc = "state of the node",
+                         .kind = FacetKind::input,
+                         .type = type_id<std::int64_t>,
+                         .required = true,
+                         .index = i,
+                         .at = [](void* self, std::size_t k) noexcept -> void* {
+                             return &static_cast<Network*>(self)->heartbeat[k];
+                         },
+                         .port = &PortAccess::data<std::int64_t>};
         list[n++] = output<&Network::command>("command", "", "NMT command");
         list[n++] = output<&Network::node>("node", "", "NMT node");
         list[n++] = output<&Network::operational>("operational", "", "every node works; written on change");
-        list[n++] = output<&Network::silent_node>("silent_node", "", "a node whose heartbeat is missing, 0: none; written on change");
+        list[n++] = output<&Network::silent_node>(
+            "silent_node", "", "a node whose heartbeat is missing, 0: none; written on change");
         return list;
     }
 

@@ -14,17 +14,29 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
     json.key("activities").open('[');
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
-        json.open('{').field("name", engine.name()).field("cycles", seen.cycles).field("longest_busy_us", static_cast<double>(seen.longest_busy.count()) * 1e-3);
-        json.field("longest_response_us", static_cast<double>(seen.longest_response.count()) * 1e-3).field("deadline_misses", seen.misses).field("skipped_periods", seen.skipped_periods);
-        json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3).field("wakes_too_many", seen.wakes_too_many);
+        json.open('{')
+            .field("name", engine.name())
+            .field("cycles", seen.cycles)
+            .field("longest_busy_us", static_cast<double>(seen.longest_busy.count()) * 1e-3);
+        json.field("longest_response_us", static_cast<double>(seen.longest_response.count()) * 1e-3)
+            .field("deadline_misses", seen.misses)
+            .field("skipped_periods", seen.skipped_periods);
+        json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3)
+            .field("wakes_too_many", seen.wakes_too_many);
         json.key("functions").open('[');
         const EnginePlan& plan = engine.plan();
         constexpr std::string_view kinds[] = {"step", "timers", "reactions", "behaviour"};
         for (std::size_t f = 0; f < plan.functions.size(); ++f) {
             const FunctionTiming& timing = plan.functions[f];
             if (timing.passes == 0) continue;
-            json.open('{').field("component", plan.parts[f / functions_per_part].name).field("function", kinds[f % functions_per_part]).field("passes", timing.passes);
-            json.field("usual_ns", timing.usual().count()).field("longest_ns", timing.longest.count()).field("blamed", timing.blamed).close('}');
+            json.open('{')
+                .field("component", plan.parts[f / functions_per_part].name)
+                .field("function", kinds[f % functions_per_part])
+                .field("passes", timing.passes);
+            json.field("usual_ns", timing.usual().count())
+                .field("longest_ns", timing.longest.count())
+                .field("blamed", timing.blamed)
+                .close('}');
         }
         json.close(']').close('}');
     }
@@ -33,19 +45,34 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
 
 } // namespace
 
-std::size_t write_machine_summary(const MachineInstance& instance, const RunFacts& facts, std::span<char> buffer) {
+std::size_t write_machine_summary(const MachineInstance& instance, const RunFacts& facts,
+                                  std::span<char> buffer) {
     const AcceptedMachine& machine = instance.machine();
     std::uint64_t misses = 0;
     for (const Engine& engine : instance.engines()) misses += engine.statistics().misses;
     JsonText json{buffer};
-    json.open('{').field("machine", machine.table.name).field("board", machine.board->name).field("world", facts.world);
-    json.field("kernel_release", os::kernel_release().view()).field("realtime", facts.realtime).field("machine_seed", facts.seed).field("stop_reason", facts.stop_reason);
-    json.field("can_frames_lost", facts.can_frames_lost).field("gpio_edges_lost", facts.gpio_edges_lost).field("modbus_outages_survived", facts.modbus_outages_survived);
-    json.field("can_faults", facts.wires.can_faults).field("can_restarts", facts.wires.can_restarts).field("can_wrong_lengths", facts.wires.can_wrong_lengths);
+    json.open('{')
+        .field("machine", machine.table.name)
+        .field("board", machine.board->name)
+        .field("world", facts.world);
+    json.field("kernel_release", os::kernel_release().view())
+        .field("realtime", facts.realtime)
+        .field("machine_seed", facts.seed)
+        .field("stop_reason", facts.stop_reason);
+    json.field("can_frames_lost", facts.can_frames_lost)
+        .field("gpio_edges_lost", facts.gpio_edges_lost)
+        .field("modbus_outages_survived", facts.modbus_outages_survived);
+    json.field("can_faults", facts.wires.can_faults)
+        .field("can_restarts", facts.wires.can_restarts)
+        .field("can_wrong_lengths", facts.wires.can_wrong_lengths);
     json.field("can_impostors", facts.wires.can_impostors).field("can_malformed", facts.wires.can_malformed);
     json.field("emissions_lost", instance.lost_emissions());
-    json.field("heap_allocations_after_arming", os::heap::allocations_after_seal() + os::heap::mappings_after_seal()).field("page_faults_after_arming", facts.page_faults_after_arming);
-    json.field("deadline_misses", misses).field("binary_bytes", os::binary_bytes()).field("static_memory_bytes", machine.plan.bytes + machine.board->heap_bytes);
+    json.field("heap_allocations_after_arming",
+               os::heap::allocations_after_seal() + os::heap::mappings_after_seal())
+        .field("page_faults_after_arming", facts.page_faults_after_arming);
+    json.field("deadline_misses", misses)
+        .field("binary_bytes", os::binary_bytes())
+        .field("static_memory_bytes", machine.plan.bytes + machine.board->heap_bytes);
     json.field("rss_bytes", os::rss_bytes());
     if (facts.with_digest) json.field("machine_digest", instance.event_log_digest());
     write_activities(json, instance);

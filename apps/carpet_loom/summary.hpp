@@ -1,4 +1,5 @@
-// The summary of a run: what the machine counted and what the plant measured at the true shaft, as one JSON object.
+// The summary of a run: what the machine counted and what the plant measured at the true shaft, as one JSON
+// object.
 #pragma once
 
 #include "kernel/machine/instance.hpp"
@@ -30,8 +31,9 @@ struct RunFacts {
     bool with_digest = false; ///< virtual time only: elsewhere no two runs are alike
 };
 
-/// The machine's half: an object without its closing brace, so that the plant's half can follow. Not real-time. The
-/// number of characters; 0 when the buffer is too small.
-[[nodiscard]] std::size_t write_machine_summary(const MachineInstance& instance, const RunFacts& facts, std::span<char> buffer);
+/// The machine's half: an object without its closing brace, so that the plant's half can follow. Not
+/// real-time. The number of characters; 0 when the buffer is too small.
+[[nodiscard]] std::size_t write_machine_summary(const MachineInstance& instance, const RunFacts& facts,
+                                                std::span<char> buffer);
 
 } // namespace tappet::carpet

@@ -1,5 +1,5 @@
-// The let-off: a velocity drive turns the warp beam so that the warp keeps its tension (a PI controller with the
-// take-up of the main shaft fed forward, thesis 3.3; US4827985).
+// The let-off: a velocity drive turns the warp beam so that the warp keeps its tension (a PI controller with
+// the take-up of the main shaft fed forward, thesis 3.3; US4827985).
 #pragma once
 
 #include "apps/carpet_loom/change.hpp"
@@ -43,21 +43,25 @@ struct WarpTension {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { DriveAxis::stop(controlword, target); }
 
     static constexpr auto interface() {
-        return facets(input<&WarpTension::measured>("measured", "N", "warp tension at the back rest"),
-                      input<&WarpTension::shaft_speed>("shaft_speed", "rpm", "of the main shaft, for the feed-forward"),
-                      input<&WarpTension::statusword>("statusword", "", "CiA 402 statusword of the let-off drive"),
-                      output<&WarpTension::controlword>("controlword", "", "CiA 402 controlword for the let-off drive"),
-                      output<&WarpTension::target>("target", "rpm", "target velocity of the warp beam"),
-                      output<&WarpTension::enabled>("enabled", "", "operation enabled; written on change"),
-                      output<&WarpTension::in_band>("in_band", "", "the tension is near its set point; written on change"),
-                      output<&WarpTension::fault>("fault", "", "the drive is faulty or silent; written on change"),
-                      property<&WarpTension::set_point_n>("set_point_n", "N", "warp tension wanted", range(50, 600)),
-                      property<&WarpTension::band_n>("band_n", "N", "how near counts as in band", range(1, 200)),
-                      property<&WarpTension::gain>("gain", "rpm/N", "proportional gain", range(0, 1)),
-                      property<&WarpTension::integral_gain>("integral_gain", "rpm/(N s)", "integral gain", range(0, 10)),
-                      property<&WarpTension::beam_radius_mm>("beam_radius_mm", "mm", "of the full warp beam", range(50, 1000)),
-                      operation<&WarpTension::enable>("enable", "closes the loop; resets one fault", required),
-                      operation<&WarpTension::disable>("disable", "opens the loop", required));
+        return facets(
+            input<&WarpTension::measured>("measured", "N", "warp tension at the back rest"),
+            input<&WarpTension::shaft_speed>("shaft_speed", "rpm", "of the main shaft, for the feed-forward"),
+            input<&WarpTension::statusword>("statusword", "", "CiA 402 statusword of the let-off drive"),
+            output<&WarpTension::controlword>("controlword", "", "CiA 402 controlword for the let-off drive"),
+            output<&WarpTension::target>("target", "rpm", "target velocity of the warp beam"),
+            output<&WarpTension::enabled>("enabled", "", "operation enabled; written on change"),
+            output<&WarpTension::in_band>("in_band", "",
+                                          "the tension is near its set point; written on change"),
+            output<&WarpTension::fault>("fault", "", "the drive is faulty or silent; written on change"),
+            property<&WarpTension::set_point_n>("set_point_n", "N", "warp tension wanted", range(50, 600)),
+            property<&WarpTension::band_n>("band_n", "N", "how near counts as in band", range(1, 200)),
+            property<&WarpTension::gain>("gain", "rpm/N", "proportional gain", range(0, 1)),
+            property<&WarpTension::integral_gain>("integral_gain", "rpm/(N s)", "integral gain",
+                                                  range(0, 10)),
+            property<&WarpTension::beam_radius_mm>("beam_radius_mm", "mm", "of the full warp beam",
+                                                   range(50, 1000)),
+            operation<&WarpTension::enable>("enable", "closes the loop; resets one fault", required),
+            operation<&WarpTension::disable>("disable", "opens the loop", required));
     }
 
 private:
@@ -67,13 +71,15 @@ private:
     double controlled(const Cycle& cycle) noexcept TAPPET_REALTIME {
         double tension_n = 0.0;
         const Flow flow = measured.read(tension_n);
-        const double forward = shaft_speed.get() * wires::nominal::pick_spacing_mm / (two_pi * beam_radius_mm.get());
+        const double forward =
+            shaft_speed.get() * wires::nominal::pick_spacing_mm / (two_pi * beam_radius_mm.get());
         if (flow == Flow::stale || flow == Flow::never_written) { // blind: the take-up alone is followed
             in_band_.write(in_band, false);
             return forward + integral_rpm_;
         }
         const double error = tension_n - set_point_n.get();
-        integral_rpm_ = std::clamp(integral_rpm_ + integral_gain.get() * error * to_seconds(cycle.period), -integral_limit_rpm, integral_limit_rpm);
+        integral_rpm_ = std::clamp(integral_rpm_ + integral_gain.get() * error * to_seconds(cycle.period),
+                                   -integral_limit_rpm, integral_limit_rpm);
         in_band_.write(in_band, error < band_n.get() && -error < band_n.get());
         return forward + gain.get() * error + integral_rpm_;
     }

@@ -70,25 +70,29 @@ struct WeftInsertion {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { cutter.write(false); }
 
     static constexpr auto interface() {
-        return facets(input<&WeftInsertion::shaft>("shaft", "", "motion of the main shaft"),
-                      output<&WeftInsertion::pick>("pick", "", "number of the pick whose pattern is offered"),
-                      output<&WeftInsertion::pattern>("pattern", "", "harnesses to lift, one bit each"),
-                      output<&WeftInsertion::picks_woven>("picks_woven", "", "picks whose weft arrived, since start"),
-                      output<&WeftInsertion::arrival_deg>("arrival_deg", "deg", "of the last weft"),
-                      output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
-                      event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
-                      event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
-                      event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive"),
-                      operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
-                      operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
-                      operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),
-                      operation<&WeftInsertion::on_beat_up>("on_beat_up", "a pick begins", required),
-                      operation<&WeftInsertion::on_offer_pattern>("on_offer_pattern", "offers the next pattern", required),
-                      operation<&WeftInsertion::on_release_angle>("on_release_angle", "releases the weft", required),
-                      operation<&WeftInsertion::on_close_angle>("on_close_angle", "closes the valve", required),
-                      operation<&WeftInsertion::on_window_opens>("on_window_opens", "arrivals count from now on", required),
-                      operation<&WeftInsertion::on_window_closes>("on_window_closes", "judges the pick", required),
-                      operation<&WeftInsertion::on_arrival>("on_arrival", "the detector saw the weft at this time", required));
+        return facets(
+            input<&WeftInsertion::shaft>("shaft", "", "motion of the main shaft"),
+            output<&WeftInsertion::pick>("pick", "", "number of the pick whose pattern is offered"),
+            output<&WeftInsertion::pattern>("pattern", "", "harnesses to lift, one bit each"),
+            output<&WeftInsertion::picks_woven>("picks_woven", "", "picks whose weft arrived, since start"),
+            output<&WeftInsertion::arrival_deg>("arrival_deg", "deg", "of the last weft"),
+            output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
+            event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
+            event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
+            event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive"),
+            operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
+            operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
+            operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),
+            operation<&WeftInsertion::on_beat_up>("on_beat_up", "a pick begins", required),
+            operation<&WeftInsertion::on_offer_pattern>("on_offer_pattern", "offers the next pattern",
+                                                        required),
+            operation<&WeftInsertion::on_release_angle>("on_release_angle", "releases the weft", required),
+            operation<&WeftInsertion::on_close_angle>("on_close_angle", "closes the valve", required),
+            operation<&WeftInsertion::on_window_opens>("on_window_opens", "arrivals count from now on",
+                                                       required),
+            operation<&WeftInsertion::on_window_closes>("on_window_closes", "judges the pick", required),
+            operation<&WeftInsertion::on_arrival>("on_arrival", "the detector saw the weft at this time",
+                                                  required));
     }
 
 private:

@@ -8,7 +8,6 @@
 namespace tappet::loom::wires {
 
 // --- CANopen, 500 kbit/s, 11-bit identifiers, little-endian (CiA 301)
-// -----------------------------------------
 
 inline constexpr std::uint32_t can_bit_rate = 500'000;
 
@@ -105,7 +104,6 @@ inline constexpr std::uint16_t wrong_length = 0x8210;
 } // namespace emergency_code
 
 // --- GPIO, chip "loom-io": offsets
-// ----------------------------------------------------------------------------
 
 namespace line {
 // Inputs of the machine.
@@ -131,7 +129,6 @@ inline constexpr unsigned chip_lines = 14;
 inline constexpr std::int64_t weft_pulse_us = 3'000;
 
 // --- Modbus slave of the climate and lubrication unit
-// ---------------------------------------------------------
 
 namespace modbus {
 inline constexpr int unit = 1;
@@ -158,7 +155,6 @@ inline constexpr std::uint16_t count = 1;
 } // namespace modbus
 
 // --- Nominal figures of the loom: what its maker's data sheet tells the machine
-// -------------------------------
 
 namespace nominal {
 inline constexpr double speed_rpm = 600.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guest's kernel is given before anything runs: modules, the host's ports, CAN interfaces, GPIO chips. A
-// device that cannot be made ends the guest with its reason.
+// What the guest's kernel is given before anything runs: modules, the host's ports, CAN interfaces, GPIO
+// chips. A device that cannot be made ends the guest with its reason.
 #pragma once
 
 #include <string>

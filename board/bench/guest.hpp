@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every part of PID 1 needs: the way to tell the host, to give up, and to read and write small files of the kernel.
+// What every part of PID 1 needs: the way to tell the host, to give up, and to read and write small files of
+// the kernel.
 #pragma once
 
 #include <chrono>

@@ -242,9 +242,9 @@ int run_builtin(const std::vector<std::string>& words) {
                    ? 0
                    : report_misuse("@signal: " + std::string(std::strerror(errno)));
     }
-    return report_misuse(
-        "unknown step '" + name +
-        "'; use @sleep S, @write PATH TEXT, @link NAME up|down, @signal NAME SIGNAL or @wait NAME [while OTHER]");
+    return report_misuse("unknown step '" + name +
+                         "'; use @sleep S, @write PATH TEXT, @link NAME up|down, @signal NAME SIGNAL or "
+                         "@wait NAME [while OTHER]");
 }
 
 int run(const std::string& line) {

@@ -1,5 +1,5 @@
-// An industrial PC of the common kind: a fanless x86-64 box with two to four cores, a PCIe or SPI CAN controller, 16 to
-// 32 digital lines on an isolated GPIO chip, two Ethernet ports and a serial port.
+// An industrial PC of the common kind: a fanless x86-64 box with two to four cores, a PCIe or SPI CAN
+// controller, 16 to 32 digital lines on an isolated GPIO chip, two Ethernet ports and a serial port.
 #pragma once
 
 #include "kernel/machine/board.hpp"
@@ -12,20 +12,28 @@ inline constexpr Board ipc_x86_64{
     .memory_budget_bytes = 4 * 1024 * 1024,
     .heap_bytes = 512 * 1024,
     .processors = 4,
-    .highest_priority = 80, // interrupt threads of CAN and GPIO stand above every activity: see README.md here
-    // Processors 2 and 3 are isolated (see the command line): the machine on one, its device activities on the other, so
-    // that neither an interrupt nor a background thread takes their caches.
+    .highest_priority =
+        80, // interrupt threads of CAN and GPIO stand above every activity: see README.md here
+    // Processors 2 and 3 are isolated (see the command line): the machine on one, its device activities on
+    // the other, so that neither an interrupt nor a background thread takes their caches.
     .default_processor = 2,
     .placement = placements(place("can", 3), place("io", 3), place("utility", 0), place("console", 0)),
     .devices = board_devices(
-                    board_device("loom-can", "can", "can0"),
-                    // By the chip's label, as gpiodetect shows it: numbers follow the order in which drivers load.
-                    board_device("loom-io", "gpio", "gpio_it87", line("emergency_stop", 0), line("drop_wire", 1), line("weft_detector", 2), line("button_start", 3), line("button_stop", 4), line("button_acknowledge", 5),
-                                 line("weft_release", 8), line("brake", 9), line("lamp_run", 10), line("lamp_stop", 11), line("lamp_fault", 12), line("yarn_cutter", 13)),
-                    board_device("loom-utility", "modbus", "192.168.7.2:502")),
+        board_device("loom-can", "can", "can0"),
+        // By the chip's label, as gpiodetect shows it: numbers follow the order in which drivers load.
+        board_device("loom-io", "gpio", "gpio_it87", line("emergency_stop", 0), line("drop_wire", 1),
+                     line("weft_detector", 2), line("button_start", 3), line("button_stop", 4),
+                     line("button_acknowledge", 5), line("weft_release", 8), line("brake", 9),
+                     line("lamp_run", 10), line("lamp_stop", 11), line("lamp_fault", 12),
+                     line("yarn_cutter", 13)),
+        board_device("loom-utility", "modbus", "192.168.7.2:502")),
     .only_warned = {},
-    // Isolated processors without ticks and callbacks; no deep sleep, no frequency changes; late interrupts on 0 and 1.
-    .kernel_command_line = "isolcpus=managed_irq,domain,2,3 nohz_full=2,3 rcu_nocbs=2,3 irqaffinity=0,1 processor.max_cstate=1 intel_idle.max_cstate=0 idle=poll tsc=reliable nosoftlockup nowatchdog mitigations=auto sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
+    // Isolated processors without ticks and callbacks; no deep sleep, no frequency changes; late interrupts
+    // on 0 and 1.
+    .kernel_command_line =
+        "isolcpus=managed_irq,domain,2,3 nohz_full=2,3 rcu_nocbs=2,3 irqaffinity=0,1 processor.max_cstate=1 "
+        "intel_idle.max_cstate=0 idle=poll tsc=reliable nosoftlockup nowatchdog mitigations=auto "
+        "sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
 };
 
 } // namespace tappet::board

@@ -49,13 +49,10 @@ struct Keeper {
             ++tried_;
             restarts.write(++done_);
             return;
-        case Restart::failed:
-            ++tried_;
-            return;
+        case Restart::failed: ++tried_; return;
         case Restart::not_needed: // the bus has not taken up the last one yet
             return;
-        case Restart::exhausted:
-            return give_up();
+        case Restart::exhausted: return give_up();
         }
     }
 

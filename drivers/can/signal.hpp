@@ -111,18 +111,12 @@ constexpr std::int64_t to_integer(const Signal& s, std::uint64_t raw) noexcept T
 constexpr double to_physical(const Signal& s, std::uint64_t raw) noexcept TAPPET_REALTIME {
     double number = 0;
     switch (s.kind) {
-    case Kind::unsigned_integer:
-        number = static_cast<double>(raw);
-        break;
-    case Kind::signed_integer:
-        number = static_cast<double>(to_integer(s, raw));
-        break;
+    case Kind::unsigned_integer: number = static_cast<double>(raw); break;
+    case Kind::signed_integer: number = static_cast<double>(to_integer(s, raw)); break;
     case Kind::float32:
         number = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
         break;
-    case Kind::float64:
-        number = std::bit_cast<double>(raw);
-        break;
+    case Kind::float64: number = std::bit_cast<double>(raw); break;
     }
     return number * s.factor + s.offset;
 }

@@ -23,28 +23,18 @@ enum class DriveState : std::uint8_t {
 
 constexpr DriveState drive_state(std::uint16_t statusword) noexcept TAPPET_REALTIME {
     switch (statusword & 0x4Fu) {
-    case 0x00:
-        return DriveState::not_ready;
-    case 0x40:
-        return DriveState::switch_on_disabled;
-    case 0x0F:
-        return DriveState::fault_reaction_active;
-    case 0x08:
-        return DriveState::fault;
-    default:
-        break;
+    case 0x00: return DriveState::not_ready;
+    case 0x40: return DriveState::switch_on_disabled;
+    case 0x0F: return DriveState::fault_reaction_active;
+    case 0x08: return DriveState::fault;
+    default: break;
     }
     switch (statusword & 0x6Fu) {
-    case 0x21:
-        return DriveState::ready_to_switch_on;
-    case 0x23:
-        return DriveState::switched_on;
-    case 0x27:
-        return DriveState::operation_enabled;
-    case 0x07:
-        return DriveState::quick_stop_active;
-    default:
-        return DriveState::not_ready;
+    case 0x21: return DriveState::ready_to_switch_on;
+    case 0x23: return DriveState::switched_on;
+    case 0x27: return DriveState::operation_enabled;
+    case 0x07: return DriveState::quick_stop_active;
+    default: return DriveState::not_ready;
     }
 }
 
@@ -87,17 +77,12 @@ public:
                        ? controlword::quick_stop
                        : controlword::disable_voltage;
         switch (state) {
-        case DriveState::switch_on_disabled:
-            return controlword::shutdown;
-        case DriveState::ready_to_switch_on:
-            return controlword::switch_on;
+        case DriveState::switch_on_disabled: return controlword::shutdown;
+        case DriveState::ready_to_switch_on: return controlword::switch_on;
         case DriveState::switched_on:
-        case DriveState::operation_enabled:
-            return controlword::enable_operation;
-        case DriveState::quick_stop_active:
-            return controlword::disable_voltage;
-        default:
-            return controlword::disable_voltage;
+        case DriveState::operation_enabled: return controlword::enable_operation;
+        case DriveState::quick_stop_active: return controlword::disable_voltage;
+        default: return controlword::disable_voltage;
         }
     }
 

@@ -23,14 +23,10 @@ using OwnedRequestConfig = Owned<gpiod_request_config, gpiod_request_config_free
 
 gpiod_line_bias to_gpiod(Bias bias) {
     switch (bias) {
-    case Bias::disabled:
-        return GPIOD_LINE_BIAS_DISABLED;
-    case Bias::pull_up:
-        return GPIOD_LINE_BIAS_PULL_UP;
-    case Bias::pull_down:
-        return GPIOD_LINE_BIAS_PULL_DOWN;
-    case Bias::as_is:
-        break;
+    case Bias::disabled: return GPIOD_LINE_BIAS_DISABLED;
+    case Bias::pull_up: return GPIOD_LINE_BIAS_PULL_UP;
+    case Bias::pull_down: return GPIOD_LINE_BIAS_PULL_DOWN;
+    case Bias::as_is: break;
     }
     return GPIOD_LINE_BIAS_AS_IS;
 }

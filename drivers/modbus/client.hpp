@@ -141,15 +141,10 @@ private:
             changed_at_[r] = never; // it would refuse again; the period is soon enough
             answered();
             return done;
-        case Outcome::timeout:
-            ++count_.timeouts;
-            break;
-        case Outcome::garbled:
-            ++count_.garbled;
-            break;
+        case Outcome::timeout: ++count_.timeouts; break;
+        case Outcome::garbled: ++count_.garbled; break;
         case Outcome::refused:
-        case Outcome::disconnected:
-            break;
+        case Outcome::disconnected: break;
         }
         connected_ = transport_->recover();
         return lose(done);

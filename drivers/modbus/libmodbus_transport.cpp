@@ -120,18 +120,12 @@ Answer LibmodbusTransport::read(Table table, std::uint16_t address,
     const Time begin = now();
     int result = -1;
     switch (table) {
-    case Table::coils:
-        result = modbus_read_bits(m, address, count, bits.data());
-        break;
-    case Table::discrete_inputs:
-        result = modbus_read_input_bits(m, address, count, bits.data());
-        break;
+    case Table::coils: result = modbus_read_bits(m, address, count, bits.data()); break;
+    case Table::discrete_inputs: result = modbus_read_input_bits(m, address, count, bits.data()); break;
     case Table::input_registers:
         result = modbus_read_input_registers(m, address, count, values.data());
         break;
-    case Table::holding_registers:
-        result = modbus_read_registers(m, address, count, values.data());
-        break;
+    case Table::holding_registers: result = modbus_read_registers(m, address, count, values.data()); break;
     }
     const int error = errno;
     if (holds_bits(table) && result == count)

@@ -100,21 +100,11 @@ constexpr double to_physical(const Register& r, Words words) noexcept {
     double number = 0;
     switch (r.kind) {
     case Kind::bit:
-    case Kind::unsigned_word:
-        number = words[0];
-        break;
-    case Kind::signed_word:
-        number = static_cast<std::int16_t>(words[0]);
-        break;
-    case Kind::unsigned_double:
-        number = both;
-        break;
-    case Kind::signed_double:
-        number = static_cast<std::int32_t>(both);
-        break;
-    case Kind::float_double:
-        number = static_cast<double>(std::bit_cast<float>(both));
-        break;
+    case Kind::unsigned_word: number = words[0]; break;
+    case Kind::signed_word: number = static_cast<std::int16_t>(words[0]); break;
+    case Kind::unsigned_double: number = both; break;
+    case Kind::signed_double: number = static_cast<std::int32_t>(both); break;
+    case Kind::float_double: number = static_cast<double>(std::bit_cast<float>(both)); break;
     }
     return number * r.factor + r.offset;
 }
@@ -130,23 +120,12 @@ constexpr Encoded to_words(const Register& r, double physical) noexcept {
     if (number != number) return {.refused = true};
     double low = 0, high = 1;
     switch (r.kind) {
-    case Kind::bit:
-        break;
-    case Kind::unsigned_word:
-        high = 65535;
-        break;
-    case Kind::signed_word:
-        low = -32768, high = 32767;
-        break;
-    case Kind::unsigned_double:
-        high = 4294967295.0;
-        break;
-    case Kind::signed_double:
-        low = -2147483648.0, high = 2147483647.0;
-        break;
-    case Kind::float_double:
-        low = -3.4028234663852886e38, high = 3.4028234663852886e38;
-        break;
+    case Kind::bit: break;
+    case Kind::unsigned_word: high = 65535; break;
+    case Kind::signed_word: low = -32768, high = 32767; break;
+    case Kind::unsigned_double: high = 4294967295.0; break;
+    case Kind::signed_double: low = -2147483648.0, high = 2147483647.0; break;
+    case Kind::float_double: low = -3.4028234663852886e38, high = 3.4028234663852886e38; break;
     }
     const double kept = number < low ? low : number > high ? high : number;
     const bool saturated = kept != number;

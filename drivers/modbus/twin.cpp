@@ -41,10 +41,8 @@ Answer Twin::admit(std::uint16_t address, std::size_t count) noexcept {
     }
     Answer answer{.took = turnaround_};
     switch (strike()) {
-    case Fault::none:
-        break;
-    case Fault::silent:
-        return {.outcome = Outcome::timeout, .took = answer_within_};
+    case Fault::none: break;
+    case Fault::silent: return {.outcome = Outcome::timeout, .took = answer_within_};
     case Fault::slow:
         answer.took += Duration{slow_by_ns_.load(std::memory_order_relaxed)};
         if (answer.took > answer_within_) {
@@ -57,11 +55,8 @@ Answer Twin::admit(std::uint16_t address, std::size_t count) noexcept {
                 .exception = exception_.load(std::memory_order_relaxed),
                 .took = turnaround_};
     case Fault::wrong_transaction:
-    case Fault::garbage_length:
-        return {.outcome = Outcome::garbled, .took = turnaround_};
-    case Fault::down:
-        disconnect();
-        return {.outcome = Outcome::disconnected, .took = turnaround_};
+    case Fault::garbage_length: return {.outcome = Outcome::garbled, .took = turnaround_};
+    case Fault::down: disconnect(); return {.outcome = Outcome::disconnected, .took = turnaround_};
     }
     constexpr std::uint8_t illegal_data_address = 2;
     if (address + count > size)

@@ -12,7 +12,8 @@ thread_local Activity* current_activity = nullptr;
 
 } // namespace
 
-std::expected<void, Sentence> Activity::create(Engine& engine, const os::Clock& clock, int priority, int processor, std::span<std::byte> stack) {
+std::expected<void, Sentence> Activity::create(Engine& engine, const os::Clock& clock, int priority,
+                                               int processor, std::span<std::byte> stack) {
     engine_ = &engine;
     clock_ = &clock;
     os::paint_stack(stack);
@@ -38,14 +39,18 @@ bool Activity::stop(int milliseconds) noexcept {
     if (!thread_.running()) return true;
     stop_asked_.store(true, std::memory_order_release);
     engine_->waiter().wake();
-    return wait_for(State::stopped, milliseconds) && state() == State::stopped && thread_.join_within(milliseconds + 1);
+    return wait_for(State::stopped, milliseconds) && state() == State::stopped &&
+           thread_.join_within(milliseconds + 1);
 }
 
-std::size_t Activity::stack_high_water_bytes() const noexcept { return os::stack_high_water_bytes(plan_.stack); }
+std::size_t Activity::stack_high_water_bytes() const noexcept {
+    return os::stack_high_water_bytes(plan_.stack);
+}
 
 Activity* Activity::current() noexcept TAPPET_REALTIME {
     Activity* found = nullptr;
-    TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start", found = current_activity);
+    TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
+                  found = current_activity);
     return found;
 }
 
@@ -54,7 +59,8 @@ void Activity::enter(void* self) noexcept { static_cast<Activity*>(self)->live()
 void Activity::live() noexcept {
     current_activity = this;
     state_.store(State::starting, std::memory_order_release);
-    while (!released_.load(std::memory_order_acquire) && !stop_asked_.load(std::memory_order_acquire)) static_cast<void>(engine_->waiter().wait(never));
+    while (!released_.load(std::memory_order_acquire) && !stop_asked_.load(std::memory_order_acquire))
+        static_cast<void>(engine_->waiter().wait(never));
     if (!stop_asked_.load(std::memory_order_acquire)) {
         engine_->start(clock_->now());
         const os::PageFaults before = os::page_faults_of_this_thread();

@@ -11,8 +11,8 @@
 
 namespace tappet {
 
-/// initialise and finalise run on the starter's thread, before and after the thread lives; start, cycles and stop of the
-/// engine run on its own. Not real-time but for what the thread does.
+/// initialise and finalise run on the starter's thread, before and after the thread lives; start, cycles and
+/// stop of the engine run on its own. Not real-time but for what the thread does.
 class Activity {
 public:
     enum class State : std::uint8_t { inactive, starting, waiting, running, stopping, stopped, parked };
@@ -22,16 +22,19 @@ public:
     Activity& operator=(const Activity&) = delete;
 
     /// `stack` is painted and touched here. The thread waits for release().
-    std::expected<void, Sentence> create(Engine& engine, const os::Clock& clock, int priority, int processor, std::span<std::byte> stack);
+    std::expected<void, Sentence> create(Engine& engine, const os::Clock& clock, int priority, int processor,
+                                         std::span<std::byte> stack);
     /// Lets the thread start its engine; true when that is done within `milliseconds`.
     [[nodiscard]] bool release(int milliseconds) noexcept;
-    /// Ends the cycles, lets the engine stop on its own thread, and joins it; false when it did not within `milliseconds`:
-    /// its thread hangs, and whoever called may run the engine's stop in its place.
+    /// Ends the cycles, lets the engine stop on its own thread, and joins it; false when it did not within
+    /// `milliseconds`: its thread hangs, and whoever called may run the engine's stop in its place.
     [[nodiscard]] bool stop(int milliseconds) noexcept;
     /// For a thread that must not go on (a broken contract): it says so and sleeps for ever. Real-time.
     [[noreturn]] void park() noexcept TAPPET_REALTIME;
 
-    [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_.load(std::memory_order_acquire); }
+    [[nodiscard]] State state() const noexcept TAPPET_REALTIME {
+        return state_.load(std::memory_order_acquire);
+    }
     [[nodiscard]] Engine& engine() const noexcept TAPPET_REALTIME { return *engine_; }
     /// Page faults of its thread from its first cycle to its stop; complete when stopped.
     [[nodiscard]] os::PageFaults page_faults() const noexcept { return faults_; }

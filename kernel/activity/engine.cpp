@@ -8,7 +8,8 @@ namespace tappet {
 
 namespace {
 
-/// work() may block: it is called only in activities that are not real-time, which the table's check guarantees.
+/// work() may block: it is called only in activities that are not real-time, which the table's check
+/// guarantees.
 void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
     TAPPET_ESCAPE("this activity is not real-time", part.type->work(part.component, cycle));
 }
@@ -67,7 +68,8 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
         Cycle at = cycle_;
         at.release = when;
         note(each.part, when);
-        timed(each.part, FunctionKind::timers, [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component, at); });
+        timed(each.part, FunctionKind::timers,
+              [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component, at); });
         acted = true;
     }
     return acted;
@@ -76,8 +78,11 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
 void Engine::run_components() noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         const EnginePart& part = plan_.parts[i];
-        if (part.type->step != nullptr) timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { part.type->step(part.component, cycle_); });
-        else if (part.type->work != nullptr) timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { work(part, cycle_); });
+        if (part.type->step != nullptr)
+            timed(i, FunctionKind::step,
+                  [&]() noexcept TAPPET_REALTIME { part.type->step(part.component, cycle_); });
+        else if (part.type->work != nullptr)
+            timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { work(part, cycle_); });
     }
 }
 
@@ -90,7 +95,8 @@ bool Engine::run_messages() noexcept TAPPET_REALTIME {
             std::memcpy(&word, message.arguments.data() + at, sizeof word);
             digest_.add(word);
         }
-        timed(message.id, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { message.run(message.object, message.arguments.data()); });
+        timed(message.id, FunctionKind::reactions,
+              [&]() noexcept TAPPET_REALTIME { message.run(message.object, message.arguments.data()); });
     });
     statistics_.messages += served;
     return served != 0;
@@ -99,7 +105,8 @@ bool Engine::run_messages() noexcept TAPPET_REALTIME {
 void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
     for (const Behaviour& each : plan_.behaviours) {
         if (!all && each.next(each.self) > cycle_.now) continue;
-        timed(each.part, FunctionKind::behaviour, [&]() noexcept TAPPET_REALTIME { each.step(each.self, cycle_.now); });
+        timed(each.part, FunctionKind::behaviour,
+              [&]() noexcept TAPPET_REALTIME { each.step(each.self, cycle_.now); });
     }
 }
 
@@ -134,8 +141,10 @@ void Engine::account() noexcept TAPPET_REALTIME {
     if (plan_.real_time && plan_.deadline > Duration::zero() && response > plan_.deadline) {
         Miss miss{worst_function_, cycle_.release, response, worst_took_, worst_usual_};
         // Begun later than any function exceeded its usual time: the delay is the culprit, no function is.
-        if (worst_function_ == Miss::nobody || lateness > worst_excess_) miss = {Miss::nobody, cycle_.release, response, lateness, Duration::zero()};
-        else ++plan_.functions[worst_function_].blamed;
+        if (worst_function_ == Miss::nobody || lateness > worst_excess_)
+            miss = {Miss::nobody, cycle_.release, response, lateness, Duration::zero()};
+        else
+            ++plan_.functions[worst_function_].blamed;
         statistics_.recent_misses[statistics_.misses % statistics_.recent_misses.size()] = miss;
         ++statistics_.misses;
         if (plan_.stop_when_late) ask_stop(StopReason::missed_deadline, miss.function);

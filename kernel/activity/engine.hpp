@@ -1,5 +1,6 @@
-// The execution engine (thesis 5.3): what one activity runs in each cycle, in a fixed order: due timers, the components
-// in data-flow order, then messages and behaviours. It knows no thread: a thread or a virtual world calls it.
+// The execution engine (thesis 5.3): what one activity runs in each cycle, in a fixed order: due timers, the
+// components in data-flow order, then messages and behaviours. It knows no thread: a thread or a virtual
+// world calls it.
 #pragma once
 
 #include "kernel/activity/timing.hpp"
@@ -16,14 +17,16 @@
 
 namespace tappet {
 
-/// What a behaviour (a state machine, later a program) looks like to its engine. Plain pointers, filled at start-up.
+/// What a behaviour (a state machine, later a program) looks like to its engine. Plain pointers, filled at
+/// start-up.
 struct Behaviour {
     void* self = nullptr;
     std::uint32_t part = 0; ///< of the component it drives
     void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
-    Time (*next)(const void* self) noexcept TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened
+    Time (*next)(const void* self) noexcept
+        TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened
 };
 
 /// What of a component is timed separately.
@@ -52,7 +55,14 @@ struct GuardedInput {
 };
 
 /// Why an engine asks for the machine to stop.
-enum class StopReason : std::uint8_t { none, stale_input, missed_deadline, broken_contract, requested, behaviour };
+enum class StopReason : std::uint8_t {
+    none,
+    stale_input,
+    missed_deadline,
+    broken_contract,
+    requested,
+    behaviour
+};
 
 struct EnginePlan {
     std::string_view name{};
@@ -64,8 +74,8 @@ struct EnginePlan {
     std::int64_t at_most_n = 1;
     Duration at_most_per{};
     bool stop_when_late = false;
-    std::span<EnginePart> parts;               ///< in data-flow order
-    std::span<FunctionTiming> functions;       ///< functions_per_part for each part
+    std::span<EnginePart> parts;         ///< in data-flow order
+    std::span<FunctionTiming> functions; ///< functions_per_part for each part
     std::span<EngineTimer> timers;
     std::span<Behaviour> behaviours;
     std::span<GuardedInput> guarded;
@@ -89,7 +99,8 @@ public:
     static constexpr std::int64_t max_wakes_watched = 16;
 
     /// Asked to stop the machine; the first call wins. Real-time, any thread.
-    using StopCall = void (*)(void* context, StopReason, std::uint64_t detail, const Engine& from) noexcept TAPPET_REALTIME;
+    using StopCall = void (*)(void* context, StopReason, std::uint64_t detail, const Engine& from) noexcept
+        TAPPET_REALTIME;
 
     /// Before start. Spans outlive the engine.
     void place(const EnginePlan& plan, os::Clock& clock) noexcept {
@@ -103,8 +114,8 @@ public:
     void start(Time now) noexcept TAPPET_REALTIME;
     /// One cycle. `woken`: by a message, a connection or the device; otherwise by time.
     void run(bool woken) noexcept TAPPET_REALTIME;
-    /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values, in
-    /// data-flow order, so that what a source writes last reaches the driver behind it.
+    /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values,
+    /// in data-flow order, so that what a source writes last reaches the driver behind it.
     void stop(Time now) noexcept TAPPET_REALTIME;
 
     /// When it wants to run although nothing wakes it.
@@ -117,7 +128,8 @@ public:
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
     [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
-    /// Of what happened here: every message, timer and transition with its time. Equal in two runs that did the same.
+    /// Of what happened here: every message, timer and transition with its time. Equal in two runs that did
+    /// the same.
     [[nodiscard]] const Digest& digest() const noexcept TAPPET_REALTIME { return digest_; }
     /// Adds a transition of a behaviour to the digest.
     void note(std::uint64_t what, Time when) noexcept TAPPET_REALTIME {
@@ -125,7 +137,9 @@ public:
         digest_.add(what);
     }
     /// Odd while a cycle runs: an observer whose two readings differ, or are odd, reads again.
-    [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME { return generation_.load(std::memory_order_acquire); }
+    [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
+        return generation_.load(std::memory_order_acquire);
+    }
 
 private:
     [[nodiscard]] FunctionTiming& function(std::uint32_t part, FunctionKind kind) noexcept TAPPET_REALTIME {
@@ -140,7 +154,9 @@ private:
         const Duration took = end - lap_;
         FunctionTiming& timing = plan_.functions[index];
         const Duration excess = took - timing.usual();
-        if (excess > worst_excess_) worst_excess_ = excess, worst_function_ = index, worst_took_ = took, worst_usual_ = timing.usual();
+        if (excess > worst_excess_)
+            worst_excess_ = excess, worst_function_ = index, worst_took_ = took,
+            worst_usual_ = timing.usual();
         timing.add(took);
         lap_ = end;
     }

@@ -8,8 +8,8 @@
 
 namespace tappet {
 
-/// Wall time of one function, preemption included. The first pass, which fills caches and touches memory, is left out
-/// so that it does not stand as the maximum for ever.
+/// Wall time of one function, preemption included. The first pass, which fills caches and touches memory, is
+/// left out so that it does not stand as the maximum for ever.
 struct FunctionTiming {
     std::uint64_t passes = 0;
     Duration last{};
@@ -32,7 +32,8 @@ struct FunctionTiming {
 /// One missed deadline.
 struct Miss {
     static constexpr std::uint32_t nobody = 0xffffffffu;
-    std::uint32_t function = nobody; ///< index into the engine's functions; nobody: the activity itself began late
+    std::uint32_t function =
+        nobody; ///< index into the engine's functions; nobody: the activity itself began late
     Time release{};
     Duration response{}; ///< from release to the end of the cycle
     Duration took{};     ///< by the culprit, or the delay of the beginning

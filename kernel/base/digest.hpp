@@ -1,4 +1,5 @@
-// A running digest of what a machine did, FNV-1a over 64-bit words: two runs that did the same have the same digest.
+// A running digest of what a machine did, FNV-1a over 64-bit words: two runs that did the same have the same
+// digest.
 #pragma once
 
 #include "kernel/base/realtime.hpp"

@@ -1,5 +1,6 @@
-// Random numbers that are the same with every compiler and library: integers by xoshiro256** (Blackman and Vigna,
-// 2018), seeded by splitmix64; distributions of our own. Never two draws in one expression: their order is open.
+// Random numbers that are the same with every compiler and library: integers by xoshiro256** (Blackman and
+// Vigna, 2018), seeded by splitmix64; distributions of our own. Never two draws in one expression: their
+// order is open.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -30,7 +31,8 @@ public:
         state_[3] = rotate(state_[3], 45);
         return result;
     }
-    /// A whole number in [0, bound); 0 for bound 0. The bias of the multiply-shift is below 2^-32 for bounds under 2^32.
+    /// A whole number in [0, bound); 0 for bound 0. The bias of the multiply-shift is below 2^-32 for bounds
+    /// under 2^32.
     constexpr std::uint64_t below(std::uint64_t bound) noexcept TAPPET_REALTIME {
         __extension__ using Wide = unsigned __int128;
         return static_cast<std::uint64_t>((static_cast<Wide>(next()) * bound) >> 64);

@@ -1,4 +1,5 @@
-// Text that lives in constant expressions: a sentence built piece by piece, and a text that may be a template argument.
+// Text that lives in constant expressions: a sentence built piece by piece, and a text that may be a template
+// argument.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +54,8 @@ struct Sentence {
     [[nodiscard]] constexpr const char* data() const noexcept { return letters; }
 };
 
-/// A text of exactly N characters as a template argument: a compiler that cannot print a message object prints this.
+/// A text of exactly N characters as a template argument: a compiler that cannot print a message object
+/// prints this.
 template <std::size_t N>
 struct text {
     char letters[N + 1] = {};

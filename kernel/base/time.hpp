@@ -1,4 +1,5 @@
-// The machine's time: nanoseconds since the world began, real (CLOCK_MONOTONIC) or virtual. Never wall-clock time.
+// The machine's time: nanoseconds since the world began, real (CLOCK_MONOTONIC) or virtual. Never wall-clock
+// time.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// The identity and the name of a type, as plain data: two ends of a row fit when their tags are the same object.
+// The identity and the name of a type, as plain data: two ends of a row fit when their tags are the same
+// object.
 #pragma once
 
 #include <cstddef>

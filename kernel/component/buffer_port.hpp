@@ -1,5 +1,5 @@
-// Buffered data flow ports (thesis 4.4): every value arrives, in order, or is counted. Each row is a ring of its own,
-// so that many writers on one input and many readers of one output stay wait-free.
+// Buffered data flow ports (thesis 4.4): every value arrives, in order, or is counted. Each row is a ring of
+// its own, so that many writers on one input and many readers of one output stay wait-free.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -17,7 +17,8 @@ class BufferOutput {
 public:
     using Value = T;
 
-    /// Gives the value to every connected reader. False when one of them had no room (its row says what is lost).
+    /// Gives the value to every connected reader. False when one of them had no room (its row says what is
+    /// lost).
     bool push(const T& value) noexcept TAPPET_REALTIME {
         bool all = true;
         for (std::size_t i = 0; i < rings_.size(); ++i) all &= rings_[i]->push(value);

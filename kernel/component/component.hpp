@@ -1,4 +1,5 @@
-// What the framework knows of a component type: its size, its interface and the functions of its life, as plain data.
+// What the framework knows of a component type: its size, its interface and the functions of its life, as
+// plain data.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -13,17 +14,18 @@
 namespace tappet {
 
 /// A component is a plain struct. What it has of the following is used, in this order of its life:
-///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty sentence is consent
-///     void start(const Cycle&) noexcept TAPPET_REALTIME   once, in its activity, before the first step
-///     void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity
-///     void work(const Cycle&)                             instead of step: may block; for activities that are not_real_time
-///     void stop(const Cycle&) noexcept TAPPET_REALTIME    once, last: leaves safe values behind
+///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty
+///     sentence is consent void start(const Cycle&) noexcept TAPPET_REALTIME   once, in its activity, before
+///     the first step void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity void
+///     work(const Cycle&)                             instead of step: may block; for activities that are
+///     not_real_time void stop(const Cycle&) noexcept TAPPET_REALTIME    once, last: leaves safe values
+///     behind
 struct ComponentType {
     TypeId tag = nullptr;
     std::size_t size = 0;
     std::size_t align = 0;
     std::span<const Facet> facets{};
-    std::string_view device_kind{};                  ///< of the device it drives, "" for none
+    std::string_view device_kind{};                   ///< of the device it drives, "" for none
     std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
     bool shares_device = false; ///< it may stand beside the device's driver; what it calls is safe there
     bool behaviour_required = false;
@@ -55,13 +57,16 @@ constexpr ComponentType describe() {
     if constexpr (requires(T& t, Setup& s) { t.configure(s); })
         type.configure = [](void* c, Setup& s) { return static_cast<T*>(c)->configure(s); };
     if constexpr (requires(T& t, const Cycle& c) { t.start(c); })
-        type.start = [](void* c, const Cycle& cycle) noexcept TAPPET_REALTIME { static_cast<T*>(c)->start(cycle); };
+        type.start = [](void* c, const Cycle& cycle) noexcept
+            TAPPET_REALTIME { static_cast<T*>(c)->start(cycle); };
     if constexpr (requires(T& t, const Cycle& c) { t.step(c); })
-        type.step = [](void* c, const Cycle& cycle) noexcept TAPPET_REALTIME { static_cast<T*>(c)->step(cycle); };
+        type.step = [](void* c, const Cycle& cycle) noexcept
+            TAPPET_REALTIME { static_cast<T*>(c)->step(cycle); };
     if constexpr (requires(T& t, const Cycle& c) { t.work(c); })
         type.work = [](void* c, const Cycle& cycle) { static_cast<T*>(c)->work(cycle); };
     if constexpr (requires(T& t, const Cycle& c) { t.stop(c); })
-        type.stop = [](void* c, const Cycle& cycle) noexcept TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
+        type.stop = [](void* c, const Cycle& cycle) noexcept
+            TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
     return type;
 }
 

@@ -1,5 +1,6 @@
-// Events (thesis 4.6): an emission runs every connected reaction: synchronous ones here and now, asynchronous ones in
-// the receiver's engine. The subscribers are the table's reaction rows; emission is a loop over function pointers.
+// Events (thesis 4.6): an emission runs every connected reaction: synchronous ones here and now, asynchronous
+// ones in the receiver's engine. The subscribers are the table's reaction rows; emission is a loop over
+// function pointers.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -14,7 +15,8 @@
 
 namespace tappet {
 
-/// One reaction row as the emitter sees it. The same size for every signature, so that the planner can place it.
+/// One reaction row as the emitter sees it. The same size for every signature, so that the planner can place
+/// it.
 template <class... A>
 struct Subscriber {
     void (*react)(void* context, A... arguments) noexcept TAPPET_REALTIME;
@@ -24,7 +26,8 @@ struct Subscriber {
 /// An event. Emitted by its own component only, from its own activity. Real-time.
 template <class... A>
 class Event {
-    static_assert((std::is_trivially_copyable_v<A> && ...), "arguments of an event are copied between activities");
+    static_assert((std::is_trivially_copyable_v<A> && ...),
+                  "arguments of an event are copied between activities");
 
 public:
     void emit(A... arguments) noexcept TAPPET_REALTIME {
@@ -38,8 +41,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// An asynchronous reaction row: it posts the emission's arguments to the receiver's engine. A row holds at most
-/// `quota` unserved emissions; one more is counted as lost and named in the report.
+/// An asynchronous reaction row: it posts the emission's arguments to the receiver's engine. A row holds at
+/// most `quota` unserved emissions; one more is counted as lost and named in the report.
 struct AsyncReaction {
     Inbox* inbox = nullptr;
     std::size_t sender = 0;
@@ -99,8 +102,8 @@ T unpack_one(const std::byte*& from) noexcept TAPPET_REALTIME {
 template <class... A>
 inline constexpr bool fits_one_message = packed_bytes<A...> <= sizeof(Message::arguments);
 
-/// The check of the table refuses an asynchronous reaction to an event whose arguments do not fit; that event's
-/// synchronous reactions are good.
+/// The check of the table refuses an asynchronous reaction to an event whose arguments do not fit; that
+/// event's synchronous reactions are good.
 template <class... A>
 void post(void* reaction, A... arguments) noexcept TAPPET_REALTIME {
     if constexpr (fits_one_message<A...>) {

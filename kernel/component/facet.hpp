@@ -1,5 +1,5 @@
-// A facet: one named thing in a component's interface (thesis 4.1.2), as plain data. Rows of the machine table name
-// facets; the checks read this data, and the start-up wires through the function pointers in it.
+// A facet: one named thing in a component's interface (thesis 4.1.2), as plain data. Rows of the machine
+// table name facets; the checks read this data, and the start-up wires through the function pointers in it.
 #pragma once
 
 #include "kernel/base/type_tag.hpp"
@@ -17,7 +17,16 @@
 
 namespace tappet {
 
-enum class FacetKind : std::uint8_t { input, output, buffer_input, buffer_output, event, operation, property, timer };
+enum class FacetKind : std::uint8_t {
+    input,
+    output,
+    buffer_input,
+    buffer_output,
+    event,
+    operation,
+    property,
+    timer
+};
 
 /// What start-up does with data and buffer ports of one value type.
 struct PortOperations {
@@ -43,8 +52,9 @@ struct BufferOperations {
 struct EventOperations {
     std::size_t subscriber_bytes; ///< of one subscriber
     void (*give_storage)(void* event, void* subscribers);
-    void (*subscribe)(void* event, const void* call, void* context); ///< `call` points at a typed function pointer
-    const void* post;                                                ///< of the asynchronous reaction, likewise
+    void (*subscribe)(void* event, const void* call,
+                      void* context); ///< `call` points at a typed function pointer
+    const void* post;                 ///< of the asynchronous reaction, likewise
 };
 
 struct OperationOperations {
@@ -67,11 +77,11 @@ struct Facet {
     std::string_view unit{};
     std::string_view doc{};
     FacetKind kind = FacetKind::input;
-    TypeId type = nullptr;     ///< of the value, or of the argument list
-    bool required = false;     ///< an input that must be connected, an operation that a reaction must name
-    bool any_thread = false;   ///< an operation that any activity may call
-    Range range{};             ///< of a property
-    std::size_t index = 0;     ///< within a member that is an array
+    TypeId type = nullptr;   ///< of the value, or of the argument list
+    bool required = false;   ///< an input that must be connected, an operation that a reaction must name
+    bool any_thread = false; ///< an operation that any activity may call
+    Range range{};           ///< of a property
+    std::size_t index = 0;   ///< within a member that is an array
     void* (*at)(void* component, std::size_t index) noexcept = nullptr;
     // One of these, by kind.
     const PortOperations* port = nullptr;
@@ -102,13 +112,24 @@ struct PortAccess {
     static constexpr PortOperations data{
         .shared_bytes = sizeof(DataObject<Sample<T>>),
         .shared_align = alignof(DataObject<Sample<T>>),
-        .place_shared = [](void* output, void* memory) { static_cast<Output<T>*>(output)->shared_ = new (memory) DataObject<Sample<T>>; },
-        .link_local = [](void* input, const void* output) { static_cast<Input<T>*>(input)->local_ = static_cast<const Output<T>*>(output); },
-        .link_shared = [](void* input, const void* output) { static_cast<Input<T>*>(input)->shared_ = static_cast<const Output<T>*>(output)->shared_; },
+        .place_shared =
+            [](void* output, void* memory) {
+                static_cast<Output<T>*>(output)->shared_ = new (memory) DataObject<Sample<T>>;
+            },
+        .link_local =
+            [](void* input, const void* output) {
+                static_cast<Input<T>*>(input)->local_ = static_cast<const Output<T>*>(output);
+            },
+        .link_shared =
+            [](void* input, const void* output) {
+                static_cast<Input<T>*>(input)->shared_ = static_cast<const Output<T>*>(output)->shared_;
+            },
         .set_clock =
             [](void* port, bool is_input, const Time* now) {
-                if (is_input) static_cast<Input<T>*>(port)->now_ = now;
-                else static_cast<Output<T>*>(port)->now_ = now;
+                if (is_input)
+                    static_cast<Input<T>*>(port)->now_ = now;
+                else
+                    static_cast<Output<T>*>(port)->now_ = now;
             },
         .set_waker = [](void* output, Waker waker) { static_cast<Output<T>*>(output)->waker_ = waker; },
         .set_policy =
@@ -132,7 +153,10 @@ struct PortAccess {
                 static_cast<void>(static_cast<BufferInput<T>*>(input)->rings_.push(ring));
             },
         .set_waker = [](void* output, Waker waker) { static_cast<BufferOutput<T>*>(output)->waker_ = waker; },
-        .lost = [](const void* memory) { return static_cast<std::size_t>(static_cast<const Ring<T>*>(memory)->lost()); },
+        .lost =
+            [](const void* memory) {
+                return static_cast<std::size_t>(static_cast<const Ring<T>*>(memory)->lost());
+            },
     };
 
     template <class... A>
@@ -141,11 +165,15 @@ struct PortAccess {
     template <class... A>
     static constexpr EventOperations event{
         .subscriber_bytes = sizeof(Subscriber<A...>),
-        .give_storage = [](void* event, void* memory) { static_cast<Event<A...>*>(event)->subscribers_ = static_cast<Subscriber<A...>*>(memory); },
+        .give_storage =
+            [](void* event, void* memory) {
+                static_cast<Event<A...>*>(event)->subscribers_ = static_cast<Subscriber<A...>*>(memory);
+            },
         .subscribe =
             [](void* event, const void* call, void* context) {
                 auto& target = *static_cast<Event<A...>*>(event);
-                target.subscribers_[target.count_++] = {*static_cast<void (*const*)(void*, A...) noexcept TAPPET_REALTIME>(call), context};
+                target.subscribers_[target.count_++] = {
+                    *static_cast<void (*const*)(void*, A...) noexcept TAPPET_REALTIME>(call), context};
             },
         .post = &post<A...>,
     };

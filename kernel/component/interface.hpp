@@ -18,7 +18,8 @@
 
 namespace tappet {
 
-/// Marks an input that may stay unconnected, and says what any_thread says of operations: callable from any activity.
+/// Marks an input that may stay unconnected, and says what any_thread says of operations: callable from any
+/// activity.
 struct Optional {};
 inline constexpr Optional optional{};
 struct AnyThread {};
@@ -33,7 +34,7 @@ namespace detail {
 
 template <auto Member>
 struct MemberOf;
-template <class C, class M, M C::*Member>
+template <class C, class M, M C::* Member>
 struct MemberOf<Member> {
     using Component = C;
     using Type = M;
@@ -55,31 +56,39 @@ template <auto Method>
 struct TimerCall;
 template <class Component, void (Component::*Method)(const Cycle&) noexcept>
 struct TimerCall<Method> {
-    static constexpr TimerOperations operations{[](void* component, const Cycle& cycle) noexcept TAPPET_REALTIME {
-        (static_cast<Component*>(component)->*Method)(cycle);
-    }};
+    static constexpr TimerOperations operations{
+        [](void* component, const Cycle& cycle) noexcept
+        TAPPET_REALTIME { (static_cast<Component*>(component)->*Method)(cycle); }};
 };
 
 template <PropertyValue T>
 inline constexpr PropertyOperations property_of{
-    .kind = std::same_as<T, double>         ? PropertySetting::Kind::real
-            : std::same_as<T, bool>         ? PropertySetting::Kind::truth
-            : std::same_as<T, Duration>     ? PropertySetting::Kind::duration
-                                            : PropertySetting::Kind::whole,
+    .kind = std::same_as<T, double>     ? PropertySetting::Kind::real
+            : std::same_as<T, bool>     ? PropertySetting::Kind::truth
+            : std::same_as<T, Duration> ? PropertySetting::Kind::duration
+                                        : PropertySetting::Kind::whole,
     .set =
         [](void* property, const PropertySetting& setting) {
             auto& target = *static_cast<Property<T>*>(property);
-            if constexpr (std::same_as<T, double>) target.set(setting.kind == PropertySetting::Kind::real ? setting.real : static_cast<double>(setting.whole));
-            else if constexpr (std::same_as<T, bool>) target.set(setting.whole != 0);
-            else target.set(T{setting.whole});
+            if constexpr (std::same_as<T, double>)
+                target.set(setting.kind == PropertySetting::Kind::real ? setting.real
+                                                                       : static_cast<double>(setting.whole));
+            else if constexpr (std::same_as<T, bool>)
+                target.set(setting.whole != 0);
+            else
+                target.set(T{setting.whole});
         },
     .get =
         [](const void* property) {
             const T& value = static_cast<const Property<T>*>(property)->get();
-            if constexpr (std::same_as<T, double>) return PropertySetting{PropertySetting::Kind::real, value, 0};
-            else if constexpr (std::same_as<T, bool>) return PropertySetting{PropertySetting::Kind::truth, 0, value ? 1 : 0};
-            else if constexpr (std::same_as<T, Duration>) return PropertySetting{PropertySetting::Kind::duration, 0, value.count()};
-            else return PropertySetting{PropertySetting::Kind::whole, 0, value};
+            if constexpr (std::same_as<T, double>)
+                return PropertySetting{PropertySetting::Kind::real, value, 0};
+            else if constexpr (std::same_as<T, bool>)
+                return PropertySetting{PropertySetting::Kind::truth, 0, value ? 1 : 0};
+            else if constexpr (std::same_as<T, Duration>)
+                return PropertySetting{PropertySetting::Kind::duration, 0, value.count()};
+            else
+                return PropertySetting{PropertySetting::Kind::whole, 0, value};
         },
 };
 
@@ -98,13 +107,30 @@ constexpr Facet with(Facet facet, Options... options) noexcept {
 
 /// An input port; it must be connected unless `optional`.
 template <auto Member, class... Options>
-constexpr Facet input(std::string_view name, std::string_view unit, std::string_view doc, Options... options) {
+constexpr Facet input(std::string_view name, std::string_view unit, std::string_view doc,
+                      Options... options) {
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
     if constexpr (std::same_as<typename M::Type, BufferInput<T>>)
-        return detail::with({.name = name, .unit = unit, .doc = doc, .kind = FacetKind::buffer_input, .type = type_id<T>, .required = true, .at = &M::at, .buffer = &PortAccess::buffer<T>}, options...);
+        return detail::with({.name = name,
+                             .unit = unit,
+                             .doc = doc,
+                             .kind = FacetKind::buffer_input,
+                             .type = type_id<T>,
+                             .required = true,
+                             .at = &M::at,
+                             .buffer = &PortAccess::buffer<T>},
+                            options...);
     else
-        return detail::with({.name = name, .unit = unit, .doc = doc, .kind = FacetKind::input, .type = type_id<T>, .required = true, .at = &M::at, .port = &PortAccess::data<T>}, options...);
+        return detail::with({.name = name,
+                             .unit = unit,
+                             .doc = doc,
+                             .kind = FacetKind::input,
+                             .type = type_id<T>,
+                             .required = true,
+                             .at = &M::at,
+                             .port = &PortAccess::data<T>},
+                            options...);
 }
 
 template <auto Member>
@@ -112,37 +138,73 @@ constexpr Facet output(std::string_view name, std::string_view unit, std::string
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
     if constexpr (std::same_as<typename M::Type, BufferOutput<T>>)
-        return {.name = name, .unit = unit, .doc = doc, .kind = FacetKind::buffer_output, .type = type_id<T>, .at = &M::at, .buffer = &PortAccess::buffer<T>};
+        return {.name = name,
+                .unit = unit,
+                .doc = doc,
+                .kind = FacetKind::buffer_output,
+                .type = type_id<T>,
+                .at = &M::at,
+                .buffer = &PortAccess::buffer<T>};
     else
-        return {.name = name, .unit = unit, .doc = doc, .kind = FacetKind::output, .type = type_id<T>, .at = &M::at, .port = &PortAccess::data<T>};
+        return {.name = name,
+                .unit = unit,
+                .doc = doc,
+                .kind = FacetKind::output,
+                .type = type_id<T>,
+                .at = &M::at,
+                .port = &PortAccess::data<T>};
 }
 
 template <auto Member>
 constexpr Facet event(std::string_view name, std::string_view doc) {
     using M = detail::MemberOf<Member>;
     using E = detail::EventArguments<typename M::Type>;
-    return {.name = name, .doc = doc, .kind = FacetKind::event, .type = type_id<typename E::Signature>, .at = &M::at, .event = E::operations};
+    return {.name = name,
+            .doc = doc,
+            .kind = FacetKind::event,
+            .type = type_id<typename E::Signature>,
+            .at = &M::at,
+            .event = E::operations};
 }
 
 /// A member function `void f(A...) noexcept TAPPET_REALTIME`.
 template <auto Method, class... Options>
 constexpr Facet operation(std::string_view name, std::string_view doc, Options... options) {
-    static_assert(OperationCall<Method>::is_operation, "an operation is a member function that returns void, declared noexcept "
-                                                       "TAPPET_REALTIME: it runs in the real-time activity");
-    return detail::with({.name = name, .doc = doc, .kind = FacetKind::operation, .type = type_id<typename OperationCall<Method>::Signature>, .operation = &detail::operation_of<Method>}, options...);
+    static_assert(OperationCall<Method>::is_operation,
+                  "an operation is a member function that returns void, declared noexcept "
+                  "TAPPET_REALTIME: it runs in the real-time activity");
+    return detail::with({.name = name,
+                         .doc = doc,
+                         .kind = FacetKind::operation,
+                         .type = type_id<typename OperationCall<Method>::Signature>,
+                         .operation = &detail::operation_of<Method>},
+                        options...);
 }
 
 template <auto Member, class... Options>
-constexpr Facet property(std::string_view name, std::string_view unit, std::string_view doc, Options... options) {
+constexpr Facet property(std::string_view name, std::string_view unit, std::string_view doc,
+                         Options... options) {
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
-    return detail::with({.name = name, .unit = unit, .doc = doc, .kind = FacetKind::property, .type = type_id<T>, .at = &M::at, .property = &detail::property_of<T>}, options...);
+    return detail::with({.name = name,
+                         .unit = unit,
+                         .doc = doc,
+                         .kind = FacetKind::property,
+                         .type = type_id<T>,
+                         .at = &M::at,
+                         .property = &detail::property_of<T>},
+                        options...);
 }
 
 /// A timer and the member function it runs: `void f(const Cycle&) noexcept TAPPET_REALTIME`.
 template <auto Member, auto Method>
 constexpr Facet timer(std::string_view name, std::string_view doc) {
-    return {.name = name, .doc = doc, .kind = FacetKind::timer, .type = type_id<Arguments<>>, .at = &detail::MemberOf<Member>::at, .timer = &detail::TimerCall<Method>::operations};
+    return {.name = name,
+            .doc = doc,
+            .kind = FacetKind::timer,
+            .type = type_id<Arguments<>>,
+            .at = &detail::MemberOf<Member>::at,
+            .timer = &detail::TimerCall<Method>::operations};
 }
 
 template <class... F>

@@ -1,5 +1,5 @@
-// Operations (thesis 4.5) as function pointers: how a reaction row calls a member function of a component, at once or
-// from a message.
+// Operations (thesis 4.5) as function pointers: how a reaction row calls a member function of a component, at
+// once or from a message.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -37,7 +37,9 @@ struct OperationCall<Method, void (Component::*)(A...) noexcept TAPPET_REALTIME>
         // A braced list is evaluated from left to right.
         struct Caller {
             void* component;
-            Caller(void* c, A... arguments) noexcept TAPPET_REALTIME : component{c} { call(component, arguments...); }
+            Caller(void* c, A... arguments) noexcept TAPPET_REALTIME : component{c} {
+                call(component, arguments...);
+            }
         };
         [[maybe_unused]] const Caller caller{component, detail::unpack_one<A>(at)...};
     }

@@ -1,5 +1,5 @@
-// Data flow ports (thesis 4.4): an output keeps the last value, an input reads it. What stands between them is
-// decided by the machine table: inside one activity nothing, across activities a wait-free data object.
+// Data flow ports (thesis 4.4): an output keeps the last value, an input reads it. What stands between them
+// is decided by the machine table: inside one activity nothing, across activities a wait-free data object.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -85,7 +85,9 @@ public:
     /// The value alone, with the row's staleness policy applied.
     [[nodiscard]] T get() noexcept TAPPET_REALTIME { return value_of(refresh()); }
     /// When the value read last was true.
-    [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME { return local_ != nullptr ? local_->last_.stamp : cache_.stamp; }
+    [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr ? local_->last_.stamp : cache_.stamp;
+    }
     /// Tells what the value is, without copying it out; a fresh value stays fresh for read().
     [[nodiscard]] Flow flow() noexcept TAPPET_REALTIME {
         const std::uint64_t seen = seen_;
@@ -93,7 +95,9 @@ public:
         seen_ = seen;
         return now;
     }
-    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return local_ != nullptr || shared_ != nullptr; }
+    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr || shared_ != nullptr;
+    }
 
 private:
     friend struct PortAccess;
@@ -104,7 +108,8 @@ private:
             generation = local_->generation_;
         } else if (shared_ != nullptr) {
             // A read that lost against a fast writer leaves the last good value, which is then old.
-            if (!shared_->read(cache_, cached_generation_) && cached_generation_ == 0) return Flow::never_written;
+            if (!shared_->read(cache_, cached_generation_) && cached_generation_ == 0)
+                return Flow::never_written;
             generation = cached_generation_;
         }
         if (generation == 0) return Flow::never_written;
@@ -114,7 +119,8 @@ private:
         return Flow::fresh;
     }
     [[nodiscard]] const T& value_of(Flow flow) const noexcept TAPPET_REALTIME {
-        if (flow == Flow::never_written || (flow == Flow::stale && when_stale_ == WhenStale::substitute)) return substitute_;
+        if (flow == Flow::never_written || (flow == Flow::stale && when_stale_ == WhenStale::substitute))
+            return substitute_;
         return local_ != nullptr ? local_->last_.value : cache_.value;
     }
 

@@ -1,4 +1,5 @@
-// Properties (thesis 4.7): configuration of a component, with its default in the component and its value in the table.
+// Properties (thesis 4.7): configuration of a component, with its default in the component and its value in
+// the table.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -12,7 +13,8 @@ namespace tappet {
 
 /// The value types a property may have.
 template <class T>
-concept PropertyValue = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, bool> || std::same_as<T, Duration>;
+concept PropertyValue = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, bool> ||
+                        std::same_as<T, Duration>;
 
 template <PropertyValue T>
 class Property {
@@ -20,7 +22,9 @@ public:
     using Value = T;
     constexpr explicit Property(T initial = T{}) noexcept : value_{initial} {}
     [[nodiscard]] constexpr const T& get() const noexcept TAPPET_REALTIME { return value_; }
-    constexpr operator const T&() const noexcept TAPPET_REALTIME { return value_; } // NOLINT: reads like the value
+    constexpr operator const T&() const noexcept TAPPET_REALTIME {
+        return value_;
+    } // NOLINT: reads like the value
     constexpr void set(const T& value) noexcept TAPPET_REALTIME { value_ = value; }
 
 private:

@@ -1,4 +1,5 @@
-// What a component may ask for while it is configured: the devices of this world and what its activity sleeps on.
+// What a component may ask for while it is configured: the devices of this world and what its activity sleeps
+// on.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -29,13 +30,15 @@ struct Setup {
     template <class Device>
     [[nodiscard]] Device* device() const {
         for (const auto& each : devices)
-            if (each.type == type_id<Device> && each.name == device_name) return static_cast<Device*>(each.device);
+            if (each.type == type_id<Device> && each.name == device_name)
+                return static_cast<Device*>(each.device);
         return nullptr;
     }
     /// What configure() answers when device() found nothing.
     [[nodiscard]] Sentence no_device() const {
-        return Sentence{"component \"", component, "\": this world provides no device \"", device_name,
-                        "\" of the class it drives: give it to the start-up, or name another device in its row"};
+        return Sentence{
+            "component \"", component, "\": this world provides no device \"", device_name,
+            "\" of the class it drives: give it to the start-up, or name another device in its row"};
     }
 };
 

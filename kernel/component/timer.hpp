@@ -1,4 +1,5 @@
-// A one-shot timer: it wakes the component's activity at a time and runs one of its functions, between two cycles.
+// A one-shot timer: it wakes the component's activity at a time and runs one of its functions, between two
+// cycles.
 #pragma once
 
 #include "kernel/base/realtime.hpp"

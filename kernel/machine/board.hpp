@@ -1,5 +1,5 @@
-// A board: what one kind of box calls the devices that a machine table names, and what the box can do. One binary is
-// one machine on one board.
+// A board: what one kind of box calls the devices that a machine table names, and what the box can do. One
+// binary is one machine on one board.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -17,9 +17,9 @@ struct BoardLine {
 };
 
 struct BoardDevice {
-    std::string_view name{};         ///< logical: what the machine table says
-    std::string_view kind{};         ///< "can", "gpio", "modbus": of the component that may drive it
-    std::string_view address{};      ///< "can0", "/dev/gpiochip0", "192.168.7.2:502", "/dev/ttyS1:19200:8E1"
+    std::string_view name{};    ///< logical: what the machine table says
+    std::string_view kind{};    ///< "can", "gpio", "modbus": of the component that may drive it
+    std::string_view address{}; ///< "can0", "/dev/gpiochip0", "192.168.7.2:502", "/dev/ttyS1:19200:8E1"
     Bounded<BoardLine, 64> lines{};
 };
 
@@ -31,20 +31,22 @@ struct BoardPlacement {
 
 struct Board {
     std::string_view name{};
-    std::string_view world{}; ///< "host", "bench" or "box"
+    std::string_view world{};            ///< "host", "bench" or "box"
     std::size_t memory_budget_bytes = 0; ///< of all static memory, the heap's arena and the stacks included
     std::size_t heap_bytes = 0;          ///< the arena that configuring may use before arming
     int processors = 1;
-    int highest_priority = 80;           ///< SCHED_FIFO; interrupt threads stay above it
+    int highest_priority = 80; ///< SCHED_FIFO; interrupt threads stay above it
     int default_processor = 0;
     Bounded<BoardPlacement, 32> placement{};
     Bounded<BoardDevice, 16> devices{};
-    Bounded<std::string_view, 16> only_warned{}; ///< arming checks that this development board downgrades to warnings
+    Bounded<std::string_view, 16>
+        only_warned{}; ///< arming checks that this development board downgrades to warnings
     std::string_view kernel_command_line{};
 };
 
 template <class... Lines>
-constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address, Lines... lines) {
+constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address,
+                                   Lines... lines) {
     BoardDevice device{name, kind, address, {}};
     (static_cast<void>(device.lines.push(lines)), ...);
     return device;
@@ -52,13 +54,16 @@ constexpr BoardDevice board_device(std::string_view name, std::string_view kind,
 
 constexpr BoardLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
 
-constexpr BoardPlacement place(std::string_view activity, int processor) noexcept { return {activity, processor}; }
+constexpr BoardPlacement place(std::string_view activity, int processor) noexcept {
+    return {activity, processor};
+}
 
 namespace detail {
 
 template <class T, std::size_t N, class... Items>
 constexpr Bounded<T, N> list_of(const Items&... items) {
-    static_assert(sizeof...(Items) <= N, "a board's list is longer than its room: raise the bound in kernel/machine/board.hpp");
+    static_assert(sizeof...(Items) <= N,
+                  "a board's list is longer than its room: raise the bound in kernel/machine/board.hpp");
     Bounded<T, N> list;
     (static_cast<void>(list.push(T{items})), ...);
     return list;

@@ -44,55 +44,40 @@ constexpr Sentence decimal(double value) {
 /// In the unit of a range: seconds for a time.
 constexpr double value_of(const PropertySetting& setting) noexcept {
     switch (setting.kind) {
-    case PropertySetting::Kind::real:
-        return setting.real;
-    case PropertySetting::Kind::duration:
-        return static_cast<double>(setting.whole) * 1e-9;
+    case PropertySetting::Kind::real: return setting.real;
+    case PropertySetting::Kind::duration: return static_cast<double>(setting.whole) * 1e-9;
     case PropertySetting::Kind::whole:
-    case PropertySetting::Kind::truth:
-        break;
+    case PropertySetting::Kind::truth: break;
     }
     return static_cast<double>(setting.whole);
 }
 
 constexpr Sentence value_text(const PropertySetting& setting) {
     switch (setting.kind) {
-    case PropertySetting::Kind::real:
-        return decimal(setting.real);
-    case PropertySetting::Kind::duration:
-        return decimal(value_of(setting)).add(" s");
-    case PropertySetting::Kind::truth:
-        return Sentence{setting.whole != 0 ? "true" : "false"};
-    case PropertySetting::Kind::whole:
-        break;
+    case PropertySetting::Kind::real: return decimal(setting.real);
+    case PropertySetting::Kind::duration: return decimal(value_of(setting)).add(" s");
+    case PropertySetting::Kind::truth: return Sentence{setting.whole != 0 ? "true" : "false"};
+    case PropertySetting::Kind::whole: break;
     }
     return Sentence{setting.whole};
 }
 
 constexpr std::string_view kind_text(PropertySetting::Kind kind) noexcept {
     switch (kind) {
-    case PropertySetting::Kind::real:
-        return "a number";
-    case PropertySetting::Kind::whole:
-        return "a whole number";
-    case PropertySetting::Kind::truth:
-        return "true or false";
-    case PropertySetting::Kind::duration:
-        break;
+    case PropertySetting::Kind::real: return "a number";
+    case PropertySetting::Kind::whole: return "a whole number";
+    case PropertySetting::Kind::truth: return "true or false";
+    case PropertySetting::Kind::duration: break;
     }
     return "a time";
 }
 
 constexpr std::string_view example_of(PropertySetting::Kind kind) noexcept {
     switch (kind) {
-    case PropertySetting::Kind::real:
-        return "it like 2.5";
-    case PropertySetting::Kind::whole:
-        return "it like 2";
-    case PropertySetting::Kind::truth:
-        return "true or false";
-    case PropertySetting::Kind::duration:
-        break;
+    case PropertySetting::Kind::real: return "it like 2.5";
+    case PropertySetting::Kind::whole: return "it like 2";
+    case PropertySetting::Kind::truth: return "true or false";
+    case PropertySetting::Kind::duration: break;
     }
     return "it with its unit, like 2ms";
 }

@@ -1,5 +1,5 @@
-// A machine on a board: the table checked, planned and given its memory, all by the compiler. A table that cannot work
-// does not compile; the first error is one sentence that names the row, the fault and the cure.
+// A machine on a board: the table checked, planned and given its memory, all by the compiler. A table that
+// cannot work does not compile; the first error is one sentence that names the row, the fault and the cure.
 #pragma once
 
 #include "kernel/machine/check.hpp"
@@ -29,7 +29,8 @@ template <>
 struct machine_table<text<0>{}> {};
 
 template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
-constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, const Board& board, TableIndex<C, A, X, R> index) {
+constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, const Board& board,
+                                       TableIndex<C, A, X, R> index) {
     Plan<C, A, X, S, B> plan;
     PlanView view = plan.view();
     make_plan(table.view(), board, index.view(), view);
@@ -37,10 +38,21 @@ constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, cons
     return plan;
 }
 
-constexpr Sentence over_budget(const MachineView& m, const Board& board, std::size_t machine_bytes, std::size_t stack_bytes) {
+constexpr Sentence over_budget(const MachineView& m, const Board& board, std::size_t machine_bytes,
+                               std::size_t stack_bytes) {
     const std::size_t bytes = machine_bytes + board.heap_bytes;
     if (bytes <= board.memory_budget_bytes) return {};
-    return Sentence{m.name, ": board \"", board.name, "\": the machine takes ", bytes, " bytes of static memory (", stack_bytes, " of them stacks, ", board.heap_bytes, " the heap) but the board's budget is ", board.memory_budget_bytes,
+    return Sentence{m.name,
+                    ": board \"",
+                    board.name,
+                    "\": the machine takes ",
+                    bytes,
+                    " bytes of static memory (",
+                    stack_bytes,
+                    " of them stacks, ",
+                    board.heap_bytes,
+                    " the heap) but the board's budget is ",
+                    board.memory_budget_bytes,
                     "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
 }
 
@@ -83,7 +95,8 @@ struct Instance<table, board, true> {
     // Start-up reads these through spans of mutable elements and does not write them.
     static inline constinit auto index = From::verdict.index;
     static inline constinit auto plan = From::plan;
-    [[gnu::section("tappet_instance")]] alignas(4096) static inline constinit std::byte memory[From::plan.bytes]{};
+    [[gnu::section("tappet_instance")]] alignas(
+        4096) static inline constinit std::byte memory[From::plan.bytes]{};
 
     static AcceptedMachine machine() { return {table.view(), &board, index.view(), plan.view(), memory}; }
 };

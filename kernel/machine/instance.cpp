@@ -9,7 +9,8 @@ namespace {
 
 // The chain of an output's wakers ends after as many nodes as it has rows that wake.
 void wake_chain(void* first) noexcept TAPPET_REALTIME {
-    for (const auto* node = static_cast<const WakerNode*>(first); node != nullptr; node = node->next) node->waker();
+    for (const auto* node = static_cast<const WakerNode*>(first); node != nullptr; node = node->next)
+        node->waker();
 }
 
 void run_trigger(void* binding, const std::byte*) noexcept TAPPET_REALTIME {
@@ -17,12 +18,15 @@ void run_trigger(void* binding, const std::byte*) noexcept TAPPET_REALTIME {
     static_cast<void>(trigger.execution->dispatch(trigger.trigger, trigger.engine->now()));
 }
 
-void note_transition(void* engine, StateIndex from, StateIndex to, TransitionIndex transition, Time now) noexcept TAPPET_REALTIME {
+void note_transition(void* engine, StateIndex from, StateIndex to, TransitionIndex transition,
+                     Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t what = (std::uint64_t{from} << 32) | (std::uint64_t{to} << 16) | transition;
     static_cast<Engine*>(engine)->note(what, now);
 }
 
-StateMachineExecution& execution_of(void* self) noexcept TAPPET_REALTIME { return *static_cast<StateMachineExecution*>(self); }
+StateMachineExecution& execution_of(void* self) noexcept TAPPET_REALTIME {
+    return *static_cast<StateMachineExecution*>(self);
+}
 
 } // namespace
 
@@ -39,7 +43,8 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
         const ComponentRow& row = table.components[c];
         if (row.type->configure == nullptr) continue;
         Setup setup{row.name, row.device, devices, clock_, &engines()[machine_.index.activity[c]].waiter()};
-        if (const Sentence refusal = row.type->configure(component(c), setup); !refusal.empty()) return std::unexpected(refusal);
+        if (const Sentence refusal = row.type->configure(component(c), setup); !refusal.empty())
+            return std::unexpected(refusal);
     }
     return {};
 }
@@ -69,7 +74,8 @@ std::span<Engine> MachineInstance::engines() noexcept {
 }
 
 std::span<std::byte> MachineInstance::stack_of(std::size_t activity) noexcept {
-    return machine_.memory.subspan(machine_.plan.activities[activity].stack_at, machine_.plan.activities[activity].stack_bytes);
+    return machine_.memory.subspan(machine_.plan.activities[activity].stack_at,
+                                   machine_.plan.activities[activity].stack_bytes);
 }
 
 void MachineInstance::place_engines() {
@@ -80,7 +86,8 @@ void MachineInstance::place_engines() {
         auto* parts = at<EnginePart>(plan.parts_at);
         auto* functions = at<FunctionTiming>(plan.functions_at);
         auto* timers = at<EngineTimer>(plan.timers_at);
-        for (std::size_t f = 0; f < plan.part_count * functions_per_part; ++f) new (functions + f) FunctionTiming{};
+        for (std::size_t f = 0; f < plan.part_count * functions_per_part; ++f)
+            new (functions + f) FunctionTiming{};
         std::size_t timer_count = 0;
         for (std::size_t c = 0; c < table.components.size(); ++c) {
             if (machine_.index.activity[c] != a) continue;
@@ -89,7 +96,9 @@ void MachineInstance::place_engines() {
             new (parts + part) EnginePart{component_row.name, component(c), component_row.type};
             for (std::size_t f = 0; f < component_row.type->facets.size(); ++f) {
                 const Facet& each = component_row.type->facets[f];
-                if (each.kind == FacetKind::timer) new (timers + timer_count++) EngineTimer{static_cast<Timer*>(facet({c, f})), each.timer->fire, part};
+                if (each.kind == FacetKind::timer)
+                    new (timers + timer_count++)
+                        EngineTimer{static_cast<Timer*>(facet({c, f})), each.timer->fire, part};
             }
         }
         EnginePlan engine;
@@ -110,9 +119,8 @@ void MachineInstance::place_engines() {
         auto* placed = new (&engines()[a]) Engine;
         placed->place(engine, *clock_);
         placed->on_stop(
-            [](void* self, StopReason reason, std::uint64_t detail, const Engine& from) noexcept TAPPET_REALTIME {
-                static_cast<MachineInstance*>(self)->ask_stop(reason, detail, &from);
-            },
+            [](void* self, StopReason reason, std::uint64_t detail, const Engine& from) noexcept
+            TAPPET_REALTIME { static_cast<MachineInstance*>(self)->ask_stop(reason, detail, &from); },
             this);
     }
 }
@@ -143,7 +151,8 @@ void MachineInstance::connect_data() {
         if (row.wakes_reader) add_waker(x);
         if (row.when_stale != WhenStale::stop) continue;
         const std::size_t reader = machine_.index.activity[link.to.component];
-        new (at<GuardedInput>(machine_.plan.activities[reader].guarded_at) + guarded[reader]++) GuardedInput{facet(link.to), facet_at(machine_.table, link.to).port->flow, x, false};
+        new (at<GuardedInput>(machine_.plan.activities[reader].guarded_at) + guarded[reader]++)
+            GuardedInput{facet(link.to), facet_at(machine_.table, link.to).port->flow, x, false};
     }
 }
 
@@ -153,12 +162,16 @@ void MachineInstance::connect_row(std::size_t x) {
     const Link& link = machine_.index.connections[x];
     const Facet& from = facet_at(machine_.table, link.from);
     if (row.buffered) {
-        from.buffer->link(facet(link.from), facet(link.to), at<std::byte>(plan.memory_at), row.capacity, row.overflow);
+        from.buffer->link(facet(link.from), facet(link.to), at<std::byte>(plan.memory_at), row.capacity,
+                          row.overflow);
         return;
     }
-    if (plan.shared && plan.first_of_output) from.port->place_shared(facet(link.from), at<void>(plan.memory_at));
-    if (plan.shared) from.port->link_shared(facet(link.to), facet(link.from));
-    else from.port->link_local(facet(link.to), facet(link.from));
+    if (plan.shared && plan.first_of_output)
+        from.port->place_shared(facet(link.from), at<void>(plan.memory_at));
+    if (plan.shared)
+        from.port->link_shared(facet(link.to), facet(link.from));
+    else
+        from.port->link_local(facet(link.to), facet(link.from));
     from.port->set_policy(facet(link.to), row.max_age, row.when_stale, row.substitute_value);
 }
 
@@ -167,12 +180,16 @@ void MachineInstance::add_waker(std::size_t x) {
     // The newest node stands first and leads to the ones before it of the same output.
     WakerNode* before = nullptr;
     for (std::size_t j = 0; j < x; ++j)
-        if (machine_.index.connections[j].from == link.from && machine_.table.connections[j].wakes_reader) before = at<WakerNode>(machine_.plan.connections[j].waker_at);
-    auto* node = new (at<WakerNode>(machine_.plan.connections[x].waker_at)) WakerNode{waker_of(machine_.index.activity[link.to.component]), before};
+        if (machine_.index.connections[j].from == link.from && machine_.table.connections[j].wakes_reader)
+            before = at<WakerNode>(machine_.plan.connections[j].waker_at);
+    auto* node = new (at<WakerNode>(machine_.plan.connections[x].waker_at))
+        WakerNode{waker_of(machine_.index.activity[link.to.component]), before};
     const Waker chain{&wake_chain, node};
     const Facet& from = facet_at(machine_.table, link.from);
-    if (machine_.table.connections[x].buffered) from.buffer->set_waker(facet(link.from), chain);
-    else from.port->set_waker(facet(link.from), chain);
+    if (machine_.table.connections[x].buffered)
+        from.buffer->set_waker(facet(link.from), chain);
+    else
+        from.port->set_waker(facet(link.from), chain);
 }
 
 void MachineInstance::connect_events() {
@@ -181,9 +198,11 @@ void MachineInstance::connect_events() {
         const Subscription& row = plan.subscriptions[s];
         const SubscriptionPlan& place = plan.subscription_at[s];
         const EventOperations& event = *facet_at(machine_.table, row.event).event;
-        if (place.subscribers_at != nowhere) event.give_storage(facet(row.event), at<void>(place.subscribers_at));
+        if (place.subscribers_at != nowhere)
+            event.give_storage(facet(row.event), at<void>(place.subscribers_at));
         if (row.synchronous) {
-            event.subscribe(facet(row.event), facet_at(machine_.table, row.operation).operation->call, component(row.operation.component));
+            event.subscribe(facet(row.event), facet_at(machine_.table, row.operation).operation->call,
+                            component(row.operation.component));
             continue;
         }
         auto* reaction = new (at<AsyncReaction>(place.async_at)) AsyncReaction;
@@ -200,8 +219,10 @@ void MachineInstance::connect_events() {
         } else {
             auto* execution = at<StateMachineExecution>(plan.behaviours[row.behaviour].execution_at);
             reaction->run = &run_trigger;
-            reaction->object = new (at<TriggerBinding>(place.binding_at)) TriggerBinding{execution, &receiver, row.trigger};
-            reaction->part = plan.part_of[find_component(machine_.table, machine_.table.behaviours[row.behaviour].component)];
+            reaction->object =
+                new (at<TriggerBinding>(place.binding_at)) TriggerBinding{execution, &receiver, row.trigger};
+            reaction->part = plan.part_of[find_component(machine_.table,
+                                                         machine_.table.behaviours[row.behaviour].component)];
         }
         event.subscribe(facet(row.event), event.post, reaction);
     }
@@ -215,7 +236,9 @@ void MachineInstance::place_mailboxes() {
         for (std::size_t i = 0; i < plan.sender_count; ++i) new (mailboxes + i) Mailbox;
         for (std::size_t sender = 0; sender < n; ++sender) {
             const MailPlan& mail = machine_.plan.mail[sender * n + receiver];
-            if (mail.capacity != 0) mailboxes[mail.sender_index].place(at<std::byte>(mail.storage_at), mail.capacity, Overflow::reject);
+            if (mail.capacity != 0)
+                mailboxes[mail.sender_index].place(at<std::byte>(mail.storage_at), mail.capacity,
+                                                   Overflow::reject);
         }
         engines()[receiver].inbox().place({mailboxes, plan.sender_count});
     }
@@ -237,27 +260,36 @@ void MachineInstance::place_behaviours() {
         const std::size_t c = find_component(machine_.table, row.component);
         const std::size_t activity = machine_.index.activity[c];
         auto* execution = new (at<void>(plan.execution_at)) StateMachineExecution;
-        execution->bind({row.machine, room.triggers, room.plans.data(), room.cells.data(), room.arcs.data(), room.programs.data()}, component(c));
+        execution->bind({row.machine, room.triggers, room.plans.data(), room.cells.data(), room.arcs.data(),
+                         room.programs.data()},
+                        component(c));
         execution->trace(&note_transition, &engines()[activity]);
         Behaviour behaviour;
         behaviour.self = execution;
         behaviour.part = machine_.plan.part_of[c];
-        behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { static_cast<void>(execution_of(self).start(now)); };
+        behaviour.start = [](void* self, Time now) noexcept
+            TAPPET_REALTIME { static_cast<void>(execution_of(self).start(now)); };
         behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { execution_of(self).step(now); };
-        behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME { static_cast<void>(execution_of(self).request_final(now, "the machine stops")); };
-        behaviour.next = [](const void* self) noexcept TAPPET_REALTIME { return static_cast<const StateMachineExecution*>(self)->next_timeout(); };
-        new (at<Behaviour>(machine_.plan.activities[activity].behaviours_at) + placed[activity]++) Behaviour{behaviour};
+        behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME {
+            static_cast<void>(execution_of(self).request_final(now, "the machine stops"));
+        };
+        behaviour.next = [](const void* self) noexcept
+            TAPPET_REALTIME { return static_cast<const StateMachineExecution*>(self)->next_timeout(); };
+        new (at<Behaviour>(machine_.plan.activities[activity].behaviours_at) + placed[activity]++)
+            Behaviour{behaviour};
     }
 }
 
 const StateMachineExecution* MachineInstance::state_machine_of(std::string_view component) const noexcept {
     for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b)
         if (machine_.table.behaviours[b].component == component && !machine_.table.behaviours[b].is_slot())
-            return reinterpret_cast<const StateMachineExecution*>(machine_.memory.data() + machine_.plan.behaviours[b].execution_at);
+            return reinterpret_cast<const StateMachineExecution*>(machine_.memory.data() +
+                                                                  machine_.plan.behaviours[b].execution_at);
     return nullptr;
 }
 
-void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME {
+void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept
+    TAPPET_REALTIME {
     int free = 0;
     if (!stop_asked_.compare_exchange_strong(free, 1, std::memory_order_acq_rel)) return;
     stop_ = {reason, detail, from};
@@ -274,12 +306,20 @@ Sentence MachineInstance::describe_stop() const {
     case StopReason::behaviour: return Sentence{"asked for by a behaviour in activity \"", who, "\""};
     case StopReason::missed_deadline: {
         const auto function = static_cast<std::uint32_t>(stop_.detail);
-        if (function == Miss::nobody || stop_.from == nullptr) return Sentence{"activity \"", who, "\" missed its deadline: it began late"};
-        return Sentence{"activity \"", who, "\" missed its deadline: component \"", stop_.from->plan().parts[function / functions_per_part].name, "\" took the time"};
+        if (function == Miss::nobody || stop_.from == nullptr)
+            return Sentence{"activity \"", who, "\" missed its deadline: it began late"};
+        return Sentence{"activity \"", who, "\" missed its deadline: component \"",
+                        stop_.from->plan().parts[function / functions_per_part].name, "\" took the time"};
     }
     case StopReason::stale_input: {
         const ConnectionRow& row = machine_.table.connections[stop_.detail];
-        return Sentence{"connection \"", row.from, "\" -> \"", row.to, "\" is stale: nothing came for more than ", row.max_age.count() / 1000, " us"};
+        return Sentence{"connection \"",
+                        row.from,
+                        "\" -> \"",
+                        row.to,
+                        "\" is stale: nothing came for more than ",
+                        row.max_age.count() / 1000,
+                        " us"};
     }
     }
     return {};
@@ -294,7 +334,8 @@ std::uint64_t MachineInstance::event_log_digest() const noexcept {
 std::uint64_t MachineInstance::lost_emissions() const noexcept {
     std::uint64_t lost = 0;
     for (const SubscriptionPlan& place : machine_.plan.subscription_at)
-        if (place.async_at != nowhere) lost += reinterpret_cast<const AsyncReaction*>(machine_.memory.data() + place.async_at)->lost;
+        if (place.async_at != nowhere)
+            lost += reinterpret_cast<const AsyncReaction*>(machine_.memory.data() + place.async_at)->lost;
     return lost;
 }
 

@@ -1,5 +1,5 @@
-// A machine come to life in its static memory: components constructed at their planned places, wired as the rows say,
-// configured. It knows no thread; a world runs its engines.
+// A machine come to life in its static memory: components constructed at their planned places, wired as the
+// rows say, configured. It knows no thread; a world runs its engines.
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
@@ -21,7 +21,8 @@ struct StopRequest {
 /// Not real-time but for ask_stop(), stop_asked() and what is const. One machine has one instance at a time.
 class MachineInstance {
 public:
-    MachineInstance(const AcceptedMachine& machine, os::Clock& clock) noexcept : machine_{machine}, clock_{&clock} {}
+    MachineInstance(const AcceptedMachine& machine, os::Clock& clock) noexcept
+        : machine_{machine}, clock_{&clock} {}
     MachineInstance(const MachineInstance&) = delete;
     MachineInstance& operator=(const MachineInstance&) = delete;
 
@@ -30,7 +31,9 @@ public:
 
     /// In the order of the table's activities.
     [[nodiscard]] std::span<Engine> engines() noexcept;
-    [[nodiscard]] std::span<const Engine> engines() const noexcept { return const_cast<MachineInstance*>(this)->engines(); }
+    [[nodiscard]] std::span<const Engine> engines() const noexcept {
+        return const_cast<MachineInstance*>(this)->engines();
+    }
     [[nodiscard]] std::span<std::byte> stack_of(std::size_t activity) noexcept;
     [[nodiscard]] const AcceptedMachine& machine() const noexcept { return machine_; }
     [[nodiscard]] os::Clock& clock() noexcept { return *clock_; }
@@ -39,15 +42,21 @@ public:
     template <class T>
     [[nodiscard]] T* find(std::string_view name) noexcept {
         const std::size_t c = find_component(machine_.table, name);
-        return c != nowhere && machine_.table.components[c].type->tag == type_id<T> ? static_cast<T*>(component(c)) : nullptr;
+        return c != nowhere && machine_.table.components[c].type->tag == type_id<T>
+                   ? static_cast<T*>(component(c))
+                   : nullptr;
     }
-    [[nodiscard]] void* component(std::size_t index) noexcept { return machine_.memory.data() + machine_.plan.component_at[index]; }
+    [[nodiscard]] void* component(std::size_t index) noexcept {
+        return machine_.memory.data() + machine_.plan.component_at[index];
+    }
     /// The state machine that drives a component; null when none does.
     [[nodiscard]] const StateMachineExecution* state_machine_of(std::string_view component) const noexcept;
 
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
-    [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME { return stop_asked_.load(std::memory_order_acquire) == 2; }
+    [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
+        return stop_asked_.load(std::memory_order_acquire) == 2;
+    }
     [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_; }
     /// What a stop request says, as a sentence.
     [[nodiscard]] Sentence describe_stop() const;

@@ -24,7 +24,8 @@ struct Section {
     std::array<Row, N> rows{};
 };
 
-template <std::size_t Components, std::size_t Activities, std::size_t Connections, std::size_t Reactions, std::size_t Behaviours>
+template <std::size_t Components, std::size_t Activities, std::size_t Connections, std::size_t Reactions,
+          std::size_t Behaviours>
 struct Machine {
     std::string_view name{};
     std::array<ComponentRow, Components> components{};
@@ -40,19 +41,30 @@ struct Machine {
 
 // Each section is a pack of rows of one plain type: the only template argument that remains is their number.
 template <class... Rows>
-constexpr Section<ComponentRow, sizeof...(Rows)> components(const Rows&... rows) { return {{rows...}}; }
+constexpr Section<ComponentRow, sizeof...(Rows)> components(const Rows&... rows) {
+    return {{rows...}};
+}
 template <class... Rows>
-constexpr Section<ActivityRow, sizeof...(Rows)> activities(const Rows&... rows) { return {{rows...}}; }
+constexpr Section<ActivityRow, sizeof...(Rows)> activities(const Rows&... rows) {
+    return {{rows...}};
+}
 template <class... Rows>
-constexpr Section<ConnectionRow, sizeof...(Rows)> connections(const Rows&... rows) { return {{rows...}}; }
+constexpr Section<ConnectionRow, sizeof...(Rows)> connections(const Rows&... rows) {
+    return {{rows...}};
+}
 template <class... Rows>
-constexpr Section<ReactionRow, sizeof...(Rows)> reactions(const Rows&... rows) { return {{rows...}}; }
+constexpr Section<ReactionRow, sizeof...(Rows)> reactions(const Rows&... rows) {
+    return {{rows...}};
+}
 template <class... Rows>
-constexpr Section<BehaviourRow, sizeof...(Rows)> behaviours(const Rows&... rows) { return {{rows...}}; }
+constexpr Section<BehaviourRow, sizeof...(Rows)> behaviours(const Rows&... rows) {
+    return {{rows...}};
+}
 
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
-constexpr Machine<C, A, X, R, B> machine(std::string_view name, const Section<ComponentRow, C>& c, const Section<ActivityRow, A>& a,
-                                         const Section<ConnectionRow, X>& x, const Section<ReactionRow, R>& r,
+constexpr Machine<C, A, X, R, B> machine(std::string_view name, const Section<ComponentRow, C>& c,
+                                         const Section<ActivityRow, A>& a, const Section<ConnectionRow, X>& x,
+                                         const Section<ReactionRow, R>& r,
                                          const Section<BehaviourRow, B>& b) {
     return {name, c.rows, a.rows, x.rows, r.rows, b.rows};
 }

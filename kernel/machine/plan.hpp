@@ -1,5 +1,5 @@
-// Where everything of a machine lies: one block of static memory, laid out by the compiler from the table. Start-up
-// places objects at these offsets, an observer finds them there; nothing is allocated.
+// Where everything of a machine lies: one block of static memory, laid out by the compiler from the table.
+// Start-up places objects at these offsets, an observer finds them there; nothing is allocated.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -26,7 +26,7 @@ struct ActivityPlan {
     std::size_t sender_count = 0;
     std::size_t stack_at = 0;
     std::size_t stack_bytes = 0;
-    int priority = 0;  ///< SCHED_FIFO; 0: not real-time
+    int priority = 0; ///< SCHED_FIFO; 0: not real-time
     int processor = 0;
 };
 
@@ -116,7 +116,8 @@ constexpr void plan_components(const MachineView& m, const TableIndexView& r, Pl
                 if (r.activity[c] != a || r.position[c] != position) continue;
                 p.component_at[c] = ground.take(m.components[c].type->size, m.components[c].type->align);
                 p.part_of[c] = static_cast<std::uint32_t>(position);
-                for (const auto& facet : m.components[c].type->facets) activity.timer_count += facet.kind == FacetKind::timer;
+                for (const auto& facet : m.components[c].type->facets)
+                    activity.timer_count += facet.kind == FacetKind::timer;
             }
         activity.part_count = m.activities[a].runs.size();
         activity.parts_at = ground.take<EnginePart>(activity.part_count);
@@ -139,17 +140,20 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
             plan.memory_at = ground.take(buffer.ring_bytes(row.capacity), buffer.ring_align);
         } else if (plan.shared) {
             for (std::size_t j = 0; j < x; ++j)
-                if (r.connections[j].from == link.from && p.connections[j].shared) plan.memory_at = p.connections[j].memory_at, plan.first_of_output = false;
+                if (r.connections[j].from == link.from && p.connections[j].shared)
+                    plan.memory_at = p.connections[j].memory_at, plan.first_of_output = false;
             const auto& port = *from.port;
             if (plan.first_of_output) plan.memory_at = ground.take(port.shared_bytes, port.shared_align);
         }
         if (row.wakes_reader) plan.waker_at = ground.take<WakerNode>();
         if (row.when_stale == WhenStale::stop) ++p.activities[reader].guarded_count;
     }
-    for (auto& activity : p.activities) activity.guarded_at = ground.take<GuardedInput>(activity.guarded_count);
+    for (auto& activity : p.activities)
+        activity.guarded_at = ground.take<GuardedInput>(activity.guarded_count);
 }
 
-constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p,
+                                  Ground& ground) {
     list_subscriptions(m, r, p.subscriptions);
     for (std::size_t s = 0; s < p.subscriptions.size(); ++s) {
         const Subscription& row = p.subscriptions[s];
@@ -160,7 +164,9 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
             ++listeners;
             if (j < s) first = false;
         }
-        if (first) p.subscription_at[s].subscribers_at = ground.take(listeners * facet_at(m, row.event).event->subscriber_bytes, alignof(std::max_align_t));
+        if (first)
+            p.subscription_at[s].subscribers_at = ground.take(
+                listeners * facet_at(m, row.event).event->subscriber_bytes, alignof(std::max_align_t));
         if (row.synchronous) continue;
         p.subscription_at[s].async_at = ground.take<AsyncReaction>();
         if (row.behaviour != nowhere) p.subscription_at[s].binding_at = ground.take<TriggerBinding>();
@@ -186,10 +192,12 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
         const BehaviourRow& row = m.behaviours[b];
         BehaviourPlan& plan = p.behaviours[b];
         if (row.is_slot()) {
-            // A node is one action or condition with its operands, a level of depth one saved node; both are one word.
+            // A node is one action or condition with its operands, a level of depth one saved node; both are
+            // one word.
             constexpr std::size_t node_bytes = 32, level_bytes = 8;
-            plan.slot_bytes = row.slot.nodes * node_bytes + row.slot.depth * level_bytes + row.slot.data_bytes +
-                              row.slot.command_slots * sizeof(Message) + row.slot.timers * sizeof(Timer) +
+            plan.slot_bytes = row.slot.nodes * node_bytes + row.slot.depth * level_bytes +
+                              row.slot.data_bytes + row.slot.command_slots * sizeof(Message) +
+                              row.slot.timers * sizeof(Timer) +
                               row.slot.events.size() * sizeof(AsyncReaction);
             plan.slot_at = ground.take(plan.slot_bytes, alignof(AsyncReaction));
             continue;
@@ -203,7 +211,8 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
         plan.programs_at = ground.take<StateProgram>(plan.sizes.programs);
         ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
     }
-    for (auto& activity : p.activities) activity.behaviours_at = ground.take<Behaviour>(activity.behaviour_count);
+    for (auto& activity : p.activities)
+        activity.behaviours_at = ground.take<Behaviour>(activity.behaviour_count);
 }
 
 } // namespace detail
@@ -246,9 +255,12 @@ struct Plan {
     std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
-        return {component_at, part_of, activities, connections, subscriptions, subscription_at, behaviours, mail, engines_at, bytes, stack_bytes};
+        return {component_at, part_of, activities, connections, subscriptions, subscription_at,
+                behaviours,   mail,    engines_at, bytes,       stack_bytes};
     }
-    constexpr void take_sizes(const PlanView& v) noexcept { engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes; }
+    constexpr void take_sizes(const PlanView& v) noexcept {
+        engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;
+    }
 };
 
 } // namespace tappet

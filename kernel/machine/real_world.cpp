@@ -44,8 +44,11 @@ void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
     if (world == nullptr) return;
     Activity* activity = Activity::current();
     const bool first = !world->instance_.stop_asked();
-    if (first) TAPPET_ESCAPE("the machine is stopping: the sentence is for its report", world->breach_ = describe(breach));
-    world->instance_.ask_stop(StopReason::broken_contract, static_cast<std::uint64_t>(breach.id), activity == nullptr ? nullptr : &activity->engine());
+    if (first)
+        TAPPET_ESCAPE("the machine is stopping: the sentence is for its report",
+                      world->breach_ = describe(breach));
+    world->instance_.ask_stop(StopReason::broken_contract, static_cast<std::uint64_t>(breach.id),
+                              activity == nullptr ? nullptr : &activity->engine());
     const ContractText* text = find_text(breach.id);
     const bool goes_on = text != nullptr && text->after == AfterBreach::thread_goes_on;
     if (!goes_on && activity != nullptr) activity->park();
@@ -59,13 +62,16 @@ bool RealWorld::arm(os::ArmingReport& report, int file) {
     os::minimise_timer_slack(); // threads inherit it
     for (std::size_t a = 0; a < engines.size(); ++a) {
         const ActivityPlan& plan = machine.plan.activities[a];
-        if (const auto created = activities_[a].create(engines[a], instance_.clock(), plan.priority, plan.processor, instance_.stack_of(a)); !created)
+        if (const auto created = activities_[a].create(engines[a], instance_.clock(), plan.priority,
+                                                       plan.processor, instance_.stack_of(a));
+            !created)
             report.fault("threads", created.error(), Sentence{"see the reason"});
         if (plan.priority > highest) highest = plan.priority;
         static_cast<void>(processors.push(plan.processor));
     }
     os::touch(machine.memory);
-    if (const auto locked = os::lock_memory(); !locked) report.fault("memory-lock", locked.error(), Sentence{"see the reason"});
+    if (const auto locked = os::lock_memory(); !locked)
+        report.fault("memory-lock", locked.error(), Sentence{"see the reason"});
     if (auto held = os::hold_cpu_dma_latency(); held) latency_ = std::move(*held);
     os::heap::seal();
     os::ArmingOptions options;
@@ -117,7 +123,8 @@ int RealWorld::stop() {
 std::uint64_t RealWorld::page_faults_in_real_time_threads() const noexcept {
     std::uint64_t faults = 0;
     for (std::size_t a = 0; a < instance_.engines().size(); ++a)
-        if (instance_.engines()[a].plan().real_time) faults += activities_[a].page_faults().minor + activities_[a].page_faults().major;
+        if (instance_.engines()[a].plan().real_time)
+            faults += activities_[a].page_faults().minor + activities_[a].page_faults().major;
     return faults;
 }
 

@@ -1,5 +1,5 @@
-// The real world: every activity in a thread of its own, armed only when the box is fit for it, supervised, and stopped
-// in a stated order.
+// The real world: every activity in a thread of its own, armed only when the box is fit for it, supervised,
+// and stopped in a stated order.
 #pragma once
 
 #include "kernel/activity/activity.hpp"
@@ -13,8 +13,8 @@
 
 namespace tappet {
 
-/// Life: configure -> arm -> start -> (supervise) -> stop. One at a time in a process. Called by one thread, the
-/// supervisor's; not real-time.
+/// Life: configure -> arm -> start -> (supervise) -> stop. One at a time in a process. Called by one thread,
+/// the supervisor's; not real-time.
 class RealWorld {
 public:
     /// How long an activity may take to start or to stop before its thread counts as hung.
@@ -26,18 +26,20 @@ public:
     RealWorld(const RealWorld&) = delete;
     RealWorld& operator=(const RealWorld&) = delete;
 
-    /// Starts the threads, which wait; then looks at everything the machine relies on, seals the heap and locks the
-    /// memory. False: the report says why, on `file`, each reason with its cure; nothing has moved.
+    /// Starts the threads, which wait; then looks at everything the machine relies on, seals the heap and
+    /// locks the memory. False: the report says why, on `file`, each reason with its cure; nothing has moved.
     [[nodiscard]] bool arm(os::ArmingReport& report, int file);
 
     /// Activities start in the table's order. False: one did not; the machine is stopped again.
     [[nodiscard]] bool start();
 
-    /// Sleeps until a stop is asked for, a signal (INT, TERM) came, or `time` passed. True while the machine runs.
+    /// Sleeps until a stop is asked for, a signal (INT, TERM) came, or `time` passed. True while the machine
+    /// runs.
     bool supervise(Duration time);
 
-    /// Activities stop from the last row of the table to the first: list drivers first, so that the safe values of the
-    /// others still reach the wires. Returns how many threads hung; their components were stopped in their place.
+    /// Activities stop from the last row of the table to the first: list drivers first, so that the safe
+    /// values of the others still reach the wires. Returns how many threads hung; their components were
+    /// stopped in their place.
     int stop();
 
     [[nodiscard]] const Activity& activity(std::size_t index) const noexcept { return activities_[index]; }

@@ -1,5 +1,5 @@
-// The rows of a machine table as plain data, and the words that spell them. Nothing here is checked: kernel/machine/check.hpp
-// reads the finished table.
+// The rows of a machine table as plain data, and the words that spell them. Nothing here is checked:
+// kernel/machine/check.hpp reads the finished table.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -14,7 +14,7 @@
 
 namespace tappet {
 
-// ---- components ----------------------------------------------------------------------------------------------------
+// ---- components
 
 struct PropertyRow {
     std::string_view name{};
@@ -28,11 +28,17 @@ struct DeviceName {
 constexpr DeviceName device(std::string_view name) noexcept { return {name}; }
 
 /// A property's value in this machine.
-constexpr PropertyRow set(std::string_view name, bool value) { return {name, {PropertySetting::Kind::truth, 0, value ? 1 : 0}}; }
+constexpr PropertyRow set(std::string_view name, bool value) {
+    return {name, {PropertySetting::Kind::truth, 0, value ? 1 : 0}};
+}
 template <std::integral T>
-constexpr PropertyRow set(std::string_view name, T value) { return {name, {PropertySetting::Kind::whole, 0, static_cast<std::int64_t>(value)}}; }
+constexpr PropertyRow set(std::string_view name, T value) {
+    return {name, {PropertySetting::Kind::whole, 0, static_cast<std::int64_t>(value)}};
+}
 template <std::floating_point T>
-constexpr PropertyRow set(std::string_view name, T value) { return {name, {PropertySetting::Kind::real, static_cast<double>(value), 0}}; }
+constexpr PropertyRow set(std::string_view name, T value) {
+    return {name, {PropertySetting::Kind::real, static_cast<double>(value), 0}};
+}
 template <class Rep, class Period>
 constexpr PropertyRow set(std::string_view name, std::chrono::duration<Rep, Period> value) {
     return {name, {PropertySetting::Kind::duration, 0, Duration{value}.count()}};
@@ -50,7 +56,9 @@ struct ComponentRow {
 namespace detail {
 
 constexpr void apply(ComponentRow& row, DeviceName option) noexcept { row.device = option.name; }
-constexpr void apply(ComponentRow& row, const PropertyRow& option) noexcept { row.too_many_settings |= !row.settings.push(option); }
+constexpr void apply(ComponentRow& row, const PropertyRow& option) noexcept {
+    row.too_many_settings |= !row.settings.push(option);
+}
 
 } // namespace detail
 
@@ -61,7 +69,7 @@ constexpr ComponentRow component(std::string_view name, const Options&... option
     return row;
 }
 
-// ---- activities ----------------------------------------------------------------------------------------------------
+// ---- activities
 
 enum class Trigger : std::uint8_t { every, on_work, on_device, background };
 enum class WhenLate : std::uint8_t { count, stop };
@@ -71,12 +79,12 @@ struct ActivityRow {
     static constexpr std::size_t default_stack_bytes = 64 * 1024;
     std::string_view name{};
     Trigger trigger = Trigger::background;
-    Duration period{};              ///< of every; of background: how often it looks
-    std::string_view device{};        ///< of on_device: the component whose device wakes it
-    std::int64_t at_most_n = 1;     ///< sporadic activities: at most n wakes ...
-    Duration at_most_per{};         ///< ... in any window of this length
-    Duration deadline_after{};      ///< zero: the period
-    Duration budget_each{};         ///< processor time of one cycle, synchronous reactions included
+    Duration period{};          ///< of every; of background: how often it looks
+    std::string_view device{};  ///< of on_device: the component whose device wakes it
+    std::int64_t at_most_n = 1; ///< sporadic activities: at most n wakes ...
+    Duration at_most_per{};     ///< ... in any window of this length
+    Duration deadline_after{};  ///< zero: the period
+    Duration budget_each{};     ///< processor time of one cycle, synchronous reactions included
     bool real_time = true;
     WhenLate when_late = WhenLate::count;
     std::size_t stack = default_stack_bytes;
@@ -85,9 +93,15 @@ struct ActivityRow {
     bool has_trigger = false;
     std::string_view twice{}; ///< the option that the row was given twice
 
-    [[nodiscard]] constexpr Duration shortest_period() const noexcept { return trigger == Trigger::every ? period : at_most_per; }
-    [[nodiscard]] constexpr Duration deadline() const noexcept { return deadline_after.count() != 0 ? deadline_after : shortest_period(); }
-    [[nodiscard]] constexpr bool periodic() const noexcept { return trigger == Trigger::every || trigger == Trigger::background; }
+    [[nodiscard]] constexpr Duration shortest_period() const noexcept {
+        return trigger == Trigger::every ? period : at_most_per;
+    }
+    [[nodiscard]] constexpr Duration deadline() const noexcept {
+        return deadline_after.count() != 0 ? deadline_after : shortest_period();
+    }
+    [[nodiscard]] constexpr bool periodic() const noexcept {
+        return trigger == Trigger::every || trigger == Trigger::background;
+    }
 };
 
 struct TriggerOption {
@@ -100,7 +114,9 @@ constexpr TriggerOption every(Duration period) noexcept { return {Trigger::every
 /// Sporadic: runs when a message, a connection that wakes, or a timer of its components asks. Needs at_most.
 constexpr TriggerOption on_work() noexcept { return {Trigger::on_work, {}, {}}; }
 /// Sporadic: runs when the device of this component is ready. Needs at_most.
-constexpr TriggerOption on_device(std::string_view component) noexcept { return {Trigger::on_device, {}, component}; }
+constexpr TriggerOption on_device(std::string_view component) noexcept {
+    return {Trigger::on_device, {}, component};
+}
 
 struct AtMost {
     std::int64_t n;
@@ -185,7 +201,7 @@ constexpr ActivityRow activity(std::string_view name, const Options&... options)
     return row;
 }
 
-// ---- connections ---------------------------------------------------------------------------------------------------
+// ---- connections
 
 struct ConnectionRow {
     std::string_view from{};
@@ -253,7 +269,7 @@ constexpr ConnectionRow buffer(std::string_view from, std::string_view to, const
     return row;
 }
 
-// ---- reactions -----------------------------------------------------------------------------------------------------
+// ---- reactions
 
 struct ReactionTarget {
     std::string_view operation{};
@@ -267,7 +283,9 @@ struct Queue {
 constexpr Queue queue(std::uint32_t n) noexcept { return {n}; }
 
 /// Asynchronous: in the receiver's engine, with the arguments of the emission.
-constexpr ReactionTarget tell(std::string_view operation, Queue waiting = {8}) noexcept { return {operation, false, waiting.n}; }
+constexpr ReactionTarget tell(std::string_view operation, Queue waiting = {8}) noexcept {
+    return {operation, false, waiting.n};
+}
 /// Synchronous: in the emitter, here and now.
 constexpr ReactionTarget call(std::string_view operation) noexcept { return {operation, true, 0}; }
 
@@ -277,9 +295,10 @@ struct ReactionRow {
 };
 constexpr ReactionRow when(std::string_view event, ReactionTarget target) noexcept { return {event, target}; }
 
-// ---- behaviours ----------------------------------------------------------------------------------------------------
+// ---- behaviours
 
-/// What a behaviour that is loaded later may use; reserved from the start, since nothing is created at run time.
+/// What a behaviour that is loaded later may use; reserved from the start, since nothing is created at run
+/// time.
 struct Slot {
     static constexpr std::size_t max_names = 16;
     std::uint32_t nodes = 0;
@@ -303,7 +322,8 @@ struct BehaviourRow {
 
 template <class... Names>
 constexpr Bounded<std::string_view, Slot::max_names> names(const Names&... each) {
-    static_assert(sizeof...(Names) <= Slot::max_names, "a slot reaches at most 16 names of a kind: split the behaviour");
+    static_assert(sizeof...(Names) <= Slot::max_names,
+                  "a slot reaches at most 16 names of a kind: split the behaviour");
     Bounded<std::string_view, Slot::max_names> list;
     (static_cast<void>(list.push(std::string_view{each})), ...);
     return list;
@@ -334,7 +354,9 @@ constexpr void apply(Slot& row, SlotNumber<DepthTag> option) noexcept { row.dept
 constexpr void apply(Slot& row, SlotNumber<CommandsTag> option) noexcept { row.command_slots = option.value; }
 constexpr void apply(Slot& row, SlotNumber<TimersTag> option) noexcept { row.timers = option.value; }
 constexpr void apply(Slot& row, const SlotNames<PeersTag>& option) noexcept { row.peers = option.list; }
-constexpr void apply(Slot& row, const SlotNames<OperationsTag>& option) noexcept { row.operations = option.list; }
+constexpr void apply(Slot& row, const SlotNames<OperationsTag>& option) noexcept {
+    row.operations = option.list;
+}
 constexpr void apply(Slot& row, const SlotNames<EventsTag>& option) noexcept { row.events = option.list; }
 
 } // namespace detail
@@ -346,11 +368,17 @@ constexpr detail::SlotNumber<detail::CommandsTag> command_slots(std::uint32_t n)
 constexpr detail::SlotNumber<detail::TimersTag> timers(std::uint32_t n) noexcept { return {n}; }
 /// The components, operations and events that what is loaded may name.
 template <class... Names>
-constexpr detail::SlotNames<detail::PeersTag> peers(const Names&... each) { return {names(each...)}; }
+constexpr detail::SlotNames<detail::PeersTag> peers(const Names&... each) {
+    return {names(each...)};
+}
 template <class... Names>
-constexpr detail::SlotNames<detail::OperationsTag> operations(const Names&... each) { return {names(each...)}; }
+constexpr detail::SlotNames<detail::OperationsTag> operations(const Names&... each) {
+    return {names(each...)};
+}
 template <class... Names>
-constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) { return {names(each...)}; }
+constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) {
+    return {names(each...)};
+}
 template <class... Options>
 constexpr Slot slot(const Options&... options) {
     Slot row;
@@ -364,6 +392,8 @@ constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<
     return {component, machine.view(), {}};
 }
 /// Room and reach for a behaviour that is loaded while the machine runs.
-constexpr BehaviourRow behaviour(std::string_view component, const Slot& slot) noexcept { return {component, {}, slot}; }
+constexpr BehaviourRow behaviour(std::string_view component, const Slot& slot) noexcept {
+    return {component, {}, slot};
+}
 
 } // namespace tappet

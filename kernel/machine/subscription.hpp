@@ -9,8 +9,8 @@ namespace tappet {
 /// One reaction row, or one trigger of a state machine.
 struct Subscription {
     End event;
-    End operation;                    ///< of a reaction row
-    std::size_t behaviour = nowhere;  ///< of a trigger
+    End operation;                   ///< of a reaction row
+    std::size_t behaviour = nowhere; ///< of a trigger
     std::size_t trigger = 0;
     bool synchronous = false;
     std::uint32_t quota = 0;
@@ -30,7 +30,8 @@ constexpr std::size_t count_subscriptions(const MachineView& m) {
 }
 
 /// Writes the subscriptions of a checked table into `into`, which has room for all.
-constexpr void list_subscriptions(const MachineView& m, const TableIndexView& r, std::span<Subscription> into) {
+constexpr void list_subscriptions(const MachineView& m, const TableIndexView& r,
+                                  std::span<Subscription> into) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < m.reactions.size(); ++i) {
         Subscription& s = into[n++];

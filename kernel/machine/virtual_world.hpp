@@ -1,5 +1,5 @@
-// The host world under virtual time: every engine and every simulated device in one thread, in an order that is the same
-// in every run. Nothing sleeps: time jumps to the next thing that happens.
+// The host world under virtual time: every engine and every simulated device in one thread, in an order that
+// is the same in every run. Nothing sleeps: time jumps to the next thing that happens.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -12,7 +12,7 @@ namespace tappet {
 /// Something beside the machine that lives in virtual time: a plant, a twin that delays frames.
 struct VirtualProcess {
     void* self = nullptr;
-    Time (*next)(void* self) = nullptr;      ///< when it wants to run
+    Time (*next)(void* self) = nullptr;          ///< when it wants to run
     void (*run)(void* self, Time now) = nullptr; ///< moves it to now; afterwards next() is later than now
 };
 
@@ -42,7 +42,8 @@ private:
     MachineInstance& instance_;
     Bounded<VirtualProcess, 8> processes_{};
     Bounded<std::size_t, checks::max_activities> by_urgency_{};
-    // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at all its timers.
+    // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
+    // all its timers.
     std::array<Time, checks::max_activities> wake_at_{};
     std::uint64_t steps_ = 0;
 };

@@ -24,7 +24,7 @@ bool kernel_is_realtime() noexcept {
 }
 
 std::size_t binary_bytes() noexcept {
-    struct stat status {};
+    struct stat status{};
     return stat("/proc/self/exe", &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
 }
 

@@ -17,7 +17,8 @@ void Clock::consume(Duration load) noexcept TAPPET_REALTIME {
         return;
     }
     const Time end = monotonic() + load;
-    while (monotonic() < end) {}
+    while (monotonic() < end) {
+    }
 }
 
 } // namespace tappet::os

@@ -19,7 +19,8 @@ public:
     void advance_to(Time t) noexcept TAPPET_REALTIME {
         if (t > virtual_now_) virtual_now_ = t;
     }
-    /// Uses up processor time: busy in real time, a step forward in virtual time. For fault injection and calibrated loads.
+    /// Uses up processor time: busy in real time, a step forward in virtual time. For fault injection and
+    /// calibrated loads.
     void consume(Duration load) noexcept TAPPET_REALTIME;
 
     static Time monotonic() noexcept TAPPET_REALTIME;

@@ -7,9 +7,11 @@
 namespace tappet::os {
 
 void on_termination(void (*handler)(int) noexcept) noexcept {
-    struct sigaction action {};
-    if (handler == nullptr) action.sa_handler = SIG_DFL;
-    else action.sa_handler = handler;
+    struct sigaction action{};
+    if (handler == nullptr)
+        action.sa_handler = SIG_DFL;
+    else
+        action.sa_handler = handler;
     for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
 }
 

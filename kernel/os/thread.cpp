@@ -20,12 +20,18 @@ void* enter(void* context) noexcept {
 }
 
 Sentence refusal(const ThreadPlan& plan, int error) {
-    Sentence text{"activity \"", plan.name, "\": the kernel refuses its thread (", std::strerror(error), "): "};
-    if (error == EPERM) text.add("run as root or grant CAP_SYS_NICE, or raise RLIMIT_RTPRIO");
+    Sentence text{"activity \"", plan.name, "\": the kernel refuses its thread (", std::strerror(error),
+                  "): "};
+    if (error == EPERM)
+        text.add("run as root or grant CAP_SYS_NICE, or raise RLIMIT_RTPRIO");
     else if (error == EINVAL)
-        text.add("processor ").add(plan.processor).add(" or the stack of ").add(plan.stack.size()).add(
-            " bytes does not exist here: correct the board's processor plan or the activity's stack");
-    else text.add("free memory or threads on this box");
+        text.add("processor ")
+            .add(plan.processor)
+            .add(" or the stack of ")
+            .add(plan.stack.size())
+            .add(" bytes does not exist here: correct the board's processor plan or the activity's stack");
+    else
+        text.add("free memory or threads on this box");
     return text;
 }
 
@@ -34,7 +40,8 @@ Sentence refusal(const ThreadPlan& plan, int error) {
 std::expected<void, Sentence> Thread::start(const ThreadPlan& plan) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
-    int error = plan.stack.empty() ? 0 : pthread_attr_setstack(&attributes, plan.stack.data(), plan.stack.size());
+    int error =
+        plan.stack.empty() ? 0 : pthread_attr_setstack(&attributes, plan.stack.data(), plan.stack.size());
     if (error == 0) {
         pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
         pthread_attr_setschedpolicy(&attributes, plan.fifo_priority > 0 ? SCHED_FIFO : SCHED_OTHER);

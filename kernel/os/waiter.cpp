@@ -34,9 +34,11 @@ void Waiter::wake() noexcept TAPPET_REALTIME {
     if (state_.exchange(woken, std::memory_order_acq_rel) != asleep) return;
     if (wake_descriptor_ >= 0) {
         const std::uint64_t one = 1;
-        TAPPET_ESCAPE("waking another activity", [[maybe_unused]] auto n = write(wake_descriptor_, &one, sizeof one));
+        TAPPET_ESCAPE("waking another activity",
+                      [[maybe_unused]] auto n = write(wake_descriptor_, &one, sizeof one));
     } else {
-        TAPPET_ESCAPE("waking another activity", syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0));
+        TAPPET_ESCAPE("waking another activity",
+                      syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0));
     }
 }
 
@@ -46,10 +48,11 @@ bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     std::uint32_t expected = idle;
     if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
         const timespec end = to_timespec(to_ns(until));
-        // Returns on a wake, at the end, on a signal, or at once when a wake came in between: all are looked at below.
-        TAPPET_ESCAPE("the activity's own wait", syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, asleep,
-                                                         until == never ? nullptr : &end, nullptr,
-                                                         FUTEX_BITSET_MATCH_ANY));
+        // Returns on a wake, at the end, on a signal, or at once when a wake came in between: all are looked
+        // at below.
+        TAPPET_ESCAPE("the activity's own wait",
+                      syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, asleep,
+                              until == never ? nullptr : &end, nullptr, FUTEX_BITSET_MATCH_ANY));
     }
     return take();
 }
@@ -69,7 +72,8 @@ bool Waiter::wait_on_devices(Time until) noexcept TAPPET_REALTIME {
     for (std::size_t i = 0; i < devices_.size(); ++i) ready |= polled[i].revents != 0;
     if (polled[devices_.size()].revents != 0) {
         std::uint64_t count = 0;
-        TAPPET_ESCAPE("taking the wake", [[maybe_unused]] auto n = read(wake_descriptor_, &count, sizeof count));
+        TAPPET_ESCAPE("taking the wake",
+                      [[maybe_unused]] auto n = read(wake_descriptor_, &count, sizeof count));
     }
     return ready;
 }

@@ -1,4 +1,5 @@
-// What an activity sleeps on: a time, a wake from another activity, or a device. One thread waits, any thread wakes.
+// What an activity sleeps on: a time, a wake from another activity, or a device. One thread waits, any thread
+// wakes.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -10,8 +11,8 @@
 
 namespace tappet::os {
 
-/// Waking is one atomic exchange and, only when the waiter sleeps, one system call. No wake is lost: a wake before the
-/// wait makes the wait return at once.
+/// Waking is one atomic exchange and, only when the waiter sleeps, one system call. No wake is lost: a wake
+/// before the wait makes the wait return at once.
 class Waiter {
 public:
     static constexpr std::size_t max_devices = 8;
@@ -21,7 +22,8 @@ public:
     Waiter& operator=(const Waiter&) = delete;
     ~Waiter();
 
-    /// Sleep on this file descriptor too. Not real-time; before the first wait. False when there are too many.
+    /// Sleep on this file descriptor too. Not real-time; before the first wait. False when there are too
+    /// many.
     [[nodiscard]] bool watch(int descriptor) noexcept;
 
     /// Wakes the waiting thread, or the next wait. Real-time, from any thread.
@@ -36,7 +38,8 @@ public:
         return (state_.load(std::memory_order_acquire) & woken) != 0;
     }
 
-    /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is ready.
+    /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
+    /// ready.
     bool wait(Time until) noexcept TAPPET_REALTIME;
 
 private:

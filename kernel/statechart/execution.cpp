@@ -9,7 +9,8 @@ void StateMachineExecution::give_reason(TransitionIndex transition, std::string_
     status_.reason = transition;
     status_.reason_at = now;
     reason_ = text;
-    std::atomic_ref{news_}.store((news().number + 1) << transition_bits | transition, std::memory_order_relaxed);
+    std::atomic_ref{news_}.store((news().number + 1) << transition_bits | transition,
+                                 std::memory_order_relaxed);
 }
 
 StateOutcome StateMachineExecution::queue(std::size_t trigger, Time now) noexcept TAPPET_REALTIME {
@@ -140,8 +141,8 @@ Time StateMachineExecution::next_timeout() const noexcept TAPPET_REALTIME {
     }
 }
 
-auto StateMachineExecution::path() const noexcept
-    TAPPET_REALTIME->Bounded<std::string_view, max_state_depth> {
+auto StateMachineExecution::path() const noexcept TAPPET_REALTIME
+-> Bounded<std::string_view, max_state_depth> {
     Bounded<std::string_view, max_state_depth> names;
     if (!is_active()) return names;
     StateIndex state = status_.active;

@@ -172,8 +172,10 @@ private:
     StateMachineStatus status_;
     std::string_view reason_;
     static constexpr int transition_bits = 16;
-    static_assert(sizeof(TransitionIndex) * 8 == transition_bits, "news_ holds a transition in its lowest bits");
-    alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t news_ = 0; // mutable: atomic_ref reads it
+    static_assert(sizeof(TransitionIndex) * 8 == transition_bits,
+                  "news_ holds a transition in its lowest bits");
+    alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t news_ =
+        0; // mutable: atomic_ref reads it
     std::string_view final_reason_;
     Time stepped_at_{};
     Trace trace_ = nullptr;

@@ -26,7 +26,9 @@ namespace tappet {
 
 namespace statechart {
 
-template <class> struct Member { static constexpr bool real_time = false; };
+template <class> struct Member {
+    static constexpr bool real_time = false;
+};
 template <class R, class C> struct Member<R (C::*)() noexcept TAPPET_REALTIME> {
     static constexpr bool real_time = true;
     using Result = R;

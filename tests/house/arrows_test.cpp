@@ -1,4 +1,5 @@
-// Which folder may include which: one table. Arrows point downwards only, and nothing includes itself in a circle.
+// Which folder may include which: one table. Arrows point downwards only, and nothing includes itself in a
+// circle.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -54,13 +55,15 @@ const std::vector<Row> house{
 const Row* row_of(std::string_view path) {
     const Row* best = nullptr;
     for (const Row& row : house) {
-        const bool above = path.starts_with(row.folder) && path.size() > row.folder.size() && path[row.folder.size()] == '/';
+        const bool above =
+            path.starts_with(row.folder) && path.size() > row.folder.size() && path[row.folder.size()] == '/';
         if (above && (best == nullptr || row.folder.size() > best->folder.size())) best = &row;
     }
     return best;
 }
 
-/// What a row may include: itself, what it stands on, and so on down. The machine's program may hold its plant.
+/// What a row may include: itself, what it stands on, and so on down. The machine's program may hold its
+/// plant.
 std::set<std::string_view> reach(const Row& row) {
     std::set<std::string_view> found{row.folder};
     std::vector<std::string_view> open(row.stands_on);
@@ -87,7 +90,8 @@ Findings wrong_arrows(const Tree& files) {
         if (!file.is_cpp()) continue;
         const Row* from = row_of(file.path);
         if (from == nullptr) {
-            found.push_back({file.path, 1, "no row of the house holds this folder", "add one to tests/house/arrows_test.cpp"});
+            found.push_back({file.path, 1, "no row of the house holds this folder",
+                             "add one to tests/house/arrows_test.cpp"});
             continue;
         }
         const auto allowed = reach(*from);
@@ -95,9 +99,10 @@ Findings wrong_arrows(const Tree& files) {
             if (!include.quoted || !is_ours(include.name)) continue;
             const Row* to = row_of(include.name);
             if (allowed.contains(include.name) || (to != nullptr && allowed.contains(to->folder))) continue;
-            found.push_back({file.path, include.line,
-                             std::string(from->folder) + " includes " + include.name + ", which it does not stand on",
-                             "move what is shared to a folder that both stand on"});
+            found.push_back(
+                {file.path, include.line,
+                 std::string(from->folder) + " includes " + include.name + ", which it does not stand on",
+                 "move what is shared to a folder that both stand on"});
         }
     }
     return found;
@@ -108,8 +113,9 @@ Findings foreign_quotes(const Tree& files) {
     for (const File& file : files)
         for (const Include& include : includes(file)) {
             if (include.quoted != is_ours(include.name) && !file.is_under("board/bench/gpio_sim"))
-                found.push_back({file.path, include.line, "\"" + include.name + "\" is spelt against the house",
-                                 "our headers are in quotes and written from the root, all others in angle brackets"});
+                found.push_back(
+                    {file.path, include.line, "\"" + include.name + "\" is spelt against the house",
+                     "our headers are in quotes and written from the root, all others in angle brackets"});
         }
     return found;
 }
@@ -151,7 +157,8 @@ TEST(Arrows, make_no_circle) { expect_none(Circles(tree()).found()); }
 TEST(Arrows, are_spelt_from_the_root_in_quotes) { expect_none(foreign_quotes(tree())); }
 
 TEST(ArrowsRule, refuses_a_lower_folder_that_includes_a_higher_one) {
-    const auto found = wrong_arrows({file("kernel/os/clock.hpp", "// A clock.\n#include \"kernel/machine/plan.hpp\"\n")});
+    const auto found =
+        wrong_arrows({file("kernel/os/clock.hpp", "// A clock.\n#include \"kernel/machine/plan.hpp\"\n")});
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].line, 2u);
 }
@@ -167,8 +174,11 @@ TEST(ArrowsRule, refuses_drivers_that_include_each_other_and_the_machine) {
 }
 
 TEST(ArrowsRule, refuses_whatever_includes_an_app_and_a_plant_that_knows_its_machine) {
-    EXPECT_EQ(wrong_arrows({file("board/bench/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")}).size(), 1u);
-    EXPECT_EQ(wrong_arrows({file("apps/carpet_loom/plant/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")}).size(), 1u);
+    EXPECT_EQ(wrong_arrows({file("board/bench/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")}).size(),
+              1u);
+    EXPECT_EQ(wrong_arrows({file("apps/carpet_loom/plant/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")})
+                  .size(),
+              1u);
 }
 
 TEST(ArrowsRule, refuses_a_folder_without_a_row) {
@@ -176,7 +186,8 @@ TEST(ArrowsRule, refuses_a_folder_without_a_row) {
 }
 
 TEST(ArrowsRule, does_not_take_a_comment_for_an_include) {
-    EXPECT_TRUE(wrong_arrows({file("kernel/os/x.hpp", "// #include \"apps/carpet_loom/loom.hpp\"\n")}).empty());
+    EXPECT_TRUE(
+        wrong_arrows({file("kernel/os/x.hpp", "// #include \"apps/carpet_loom/loom.hpp\"\n")}).empty());
 }
 
 TEST(ArrowsRule, finds_a_circle_of_three) {
@@ -195,7 +206,8 @@ TEST(ArrowsTable, has_no_circle_itself) {
         for (const std::string_view below : reach(row))
             for (const Row& other : house) {
                 if (other.folder != below || &other == &row) continue;
-                EXPECT_FALSE(reach(other).contains(row.folder)) << row.folder << " and " << below << " stand on each other";
+                EXPECT_FALSE(reach(other).contains(row.folder))
+                    << row.folder << " and " << below << " stand on each other";
             }
 }
 

@@ -1,4 +1,5 @@
-// The numbers of contracts are written in logs and manuals: each stands once, with one text, and its name is unique.
+// The numbers of contracts are written in logs and manuals: each stands once, with one text, and its name is
+// unique.
 #include "kernel/base/contract.hpp"
 
 #include <gtest/gtest.h>

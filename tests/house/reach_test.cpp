@@ -10,8 +10,8 @@
 namespace tappet::house {
 namespace {
 
-/// The words of a CMakeLists.txt that name sources, as patterns from the root: a variable stands for anything, since
-/// foreach makes names of them.
+/// The words of a CMakeLists.txt that name sources, as patterns from the root: a variable stands for
+/// anything, since foreach makes names of them.
 std::vector<std::regex> sources_of(const File& cmake) {
     static const std::regex word("[^\\s()\"]+\\.(cpp|c)(?=[\\s()\"]|$)");
     static const std::regex root("^\\$\\{(CMAKE|PROJECT)_SOURCE_DIR\\}/");
@@ -21,8 +21,10 @@ std::vector<std::regex> sources_of(const File& cmake) {
         const std::string said = line.substr(0, line.find('#'));
         for (std::sregex_iterator at(said.begin(), said.end(), word), end; at != end; ++at) {
             std::string name = at->str();
-            if (std::regex_search(name, root)) name = std::regex_replace(name, root, "");
-            else if (!cmake.folder().empty()) name = cmake.folder() + "/" + name;
+            if (std::regex_search(name, root))
+                name = std::regex_replace(name, root, "");
+            else if (!cmake.folder().empty())
+                name = cmake.folder() + "/" + name;
             name = std::regex_replace(name, std::regex("\\."), "\\.");
             found.emplace_back(std::regex_replace(name, variable, ".*"));
         }
@@ -32,7 +34,8 @@ std::vector<std::regex> sources_of(const File& cmake) {
 
 /// The cases of tests/diagnostics are found by their program, in their folder.
 bool has_no_target(const File& file) {
-    return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/gpio_sim") || file.is_under("toolchain");
+    return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/gpio_sim") ||
+           file.is_under("toolchain");
 }
 
 Findings dead(const Tree& files) {
@@ -51,10 +54,13 @@ Findings dead(const Tree& files) {
         if (!file.is_cpp() || has_no_target(file)) continue;
         if (file.path.ends_with(".hpp")) {
             // A board's header is named by the build, which picks the board.
-            const bool by_build = file.name() == "board.hpp" && cmake_text.contains(file.folder().substr(file.folder().rfind('/') + 1));
+            const bool by_build = file.name() == "board.hpp" &&
+                                  cmake_text.contains(file.folder().substr(file.folder().rfind('/') + 1));
             if (!headers.contains(file.path) && !by_build)
-                found.push_back({file.path, 1, "no file includes it", "remove it, or include it where it is needed"});
-        } else if (std::ranges::none_of(sources, [&](const std::regex& s) { return std::regex_match(file.path, s); })) {
+                found.push_back(
+                    {file.path, 1, "no file includes it", "remove it, or include it where it is needed"});
+        } else if (std::ranges::none_of(
+                       sources, [&](const std::regex& s) { return std::regex_match(file.path, s); })) {
             found.push_back({file.path, 1, "no CMakeLists.txt names it", "remove it, or add it to a target"});
         }
     }
@@ -66,16 +72,19 @@ TEST(Reach, no_file_is_dead) { expect_none(dead(tree())); }
 TEST(ReachRule, finds_a_source_without_a_target_and_a_header_without_an_include) {
     EXPECT_EQ(dead({file("kernel/os/a.cpp", "// A.\n")}).size(), 1u);
     EXPECT_EQ(dead({file("kernel/os/a.hpp", "// A.\n")}).size(), 1u);
-    EXPECT_EQ(dead({file("kernel/os/a.cpp", "// A.\n"), file("kernel/CMakeLists.txt", "# os/a.cpp\n")}).size(), 1u);
+    EXPECT_EQ(
+        dead({file("kernel/os/a.cpp", "// A.\n"), file("kernel/CMakeLists.txt", "# os/a.cpp\n")}).size(), 1u);
 }
 
 TEST(ReachRule, knows_how_a_source_can_be_named) {
     const File source = file("kernel/os/a_main.cpp", "// A.\n#include \"kernel/os/a.hpp\"\n");
     const File header = file("kernel/os/a.hpp", "// A.\n");
-    for (const auto* line : {"add_library(a a_main.cpp)", "add_library(a \"${CMAKE_SOURCE_DIR}/kernel/os/a_main.cpp\")",
-                             "add_library(a ${name}_main.cpp)"})
+    for (const auto* line :
+         {"add_library(a a_main.cpp)", "add_library(a \"${CMAKE_SOURCE_DIR}/kernel/os/a_main.cpp\")",
+          "add_library(a ${name}_main.cpp)"})
         EXPECT_TRUE(dead({source, header, file("kernel/os/CMakeLists.txt", line)}).empty()) << line;
-    EXPECT_TRUE(dead({source, header, file("kernel/CMakeLists.txt", "add_library(a os/a_main.cpp)")}).empty());
+    EXPECT_TRUE(
+        dead({source, header, file("kernel/CMakeLists.txt", "add_library(a os/a_main.cpp)")}).empty());
 }
 
 } // namespace

@@ -1,4 +1,5 @@
-// What kernel/ and drivers/ do without: the operating system outside kernel/os, and the heap with all that lives on it.
+// What kernel/ and drivers/ do without: the operating system outside kernel/os, and the heap with all that
+// lives on it.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -9,13 +10,16 @@
 namespace tappet::house {
 namespace {
 
-// ---- the operating system ---------------------------------------------------------------------------------------
+// ---- the operating system
 
 bool is_of_the_system(std::string_view header) {
-    static constexpr std::array standard{"csignal", "thread", "mutex", "shared_mutex", "condition_variable", "future", "semaphore",
-                                         "latch", "barrier", "ctime", "filesystem", "fstream", "iostream"};
+    static constexpr std::array standard{
+        "csignal",    "thread",    "mutex",   "shared_mutex", "condition_variable",
+        "future",     "semaphore", "latch",   "barrier",      "ctime",
+        "filesystem", "fstream",   "iostream"};
     if (header.starts_with("Eigen/")) return false;
-    return header.ends_with(".h") || header.contains('/') || std::ranges::find(standard, header) != standard.end();
+    return header.ends_with(".h") || header.contains('/') ||
+           std::ranges::find(standard, header) != standard.end();
 }
 
 Findings system_headers(const Tree& files) {
@@ -27,19 +31,41 @@ Findings system_headers(const Tree& files) {
         for (const Include& include : includes(file))
             if (!include.quoted && is_of_the_system(include.name) &&
                 !(file.path == "kernel/base/realtime.hpp" && include.name == sanitizer))
-                found.push_back({file.path, include.line, "<" + include.name + "> belongs to the operating system",
+                found.push_back({file.path, include.line,
+                                 "<" + include.name + "> belongs to the operating system",
                                  "ask kernel/os, the only door to it"});
     }
     return found;
 }
 
-// ---- the heap and its company -----------------------------------------------------------------------------------
+// ---- the heap and its company
 
-constexpr std::array words{
-    "new", "malloc", "calloc", "realloc", "std::string", "std::vector", "std::deque", "std::list", "std::map", "std::set",
-    "std::unordered_map", "std::unordered_set", "std::function", "std::unique_ptr", "std::shared_ptr", "std::make_unique",
-    "std::make_shared", "std::any", "std::mutex", "std::thread", "std::cout", "std::cerr", "std::regex", "throw", "dynamic_cast",
-    "typeid"};
+constexpr std::array words{"new",
+                           "malloc",
+                           "calloc",
+                           "realloc",
+                           "std::string",
+                           "std::vector",
+                           "std::deque",
+                           "std::list",
+                           "std::map",
+                           "std::set",
+                           "std::unordered_map",
+                           "std::unordered_set",
+                           "std::function",
+                           "std::unique_ptr",
+                           "std::shared_ptr",
+                           "std::make_unique",
+                           "std::make_shared",
+                           "std::any",
+                           "std::mutex",
+                           "std::thread",
+                           "std::cout",
+                           "std::cerr",
+                           "std::regex",
+                           "throw",
+                           "dynamic_cast",
+                           "typeid"};
 
 struct Exception {
     std::string_view path; ///< a file, or a folder with a slash at its end
@@ -100,7 +126,8 @@ Uses heap_users(const Tree& files) {
                     if (is_excepted(exceptions[e], file, word)) uses.needed[e] = excepted = true;
                 if (!excepted)
                     uses.found.push_back({file.path, i + 1, "says " + std::string(word),
-                                          "take a bounded container of kernel/base, or state the reason in tests/house/resources_test.cpp"});
+                                          "take a bounded container of kernel/base, or state the reason in "
+                                          "tests/house/resources_test.cpp"});
             }
     }
     return uses;
@@ -112,7 +139,8 @@ TEST(Resources, are_static) {
     const Uses uses = heap_users(tree());
     expect_none(uses.found);
     for (std::size_t e = 0; e < exceptions.size(); ++e)
-        EXPECT_TRUE(uses.needed[e]) << exceptions[e].path << " does not say " << exceptions[e].word << " any more: remove its exception";
+        EXPECT_TRUE(uses.needed[e]) << exceptions[e].path << " does not say " << exceptions[e].word
+                                    << " any more: remove its exception";
 }
 
 TEST(ResourcesRule, finds_system_headers_outside_their_folder) {
@@ -122,13 +150,17 @@ TEST(ResourcesRule, finds_system_headers_outside_their_folder) {
         EXPECT_TRUE(system_headers({file("kernel/os/a.cpp", line)}).empty()) << header;
     }
     for (const auto* header : {"array", "cstring", "Eigen/Dense"})
-        EXPECT_TRUE(system_headers({file("kernel/cam/a.cpp", "#include <" + std::string(header) + ">\n")}).empty()) << header;
+        EXPECT_TRUE(
+            system_headers({file("kernel/cam/a.cpp", "#include <" + std::string(header) + ">\n")}).empty())
+            << header;
 }
 
 TEST(ResourcesRule, finds_the_heap_in_code_and_not_in_prose) {
     EXPECT_EQ(heap_users({file("kernel/os/a.cpp", "int* a = new int;\n")}).found.size(), 1u);
     EXPECT_EQ(heap_users({file("drivers/can/a.cpp", "std::vector<int> a;\n")}).found.size(), 1u);
-    EXPECT_TRUE(heap_users({file("kernel/os/a.cpp", "// a new one\nsay(\"new std::string\"); new (place) T;\n")}).found.empty());
+    EXPECT_TRUE(
+        heap_users({file("kernel/os/a.cpp", "// a new one\nsay(\"new std::string\"); new (place) T;\n")})
+            .found.empty());
     EXPECT_TRUE(heap_users({file("kernel/os/a.cpp", "std::string_view a; int new_one;\n")}).found.empty());
     EXPECT_TRUE(heap_users({file("apps/a.cpp", "std::string a;\n")}).found.empty());
 }

@@ -1,4 +1,5 @@
-// The shape of files: one idea that its first line says, of a size that can be read at once, where a reader looks for it.
+// The shape of files: one idea that its first line says, of a size that can be read at once, where a reader
+// looks for it.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -11,18 +12,21 @@ namespace tappet::house {
 namespace {
 
 constexpr std::size_t most_lines = 500;
-constexpr std::size_t most_columns = 140; // code is held at 110 by its layout; this catches what the layout may not touch
+constexpr std::size_t most_columns =
+    140; // code is held at 110 by its layout; this catches what the layout may not touch
 
 Findings too_long(const Tree& files) {
     Findings found;
     for (const File& file : files)
         if (file.lines.size() > most_lines)
-            found.push_back({file.path, file.lines.size(), "has more than " + std::to_string(most_lines) + " lines",
+            found.push_back({file.path, file.lines.size(),
+                             "has more than " + std::to_string(most_lines) + " lines",
                              "a file is one idea: part it"});
     return found;
 }
 
-/// Unbroken words and tables whose layout is switched off may be longer than the layout's own limit, but not without end.
+/// Unbroken words and tables whose layout is switched off may be longer than the layout's own limit, but not
+/// without end.
 Findings too_wide(const Tree& files) {
     Findings found;
     for (const File& file : files) {
@@ -32,7 +36,8 @@ Findings too_wide(const Tree& files) {
             if (file.comments[i].contains("clang-format off")) is_table = true;
             if (file.comments[i].contains("clang-format on")) is_table = false;
             if (!is_table && file.lines[i].size() > most_columns)
-                found.push_back({file.path, i + 1, std::to_string(file.lines[i].size()) + " columns", "lay it out: the limit is 110"});
+                found.push_back({file.path, i + 1, std::to_string(file.lines[i].size()) + " columns",
+                                 "lay it out: the limit is 110"});
         }
     }
     return found;
@@ -46,11 +51,13 @@ Findings without_idea(const Tree& files) {
         } else if (file.is_cpp() && !file.is_under("tests/diagnostics/cases")) {
             const std::string& first = file.lines[0];
             if (!first.starts_with("// ") && !first.starts_with("/* "))
-                found.push_back({file.path, 1, "does not begin with its idea", "say in one or two comment lines what it holds"});
+                found.push_back({file.path, 1, "does not begin with its idea",
+                                 "say in one or two comment lines what it holds"});
         } else if (file.is_cmake() || file.lines[0].starts_with("#!")) {
             const std::size_t line = file.lines[0].starts_with("#!") ? 1 : 0;
             if (file.lines.size() <= line || file.lines[line] != "# SPDX-License-Identifier: Apache-2.0")
-                found.push_back({file.path, line + 1, "does not state its license", "begin with # SPDX-License-Identifier: Apache-2.0"});
+                found.push_back({file.path, line + 1, "does not state its license",
+                                 "begin with # SPDX-License-Identifier: Apache-2.0"});
         }
     }
     return found;
@@ -71,7 +78,8 @@ Findings unguarded(const Tree& files) {
     Findings found;
     for (const File& file : files)
         if (file.path.ends_with(".hpp") && std::ranges::find(file.lines, "#pragma once") == file.lines.end())
-            found.push_back({file.path, 1, "the header can be included twice", "write #pragma once below its idea"});
+            found.push_back(
+                {file.path, 1, "the header can be included twice", "write #pragma once below its idea"});
     return found;
 }
 
@@ -93,9 +101,11 @@ Findings unmirrored(const Tree& files) {
     for (const File& file : files) {
         if (!file.is_under("tests") || !file.is_cpp()) continue;
         const bool own = std::ranges::any_of(own_folders, [&](auto folder) { return file.is_under(folder); });
-        const std::string mirrored = file.folder() == "tests" ? "" : file.folder().substr(std::string_view{"tests/"}.size());
+        const std::string mirrored =
+            file.folder() == "tests" ? "" : file.folder().substr(std::string_view{"tests/"}.size());
         if (!own && !folders.contains(mirrored))
-            found.push_back({file.path, 1, "mirrors no folder of the tree", "move it to tests/<the folder that it tests>"});
+            found.push_back({file.path, 1, "mirrors no folder of the tree",
+                             "move it to tests/<the folder that it tests>"});
     }
     return found;
 }
@@ -133,7 +143,9 @@ TEST(ShapeRule, finds_tabs_trailing_spaces_and_unguarded_headers) {
 
 TEST(ShapeRule, finds_a_test_of_no_folder) {
     EXPECT_EQ(unmirrored({file("tests/kernel/attic/a_test.cpp", "// A.\n")}).size(), 1u);
-    EXPECT_TRUE(unmirrored({file("kernel/os/sub/a.hpp", "// A.\n"), file("tests/kernel/os/a_test.cpp", "// A.\n")}).empty());
+    EXPECT_TRUE(
+        unmirrored({file("kernel/os/sub/a.hpp", "// A.\n"), file("tests/kernel/os/a_test.cpp", "// A.\n")})
+            .empty());
 }
 
 } // namespace

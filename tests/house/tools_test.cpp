@@ -1,4 +1,5 @@
-// The layout of .clang-format and the lint of .clang-tidy, run over the tree; a test without its tool is skipped, visibly.
+// The layout of .clang-format and the lint of .clang-tidy, run over the tree; a test without its tool is
+// skipped, visibly.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,8 @@ struct Outcome {
 
 Outcome run(const std::string& command) {
     Outcome outcome{-1, {}};
-    std::FILE* const pipe = popen((command + " 2>&1").c_str(), "r"); // NOLINT: the command is made of the tree's own names
+    std::FILE* const pipe =
+        popen((command + " 2>&1").c_str(), "r"); // NOLINT: the command is made of the tree's own names
     if (pipe == nullptr) return outcome;
     std::array<char, 4096> text{};
     while (std::fgets(text.data(), text.size(), pipe) != nullptr) outcome.said += text.data();
@@ -31,7 +33,9 @@ std::string end_of(const std::string& text, std::size_t most) {
 }
 
 /// Sources of the kernel's own kind keep their layout.
-bool is_foreign(const File& file) { return file.is_under("board/bench/gpio_sim") || file.is_under("toolchain"); }
+bool is_foreign(const File& file) {
+    return file.is_under("board/bench/gpio_sim") || file.is_under("toolchain");
+}
 
 TEST(Format, is_the_one_of_the_house) {
     const std::string tool = TAPPET_CLANG_FORMAT;
@@ -47,10 +51,12 @@ TEST(Format, is_the_one_of_the_house) {
 TEST(Lint, finds_nothing_in_a_handful) {
     const std::string tool = TAPPET_CLANG_TIDY;
     if (tool.empty()) GTEST_SKIP() << "clang-tidy-22 is not installed; ci/setup does it";
-    const Outcome outcome = run("cd '" TAPPET_TREE "' && '" + tool +
-                                "' --quiet -p '" TAPPET_BUILD "' apps/carpet_loom/host/in_process_loom.cpp "
-                                "kernel/machine/instance.cpp drivers/can/socket_can.cpp drivers/gpio/lines.cpp");
-    EXPECT_EQ(outcome.status, 0) << end_of(outcome.said, 4000) << "cure: see the check's name; .clang-tidy says which hold";
+    const Outcome outcome =
+        run("cd '" TAPPET_TREE "' && '" + tool +
+            "' --quiet -p '" TAPPET_BUILD "' apps/carpet_loom/host/in_process_loom.cpp "
+            "kernel/machine/instance.cpp drivers/can/socket_can.cpp drivers/gpio/lines.cpp");
+    EXPECT_EQ(outcome.status, 0) << end_of(outcome.said, 4000)
+                                 << "cure: see the check's name; .clang-tidy says which hold";
 }
 
 } // namespace

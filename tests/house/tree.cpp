@@ -1,4 +1,5 @@
-// Reads the repository and parts C++ text into code and comments: a scanner of comments, literals and raw literals.
+// Reads the repository and parts C++ text into code and comments: a scanner of comments, literals and raw
+// literals.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -38,11 +39,16 @@ public:
 
     void scan() {
         while (at_ < text_.size()) {
-            if (text_.substr(at_).starts_with("//")) comment("\n", 0);
-            else if (text_.substr(at_).starts_with("/*")) comment("*/", 2);
-            else if (is_raw_literal()) raw_literal();
-            else if (text_[at_] == '"' || is_character()) literal(text_[at_]);
-            else take(into_.code);
+            if (text_.substr(at_).starts_with("//"))
+                comment("\n", 0);
+            else if (text_.substr(at_).starts_with("/*"))
+                comment("*/", 2);
+            else if (is_raw_literal())
+                raw_literal();
+            else if (text_[at_] == '"' || is_character())
+                literal(text_[at_]);
+            else
+                take(into_.code);
         }
         into_.code.resize(into_.lines.size());
         into_.comments.resize(into_.lines.size());
@@ -50,8 +56,10 @@ public:
 
 private:
     void take(std::vector<std::string>& kind) {
-        if (text_[at_] == '\n') ++line_;
-        else kind[line_].push_back(text_[at_]);
+        if (text_[at_] == '\n')
+            ++line_;
+        else
+            kind[line_].push_back(text_[at_]);
         ++at_;
     }
     void skip() {
@@ -99,7 +107,8 @@ bool is_text(const fs::path& path) {
 
 Tree read(const fs::path& root) {
     Tree files;
-    for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator(); ++entry) {
+    for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator();
+         ++entry) {
         const std::string path = fs::relative(entry->path(), root).generic_string();
         if (entry->is_directory()) {
             if (path.starts_with('.') || path == "build") entry.disable_recursion_pending();

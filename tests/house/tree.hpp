@@ -1,5 +1,5 @@
-// The repository as the rules of the house see it: every text file with its lines, and of C++ files also what is
-// code and what is comment on each line.
+// The repository as the rules of the house see it: every text file with its lines, and of C++ files also what
+// is code and what is comment on each line.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@ namespace tappet::house {
 struct File {
     std::string path; ///< from the repository's root
     std::vector<std::string> lines;
-    std::vector<std::string> code;     ///< of C and C++: the same lines, comments and what literals contain left out
+    std::vector<std::string>
+        code; ///< of C and C++: the same lines, comments and what literals contain left out
     std::vector<std::string> comments; ///< of C and C++: what the comments of each line say, with their marks
 
     [[nodiscard]] bool is_cpp() const; ///< C++ or C

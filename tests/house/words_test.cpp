@@ -35,15 +35,18 @@ Findings banned_words(const Tree& files) {
             for (const Banned& row : banned) {
                 const std::string& line = file.lines[i];
                 if (row.as_word ? find_word(line, row.word) != line.npos : line.contains(row.word))
-                    found.push_back({file.path, i + 1, "says \"" + std::string(row.word) + "\"", std::string(row.cure)});
+                    found.push_back(
+                        {file.path, i + 1, "says \"" + std::string(row.word) + "\"", std::string(row.cure)});
             }
     return found;
 }
 
-/// A comment that reads like a statement. An example in a comment is indented by four spaces or more and passes.
+/// A comment that reads like a statement. An example in a comment is indented by four spaces or more and
+/// passes.
 bool is_code(std::string_view comment) {
     static const std::regex statement(
-        "(return\\b.*;|#\\s*(include|if|define|endif).*|\\}.*|[\\w:<>,.*&\\[\\] -]+(\\(.*\\)|\\s*[-+|&]?=\\s*[^=].*);"
+        "(return\\b.*;|#\\s*(include|if|define|endif).*|\\}.*|[\\w:<>,.*&\\[\\] "
+        "-]+(\\(.*\\)|\\s*[-+|&]?=\\s*[^=].*);"
         "|(if|for|while|switch) ?\\(.*\\).*[;{]|.*\\) ?(const )?(noexcept )?\\{)");
     if (!comment.starts_with("//")) return false;
     comment.remove_prefix(std::min(comment.find_first_not_of("/<"), comment.size()));
@@ -58,7 +61,8 @@ Findings code_in_comments(const Tree& files) {
     for (const File& file : files)
         for (std::size_t i = 0; i < file.comments.size(); ++i)
             if (is_code(file.comments[i]))
-                found.push_back({file.path, i + 1, "a comment that is code", "remove it; an example is indented by four spaces"});
+                found.push_back({file.path, i + 1, "a comment that is code",
+                                 "remove it; an example is indented by four spaces"});
     return found;
 }
 
@@ -67,16 +71,21 @@ TEST(Words, of_comments_are_not_code) { expect_none(code_in_comments(tree())); }
 
 TEST(WordsRule, finds_each_banned_word_and_no_part_of_another) {
     for (const Banned& row : banned)
-        EXPECT_EQ(banned_words({file("a.md", "see " + std::string(row.word) + " there\n")}).size(), 1u) << row.word;
-    EXPECT_TRUE(banned_words({file("a.md", "MA" "STODON and for n" "owhere\n")}).empty());
+        EXPECT_EQ(banned_words({file("a.md", "see " + std::string(row.word) + " there\n")}).size(), 1u)
+            << row.word;
+    EXPECT_TRUE(banned_words({file("a.md", "MA"
+                                           "STODON and for n"
+                                           "owhere\n")})
+                    .empty());
 }
 
 TEST(WordsRule, tells_code_from_prose) {
-    for (const auto* code : {"// return x;", "// count = 3;", "// wake(now);", "// #include <array>", "// }", "// if (late) {",
-                             "// const int a = b;", "/// list.push_back(x);"})
+    for (const auto* code : {"// return x;", "// count = 3;", "// wake(now);", "// #include <array>", "// }",
+                             "// if (late) {", "// const int a = b;", "/// list.push_back(x);"})
         EXPECT_TRUE(is_code(code)) << code;
-    for (const auto* prose : {"// The frame is late;", "// what follows: a list of rows,", "//     wake(now);", "// clang-format off",
-                              "// see f(x), which wakes it; the rest sleeps", "// a == b holds", ""})
+    for (const auto* prose :
+         {"// The frame is late;", "// what follows: a list of rows,", "//     wake(now);",
+          "// clang-format off", "// see f(x), which wakes it; the rest sleeps", "// a == b holds", ""})
         EXPECT_FALSE(is_code(prose)) << prose;
 }
 

@@ -1,4 +1,5 @@
-// carpet-loom-demo: boots the bench with the firmware and the plant, shows what the loom does, and sums it up.
+// carpet-loom-demo: boots the bench with the firmware and the plant, shows what the loom does, and sums it
+// up.
 #include "apps/carpet_loom/demo/merge.hpp"
 #include "apps/carpet_loom/demo/options.hpp"
 #include "apps/carpet_loom/demo/story.hpp"
@@ -20,7 +21,13 @@
 namespace tappet::demo {
 namespace {
 
-enum Ending : int { all_well = 0, found_faulty = 1, wrong_command_line = 2, did_not_end = 3, interrupted = 130 };
+enum Ending : int {
+    all_well = 0,
+    found_faulty = 1,
+    wrong_command_line = 2,
+    did_not_end = 3,
+    interrupted = 130
+};
 
 /// A loom that weaves nothing for so long of its own time will not go on by itself.
 constexpr std::int64_t most_idle_ms = 60'000;
@@ -57,7 +64,8 @@ std::string contents_of(const std::string& path) {
     return std::move(text).str();
 }
 
-/// Breaks by chance, one Modbus outage, and one emergency stop in the middle, so that a viewer sees each of them.
+/// Breaks by chance, one Modbus outage, and one emergency stop in the middle, so that a viewer sees each of
+/// them.
 bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folder) {
     const std::string middle = std::to_string(std::max<std::int64_t>(options.picks / 2, 1));
     bench::Scenario scenario;
@@ -67,20 +75,27 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
     scenario.gpio = {{"loom-io", 14}};
     scenario.settings = {{"/proc/sys/kernel/sched_rt_runtime_us", "-1"}};
     scenario.commands = {
-        "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --seed " + std::to_string(options.seed) + " --picks " + std::to_string(options.picks) +
-            " --weft-break-one-in 40 --warp-break-one-in 150 --operator-reaction 500ms --stop-modbus-at 3s/2s --emergency-stop-at " + middle + " --report " + plant_report + " &",
+        "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --seed " + std::to_string(options.seed) +
+            " --picks " + std::to_string(options.picks) +
+            " --weft-break-one-in 40 --warp-break-one-in 150 --operator-reaction 500ms --stop-modbus-at "
+            "3s/2s --emergency-stop-at " +
+            middle + " --report " + plant_report + " &",
         "@sleep 1",
         std::string{"carpet_loom --summary "} + machine_report + " &",
         "@wait carpet-loom-plant while carpet_loom",
         "@signal carpet_loom TERM",
         "@wait carpet_loom",
     };
-    scenario.collect = {{folder.file("machine.json"), machine_report}, {folder.file("plant.json"), plant_report}};
-    scenario.timeout_s = 180.0 + 6.0 * static_cast<double>(options.picks); // a host ten times slower than ours
+    scenario.collect = {{folder.file("machine.json"), machine_report},
+                        {folder.file("plant.json"), plant_report}};
+    scenario.timeout_s =
+        180.0 + 6.0 * static_cast<double>(options.picks); // a host ten times slower than ours
     return scenario;
 }
 
-void print_fault(const std::string& text) { std::fprintf(stdout, "%s\n", ::isatty(STDOUT_FILENO) != 0 ? red(text).c_str() : text.c_str()); }
+void print_fault(const std::string& text) {
+    std::fprintf(stdout, "%s\n", ::isatty(STDOUT_FILENO) != 0 ? red(text).c_str() : text.c_str());
+}
 
 /// Everything the guest said beside its status, since the reason is somewhere in it.
 int complain(const Story& story, bool already_shown, const std::string& what) {
@@ -96,17 +111,22 @@ std::string meaning_of(int exit_code) {
     case 3: return "the firmware refused to arm; its reasons with their cures are above";
     case 4: return "a fault stopped the machine";
     case 127: return "a program is missing in the guest";
-    default: return exit_code > 128 ? "a program died of signal " + std::to_string(exit_code - 128) : "see above";
+    default:
+        return exit_code > 128 ? "a program died of signal " + std::to_string(exit_code - 128) : "see above";
     }
 }
 
 int sum_up(const Options& options, const TemporaryFolder& folder, const Story& story, bool already_shown) {
-    const auto merged = merge(contents_of(folder.file("machine.json")), contents_of(folder.file("plant.json")));
+    const auto merged =
+        merge(contents_of(folder.file("machine.json")), contents_of(folder.file("plant.json")));
     if (!merged) return complain(story, already_shown, merged.error());
     {
         std::ofstream file{options.summary, std::ios::binary};
         file << *merged;
-        if (!file.flush()) return complain(story, already_shown, "the summary cannot be written to '" + options.summary + "'; check the folder and its rights");
+        if (!file.flush())
+            return complain(story, already_shown,
+                            "the summary cannot be written to '" + options.summary +
+                                "'; check the folder and its rights");
     }
     const Verdict verdict = judge(*merged, options.picks);
     std::fprintf(stdout, "\n%s\n", verdict.table.c_str());
@@ -126,7 +146,10 @@ int weave(const Options& options) {
     Terminal terminal{options.plain};
     const bool plain = !terminal.draws();
     const auto begin = std::chrono::steady_clock::now();
-    const auto frame = [&] { return Frame{options.picks, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()}; };
+    const auto frame = [&] {
+        return Frame{options.picks,
+                     std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+    };
     if (plain) std::puts("booting the emulated box");
     std::fflush(stdout);
 
@@ -148,9 +171,15 @@ int weave(const Options& options) {
         return interrupted;
     }
     if (outcome.cancelled)
-        return complain(story, plain, "the loom wove nothing for " + std::to_string(most_idle_ms / 1000) + " s of its own time; state " + story.status().state + ", cause " + story.status().cause);
+        return complain(story, plain,
+                        "the loom wove nothing for " + std::to_string(most_idle_ms / 1000) +
+                            " s of its own time; state " + story.status().state + ", cause " +
+                            story.status().cause);
     if (!outcome.completed) return complain(story, plain, outcome.fault);
-    if (outcome.exit_code != 0) return complain(story, plain, "exit code " + std::to_string(outcome.exit_code) + " in the guest: " + meaning_of(outcome.exit_code));
+    if (outcome.exit_code != 0)
+        return complain(story, plain,
+                        "exit code " + std::to_string(outcome.exit_code) +
+                            " in the guest: " + meaning_of(outcome.exit_code));
     return sum_up(options, folder, story, plain);
 }
 

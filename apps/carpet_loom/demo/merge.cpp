@@ -41,7 +41,9 @@ constexpr std::array machine_keys{
     Key{"rss_bytes", Type::count},
     Key{"activities", Type::list},
 };
-constexpr std::array activity_keys{Key{"name", Type::text}, Key{"cycles", Type::count}, Key{"longest_busy_us", Type::number}, Key{"longest_response_us", Type::number}, Key{"deadline_misses", Type::count}};
+constexpr std::array activity_keys{
+    Key{"name", Type::text}, Key{"cycles", Type::count}, Key{"longest_busy_us", Type::number},
+    Key{"longest_response_us", Type::number}, Key{"deadline_misses", Type::count}};
 
 /// Of the plant, to stand beside the machine's.
 constexpr std::array judging_keys{
@@ -55,8 +57,10 @@ constexpr std::array judging_keys{
     Key{"damage", Type::object},
 };
 constexpr std::array plant_keys{Key{"stops_total", Type::count}, Key{"time_s", Type::number}};
-constexpr std::array stop_keys{Key{"cause", Type::text}, Key{"angle_deg", Type::number}, Key{"error_deg", Type::number}, Key{"at_pick", Type::count}};
-constexpr std::array cam_keys{Key{"p50", Type::number}, Key{"p99", Type::number}, Key{"max", Type::number}, Key{"samples", Type::count}};
+constexpr std::array stop_keys{Key{"cause", Type::text}, Key{"angle_deg", Type::number},
+                               Key{"error_deg", Type::number}, Key{"at_pick", Type::count}};
+constexpr std::array cam_keys{Key{"p50", Type::number}, Key{"p99", Type::number}, Key{"max", Type::number},
+                              Key{"samples", Type::count}};
 constexpr std::array damage_keys{Key{"total", Type::count}};
 
 bool is(const Json& value, Type type) {
@@ -89,7 +93,8 @@ std::string fault_of(const Json& value, std::string_view whose, std::span<const 
     for (const Key& key : keys) {
         const auto found = value.find(key.name);
         if (found == value.end()) return std::string{whose} + " lacks \"" + std::string{key.name} + "\"";
-        if (!is(*found, key.type)) return std::string{whose} + ": \"" + std::string{key.name} + "\" is not " + name_of(key.type);
+        if (!is(*found, key.type))
+            return std::string{whose} + ": \"" + std::string{key.name} + "\" is not " + name_of(key.type);
     }
     return {};
 }
@@ -107,7 +112,8 @@ std::expected<Json, std::string> parse(std::string_view text, std::string_view w
     const auto watch = [&](int, Json::parse_event_t event, Json& value) {
         if (event == Json::parse_event_t::object_start) open.emplace_back();
         if (event == Json::parse_event_t::object_end) open.pop_back();
-        if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) twice = value.get<std::string>();
+        if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
+            twice = value.get<std::string>();
         return true;
     };
     try {
@@ -129,17 +135,21 @@ std::expected<std::string, std::string> merge(std::string_view machine_text, std
     auto plant = parse(plant_text, plants);
     if (!plant) return Error{plant.error()};
 
-    for (const auto& fault : {fault_of(*machine, machines, machine_keys), fault_of(*plant, plants, judging_keys), fault_of(*plant, plants, plant_keys)})
+    for (const auto& fault : {fault_of(*machine, machines, machine_keys),
+                              fault_of(*plant, plants, judging_keys), fault_of(*plant, plants, plant_keys)})
         if (!fault.empty()) return Error{fault};
-    for (const auto& fault : {fault_of_each((*machine)["activities"], "an activity", activity_keys), fault_of_each((*plant)["stops"], "a stop", stop_keys),
-                              fault_of((*plant)["cam_error_deg"], "\"cam_error_deg\"", cam_keys), fault_of((*plant)["damage"], "\"damage\"", damage_keys)})
+    for (const auto& fault : {fault_of_each((*machine)["activities"], "an activity", activity_keys),
+                              fault_of_each((*plant)["stops"], "a stop", stop_keys),
+                              fault_of((*plant)["cam_error_deg"], "\"cam_error_deg\"", cam_keys),
+                              fault_of((*plant)["damage"], "\"damage\"", damage_keys)})
         if (!fault.empty()) return Error{fault};
 
     Json activities = std::move((*machine)["activities"]);
     machine->erase("activities");
     Json merged = *std::move(machine);
     for (const Key& key : judging_keys) {
-        if (merged.contains(key.name)) return Error{"both the firmware and the plant say \"" + std::string{key.name} + "\""};
+        if (merged.contains(key.name))
+            return Error{"both the firmware and the plant say \"" + std::string{key.name} + "\""};
         merged[std::string{key.name}] = (*plant)[std::string{key.name}];
         plant->erase(std::string{key.name});
     }

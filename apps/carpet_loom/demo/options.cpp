@@ -43,14 +43,20 @@ std::expected<Options, std::string> parse_options(int count, const char* const* 
             continue;
         }
         std::string* const to = text_option(options, word);
-        if (to == nullptr && word != "--picks" && word != "--seed") return error("'" + word + "' is no option; --help lists them");
+        if (to == nullptr && word != "--picks" && word != "--seed")
+            return error("'" + word + "' is no option; --help lists them");
         if (i + 1 == count) return error("'" + word + "' wants a value; --help shows which");
         const std::string_view value = words[++i];
         if (to != nullptr) *to = value;
-        if (word == "--picks" && !take<std::int64_t>(options.picks, value, 1, most_picks)) return error("--picks takes a number from 1 to 100000, not '" + std::string{value} + "'");
-        if (word == "--seed" && !take<std::uint64_t>(options.seed, value, 0, UINT64_MAX)) return error("--seed takes a whole number from 0, not '" + std::string{value} + "'");
+        if (word == "--picks" && !take<std::int64_t>(options.picks, value, 1, most_picks))
+            return error("--picks takes a number from 1 to 100000, not '" + std::string{value} + "'");
+        if (word == "--seed" && !take<std::uint64_t>(options.seed, value, 0, UINT64_MAX))
+            return error("--seed takes a whole number from 0, not '" + std::string{value} + "'");
     }
-    for (const auto& [name, path] : {std::pair{"--firmware", &options.firmware}, {"--plant", &options.plant}, {"--init", &options.init}, {"--summary", &options.summary}})
+    for (const auto& [name, path] : {std::pair{"--firmware", &options.firmware},
+                                     {"--plant", &options.plant},
+                                     {"--init", &options.init},
+                                     {"--summary", &options.summary}})
         if (path->empty()) return error(std::string{name} + " is missing; ci/demo gives it");
     return options;
 }
@@ -62,7 +68,8 @@ const char* usage() {
            "  --summary FILE   where the JSON goes (build/demo.json)\n"
            "  --plain          one line per second, without colours, as when the output is no terminal\n"
            "The programs, which ci/demo builds and names itself: --firmware FILE --plant FILE --init FILE\n"
-           "Exit code: 0 all well, 1 the summary shows a fault, 2 the command line, 3 the run did not come to its end, 130 interrupted\n";
+           "Exit code: 0 all well, 1 the summary shows a fault, 2 the command line, 3 the run did not come "
+           "to its end, 130 interrupted\n";
 }
 
 } // namespace tappet::demo

@@ -26,7 +26,8 @@ std::optional<std::int64_t> whole(std::string_view text, std::string_view unit) 
 /// The words behind the first one, if that is `kind`. Nothing when a word is no pair or is there twice.
 using Pairs = std::vector<std::pair<std::string_view, std::string_view>>;
 std::optional<Pairs> pairs_of(std::string_view line, std::string_view kind) {
-    if (!line.starts_with(kind) || line.size() == kind.size() || line[kind.size()] != ' ') return std::nullopt;
+    if (!line.starts_with(kind) || line.size() == kind.size() || line[kind.size()] != ' ')
+        return std::nullopt;
     line.remove_prefix(kind.size());
     Pairs pairs;
     while (!line.empty()) {
@@ -48,14 +49,18 @@ public:
     explicit Words(const Pairs& pairs) : values_(pairs.begin(), pairs.end()) {}
 
     void take(std::string& to, std::string_view name) {
-        if (const auto found = values_.find(name); found != values_.end() && !found->second.empty()) to = found->second;
-        else good_ = false;
+        if (const auto found = values_.find(name); found != values_.end() && !found->second.empty())
+            to = found->second;
+        else
+            good_ = false;
     }
     void take(std::int64_t& to, std::string_view name, std::string_view unit) {
         const auto found = values_.find(name);
         const auto value = found == values_.end() ? std::nullopt : whole(found->second, unit);
-        if (value) to = *value;
-        else good_ = false;
+        if (value)
+            to = *value;
+        else
+            good_ = false;
     }
     void take(double& to, std::string_view name, std::string_view unit, double scale) {
         std::int64_t value = 0;

@@ -1,4 +1,5 @@
-// What the firmware prints while it runs, read back: the console's line of status and the line of worst responses.
+// What the firmware prints while it runs, read back: the console's line of status and the line of worst
+// responses.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +42,8 @@ struct Timing {
     bool operator==(const Timing&) const = default;
 };
 
-/// Nothing when the line is another one, is cut, or holds what is no number; words that are not known are skipped.
+/// Nothing when the line is another one, is cut, or holds what is no number; words that are not known are
+/// skipped.
 [[nodiscard]] std::optional<Status> parse_status(std::string_view line);
 [[nodiscard]] std::optional<Timing> parse_timing(std::string_view line);
 

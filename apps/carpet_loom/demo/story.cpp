@@ -31,7 +31,8 @@ void Story::note_stop(const Status& now) {
     if (!at_stop_angle && !came_to_stand) return;
     SeenStop stop{.after_pick = now.picks, .cause = now.cause, .at_stop_angle = at_stop_angle};
     stop.error_deg = at_stop_angle ? now.stop_error_deg : 0.0;
-    stop.angle_deg = at_stop_angle ? loom::wires::nominal::stop_deg + now.stop_error_deg : static_cast<double>(now.angle_deg);
+    stop.angle_deg = at_stop_angle ? loom::wires::nominal::stop_deg + now.stop_error_deg
+                                   : static_cast<double>(now.angle_deg);
     stops_.push_back(std::move(stop));
 }
 

@@ -29,7 +29,8 @@ public:
     [[nodiscard]] const Status& status() const { return status_; }
     [[nodiscard]] const Timing& timing() const { return timing_; }
     [[nodiscard]] const std::vector<SeenStop>& stops() const { return stops_; }
-    /// Lines that are none of ours, as they came: warnings, refusals with their cures, words of the plant. The last ones.
+    /// Lines that are none of ours, as they came: warnings, refusals with their cures, words of the plant.
+    /// The last ones.
     [[nodiscard]] const std::vector<std::string>& messages() const { return messages_; }
     /// The loom's own time since the last pick or the beginning.
     [[nodiscard]] std::int64_t idle_ms() const { return status_.time_ms - last_pick_ms_; }

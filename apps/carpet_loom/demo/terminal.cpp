@@ -1,4 +1,5 @@
-// Drawing over the last picture: up by its lines, each line written and cleared behind. Long lines are not wrapped.
+// Drawing over the last picture: up by its lines, each line written and cleared behind. Long lines are not
+// wrapped.
 #include "apps/carpet_loom/demo/terminal.hpp"
 
 #include <cstdio>
@@ -40,12 +41,15 @@ void Terminal::finish() {
 }
 
 void Terminal::show(const Story& story, const Frame& frame, Story::Kind news) {
-    if (draws_) draw(story, frame);
-    else print_news(story, frame, news);
+    if (draws_)
+        draw(story, frame);
+    else
+        print_news(story, frame, news);
 }
 
 void Terminal::tick(const Story& story, const Frame& frame) {
-    if (draws_ && std::chrono::steady_clock::now() - drawn_at_ >= std::chrono::milliseconds(100)) draw(story, frame);
+    if (draws_ && std::chrono::steady_clock::now() - drawn_at_ >= std::chrono::milliseconds(100))
+        draw(story, frame);
 }
 
 void Terminal::draw(const Story& story, const Frame& frame) {
@@ -59,7 +63,8 @@ void Terminal::draw(const Story& story, const Frame& frame) {
 
 void Terminal::print_news(const Story& story, const Frame& frame, Story::Kind news) {
     if (news == Story::Kind::message) put("          " + story.messages().back() + "\n");
-    for (; stops_told_ < story.stops().size(); ++stops_told_) put(plain_stop(story.stops()[stops_told_]) + "\n");
+    for (; stops_told_ < story.stops().size(); ++stops_told_)
+        put(plain_stop(story.stops()[stops_told_]) + "\n");
     if (news != Story::Kind::status || story.status().time_ms < next_plain_ms_) return;
     put(plain_line(story, frame) + "\n");
     next_plain_ms_ = story.status().time_ms + 1000;

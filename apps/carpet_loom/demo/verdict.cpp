@@ -29,42 +29,67 @@ bool aims_at_stop_angle(const Json& stop) {
     return cause == "weft" || cause == "warp" || cause == "operator";
 }
 
-std::string row(const char* name, const std::string& words) { return format("  %-10s %s\n", name, words.c_str()); }
+std::string row(const char* name, const std::string& words) {
+    return format("  %-10s %s\n", name, words.c_str());
+}
 
 std::string table_of(const Json& run) {
     const Json& plant = run.at("plant");
     const Json& cams = run.at("cam_error_deg");
     std::string table;
-    table += row("machine", text(run, "machine") + " on board " + text(run, "board") + ", kernel " + text(run, "kernel_release") + (run.at("realtime").get<bool>() ? ", real-time" : ", NOT real-time"));
-    table += row("woven", format("%llu picks at %.0f picks/min of running time, in %.1f s of the loom's time", count(run, "picks"), number(run, "picks_per_minute"), number(plant, "time_s")));
-    table += row("injected", format("%llu weft breaks, %llu warp breaks; %llu Modbus outages survived", count(run, "weft_breaks_injected"), count(run, "warp_breaks_injected"), count(run, "modbus_outages_survived")));
+    table += row("machine", text(run, "machine") + " on board " + text(run, "board") + ", kernel " +
+                                text(run, "kernel_release") +
+                                (run.at("realtime").get<bool>() ? ", real-time" : ", NOT real-time"));
+    table +=
+        row("woven", format("%llu picks at %.0f picks/min of running time, in %.1f s of the loom's time",
+                            count(run, "picks"), number(run, "picks_per_minute"), number(plant, "time_s")));
+    table += row("injected", format("%llu weft breaks, %llu warp breaks; %llu Modbus outages survived",
+                                    count(run, "weft_breaks_injected"), count(run, "warp_breaks_injected"),
+                                    count(run, "modbus_outages_survived")));
     table += row("stops", format("%llu, measured at the true shaft", count(plant, "stops_total")));
     for (const Json& stop : run.at("stops")) {
-        std::string words = format("  pick %4llu  %-9s at %6.2f deg", count(stop, "at_pick"), text(stop, "cause").c_str(), number(stop, "angle_deg"));
+        std::string words = format("  pick %4llu  %-9s at %6.2f deg", count(stop, "at_pick"),
+                                   text(stop, "cause").c_str(), number(stop, "angle_deg"));
         if (aims_at_stop_angle(stop)) words += format(", error %+6.2f deg", number(stop, "error_deg"));
         table += row("", words);
     }
-    table += row("cams", format("error p50 %.2f, p99 %.2f, max %.2f deg over %llu wefts", number(cams, "p50"), number(cams, "p99"), number(cams, "max"), count(cams, "samples")));
-    table += row("lost", format("%llu CAN frames, %llu GPIO edges, %llu emissions", count(run, "can_frames_lost"), count(run, "gpio_edges_lost"), count(run, "emissions_lost")));
-    table += row("after", format("arming: %llu heap allocations, %llu page faults, %llu deadline misses", count(run, "heap_allocations_after_arming"), count(run, "page_faults_after_arming"), count(run, "deadline_misses")));
+    table += row("cams", format("error p50 %.2f, p99 %.2f, max %.2f deg over %llu wefts", number(cams, "p50"),
+                                number(cams, "p99"), number(cams, "max"), count(cams, "samples")));
+    table +=
+        row("lost", format("%llu CAN frames, %llu GPIO edges, %llu emissions", count(run, "can_frames_lost"),
+                           count(run, "gpio_edges_lost"), count(run, "emissions_lost")));
+    table += row("after", format("arming: %llu heap allocations, %llu page faults, %llu deadline misses",
+                                 count(run, "heap_allocations_after_arming"),
+                                 count(run, "page_faults_after_arming"), count(run, "deadline_misses")));
     table += row("damage", format("%llu", count(run.at("damage"), "total")));
     table += row("timing", "activity   cycles   longest busy   worst response   misses");
     for (const Json& activity : run.at("activities"))
-        table += row("", format("%-9s %7llu %11.0f us %13.0f us %8llu", text(activity, "name").c_str(), count(activity, "cycles"), number(activity, "longest_busy_us"), number(activity, "longest_response_us"), count(activity, "deadline_misses")));
-    table += row("memory", format("firmware %.2f MB, static memory %.2f MB, resident %.2f MB", static_cast<double>(count(run, "binary_bytes")) * 1e-6, static_cast<double>(count(run, "static_memory_bytes")) * 1e-6, static_cast<double>(count(run, "rss_bytes")) * 1e-6));
+        table += row("", format("%-9s %7llu %11.0f us %13.0f us %8llu", text(activity, "name").c_str(),
+                                count(activity, "cycles"), number(activity, "longest_busy_us"),
+                                number(activity, "longest_response_us"), count(activity, "deadline_misses")));
+    table += row("memory", format("firmware %.2f MB, static memory %.2f MB, resident %.2f MB",
+                                  static_cast<double>(count(run, "binary_bytes")) * 1e-6,
+                                  static_cast<double>(count(run, "static_memory_bytes")) * 1e-6,
+                                  static_cast<double>(count(run, "rss_bytes")) * 1e-6));
     return table;
 }
 
 std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
     std::vector<std::string> faults;
     if (!run.at("realtime").get<bool>()) faults.push_back("the kernel was not real-time");
-    if (count(run, "picks") < static_cast<unsigned long long>(picks_wanted)) faults.push_back(format("only %llu of %lld picks were woven", count(run, "picks"), static_cast<long long>(picks_wanted)));
+    if (count(run, "picks") < static_cast<unsigned long long>(picks_wanted))
+        faults.push_back(format("only %llu of %lld picks were woven", count(run, "picks"),
+                                static_cast<long long>(picks_wanted)));
     for (const Json& stop : run.at("stops")) {
         const std::string cause = text(stop, "cause");
         const unsigned long long pick = count(stop, "at_pick");
         if (aims_at_stop_angle(stop) && std::abs(number(stop, "error_deg")) > most_stop_error_deg)
-            faults.push_back(format("the %s stop after pick %llu was %.1f degrees off; %.0f are allowed", cause.c_str(), pick, number(stop, "error_deg"), most_stop_error_deg));
-        if (cause == "machine" || cause == "fault") faults.push_back(format("the loom stopped after pick %llu (%s), and nothing had been injected for that", pick, cause.c_str()));
+            faults.push_back(format("the %s stop after pick %llu was %.1f degrees off; %.0f are allowed",
+                                    cause.c_str(), pick, number(stop, "error_deg"), most_stop_error_deg));
+        if (cause == "machine" || cause == "fault")
+            faults.push_back(
+                format("the loom stopped after pick %llu (%s), and nothing had been injected for that", pick,
+                       cause.c_str()));
     }
     const auto none = [&](const Json& from, const char* key, const char* what) {
         if (const auto found = count(from, key); found != 0) faults.push_back(format("%llu %s", found, what));

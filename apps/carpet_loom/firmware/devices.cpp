@@ -20,12 +20,16 @@ std::expected<void, Sentence> Devices::open(const Board& board) {
         std::string_view name;
         std::expected<void, Sentence> (Devices::*open)(const BoardDevice&);
     };
-    constexpr Opening openings[] = {{"loom-can", &Devices::open_can}, {"loom-io", &Devices::open_lines}, {"loom-utility", &Devices::open_utility}};
+    constexpr Opening openings[] = {{"loom-can", &Devices::open_can},
+                                    {"loom-io", &Devices::open_lines},
+                                    {"loom-utility", &Devices::open_utility}};
     for (const Opening& each : openings) {
         const BoardDevice* device = find(board, each.name); // the table's check has found it in the board
-        if (device == nullptr) return std::unexpected(Sentence{"board \"", board.name, "\" has no device \"", each.name, "\""});
+        if (device == nullptr)
+            return std::unexpected(Sentence{"board \"", board.name, "\" has no device \"", each.name, "\""});
         if (auto opened = (this->*each.open)(*device); !opened)
-            return std::unexpected(Sentence{"board \"", board.name, "\", device \"", each.name, "\" at \"", device->address, "\": ", opened.error()});
+            return std::unexpected(Sentence{"board \"", board.name, "\", device \"", each.name, "\" at \"",
+                                            device->address, "\": ", opened.error()});
     }
     provided_ = {{{type_id<can::Device>, "loom-can", static_cast<can::Device*>(&can_)},
                   {type_id<gpio::Device>, "loom-io", static_cast<gpio::Device*>(&lines_)},
@@ -55,10 +59,13 @@ std::expected<void, Sentence> Devices::open_lines(const BoardDevice& device) {
 std::expected<void, Sentence> Devices::open_utility(const BoardDevice& device) {
     const std::size_t colon = device.address.find(':');
     std::uint16_t port = 0;
-    const std::string_view digits = colon == std::string_view::npos ? std::string_view{} : device.address.substr(colon + 1);
+    const std::string_view digits =
+        colon == std::string_view::npos ? std::string_view{} : device.address.substr(colon + 1);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-    if (error != std::errc{} || end != digits.data() + digits.size()) return std::unexpected(Sentence{"the address has no port; write it as 192.168.7.2:502"});
-    return utility_.open({modbus::Tcp{device.address.substr(0, colon), port}, loom::wires::modbus::unit, 300ms, 100ms});
+    if (error != std::errc{} || end != digits.data() + digits.size())
+        return std::unexpected(Sentence{"the address has no port; write it as 192.168.7.2:502"});
+    return utility_.open(
+        {modbus::Tcp{device.address.substr(0, colon), port}, loom::wires::modbus::unit, 300ms, 100ms});
 }
 
 } // namespace tappet::carpet

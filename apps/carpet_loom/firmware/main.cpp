@@ -43,14 +43,19 @@ struct Options {
 Options parse(int count, char** words) {
     Options options;
     for (int i = 1; i < count; ++i) {
-        if (std::strcmp(words[i], "--summary") != 0) options.error = Sentence{"option ", std::string_view{words[i]}, " is unknown; the only one is --summary FILE"};
-        else if (i + 1 == count) options.error = Sentence{"option --summary needs a file behind it"};
-        else options.summary = words[++i];
+        if (std::strcmp(words[i], "--summary") != 0)
+            options.error = Sentence{"option ", std::string_view{words[i]},
+                                     " is unknown; the only one is --summary FILE"};
+        else if (i + 1 == count)
+            options.error = Sentence{"option --summary needs a file behind it"};
+        else
+            options.summary = words[++i];
     }
     return options;
 }
 
-int write_summary(const MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices, const Sentence& reason, const char* path) {
+int write_summary(const MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices,
+                  const Sentence& reason, const char* path) {
     auto& machine = const_cast<MachineInstance&>(instance); // find() hands out what can be written
     const auto* bus = machine.find<can::Bus<carpet::can_signals>>("can");
     const auto* utility = machine.find<modbus::Slave<carpet::utility_registers>>("utility");
@@ -65,10 +70,13 @@ int write_summary(const MachineInstance& instance, const RealWorld& world, const
     facts.wires = {seen.faults, seen.restarts, bus->decoding().wrong_lengths, seen.impostors, seen.malformed};
     facts.stop_reason = reason.view();
     const std::size_t length = carpet::write_machine_summary(instance, facts, summary_text);
-    if (length == 0 || length + 2 > summary_text.size()) return fail(wrong_set_up, Sentence{"the summary does not fit its buffer"});
+    if (length == 0 || length + 2 > summary_text.size())
+        return fail(wrong_set_up, Sentence{"the summary does not fit its buffer"});
     summary_text[length] = '}';
     summary_text[length + 1] = '\n';
-    if (!os::replace_file(path, {summary_text.data(), length + 2})) return fail(wrong_set_up, Sentence{"the summary cannot be written to \"", std::string_view{path}, "\""});
+    if (!os::replace_file(path, {summary_text.data(), length + 2}))
+        return fail(wrong_set_up,
+                    Sentence{"the summary cannot be written to \"", std::string_view{path}, "\""});
     return ended_well;
 }
 
@@ -80,7 +88,13 @@ void print_timing(const MachineInstance& instance) {
         if (!engine.plan().real_time) continue;
         const EngineStatistics& seen = engine.statistics();
         misses += seen.misses;
-        line.add(" ").add(engine.name()).add("=").add(seen.longest_response.count() / 1000).add("/").add(engine.plan().deadline.count() / 1000).add("us");
+        line.add(" ")
+            .add(engine.name())
+            .add("=")
+            .add(seen.longest_response.count() / 1000)
+            .add("/")
+            .add(engine.plan().deadline.count() / 1000)
+            .add("us");
     }
     line.add(" misses=").add(misses).add("\n");
     os::print(line.view());
@@ -93,7 +107,9 @@ void tell_reason(const StateMachineExecution& loom, StateMachineExecution::News&
     told = news;
     const auto rows = loom.machine().table.transitions;
     if (news.transition >= rows.size()) return; // to the final state: the machine's own stop says why
-    os::print(Sentence{"carpet-loom: the loom goes to \"", rows[news.transition].to, "\": ", rows[news.transition].because, "\n"}.view());
+    os::print(Sentence{"carpet-loom: the loom goes to \"", rows[news.transition].to,
+                       "\": ", rows[news.transition].because, "\n"}
+                  .view());
 }
 
 void list_misses(const MachineInstance& instance) {
@@ -101,8 +117,14 @@ void list_misses(const MachineInstance& instance) {
         const EngineStatistics& seen = engine.statistics();
         if (seen.misses == 0) continue;
         const Miss& last = seen.recent_misses[(seen.misses - 1) % seen.recent_misses.size()];
-        const std::string_view culprit = last.function == Miss::nobody ? std::string_view{"it began late"} : engine.plan().parts[last.function / functions_per_part].name;
-        os::print(Sentence{"carpet-loom: activity \"", engine.name(), "\" missed its deadline ", static_cast<std::int64_t>(seen.misses), " times; the last time ", culprit, " took ", last.took.count() / 1000, " us, usually ", last.usual.count() / 1000, " us\n"}.view());
+        const std::string_view culprit = last.function == Miss::nobody
+                                             ? std::string_view{"it began late"}
+                                             : engine.plan().parts[last.function / functions_per_part].name;
+        os::print(Sentence{"carpet-loom: activity \"", engine.name(), "\" missed its deadline ",
+                           static_cast<std::int64_t>(seen.misses), " times; the last time ", culprit,
+                           " took ", last.took.count() / 1000, " us, usually ", last.usual.count() / 1000,
+                           " us\n"}
+                      .view());
     }
 }
 
@@ -115,14 +137,19 @@ int main(int count, char** words) {
     static carpet::Devices devices;
     if (const auto opened = devices.open(board_here); !opened) return fail(wrong_set_up, opened.error());
     static MachineInstance instance{LoomFirmware::machine(), machine_clock};
-    if (const auto configured = instance.configure(devices.provided()); !configured) return fail(wrong_set_up, configured.error());
+    if (const auto configured = instance.configure(devices.provided()); !configured)
+        return fail(wrong_set_up, configured.error());
 
     static RealWorld world{instance};
     static os::ArmingReport arming{{board_here.only_warned.begin(), board_here.only_warned.end()}};
-    if (can::faulted(devices.can().state())) arming.fault("can-bus", Sentence{"the CAN bus is faulted"}, Sentence{"look at its wiring and at the other nodes' power"});
+    if (can::faulted(devices.can().state()))
+        arming.fault("can-bus", Sentence{"the CAN bus is faulted"},
+                     Sentence{"look at its wiring and at the other nodes' power"});
     if (!world.arm(arming, 2)) return refused_to_arm;
     if (!world.start()) return fail(stopped_by_fault, Sentence{"an activity did not start in time"});
-    os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ", static_cast<std::int64_t>(arming.warnings()), " warnings\n"}.view());
+    os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ",
+                       static_cast<std::int64_t>(arming.warnings()), " warnings\n"}
+                  .view());
     StateMachineExecution::News told;
     for (int look = 1; world.supervise(100ms); ++look) {
         tell_reason(*instance.state_machine_of("loom"), told);
@@ -130,10 +157,14 @@ int main(int count, char** words) {
     }
 
     const int hung = world.stop();
-    const Sentence reason = world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
+    const Sentence reason =
+        world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
     os::print(Sentence{"carpet-loom: stopped: ", reason, "\n"}.view());
     list_misses(instance);
     if (options.summary != nullptr)
-        if (const int written = write_summary(instance, world, devices, reason, options.summary); written != ended_well) return written;
-    return hung == 0 && instance.stop_request().reason == StopReason::requested ? ended_well : stopped_by_fault;
+        if (const int written = write_summary(instance, world, devices, reason, options.summary);
+            written != ended_well)
+            return written;
+    return hung == 0 && instance.stop_request().reason == StopReason::requested ? ended_well
+                                                                                : stopped_by_fault;
 }

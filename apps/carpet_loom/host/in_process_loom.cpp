@@ -9,10 +9,18 @@ namespace {
 int offset_of(std::string_view name) {
     namespace line = loom::wires::line;
     constexpr std::pair<std::string_view, unsigned> offsets[] = {
-        {"emergency_stop", line::emergency_stop}, {"drop_wire", line::drop_wire},       {"weft_detector", line::weft_detector},
-        {"button_start", line::button_start},     {"button_stop", line::button_stop},   {"button_acknowledge", line::button_acknowledge},
-        {"weft_release", line::weft_release},     {"brake", line::brake},               {"lamp_run", line::lamp_run},
-        {"lamp_stop", line::lamp_stop},           {"lamp_fault", line::lamp_fault},     {"yarn_cutter", line::yarn_cutter},
+        {"emergency_stop", line::emergency_stop},
+        {"drop_wire", line::drop_wire},
+        {"weft_detector", line::weft_detector},
+        {"button_start", line::button_start},
+        {"button_stop", line::button_stop},
+        {"button_acknowledge", line::button_acknowledge},
+        {"weft_release", line::weft_release},
+        {"brake", line::brake},
+        {"lamp_run", line::lamp_run},
+        {"lamp_stop", line::lamp_stop},
+        {"lamp_fault", line::lamp_fault},
+        {"yarn_cutter", line::yarn_cutter},
     };
     for (const auto& [each, offset] : offsets)
         if (each == name) return static_cast<int>(offset);
@@ -21,7 +29,8 @@ int offset_of(std::string_view name) {
 
 } // namespace
 
-InProcessLoom::InProcessLoom(const loom::Settings& settings, std::uint64_t seed) : plant_{settings, seed}, bus_{seed}, lines_{seed} {}
+InProcessLoom::InProcessLoom(const loom::Settings& settings, std::uint64_t seed)
+    : plant_{settings, seed}, bus_{seed}, lines_{seed} {}
 
 std::expected<void, Sentence> InProcessLoom::open() {
     can::Settings can_settings;
@@ -31,7 +40,8 @@ std::expected<void, Sentence> InProcessLoom::open() {
     if (auto opened = machine_can_.open(can_settings); !opened) return opened;
     std::swap(can_settings.receive, can_settings.transmit);
     if (auto opened = plant_can_.open(can_settings); !opened) return opened;
-    if (!bus_.attach(machine_can_) || !bus_.attach(plant_can_)) return std::unexpected(Sentence{"twin bus: no room for two ends"});
+    if (!bus_.attach(machine_can_) || !bus_.attach(plant_can_))
+        return std::unexpected(Sentence{"twin bus: no room for two ends"});
     const auto lines = gpio::placed(io_lines, offset_of);
     if (!lines) return std::unexpected(lines.error());
     line_settings_ = *lines;
@@ -58,7 +68,8 @@ void InProcessLoom::frames_to_plant(Time now) {
     while (true) {
         const can::Receive got = plant_can_.receive(frame);
         if (got.what == can::Received::none) return;
-        if (got.what == can::Received::frame) plant_.receive({frame.id, frame.length, frame.data}, now - origin_);
+        if (got.what == can::Received::frame)
+            plant_.receive({frame.id, frame.length, frame.data}, now - origin_);
     }
 }
 
@@ -105,7 +116,8 @@ void InProcessLoom::lines_to_machine(Time now) {
     loom::Edge edge;
     while (plant_.next_edge(edge))
         for (std::size_t i = 0; i < line_settings_.size(); ++i)
-            if (line_settings_[i].offset == edge.line) static_cast<void>(lines_.drive(i, edge.level, edge.at + origin_));
+            if (line_settings_[i].offset == edge.line)
+                static_cast<void>(lines_.drive(i, edge.level, edge.at + origin_));
     lines_.deliver_until(now);
 }
 
@@ -113,8 +125,10 @@ void InProcessLoom::registers() {
     namespace at = loom::wires::modbus;
     auto& climate = plant_.climate();
     for (std::uint16_t i = 0; i < at::input_register::count; ++i)
-        if (const auto value = climate.input_register(i)) utility_.set(modbus::Table::input_registers, i, *value);
-    static_cast<void>(climate.write_coil(at::coil::lubrication_pump, utility_.get(modbus::Table::coils, at::coil::lubrication_pump) != 0));
+        if (const auto value = climate.input_register(i))
+            utility_.set(modbus::Table::input_registers, i, *value);
+    static_cast<void>(climate.write_coil(
+        at::coil::lubrication_pump, utility_.get(modbus::Table::coils, at::coil::lubrication_pump) != 0));
 }
 
 } // namespace tappet::carpet

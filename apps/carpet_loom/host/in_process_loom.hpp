@@ -1,4 +1,5 @@
-// The host world's other end of the wires: the plant in the machine's own process, behind the twins of its devices.
+// The host world's other end of the wires: the plant in the machine's own process, behind the twins of its
+// devices.
 #pragma once
 
 #include "apps/carpet_loom/maps.hpp"

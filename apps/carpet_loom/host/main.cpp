@@ -29,7 +29,8 @@ struct Outcome {
 std::array<char, 256 * 1024> text;
 
 /// The machine's object, and the plant's as more fields of it. 0 when the buffer is too small.
-std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options, const Outcome& outcome) {
+std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom,
+                          const carpet::Options& options, const Outcome& outcome) {
     const auto& bus = *instance.find<can::Bus<carpet::can_signals>>("can");
     const can::Counters seen = bus.counters();
     carpet::RunFacts facts;
@@ -39,15 +40,19 @@ std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom
     facts.page_faults_after_arming = outcome.page_faults;
     facts.can_frames_lost = seen.lost_in_kernel;
     facts.gpio_edges_lost = loom.lines().counters().missed;
-    facts.modbus_outages_survived = instance.find<modbus::Slave<carpet::utility_registers>>("utility")->counters().outages_survived;
+    facts.modbus_outages_survived =
+        instance.find<modbus::Slave<carpet::utility_registers>>("utility")->counters().outages_survived;
     facts.wires = {seen.faults, seen.restarts, bus.decoding().wrong_lengths, seen.impostors, seen.malformed};
     Sentence reason{outcome.woven ? "the picks are woven" : "the picks were not woven in time"};
-    if (!outcome.broken_contract.empty()) reason = outcome.broken_contract;
-    else if (instance.stop_asked()) reason = instance.describe_stop();
+    if (!outcome.broken_contract.empty())
+        reason = outcome.broken_contract;
+    else if (instance.stop_asked())
+        reason = instance.describe_stop();
     facts.stop_reason = reason.view();
     facts.with_digest = options.virtual_time;
     const std::size_t machine = carpet::write_machine_summary(instance, facts, text);
-    const std::size_t plant = machine == 0 ? 0 : loom::write_json(loom.plant().report(), std::span{text}.subspan(machine));
+    const std::size_t plant =
+        machine == 0 ? 0 : loom::write_json(loom.plant().report(), std::span{text}.subspan(machine));
     if (plant == 0) return 0;
     text[machine] = ','; // the plant's opening brace
     std::size_t length = machine + plant;
@@ -55,20 +60,25 @@ std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom
     JsonText ending{std::span{text}.subspan(length - 1)};
     if (options.virtual_time) {
         char digits[16] = {};
-        for (std::size_t i = 0; i < 16; ++i) digits[i] = "0123456789abcdef"[outcome.event_log_digest >> (60 - 4 * i) & 0xF];
+        for (std::size_t i = 0; i < 16; ++i)
+            digits[i] = "0123456789abcdef"[outcome.event_log_digest >> (60 - 4 * i) & 0xF];
         ending.raw(", \"event_log_digest\": \"").raw({digits, 16}).raw("\"");
     }
     ending.raw("}\n");
     return ending.size() == 0 ? 0 : length - 1 + ending.size();
 }
 
-int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options, const Outcome& outcome) {
-    if (!outcome.broken_contract.empty()) os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
+int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options,
+           const Outcome& outcome) {
+    if (!outcome.broken_contract.empty())
+        os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
     if (!options.summary.empty()) {
         const std::size_t length = write_summary(instance, loom, options, outcome);
         if (length == 0) return fail(Sentence{"the summary does not fit its buffer"});
         const std::string path{options.summary};
-        if (!os::replace_file(path.c_str(), {text.data(), length})) return fail(Sentence{"the summary cannot be written to \"", options.summary, "\"; name a file in a folder that exists"});
+        if (!os::replace_file(path.c_str(), {text.data(), length}))
+            return fail(Sentence{"the summary cannot be written to \"", options.summary,
+                                 "\"; name a file in a folder that exists"});
     }
     return outcome.woven ? 0 : 1;
 }

@@ -18,12 +18,15 @@ std::expected<void, Sentence> RealRun::start(int file) {
     instance_.find<Console>("console")->quiet.set(quiet_);
     const Board& board = *instance_.machine().board;
     os::ArmingReport arming{{board.only_warned.begin(), board.only_warned.end()}};
-    if (!world_.arm(arming, file)) return std::unexpected(Sentence{"the machine refuses to arm; the reasons stand above"});
+    if (!world_.arm(arming, file))
+        return std::unexpected(Sentence{"the machine refuses to arm; the reasons stand above"});
     loom_.begin_at(clock_.now());
     plant_plan_ = {"plant", plant_priority, -1, plant_stack_, &RealRun::live, this};
     if (auto started = plant_thread_.start(plant_plan_); !started) return started;
     running_ = true;
-    if (!world_.start()) return std::unexpected(Sentence{"an activity did not start in time; free the processor of other real-time work"});
+    if (!world_.start())
+        return std::unexpected(
+            Sentence{"an activity did not start in time; free the processor of other real-time work"});
     return {};
 }
 
@@ -42,7 +45,8 @@ void RealRun::follow() noexcept {
 bool RealRun::weave(std::uint64_t picks, Duration limit) {
     const Time end = clock_.now() + limit;
     while (clock_.now() < end) {
-        if (picks_.load(std::memory_order_relaxed) >= picks && stands_.load(std::memory_order_relaxed)) return true;
+        if (picks_.load(std::memory_order_relaxed) >= picks && stands_.load(std::memory_order_relaxed))
+            return true;
         if (!world_.supervise(50ms)) return false;
     }
     return false;

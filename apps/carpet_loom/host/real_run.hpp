@@ -9,7 +9,8 @@
 
 namespace tappet::carpet {
 
-/// Everything of one run; lives as long as the run. One at a time. Some megabytes: static memory, not a stack.
+/// Everything of one run; lives as long as the run. One at a time. Some megabytes: static memory, not a
+/// stack.
 class RealRun {
 public:
     RealRun(const loom::Settings& settings, std::uint64_t seed, bool quiet = true);
@@ -19,10 +20,11 @@ public:
 
     /// Configures, arms and starts. What arming found is printed on `file`. An error is the first refusal.
     std::expected<void, Sentence> start(int file);
-    /// Until the plant has woven `picks` and stands, `limit` has passed, or a stop is asked for. True when they were
-    /// woven.
+    /// Until the plant has woven `picks` and stands, `limit` has passed, or a stop is asked for. True when
+    /// they were woven.
     bool weave(std::uint64_t picks, Duration limit);
-    /// The machine first, then the plant, which comes to rest meanwhile. How many threads of the machine hung.
+    /// The machine first, then the plant, which comes to rest meanwhile. How many threads of the machine
+    /// hung.
     int stop();
 
     [[nodiscard]] MachineInstance& instance() noexcept { return instance_; }
@@ -33,7 +35,8 @@ public:
 private:
     /// The plant looks at its wires this often at least: what the machine does reaches it so late at most.
     static constexpr Duration plant_period = 200us;
-    /// Below every activity of the machine, above the developer's other work, which would let frames come late.
+    /// Below every activity of the machine, above the developer's other work, which would let frames come
+    /// late.
     static constexpr int plant_priority = 1;
 
     static void live(void* self) noexcept;

@@ -16,7 +16,8 @@ std::expected<void, Sentence> VirtualRun::start() {
     world_.add({this,
                 [](void* self) {
                     auto& run = *static_cast<VirtualRun*>(self);
-                    // Whenever the machine has run it may have put something on the wires: the plant gets it at once.
+                    // Whenever the machine has run it may have put something on the wires: the plant gets it
+                    // at once.
                     return run.seen_steps_ != run.world_.steps() ? run.clock_.now() : run.loom_.next();
                 },
                 [](void* self, Time now) {

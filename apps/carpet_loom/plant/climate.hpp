@@ -44,16 +44,11 @@ public:
         TAPPET_REALTIME {
         namespace at = wires::modbus::input_register;
         switch (address) {
-        case at::room_temperature:
-            return word(temperature_c_ * 10.0);
-        case at::humidity:
-            return word(humidity_percent_ * 10.0);
-        case at::oil_pressure:
-            return word(oil_bar_ * 100.0);
-        case at::oil_temperature:
-            return word(oil_c_ * 10.0);
-        default:
-            return std::unexpected(ModbusError::illegal_address);
+        case at::room_temperature: return word(temperature_c_ * 10.0);
+        case at::humidity: return word(humidity_percent_ * 10.0);
+        case at::oil_pressure: return word(oil_bar_ * 100.0);
+        case at::oil_temperature: return word(oil_c_ * 10.0);
+        default: return std::unexpected(ModbusError::illegal_address);
         }
     }
     [[nodiscard]] ModbusAnswer<std::uint16_t> holding_register(std::uint16_t address) const noexcept

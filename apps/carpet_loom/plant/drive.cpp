@@ -25,43 +25,24 @@ constexpr Duration command_timeout = std::chrono::microseconds{wires::drive_comm
 Power Drive::power() const noexcept TAPPET_REALTIME {
     if (!node_.alive()) return Power::off;
     switch (state_) {
-    case DriveState::operation_enabled:
-        return Power::follow;
+    case DriveState::operation_enabled: return Power::follow;
     case DriveState::quick_stop_active:
-    case DriveState::fault_reaction_active:
-        return Power::stop;
-    default:
-        return Power::off;
+    case DriveState::fault_reaction_active: return Power::stop;
+    default: return Power::off;
     }
 }
 
 std::uint16_t Drive::statusword() const noexcept TAPPET_REALTIME {
     unsigned word = 0;
     switch (state_) {
-    case DriveState::not_ready:
-        word = 0x00;
-        break;
-    case DriveState::switch_on_disabled:
-        word = 0x40;
-        break;
-    case DriveState::ready_to_switch_on:
-        word = 0x21;
-        break;
-    case DriveState::switched_on:
-        word = 0x23;
-        break;
-    case DriveState::operation_enabled:
-        word = 0x27;
-        break;
-    case DriveState::quick_stop_active:
-        word = 0x07;
-        break;
-    case DriveState::fault_reaction_active:
-        word = 0x0F;
-        break;
-    case DriveState::fault:
-        word = 0x08;
-        break;
+    case DriveState::not_ready: word = 0x00; break;
+    case DriveState::switch_on_disabled: word = 0x40; break;
+    case DriveState::ready_to_switch_on: word = 0x21; break;
+    case DriveState::switched_on: word = 0x23; break;
+    case DriveState::operation_enabled: word = 0x27; break;
+    case DriveState::quick_stop_active: word = 0x07; break;
+    case DriveState::fault_reaction_active: word = 0x0F; break;
+    case DriveState::fault: word = 0x08; break;
     }
     if (state_ != DriveState::not_ready) word |= 0x0010u; // voltage enabled: the mains are always there
     if (node_.operational()) word |= 0x0200u;             // remote
@@ -103,8 +84,7 @@ void Drive::control(std::uint16_t word) noexcept TAPPET_REALTIME {
     case DriveState::quick_stop_active:
         if (order == Order::disable_voltage) state_ = DriveState::switch_on_disabled; // 12
         break;
-    default:
-        break;
+    default: break;
     }
 }
 

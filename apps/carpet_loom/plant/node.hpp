@@ -48,20 +48,11 @@ public:
             if (!operational() && pdo_.period > Duration{}) pdo_.start(now);
             state_ = wires::nmt_state::operational;
             return false;
-        case order::stop:
-            leave_operational(wires::nmt_state::stopped);
-            return false;
-        case order::pre_operational:
-            leave_operational(wires::nmt_state::pre_operational);
-            return false;
-        case order::reset_communication:
-            restart(now);
-            return false;
-        case order::reset_node:
-            restart(now);
-            return true;
-        default:
-            return false;
+        case order::stop: leave_operational(wires::nmt_state::stopped); return false;
+        case order::pre_operational: leave_operational(wires::nmt_state::pre_operational); return false;
+        case order::reset_communication: restart(now); return false;
+        case order::reset_node: restart(now); return true;
+        default: return false;
         }
     }
 

@@ -204,9 +204,7 @@ void Plant::receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME {
     log_.add((std::uint64_t{frame.id} << 8) | frame.length);
     log_.add(std::bit_cast<std::uint64_t>(frame.data));
     switch (frame.id) {
-    case wires::cob::nmt:
-        manage_network(frame, now_);
-        break;
+    case wires::cob::nmt: manage_network(frame, now_); break;
     case wires::cob::main_drive_command:
         main_.command(frame, now_, frames_);
         shorten_rest();
@@ -215,14 +213,9 @@ void Plant::receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME {
         let_off_.command(frame, now_, frames_);
         shorten_rest();
         break;
-    case wires::cob::feeder_command:
-        feeder_.command(frame);
-        break;
-    case wires::cob::dobby_command:
-        dobby_.command(frame);
-        break;
-    default:
-        break;
+    case wires::cob::feeder_command: feeder_.command(frame); break;
+    case wires::cob::dobby_command: dobby_.command(frame); break;
+    default: break;
     }
     find_next_timer();
 }

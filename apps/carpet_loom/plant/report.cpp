@@ -10,18 +10,12 @@ namespace tappet::loom {
 
 const char* name_of(StopCause cause) noexcept TAPPET_REALTIME {
     switch (cause) {
-    case StopCause::emergency:
-        return "emergency";
-    case StopCause::fault:
-        return "fault";
-    case StopCause::warp:
-        return "warp";
-    case StopCause::weft:
-        return "weft";
-    case StopCause::operator_stop:
-        return "operator";
-    case StopCause::machine:
-        return "machine";
+    case StopCause::emergency: return "emergency";
+    case StopCause::fault: return "fault";
+    case StopCause::warp: return "warp";
+    case StopCause::weft: return "weft";
+    case StopCause::operator_stop: return "operator";
+    case StopCause::machine: return "machine";
     }
     return "unknown";
 }

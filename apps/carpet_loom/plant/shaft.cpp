@@ -41,7 +41,8 @@ void MainShaft::begin_step(Power power, double target_rad_s, double brake_nm, do
         if (motor < -hold) acceleration_ = (motor + hold) / inertia_kg_m2_;
         return;
     }
-    // A shaft that hardly turns is caught by the friction of rest, or it would creep for ever under a motor that holds.
+    // A shaft that hardly turns is caught by the friction of rest, or it would creep for ever under a motor
+    // that holds.
     const double hold = brake_nm + coulomb_nm_ * static_over_coulomb;
     if (speed_rad_s_ < stick_rad_s && -speed_rad_s_ < stick_rad_s && motor <= hold && -motor <= hold) {
         acceleration_ = -speed_rad_s_ / dt_s;

@@ -5,42 +5,24 @@ namespace tappet::loom {
 
 Node* Plant::node_of(std::uint8_t id) noexcept TAPPET_REALTIME {
     switch (id) {
-    case wires::node::main_drive:
-        return &main_.node();
-    case wires::node::let_off_drive:
-        return &let_off_.node();
-    case wires::node::encoder:
-        return &encoder_;
-    case wires::node::load_cell:
-        return &load_cell_;
-    case wires::node::feeder:
-        return &feeder_.node();
-    case wires::node::dobby:
-        return &dobby_.node();
-    default:
-        return nullptr;
+    case wires::node::main_drive: return &main_.node();
+    case wires::node::let_off_drive: return &let_off_.node();
+    case wires::node::encoder: return &encoder_;
+    case wires::node::load_cell: return &load_cell_;
+    case wires::node::feeder: return &feeder_.node();
+    case wires::node::dobby: return &dobby_.node();
+    default: return nullptr;
     }
 }
 
 void Plant::restart_application(std::uint8_t id) noexcept TAPPET_REALTIME {
     switch (id) {
-    case wires::node::main_drive:
-        main_.restart();
-        break;
-    case wires::node::let_off_drive:
-        let_off_.restart();
-        break;
-    case wires::node::encoder:
-        encoder_samples_ = 0;
-        break;
-    case wires::node::feeder:
-        feeder_.restart();
-        break;
-    case wires::node::dobby:
-        dobby_.restart();
-        break;
-    default:
-        break;
+    case wires::node::main_drive: main_.restart(); break;
+    case wires::node::let_off_drive: let_off_.restart(); break;
+    case wires::node::encoder: encoder_samples_ = 0; break;
+    case wires::node::feeder: feeder_.restart(); break;
+    case wires::node::dobby: dobby_.restart(); break;
+    default: break;
     }
 }
 
@@ -75,9 +57,7 @@ void Plant::start_fault(const ScriptedFault& row) noexcept TAPPET_REALTIME {
         climate_.lose_oil(true);
         blame(StopCause::fault);
         break;
-    case Fault::oil_level_low:
-        climate_.set_oil_level_low(true);
-        break;
+    case Fault::oil_level_low: climate_.set_oil_level_low(true); break;
     case Fault::feeder_empty:
         feeder_.run_out();
         blame(StopCause::weft);
@@ -105,25 +85,16 @@ void Plant::end_fault(const ActiveFault& active) noexcept TAPPET_REALTIME {
     case Fault::node_lost:
         if (Node* const node = node_of(active.node)) node->revive(now_);
         break;
-    case Fault::warp_break:
-        contacts_[wires::line::drop_wire].set(false, now_, random_, edges_);
-        break;
-    case Fault::oil_lost:
-        climate_.lose_oil(false);
-        break;
-    case Fault::oil_level_low:
-        climate_.set_oil_level_low(false);
-        break;
-    case Fault::feeder_empty:
-        feeder_.new_bobbin();
-        break;
+    case Fault::warp_break: contacts_[wires::line::drop_wire].set(false, now_, random_, edges_); break;
+    case Fault::oil_lost: climate_.lose_oil(false); break;
+    case Fault::oil_level_low: climate_.set_oil_level_low(false); break;
+    case Fault::feeder_empty: feeder_.new_bobbin(); break;
     case Fault::emergency_stop:
         contacts_[wires::line::emergency_stop].set(false, now_, random_, edges_);
         break;
     case Fault::weft_break:
     case Fault::drive_fault:
-    case Fault::operator_stop:
-        break;
+    case Fault::operator_stop: break;
     }
 }
 
@@ -161,16 +132,12 @@ void Plant::repair() noexcept TAPPET_REALTIME {
 void Plant::press(Button button, Duration lasts) noexcept TAPPET_REALTIME {
     namespace line = wires::line;
     switch (button) {
-    case Button::emergency_stop:
-        start_fault({.fault = Fault::emergency_stop, .lasts = lasts});
-        break;
+    case Button::emergency_stop: start_fault({.fault = Fault::emergency_stop, .lasts = lasts}); break;
     case Button::stop:
         contacts_[line::button_stop].set(true, now_, random_, edges_, now_ + lasts);
         blame(StopCause::operator_stop);
         break;
-    case Button::start:
-        contacts_[line::button_start].set(true, now_, random_, edges_, now_ + lasts);
-        break;
+    case Button::start: contacts_[line::button_start].set(true, now_, random_, edges_, now_ + lasts); break;
     case Button::acknowledge:
         contacts_[line::button_acknowledge].set(true, now_, random_, edges_, now_ + lasts);
         break;
@@ -220,17 +187,10 @@ void Plant::work(Time now) noexcept TAPPET_REALTIME {
                                 .broken = broken(),
                                 .finished = finished};
     switch (operator_.look(sight, now)) {
-    case Operator::Action::none:
-        break;
-    case Operator::Action::repair:
-        repair();
-        break;
-    case Operator::Action::acknowledge:
-        press(Button::acknowledge, Operator::press);
-        break;
-    case Operator::Action::start:
-        press(Button::start, Operator::press);
-        break;
+    case Operator::Action::none: break;
+    case Operator::Action::repair: repair(); break;
+    case Operator::Action::acknowledge: press(Button::acknowledge, Operator::press); break;
+    case Operator::Action::start: press(Button::start, Operator::press); break;
     }
 }
 

@@ -57,16 +57,10 @@ void Plant::open_valve(Time at) noexcept TAPPET_REALTIME {
     const bool breaks = next_weft_breaks_;
     const bool fed = feeder_.fed();
     switch (insertion_.open(position_deg_at(at), fed, breaks, random_)) {
-    case Release::nothing:
-        return;
-    case Release::closed_shed:
-        ++report_.damage.closed_shed_wefts;
-        return;
-    case Release::second_weft:
-        ++report_.damage.double_wefts;
-        return;
-    case Release::flies:
-        break;
+    case Release::nothing: return;
+    case Release::closed_shed: ++report_.damage.closed_shed_wefts; return;
+    case Release::second_weft: ++report_.damage.double_wefts; return;
+    case Release::flies: break;
     }
     feeder_.draw();
     if (breaks) {

@@ -1,5 +1,5 @@
-// The carpet loom on the host under virtual time, as a test sees it: run until something is so, ask for the state and
-// its reason, and what the plant says of the run.
+// The carpet loom on the host under virtual time, as a test sees it: run until something is so, ask for the
+// state and its reason, and what the plant says of the run.
 #pragma once
 
 #include "apps/carpet_loom/host/virtual_run.hpp"
@@ -19,7 +19,8 @@ inline loom::Settings no_faults() { return {}; }
 
 class LoomRig {
 public:
-    explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = no_faults()) : run_{std::make_unique<VirtualRun>(settings, seed)} {
+    explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = no_faults())
+        : run_{std::make_unique<VirtualRun>(settings, seed)} {
         const auto started = run_->start();
         EXPECT_TRUE(started) << started.error().view();
     }
@@ -51,7 +52,9 @@ public:
     }
     /// Of the last transition that gave one.
     [[nodiscard]] std::string_view reason() { return execution().reason(); }
-    [[nodiscard]] const StateMachineExecution& execution() { return *run_->instance().state_machine_of("loom"); }
+    [[nodiscard]] const StateMachineExecution& execution() {
+        return *run_->instance().state_machine_of("loom");
+    }
 
     template <class T>
     [[nodiscard]] T& component(std::string_view name) {
@@ -69,8 +72,10 @@ public:
     /// Of the twin's lines, by the wire's offset.
     [[nodiscard]] static std::size_t line_index(unsigned offset) {
         namespace line = wires::line;
-        constexpr std::array<unsigned, 12> offsets{line::emergency_stop, line::drop_wire, line::weft_detector, line::button_start, line::button_stop, line::button_acknowledge,
-                                                   line::weft_release,   line::brake,     line::lamp_run,      line::lamp_stop,    line::lamp_fault,  line::yarn_cutter};
+        constexpr std::array<unsigned, 12> offsets{
+            line::emergency_stop, line::drop_wire,          line::weft_detector, line::button_start,
+            line::button_stop,    line::button_acknowledge, line::weft_release,  line::brake,
+            line::lamp_run,       line::lamp_stop,          line::lamp_fault,    line::yarn_cutter};
         for (std::size_t i = 0; i < offsets.size(); ++i)
             if (offsets[i] == offset) return i;
         ADD_FAILURE() << "no line of offset " << offset;
@@ -84,16 +89,24 @@ private:
 /// Every stop for a weft or a warp end within the tolerance of the stop angle.
 inline void expect_stops_in_tolerance(const loom::Report& report) {
     for (const loom::Stop& stop : report.stops) {
-        const bool is_guided = stop.cause == loom::StopCause::weft || stop.cause == loom::StopCause::warp || stop.cause == loom::StopCause::operator_stop;
+        const bool is_guided = stop.cause == loom::StopCause::weft || stop.cause == loom::StopCause::warp ||
+                               stop.cause == loom::StopCause::operator_stop;
         if (!is_guided) continue;
-        EXPECT_LE(std::abs(stop.error_deg), wires::nominal::stop_tolerance_deg) << "seed " << report.seed << ": a stop by " << name_of(stop.cause) << " at pick " << stop.at_pick << " stood at " << stop.angle_deg << " deg";
+        EXPECT_LE(std::abs(stop.error_deg), wires::nominal::stop_tolerance_deg)
+            << "seed " << report.seed << ": a stop by " << name_of(stop.cause) << " at pick " << stop.at_pick
+            << " stood at " << stop.angle_deg << " deg";
     }
 }
 
 inline void expect_no_damage(const loom::Report& report) {
     const loom::Damage& damage = report.damage;
-    EXPECT_EQ(damage.total(), 0u) << "seed " << report.seed << ": closed_shed_wefts " << damage.closed_shed_wefts << ", double_wefts " << damage.double_wefts << ", late_wefts " << damage.late_wefts << ", valve_after_emergency " << damage.valve_after_emergency
-                                  << ", tension_high " << damage.tension_high << ", tension_low " << damage.tension_low << ", moved_unpowered " << damage.moved_unpowered << ", motor_blocked " << damage.motor_blocked << ", ran_dry " << damage.ran_dry;
+    EXPECT_EQ(damage.total(), 0u) << "seed " << report.seed << ": closed_shed_wefts "
+                                  << damage.closed_shed_wefts << ", double_wefts " << damage.double_wefts
+                                  << ", late_wefts " << damage.late_wefts << ", valve_after_emergency "
+                                  << damage.valve_after_emergency << ", tension_high " << damage.tension_high
+                                  << ", tension_low " << damage.tension_low << ", moved_unpowered "
+                                  << damage.moved_unpowered << ", motor_blocked " << damage.motor_blocked
+                                  << ", ran_dry " << damage.ran_dry;
 }
 
 } // namespace tappet::carpet

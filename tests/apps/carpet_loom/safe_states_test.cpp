@@ -182,7 +182,8 @@ TEST_P(SafeStates, a_bus_on_which_nobody_acknowledges_stops_the_loom) {
     ASSERT_TRUE(rig.weave());
     rig.wires().bus().set_acknowledged(false);
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
-    EXPECT_TRUE(rig.reason() == "the CAN bus is off" || rig.reason() == "the encoder is stale") << rig.reason();
+    EXPECT_TRUE(rig.reason() == "the CAN bus is off" || rig.reason() == "the encoder is stale")
+        << rig.reason();
     expect_safe(rig);
     EXPECT_EQ(rig.report().damage.total(), 0u);
 }

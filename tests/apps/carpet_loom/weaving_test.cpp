@@ -1,4 +1,5 @@
-// The carpet loom weaves, over many seeds: inertia, brake, yarn and the moments of the faults differ from seed to seed.
+// The carpet loom weaves, over many seeds: inertia, brake, yarn and the moments of the faults differ from
+// seed to seed.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 #include <algorithm>
@@ -53,7 +54,8 @@ TEST_P(Weaving, stops_for_broken_wefts_and_warp_ends_within_ten_degrees_of_the_s
     expect_no_damage(report);
     EXPECT_GT(report.weft_breaks_injected, 0u);
     EXPECT_GT(report.warp_breaks_injected, 0u);
-    // The weft is laid by hand where it was missing, and nowhere is a gap woven in but in the parked first turn.
+    // The weft is laid by hand where it was missing, and nowhere is a gap woven in but in the parked first
+    // turn.
     EXPECT_LE(report.picks_by_hand, report.weft_breaks_injected);
     EXPECT_LE(report.empty_turns, 1u);
     EXPECT_EQ(report.patterns_repeated, 0u);
@@ -69,7 +71,8 @@ TEST_P(Weaving, learns_the_brake_from_its_stops) {
     ASSERT_TRUE(rig.run().weave(150, 400s)) << "in state " << rig.state() << ": " << rig.reason();
     const loom::Report report = rig.report();
     ASSERT_GE(report.stops.size(), 9u);
-    // The data sheet is believed for the first stop only; what the machine then believes is what the plant measured.
+    // The data sheet is believed for the first stop only; what the machine then believes is what the plant
+    // measured.
     const std::size_t last = report.stops.size();
     EXPECT_LE(mean_size_of_errors(report, last / 2, last), 1.5);
     const double believed = rig.component<MainShaft>("shaft").brake_distance_deg.last();
@@ -78,7 +81,8 @@ TEST_P(Weaving, learns_the_brake_from_its_stops) {
     for (std::size_t i = last / 2; i < last; ++i)
         if (report.stops[i].distance_deg > 0.0) measured[n++] = report.stops[i].distance_deg;
     ASSERT_GT(n, 0u);
-    std::nth_element(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(n / 2), measured.begin() + static_cast<std::ptrdiff_t>(n));
+    std::nth_element(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(n / 2),
+                     measured.begin() + static_cast<std::ptrdiff_t>(n));
     EXPECT_NEAR(believed, measured[n / 2], 4.0);
 }
 
@@ -102,7 +106,8 @@ TEST_P(Weaving, opens_the_valve_at_its_angle) {
     const loom::Report report = rig.report();
     EXPECT_GE(report.cam_samples, 100u);
     EXPECT_LE(report.cam_error_max_deg, 0.5);
-    EXPECT_NEAR(rig.component<WeftInsertion>("weft").arrival_deg.last(), wires::nominal::weft_arrival_deg, 30.0);
+    EXPECT_NEAR(rig.component<WeftInsertion>("weft").arrival_deg.last(), wires::nominal::weft_arrival_deg,
+                30.0);
 }
 
 TEST_P(Weaving, holds_the_warps_tension) {
@@ -122,7 +127,8 @@ TEST_P(Weaving, counts_the_picks_that_the_plant_counts) {
     LoomRig rig{GetParam(), settings};
     ASSERT_TRUE(rig.run().weave(60, 60s));
     const auto counted = rig.component<WeftInsertion>("weft").picks_woven.last();
-    EXPECT_NEAR(static_cast<double>(counted), static_cast<double>(rig.plant().picks()), 1.0); // the last stands in the shed
+    EXPECT_NEAR(static_cast<double>(counted), static_cast<double>(rig.plant().picks()),
+                1.0); // the last stands in the shed
 }
 
 } // namespace

@@ -1,5 +1,6 @@
-// The carpet loom on bad wires: frames and edges lost, repeated, torn and late, a babbling node, a line that is stuck, a
-// Modbus server that is silent. What can be woven through is woven through and counted; the rest is safe.
+// The carpet loom on bad wires: frames and edges lost, repeated, torn and late, a babbling node, a line that
+// is stuck, a Modbus server that is silent. What can be woven through is woven through and counted; the rest
+// is safe.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 namespace tappet::carpet {
@@ -101,7 +102,9 @@ TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_saf
     rig.plant().inject({.fault = Fault::node_lost, .lasts = 500ms, .node = wires::node::encoder});
     rig.wires().bus().babble(frozen, 1ms, rig.now());
     EXPECT_TRUE(rig.run_until_state("fault", 300ms)) << rig.state();
-    EXPECT_TRUE(rig.reason() == "the encoder stands while the drive turns" || rig.reason() == "the encoder is stale") << rig.reason();
+    EXPECT_TRUE(rig.reason() == "the encoder stands while the drive turns" ||
+                rig.reason() == "the encoder is stale")
+        << rig.reason();
     EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 500ms));
     expect_no_damage(rig.report());
 }
@@ -159,7 +162,9 @@ TEST_P(Wires, a_start_command_to_a_node_that_is_lost_is_said_again) {
 
 TEST_P(Wires, bouncing_lines_are_one_edge_each) {
     LoomRig rig{GetParam(), breaks_of_yarn(40)};
-    for (const unsigned each : {line::drop_wire, line::button_start, line::button_stop, line::button_acknowledge, line::emergency_stop}) rig.wires().lines().faults(LoomRig::line_index(each)).bounces = 4;
+    for (const unsigned each : {line::drop_wire, line::button_start, line::button_stop,
+                                line::button_acknowledge, line::emergency_stop})
+        rig.wires().lines().faults(LoomRig::line_index(each)).bounces = 4;
     expect_woven(rig, 40);
 }
 
@@ -203,7 +208,8 @@ TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
         rig.wires().lines().stick(LoomRig::line_index(line::weft_detector), active, rig.now());
-        ASSERT_TRUE(rig.run_until_state("stopped", 1s)) << (active ? "active" : "inactive") << ": " << rig.state();
+        ASSERT_TRUE(rig.run_until_state("stopped", 1s))
+            << (active ? "active" : "inactive") << ": " << rig.state();
         EXPECT_EQ(rig.cause(), StopCause::weft);
         rig.wires().lines().release(LoomRig::line_index(line::weft_detector));
         EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
@@ -254,7 +260,8 @@ TEST_P(Wires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_knows_the_
 }
 
 TEST_P(Wires, slow_answers_and_exceptions_of_the_utility_unit_are_woven_through) {
-    for (const modbus::Fault fault : {modbus::Fault::slow, modbus::Fault::exception, modbus::Fault::wrong_transaction, modbus::Fault::garbage_length}) {
+    for (const modbus::Fault fault : {modbus::Fault::slow, modbus::Fault::exception,
+                                      modbus::Fault::wrong_transaction, modbus::Fault::garbage_length}) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
         rig.wires().utility().set_slow_by(700ms);

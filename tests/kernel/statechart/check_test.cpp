@@ -310,7 +310,7 @@ TEST(StateMachineCheck, finds_every_misspelt_name_and_names_its_row) {
         EXPECT_NE(said.find("did you mean \"" + cure + "\"?"), std::string::npos) << said;
     };
     for (std::size_t t = 0; t < transitions; ++t) {
-        for (std::string_view TransitionRow::*end : {&TransitionRow::from, &TransitionRow::to}) {
+        for (std::string_view TransitionRow::* end : {&TransitionRow::from, &TransitionRow::to}) {
             Good m;
             const std::string right{m.transitions[t].*end};
             const std::string wrong = right + "x";

@@ -254,7 +254,8 @@ TEST(StateMachine, numbers_its_reasons_so_that_an_observer_tells_one_from_the_ne
         m.send("far");
         m.send("back");
         EXPECT_EQ(m.execution.news().number, ++seen);
-        EXPECT_EQ(m.execution.machine().table.transitions[m.execution.news().transition].because, "sent back");
+        EXPECT_EQ(m.execution.machine().table.transitions[m.execution.news().transition].because,
+                  "sent back");
     }
     m.execution.request_final(m.now, "bus off");
     EXPECT_EQ(m.execution.news(), (StateMachineExecution::News{seen + 1, final_transition}));

@@ -37,7 +37,8 @@ struct Firmware {
         for (unsigned i = 0; i < head.e_shnum; ++i) {
             const auto section = at<Elf64_Shdr>(head.e_shoff + i * sizeof(Elf64_Shdr));
             if ((section.sh_flags & SHF_ALLOC) == 0) continue;
-            if (writable_only ? (section.sh_flags & SHF_WRITE) != 0 : section.sh_type != SHT_NOBITS) sum += section.sh_size;
+            if (writable_only ? (section.sh_flags & SHF_WRITE) != 0 : section.sh_type != SHT_NOBITS)
+                sum += section.sh_size;
         }
         return sum;
     }
@@ -61,7 +62,9 @@ TEST_P(FirmwareFile, asks_for_no_interpreter_and_no_library) {
     EXPECT_FALSE(firmware_.has_segment(PT_DYNAMIC));
 }
 
-TEST_P(FirmwareFile, is_under_2_MB_without_its_symbols) { EXPECT_LT(firmware_.loaded_bytes(false), 2u << 20); }
+TEST_P(FirmwareFile, is_under_2_MB_without_its_symbols) {
+    EXPECT_LT(firmware_.loaded_bytes(false), 2u << 20);
+}
 
 TEST_P(FirmwareFile, takes_under_4_MB_of_static_memory) {
     const std::uint64_t bytes = firmware_.loaded_bytes(true);
@@ -70,6 +73,7 @@ TEST_P(FirmwareFile, takes_under_4_MB_of_static_memory) {
     RecordProperty("static_bytes", std::to_string(bytes));
 }
 
-INSTANTIATE_TEST_SUITE_P(each_board, FirmwareFile, testing::Values(TAPPET_FIRMWARE_BENCH, TAPPET_FIRMWARE_IPC));
+INSTANTIATE_TEST_SUITE_P(each_board, FirmwareFile,
+                         testing::Values(TAPPET_FIRMWARE_BENCH, TAPPET_FIRMWARE_IPC));
 
 } // namespace
