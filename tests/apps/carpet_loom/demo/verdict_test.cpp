@@ -1,0 +1,115 @@
+// The verdict over a merged summary, and the command line.
+#include "apps/carpet_loom/demo/options.hpp"
+#include "apps/carpet_loom/demo/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace tappet::demo {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+ordered_json good_run() {
+    return ordered_json::parse(R"({"machine": "carpet-loom", "board": "bench", "kernel_release": "6.1-rt", "realtime": true, "can_frames_lost": 0,
+        "gpio_edges_lost": 0, "modbus_outages_survived": 1, "emissions_lost": 0, "heap_allocations_after_arming": 0, "page_faults_after_arming": 0,
+        "deadline_misses": 0, "binary_bytes": 1300000, "static_memory_bytes": 1100000, "rss_bytes": 2500000, "picks": 30, "picks_per_minute": 448.7,
+        "weft_breaks_injected": 1, "warp_breaks_injected": 0, "stops": [{"cause": "weft", "angle_deg": 316.0, "error_deg": 6.0, "at_pick": 9},
+        {"cause": "emergency", "angle_deg": 57.0, "error_deg": 107.0, "at_pick": 15}],
+        "cam_error_deg": {"samples": 32, "p50": 0.14, "p99": 0.47, "max": 0.48}, "damage": {"total": 0},
+        "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_response_us": 2.5, "deadline_misses": 0}],
+        "plant": {"stops_total": 2, "time_s": 7.5}})");
+}
+
+std::vector<std::string> faults_of(const ordered_json& run) { return judge(run.dump(), 30).faults; }
+
+TEST(Verdict, finds_nothing_in_a_good_run_wherever_its_emergency_stop_ended) { EXPECT_THAT(faults_of(good_run()), IsEmpty()); }
+
+TEST(Verdict, names_a_stop_that_is_too_far_off_on_either_side) {
+    auto run = good_run();
+    run["stops"][0]["error_deg"] = 10.01;
+    EXPECT_THAT(faults_of(run), ElementsAre(AllOf(HasSubstr("weft stop"), HasSubstr("pick 9"))));
+    run["stops"][0]["error_deg"] = -10.01;
+    EXPECT_EQ(faults_of(run).size(), 1U);
+    run["stops"][0]["error_deg"] = -10.0;
+    EXPECT_THAT(faults_of(run), IsEmpty());
+}
+
+TEST(Verdict, names_a_stop_for_which_nothing_was_injected) {
+    auto run = good_run();
+    run["stops"][0]["cause"] = "machine";
+    EXPECT_THAT(faults_of(run), ElementsAre(HasSubstr("stopped after pick 9")));
+}
+
+TEST(Verdict, names_a_missing_pick_and_a_kernel_that_is_not_real_time) {
+    auto run = good_run();
+    run["picks"] = 29;
+    run["realtime"] = false;
+    EXPECT_THAT(faults_of(run), ElementsAre(HasSubstr("real-time"), HasSubstr("29 of 30")));
+}
+
+TEST(Verdict, names_everything_that_must_be_zero) {
+    for (const char* key : {"can_frames_lost", "gpio_edges_lost", "emissions_lost", "heap_allocations_after_arming", "page_faults_after_arming", "deadline_misses"}) {
+        auto run = good_run();
+        run[key] = 77;
+        EXPECT_THAT(faults_of(run), ElementsAre(HasSubstr("77"))) << key;
+    }
+    auto run = good_run();
+    run["damage"]["total"] = 1;
+    EXPECT_EQ(faults_of(run).size(), 1U);
+}
+
+TEST(Verdict, tells_the_run_in_a_table) {
+    EXPECT_THAT(judge(good_run().dump(), 30).table, AllOf(HasSubstr("carpet-loom on board bench"), HasSubstr("6.1-rt"), HasSubstr("30 picks"), HasSubstr("316.00 deg, error  +6.00"), HasSubstr("p99 0.47"), HasSubstr("motion")));
+}
+
+std::expected<Options, std::string> options_of(std::vector<const char*> words) {
+    words.insert(words.begin(), "carpet-loom-demo");
+    return parse_options(static_cast<int>(words.size()), words.data());
+}
+const std::vector<const char*> files{"--firmware", "f", "--plant", "p", "--init", "i", "--summary", "s"};
+
+std::vector<const char*> with(std::vector<const char*> more) {
+    more.insert(more.end(), files.begin(), files.end());
+    return more;
+}
+
+TEST(DemoOptions, have_defaults_for_what_a_user_gives) {
+    const auto options = options_of(files);
+    ASSERT_TRUE(options) << options.error();
+    EXPECT_EQ(options->picks, 200);
+    EXPECT_EQ(options->seed, 1U);
+    EXPECT_FALSE(options->plain);
+}
+
+TEST(DemoOptions, take_picks_and_seed) {
+    const auto options = options_of(with({"--picks", "30", "--plain", "--seed", "18446744073709551615"}));
+    ASSERT_TRUE(options) << options.error();
+    EXPECT_EQ(options->picks, 30);
+    EXPECT_EQ(options->seed, 18446744073709551615U);
+    EXPECT_TRUE(options->plain);
+}
+
+TEST(DemoOptions, refuse_bad_words_with_their_name) {
+    for (const auto& [words, named] : std::initializer_list<std::pair<std::vector<const char*>, const char*>>{
+             {{"--picks", "0"}, "--picks"}, {{"--picks", "-3"}, "--picks"}, {{"--picks", "30x"}, "--picks"}, {{"--picks", ""}, "--picks"}, {{"--picks", "100001"}, "--picks"},
+             {{"--seed", "-1"}, "--seed"}, {{"--seed", "18446744073709551616"}, "--seed"}, {{"--sead", "1"}, "--sead"}, {{"30"}, "'30'"}}) {
+        const auto options = options_of(with(words));
+        ASSERT_FALSE(options) << named;
+        EXPECT_THAT(options.error(), HasSubstr(named));
+    }
+    auto cut = files;
+    cut.push_back("--picks");
+    EXPECT_THAT(options_of(cut).error(), HasSubstr("--picks"));
+    EXPECT_THAT(options_of({"--plant", "p"}).error(), HasSubstr("--firmware"));
+}
+
+} // namespace
+} // namespace tappet::demo
