@@ -29,6 +29,8 @@ public:
     /// Ends the cycles, lets the engine stop on its own thread, and joins it; false when it did not within
     /// `milliseconds`: its thread hangs, and whoever called may run the engine's stop in its place.
     [[nodiscard]] bool stop(int milliseconds) noexcept;
+    /// After a stop that failed: nobody waits for its thread any more.
+    void abandon() noexcept { thread_.abandon(); }
     /// For a thread that must not go on (a broken contract): it says so and sleeps for ever. Real-time.
     [[noreturn]] void park() noexcept TAPPET_REALTIME;
 

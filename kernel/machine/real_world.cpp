@@ -114,6 +114,7 @@ int RealWorld::stop() {
         // Parked by a broken contract, or hung: its components still leave their safe values.
         ++hung;
         if (running_) activities_[a].engine().stop(instance_.clock().now());
+        activities_[a].abandon(); // the process must end although this thread never does
     }
     running_ = false;
     os::heap::release();

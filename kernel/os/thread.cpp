@@ -68,6 +68,12 @@ void Thread::join() noexcept {
     started_ = false;
 }
 
+void Thread::abandon() noexcept {
+    if (!started_) return;
+    pthread_detach(handle_);
+    started_ = false;
+}
+
 bool Thread::join_within(int milliseconds) noexcept {
     if (!started_) return true;
     timespec end{};

@@ -35,6 +35,8 @@ public:
     void join() noexcept;
     /// Waits at most `milliseconds`; false when it still runs.
     [[nodiscard]] bool join_within(int milliseconds) noexcept;
+    /// Waits for it no more, not even in the destructor: it hangs, and only the process's end ends it.
+    void abandon() noexcept;
     [[nodiscard]] bool running() const noexcept { return started_; }
 
 private:
