@@ -15,14 +15,16 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 ordered_json machine() {
-    return ordered_json::parse(R"({"machine": "carpet-loom", "board": "bench", "world": "bench", "kernel_release": "6.1-rt", "realtime": true,
+    return ordered_json::parse(
+        R"({"machine": "carpet-loom", "board": "bench", "world": "bench", "kernel_release": "6.1-rt", "realtime": true,
         "machine_seed": 0, "stop_reason": "asked for", "can_frames_lost": 1, "gpio_edges_lost": 2, "modbus_outages_survived": 3, "emissions_lost": 4,
         "heap_allocations_after_arming": 5, "page_faults_after_arming": 6, "deadline_misses": 7, "binary_bytes": 8, "static_memory_bytes": 9,
         "rss_bytes": 10, "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_response_us": 2.5, "deadline_misses": 0}]})");
 }
 
 ordered_json plant() {
-    return ordered_json::parse(R"({"seed": 12, "time_s": 7.5, "picks": 30, "picks_per_minute": 448.7, "weft_breaks_injected": 1,
+    return ordered_json::parse(
+        R"({"seed": 12, "time_s": 7.5, "picks": 30, "picks_per_minute": 448.7, "weft_breaks_injected": 1,
         "warp_breaks_injected": 0, "stops_total": 1, "stops": [{"cause": "weft", "angle_deg": 316.0, "error_deg": 6.0, "at_pick": 9}],
         "cam_error_deg": {"samples": 32, "p50": 0.14, "p99": 0.47, "max": 0.47}, "frames_lost": 13, "edges_lost": 14,
         "damage": {"total": 0, "late_wefts": 0}})");
@@ -34,7 +36,9 @@ ordered_json merged_of(const ordered_json& left, const ordered_json& right) {
     return ordered_json::parse(*merged);
 }
 
-std::string error_of(const std::expected<std::string, std::string>& merged) { return merged ? "accepted" : merged.error(); }
+std::string error_of(const std::expected<std::string, std::string>& merged) {
+    return merged ? "accepted" : merged.error();
+}
 
 std::string refusal(const ordered_json& left, const ordered_json& right) {
     return error_of(merge(left.dump(), right.dump()));
@@ -48,7 +52,8 @@ TEST(Merge, keeps_every_key_of_the_machine_as_it_is) {
 
 TEST(Merge, puts_what_the_plant_measured_of_the_machine_beside_it) {
     const auto merged = merged_of(machine(), plant());
-    for (const char* key : {"seed", "picks", "picks_per_minute", "weft_breaks_injected", "warp_breaks_injected", "stops", "cam_error_deg", "damage"})
+    for (const char* key : {"seed", "picks", "picks_per_minute", "weft_breaks_injected",
+                            "warp_breaks_injected", "stops", "cam_error_deg", "damage"})
         EXPECT_EQ(merged.at(key), plant().at(key)) << key;
 }
 
@@ -90,9 +95,14 @@ TEST_P(MergeKey, is_named_when_it_is_missing_or_of_another_type) {
 }
 
 INSTANTIATE_TEST_SUITE_P(required, MergeKey,
-                         testing::Values("machine", "board", "world", "kernel_release", "realtime", "stop_reason", "can_frames_lost", "gpio_edges_lost", "modbus_outages_survived", "emissions_lost",
-                                         "heap_allocations_after_arming", "page_faults_after_arming", "deadline_misses", "binary_bytes", "static_memory_bytes", "rss_bytes", "activities", "seed", "picks",
-                                         "picks_per_minute", "weft_breaks_injected", "warp_breaks_injected", "stops", "cam_error_deg", "damage", "stops_total", "time_s"));
+                         testing::Values("machine", "board", "world", "kernel_release", "realtime",
+                                         "stop_reason", "can_frames_lost", "gpio_edges_lost",
+                                         "modbus_outages_survived", "emissions_lost",
+                                         "heap_allocations_after_arming", "page_faults_after_arming",
+                                         "deadline_misses", "binary_bytes", "static_memory_bytes",
+                                         "rss_bytes", "activities", "seed", "picks", "picks_per_minute",
+                                         "weft_breaks_injected", "warp_breaks_injected", "stops",
+                                         "cam_error_deg", "damage", "stops_total", "time_s"));
 
 TEST(Merge, looks_into_stops_cam_errors_activities_and_damage) {
     auto right = plant();

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 ordered_json good_run() {
-    return ordered_json::parse(R"({"machine": "carpet-loom", "board": "bench", "kernel_release": "6.1-rt", "realtime": true, "can_frames_lost": 0,
+    return ordered_json::parse(
+        R"({"machine": "carpet-loom", "board": "bench", "kernel_release": "6.1-rt", "realtime": true, "can_frames_lost": 0,
         "gpio_edges_lost": 0, "modbus_outages_survived": 1, "emissions_lost": 0, "heap_allocations_after_arming": 0, "page_faults_after_arming": 0,
         "deadline_misses": 0, "binary_bytes": 1300000, "static_memory_bytes": 1100000, "rss_bytes": 2500000, "picks": 30, "picks_per_minute": 448.7,
         "weft_breaks_injected": 1, "warp_breaks_injected": 0, "stops": [{"cause": "weft", "angle_deg": 316.0, "error_deg": 6.0, "at_pick": 9},
@@ -30,7 +31,9 @@ ordered_json good_run() {
 
 std::vector<std::string> faults_of(const ordered_json& run) { return judge(run.dump(), 30).faults; }
 
-TEST(Verdict, finds_nothing_in_a_good_run_wherever_its_emergency_stop_ended) { EXPECT_THAT(faults_of(good_run()), IsEmpty()); }
+TEST(Verdict, finds_nothing_in_a_good_run_wherever_its_emergency_stop_ended) {
+    EXPECT_THAT(faults_of(good_run()), IsEmpty());
+}
 
 TEST(Verdict, names_a_stop_that_is_too_far_off_on_either_side) {
     auto run = good_run();
@@ -56,7 +59,8 @@ TEST(Verdict, names_a_missing_pick_and_a_kernel_that_is_not_real_time) {
 }
 
 TEST(Verdict, names_everything_that_must_be_zero) {
-    for (const char* key : {"can_frames_lost", "gpio_edges_lost", "emissions_lost", "heap_allocations_after_arming", "page_faults_after_arming", "deadline_misses"}) {
+    for (const char* key : {"can_frames_lost", "gpio_edges_lost", "emissions_lost",
+                            "heap_allocations_after_arming", "page_faults_after_arming", "deadline_misses"}) {
         auto run = good_run();
         run[key] = 77;
         EXPECT_THAT(faults_of(run), ElementsAre(HasSubstr("77"))) << key;
@@ -67,7 +71,9 @@ TEST(Verdict, names_everything_that_must_be_zero) {
 }
 
 TEST(Verdict, tells_the_run_in_a_table) {
-    EXPECT_THAT(judge(good_run().dump(), 30).table, AllOf(HasSubstr("carpet-loom on board bench"), HasSubstr("6.1-rt"), HasSubstr("30 picks"), HasSubstr("316.00 deg, error  +6.00"), HasSubstr("p99 0.47"), HasSubstr("motion")));
+    EXPECT_THAT(judge(good_run().dump(), 30).table,
+                AllOf(HasSubstr("carpet-loom on board bench"), HasSubstr("6.1-rt"), HasSubstr("30 picks"),
+                      HasSubstr("316.00 deg, error  +6.00"), HasSubstr("p99 0.47"), HasSubstr("motion")));
 }
 
 std::expected<Options, std::string> options_of(std::vector<const char*> words) {
@@ -99,8 +105,15 @@ TEST(DemoOptions, take_picks_and_seed) {
 
 TEST(DemoOptions, refuse_bad_words_with_their_name) {
     for (const auto& [words, named] : std::initializer_list<std::pair<std::vector<const char*>, const char*>>{
-             {{"--picks", "0"}, "--picks"}, {{"--picks", "-3"}, "--picks"}, {{"--picks", "30x"}, "--picks"}, {{"--picks", ""}, "--picks"}, {{"--picks", "100001"}, "--picks"},
-             {{"--seed", "-1"}, "--seed"}, {{"--seed", "18446744073709551616"}, "--seed"}, {{"--sead", "1"}, "--sead"}, {{"30"}, "'30'"}}) {
+             {{"--picks", "0"}, "--picks"},
+             {{"--picks", "-3"}, "--picks"},
+             {{"--picks", "30x"}, "--picks"},
+             {{"--picks", ""}, "--picks"},
+             {{"--picks", "100001"}, "--picks"},
+             {{"--seed", "-1"}, "--seed"},
+             {{"--seed", "18446744073709551616"}, "--seed"},
+             {{"--sead", "1"}, "--sead"},
+             {{"30"}, "'30'"}}) {
         const auto options = options_of(with(words));
         ASSERT_FALSE(options) << named;
         EXPECT_THAT(options.error(), HasSubstr(named));
