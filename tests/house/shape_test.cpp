@@ -35,8 +35,10 @@ Findings too_wide(const Tree& files) {
         for (std::size_t i = 0; i < file.lines.size(); ++i) {
             if (file.comments[i].contains("clang-format off")) is_table = true;
             if (file.comments[i].contains("clang-format on")) is_table = false;
-            if (!is_table && file.lines[i].size() > most_columns)
-                found.push_back({file.path, i + 1, std::to_string(file.lines[i].size()) + " columns",
+            // Without what literals hold: a raw literal cannot be broken.
+            const std::size_t columns = file.code[i].size() + file.comments[i].size();
+            if (!is_table && columns > most_columns)
+                found.push_back({file.path, i + 1, std::to_string(columns) + " columns beside literals",
                                  "lay it out: the limit is 110"});
         }
     }
