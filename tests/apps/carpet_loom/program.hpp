@@ -1,0 +1,50 @@
+// The host's carpet loom as a program of its own: what it is started with, what it answers.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tappet::carpet {
+
+struct Ended {
+    int exit_code = -1;
+    std::string text; ///< of both its outputs
+};
+
+inline Ended run_loom(const std::vector<std::string>& words) {
+    std::string line = LOOM_PROGRAM;
+    for (const std::string& word : words) line += " '" + word + "'";
+    line += " 2>&1";
+    Ended ended;
+    std::FILE* output = popen(line.c_str(), "r");
+    if (output == nullptr) return ended;
+    char letters[4096];
+    for (std::size_t n = 0; (n = std::fread(letters, 1, sizeof letters, output)) != 0;) ended.text.append(letters, n);
+    const int status = pclose(output);
+    ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return ended;
+}
+
+inline std::string temporary_file(const std::string& name) { return testing::TempDir() + "carpet_loom_" + std::to_string(getpid()) + "_" + name; }
+
+inline std::string contents(const std::string& path) {
+    std::ifstream file{path};
+    return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+/// A JSON text without one field of a number.
+inline std::string without_field(std::string text, const std::string& name) {
+    const auto begin = text.find("\"" + name + "\"");
+    if (begin != std::string::npos) text.erase(begin, text.find(',', begin) - begin);
+    return text;
+}
+
+} // namespace tappet::carpet

@@ -1,0 +1,145 @@
+// A machine in threads of its own under real time. What needs SCHED_FIFO is left out, and says so, where it is not granted.
+#include "kernel/machine/real_world.hpp"
+
+#include "kernel/base/random.hpp"
+#include "kernel/os/heap.hpp"
+#include "kernel/os/sleep.hpp"
+#include "tests/kernel/machine/watched_machine.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <memory>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+using watched::Order;
+using watched::Worker;
+
+template <const auto& table>
+class Rig {
+public:
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{Firmware<table, watched::board>::machine(), clock};
+    std::unique_ptr<RealWorld> world = std::make_unique<RealWorld>(instance);
+    std::unique_ptr<os::ArmingReport> report = std::make_unique<os::ArmingReport>(std::span{watched::board.only_warned.begin(), watched::board.only_warned.end()});
+
+    /// Armed and started.
+    bool runs() {
+        watched::stops().clear();
+        const int nowhere_to_print = open("/dev/null", O_WRONLY);
+        const bool armed = instance.configure({}).has_value() && world->arm(*report, nowhere_to_print);
+        close(nowhere_to_print);
+        return armed && world->start();
+    }
+    Worker& worker(std::string_view name) { return *instance.template find<Worker>(name); }
+};
+
+class InRealTime : public testing::Test {
+protected:
+    void SetUp() override {
+        if (os::observe_process(watched::board.highest_priority).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+    }
+};
+
+TEST_F(InRealTime, arms_runs_and_stops_the_last_row_first) {
+    Rig<watched::table> rig;
+    ASSERT_TRUE(rig.runs());
+    EXPECT_TRUE(rig.report->can_arm());
+    EXPECT_TRUE(rig.world->supervise(300ms));
+    EXPECT_EQ(rig.world->stop(), 0);
+    EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
+    EXPECT_GT(rig.worker("middle").cycles, 100u);
+    EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
+    EXPECT_FALSE(rig.instance.stop_asked());
+}
+
+TEST_F(InRealTime, takes_no_page_fault_in_a_real_time_thread) {
+    if constexpr (os::heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer's shadow is mapped as it is used";
+    Rig<watched::table> rig;
+    ASSERT_TRUE(rig.runs());
+    EXPECT_TRUE(rig.world->supervise(300ms));
+    EXPECT_EQ(rig.world->stop(), 0);
+    EXPECT_EQ(rig.world->page_faults_in_real_time_threads(), 0u);
+}
+
+TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
+    Random random{static_cast<std::uint64_t>(getpid())};
+    const std::string_view victim = watched::of_motion[random.below(watched::of_motion.size())];
+    Rig<watched::table> rig;
+    ASSERT_TRUE(rig.runs());
+    rig.worker(victim).overrun = 50ms; // longer than any other delay of this box, one hopes
+    EXPECT_TRUE(rig.world->supervise(100ms));
+    rig.worker(victim).order = Order::overrun;
+    EXPECT_TRUE(rig.world->supervise(150ms));
+    EXPECT_EQ(rig.world->stop(), 0);
+    const Engine& engine = rig.instance.engines()[watched::motion];
+    std::string_view blamed = "nobody";
+    Duration most{};
+    for (const Miss& miss : engine.statistics().recent_misses) {
+        if (miss.took <= most) continue;
+        most = miss.took;
+        blamed = miss.function == Miss::nobody ? "nobody" : engine.plan().parts[miss.function / functions_per_part].name;
+    }
+    EXPECT_EQ(blamed, victim);
+    EXPECT_GE(most, 50ms);
+    EXPECT_GE(engine.statistics().skipped_periods, 49u);
+}
+
+TEST_F(InRealTime, stops_for_a_late_cycle_where_the_row_says_so) {
+    Rig<watched::strict_table> rig;
+    ASSERT_TRUE(rig.runs());
+    rig.worker("right").overrun = 50ms;
+    rig.worker("right").order = Order::overrun;
+    while (rig.world->supervise(1s)) {}
+    EXPECT_EQ(rig.world->stop(), 0);
+    EXPECT_EQ(rig.instance.stop_request().reason, StopReason::missed_deadline);
+    EXPECT_THAT(std::string{rig.instance.describe_stop().view()}, testing::StartsWith("activity \"motion\" missed its deadline: "));
+    EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
+}
+
+TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_leaves_all_safe) {
+    Rig<watched::table> rig;
+    ASSERT_TRUE(rig.runs());
+    rig.worker("middle").order = Order::break_contract;
+    for (int n = 0; n < 20 && rig.world->supervise(100ms); ++n) {}
+    ASSERT_TRUE(rig.instance.stop_asked());
+    EXPECT_EQ(rig.world->stop(), 1) << "the thread whose contract is broken goes on nowhere";
+    EXPECT_EQ(rig.instance.stop_request().reason, StopReason::broken_contract);
+    EXPECT_EQ(rig.instance.describe_stop().view(), "a contract was broken in activity \"motion\"");
+    EXPECT_THAT(std::string{rig.world->broken_contract().view()}, testing::HasSubstr("A function was called with 7, which its declaration forbids."));
+    for (const char* name : {"driver", "left", "middle", "right", "logic"}) EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
+    EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
+}
+
+TEST_F(InRealTime, TERM_ends_the_supervision_as_a_request) {
+    Rig<watched::table> rig;
+    ASSERT_TRUE(rig.runs());
+    EXPECT_TRUE(rig.world->supervise(50ms));
+    raise(SIGTERM);
+    EXPECT_FALSE(rig.world->supervise(1s));
+    EXPECT_EQ(rig.instance.stop_request().reason, StopReason::requested);
+    EXPECT_EQ(rig.instance.describe_stop().view(), "asked for from outside");
+    EXPECT_EQ(rig.world->stop(), 0);
+}
+
+TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_its_components_are_stopped_in_its_place) {
+    // A hung thread of high priority would keep the supervisor from its processor: it spins on the other one.
+    if (sysconf(_SC_NPROCESSORS_ONLN) < 2) GTEST_SKIP() << "one processor: the hung thread would have it";
+    Rig<watched::table> rig;
+    ASSERT_TRUE(rig.runs());
+    rig.worker("logic").order = Order::hang;
+    EXPECT_TRUE(rig.world->supervise(50ms));
+    EXPECT_EQ(rig.world->stop(), 1);
+    EXPECT_EQ(rig.worker("logic").at_wire.load(), 0);
+    EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
+    rig.worker("logic").let_go = true; // so that the thread can be joined
+}
+
+} // namespace
+} // namespace tappet

@@ -1,0 +1,99 @@
+// A small machine for tests of the worlds: three activities, one of several components, that note what happens to them.
+#pragma once
+
+#include "kernel/base/contract.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/instance.hpp"
+#include "kernel/machine/machine.hpp"
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace tappet::watched {
+
+/// Whose stop came when; filled after the cycles, in the supervisor's order, so that no two threads meet in it.
+inline std::vector<std::string>& stops() {
+    static std::vector<std::string> list;
+    return list;
+}
+
+/// What a worker is told to do once, by the test's thread.
+enum class Order : int { none, overrun, hang, break_contract };
+
+/// Costs nothing but what it is told to; its output says whether it is safe.
+struct Worker {
+    Output<std::int64_t> level;
+    std::atomic<Order> order{Order::none};
+    std::atomic<bool> let_go{false}; ///< ends a hang
+    std::atomic<std::int64_t> at_wire{-1};
+    std::uint64_t cycles = 0;
+    os::Clock* clock = nullptr;
+    std::string_view name{};
+    Duration overrun{2500us};
+
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        name = setup.component;
+        return {};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        level.write(1);
+        at_wire.store(1);
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        ++cycles;
+        switch (order.exchange(Order::none)) {
+        case Order::none: break;
+        case Order::overrun: clock->consume(overrun); break;
+        case Order::hang:
+            while (!let_go.load()) {}
+            break;
+        case Order::break_contract: TAPPET_CONTRACT(false, Contract::precondition, 7); break;
+        }
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        level.write(0);
+        at_wire.store(0);
+        TAPPET_ESCAPE("a test's note, after the cycles", stops().push_back(std::string{name}));
+    }
+    static constexpr auto interface() {
+        return facets(output<&Worker::level>("level", "", "0: safe"));
+    }
+};
+
+// clang-format off
+inline constexpr auto table = machine("watched",
+    components(
+        component<Worker>("driver"),
+        component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"),
+        component<Worker>("logic")),
+    activities(
+        activity("drivers", every(2ms), runs("driver"),                  budget(50us)),
+        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us)),
+        activity("logic",   every(5ms), runs("logic"),                   budget(50us))),
+    connections(), reactions(), behaviours());
+
+/// The same, where a late cycle of "motion" stops the machine.
+inline constexpr auto strict_table = machine("strict",
+    components(component<Worker>("driver"), component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"), component<Worker>("logic")),
+    activities(
+        activity("drivers", every(2ms), runs("driver"),                  budget(50us)),
+        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stop_when_late),
+        activity("logic",   every(5ms), runs("logic"),                   budget(50us))),
+    connections(), reactions(), behaviours());
+
+inline constexpr Board board{
+    .name = "test",
+    .world = "host",
+    .memory_budget_bytes = 4 * 1024 * 1024,
+    .processors = 1,
+    .highest_priority = 40,
+    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11},
+};
+// clang-format on
+
+inline constexpr std::size_t drivers = 0, motion = 1, logic = 2;
+inline constexpr std::array<std::string_view, 3> of_motion{"left", "middle", "right"};
+
+} // namespace tappet::watched
