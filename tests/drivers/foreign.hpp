@@ -63,6 +63,14 @@ public:
         return false;
     }
     [[nodiscard]] bool started() const { return process_ > 0; }
+    void signal(int number) const {
+        if (process_ > 0) ::kill(process_, number);
+    }
+    /// False once it has ended, though nobody waited for it.
+    [[nodiscard]] bool runs() const {
+        siginfo_t ended{};
+        return process_ > 0 && ::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
+    }
 
 private:
     static inline int next_ = 0;

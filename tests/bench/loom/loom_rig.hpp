@@ -1,0 +1,160 @@
+// The carpet loom's firmware and its plant as processes of the bench, and what a test sees of them: their words, the
+// levels on the lines, and every frame as a foreign listener logged it.
+#pragma once
+
+#include "apps/carpet_loom/wires.hpp"
+#include "tests/drivers/foreign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::bench {
+
+namespace wires = loom::wires;
+using namespace std::chrono_literals;
+using WallTime = std::chrono::system_clock::time_point; ///< candump stamps with it
+using WallDuration = std::chrono::microseconds;
+
+inline WallTime wall_now() { return std::chrono::system_clock::now(); }
+
+/// Looks every so often until it is so; false after `patience`.
+template <class Condition> bool soon(Condition&& is_so, std::chrono::milliseconds patience = 5s, std::chrono::milliseconds every = 2ms) {
+    for (const auto end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
+        if (is_so()) return true;
+        std::this_thread::sleep_for(every);
+    }
+    return is_so();
+}
+
+inline std::string content_of(const std::string& path) {
+    std::ifstream file{path};
+    return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+/// The level that stands on a line of the simulated chip, whoever drives it.
+inline bool level(unsigned line) { return content_of("/sim/loom-io/sim_gpio" + std::to_string(line) + "/value").starts_with('1'); }
+
+/// From the outside, as a button or a sensor would.
+inline void pull(unsigned line, bool high) {
+    std::ofstream{"/sim/loom-io/sim_gpio" + std::to_string(line) + "/pull"} << (high ? "pull-up" : "pull-down");
+}
+
+/// A frame in a log of `candump -L`.
+struct Logged {
+    WallTime at{};
+    std::uint32_t id = 0;
+    std::vector<std::uint8_t> data;
+
+    [[nodiscard]] unsigned word() const { return data.size() < 2 ? 0u : data[0] | static_cast<unsigned>(data[1]) << 8; }
+    /// Of a drive's command: its target.
+    [[nodiscard]] std::int32_t target() const {
+        std::uint32_t value = 0;
+        for (std::size_t i = 2; i < 6 && i < data.size(); ++i) value |= static_cast<std::uint32_t>(data[i]) << (8 * (i - 2));
+        return static_cast<std::int32_t>(value);
+    }
+    [[nodiscard]] bool enables_operation() const { return (word() & 0x8Fu) == 0x0Fu; }
+};
+
+/// "(1700000000.123456) can0 201#0F0070170000", one a line; what is no such line is left out.
+inline std::vector<Logged> frames_of(const std::string& log) {
+    std::vector<Logged> frames;
+    std::istringstream lines{log};
+    for (std::string line; std::getline(lines, line);) {
+        long long seconds = 0;
+        long micros = 0;
+        unsigned id = 0;
+        int read = 0;
+        if (std::sscanf(line.c_str(), "(%lld.%ld) %*s %x#%n", &seconds, &micros, &id, &read) != 3 || read == 0) continue;
+        Logged frame{WallTime{std::chrono::seconds{seconds} + std::chrono::microseconds{micros}}, id, {}};
+        for (std::size_t i = static_cast<std::size_t>(read); i + 1 < line.size(); i += 2)
+            frame.data.push_back(static_cast<std::uint8_t>(std::stoul(line.substr(i, 2), nullptr, 16)));
+        frames.push_back(frame);
+    }
+    return frames;
+}
+
+/// A number in the summary of the firmware; -1 when it is not there.
+inline double number_in(const std::string& json, std::string_view key) {
+    const std::string wanted = "\"" + std::string{key} + "\": ";
+    const std::size_t at = json.find(wanted);
+    return at == std::string::npos ? -1.0 : std::strtod(json.c_str() + at + wanted.size(), nullptr);
+}
+
+/// The loom, weaving or about to. The plant samples the lines each millisecond: the emulator is slow enough as it is,
+/// and no test here asks for more. Its priority keeps the test's own work from holding it up.
+class Loom {
+public:
+    static constexpr const char* summary_file = "/tmp/summary.json";
+    static constexpr const char* report_file = "/tmp/report.json";
+
+    explicit Loom(const std::string& plant_options = {})
+        : plant{"carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --period 1ms --fifo 1 --operator-reaction 1s --report " + std::string{report_file} + " " + plant_options} {
+        ::unlink(summary_file);
+        std::this_thread::sleep_for(100ms); // its Modbus server listens
+        machine.emplace("carpet_loom --summary " + std::string{summary_file});
+    }
+
+    /// The machine wrote it, behind what was seen last; then that is seen, too.
+    bool says(std::string_view text, std::chrono::milliseconds patience = 6s) {
+        return soon(
+            [&] {
+                const std::string all = machine->output();
+                const std::size_t at = all.find(text, seen_);
+                if (at == std::string::npos) return false;
+                seen_ = at + text.size();
+                return true;
+            },
+            patience, 20ms); // the console speaks four times a second
+    }
+    bool weaves() { return says("state=weave"); }
+    /// What was written until now does not count for says() any more.
+    void forget() { seen_ = machine->output().size(); }
+    /// What is told after what was seen last.
+    [[nodiscard]] std::string since() const { return machine->output().substr(seen_); }
+    /// The last value the console printed behind "KEY=".
+    [[nodiscard]] std::string last(const std::string& key) const {
+        const std::string all = machine->output();
+        const std::size_t at = all.rfind(" " + key + "=");
+        if (at == std::string::npos) return {};
+        const std::size_t begin = at + key.size() + 2;
+        return all.substr(begin, all.find_first_of(" \n", begin) - begin);
+    }
+    [[nodiscard]] long picks() const { return std::strtol(last("picks").c_str(), nullptr, 10); }
+
+    /// SIGTERM; its exit code.
+    int end() {
+        machine->signal(SIGTERM);
+        const int code = machine->wait();
+        summary = content_of(summary_file);
+        return code;
+    }
+
+    Foreign plant;
+    std::optional<Foreign> machine;
+    std::string summary;
+
+private:
+    std::size_t seen_ = 0;
+};
+
+/// What must hold whatever came on the wires.
+inline void expect_undisturbed(const Loom& loom) {
+    EXPECT_EQ(number_in(loom.summary, "deadline_misses"), 0);
+    EXPECT_EQ(number_in(loom.summary, "heap_allocations_after_arming"), 0);
+    EXPECT_EQ(number_in(loom.summary, "page_faults_after_arming"), 0);
+    EXPECT_EQ(number_in(loom.summary, "emissions_lost"), 0);
+}
+
+inline bool is_safe() { return level(wires::line::brake) && !level(wires::line::weft_release); }
+
+/// Everything the machine sends, and error frames: not what the plant floods the bus with.
+/// -D: a restart takes the interface down and up, and a listener stays.
+inline constexpr const char* listen_to_the_machine = "candump -D -L can0,000:7FF,201:7FF,202:7FF,205:7FF,206:7FF,#FFFFFFFF";
+
+} // namespace tappet::bench
