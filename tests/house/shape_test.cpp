@@ -30,7 +30,8 @@ Findings too_long(const Tree& files) {
 Findings too_wide(const Tree& files) {
     Findings found;
     for (const File& file : files) {
-        if (!file.is_cpp()) continue;
+        // The golden sentence of a case is one line, as the compiler prints it.
+        if (!file.is_cpp() || file.is_under("tests/diagnostics/cases")) continue;
         bool is_table = false;
         for (std::size_t i = 0; i < file.lines.size(); ++i) {
             if (file.comments[i].contains("clang-format off")) is_table = true;
