@@ -1,5 +1,5 @@
-// The carpet loom on one page: its components, the activities that run them, what flows between them and what happens
-// upon what. Read it with main_shaft.hpp, weft_insertion.hpp, loom_cycle.hpp and cams.hpp at hand.
+// The carpet loom on one page: its components, the activities that run them, what flows between them and what
+// happens upon what. Read it with main_shaft.hpp, weft_insertion.hpp, loom_cycle.hpp and cams.hpp at hand.
 #pragma once
 
 #include "apps/carpet_loom/console.hpp"
@@ -33,10 +33,10 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
         activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
         activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(12us)),
+        activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
-        activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("console"), not_real_time)),
     connections( // data flow

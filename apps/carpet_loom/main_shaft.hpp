@@ -113,8 +113,8 @@ struct MainShaft {
             event<&MainShaft::weft_closes>("weft_closes", "the weft's valve is no longer needed"),
             event<&MainShaft::window_opens>("window_opens", "from here on the weft may arrive"),
             event<&MainShaft::window_closes>("window_closes", "by here the weft must have arrived"),
-            event<&MainShaft::brake_now>("brake_now",
-                                         "the brake must be driven now to stop at the stop angle"),
+            event<&MainShaft::brake_now>(
+                "brake_now", "the brake must be driven now to stop at the stop angle", heard_by(3)),
             event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
             operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle",
                                                  required),

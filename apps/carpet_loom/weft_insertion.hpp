@@ -13,6 +13,8 @@ namespace wires = loom::wires;
 
 /// All real-time. It stands in the shaft's activity, so that the angle events call it without a detour.
 struct WeftInsertion {
+    static constexpr bool slot_required = true; // the pattern's behaviour is loaded while the machine runs
+
     Input<ShaftMotion> shaft;
     Output<std::int64_t> pick;
     Output<std::int64_t> pattern;
@@ -79,7 +81,7 @@ struct WeftInsertion {
             output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
             event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
             event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
-            event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive"),
+            event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive", heard_by(1)),
             operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
             operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
             operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),

@@ -29,7 +29,7 @@ bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
 }
 
 Receive Twin::receive(Frame& frame) noexcept TAPPET_REALTIME {
-    for (std::size_t i = 0; i <= Transmitter::most_in_flight; ++i) { // confirmations are no answers
+    for (std::size_t i = 0; i < inbox; ++i) { // confirmations and what is not for us are no answers
         Arrival arrival;
         if (!inbox_.pop(arrival)) return {};
         Receive answer;

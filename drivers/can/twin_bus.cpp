@@ -17,7 +17,10 @@ void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     }
     release_delayed(now);
     for (Twin* end : ends_) {
-        if (!acknowledged_ && !end->starved_ && end->head() != nullptr) {
+        // What a restart left behind is forgotten here, and then a new frame starves anew.
+        const bool waits = !acknowledged_ && end->head() != nullptr;
+        if (!acknowledged_ && !waits) end->starved_ = false;
+        if (waits && !end->starved_) {
             end->starved_ = true;
             set_state(*end,
                       State::passive); // no further: missing acknowledgements alone never lead to bus-off

@@ -77,11 +77,12 @@ struct Facet {
     std::string_view unit{};
     std::string_view doc{};
     FacetKind kind = FacetKind::input;
-    TypeId type = nullptr;   ///< of the value, or of the argument list
-    bool required = false;   ///< an input that must be connected, an operation that a reaction must name
-    bool any_thread = false; ///< an operation that any activity may call
-    Range range{};           ///< of a property
-    std::size_t index = 0;   ///< within a member that is an array
+    TypeId type = nullptr; ///< of the value, or of the argument list
+    bool required = false; ///< an input that must be connected, an operation that a reaction must name
+    std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
+    bool any_thread = false;          ///< an operation that any activity may call
+    Range range{};                    ///< of a property
+    std::size_t index = 0;            ///< within a member that is an array
     void* (*at)(void* component, std::size_t index) noexcept = nullptr;
     // One of these, by kind.
     const PortOperations* port = nullptr;

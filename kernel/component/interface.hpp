@@ -27,6 +27,11 @@ inline constexpr AnyThread any_thread{};
 /// Marks an operation that at least one reaction of the table must name.
 struct Required {};
 inline constexpr Required required{};
+/// An event that means something to the machine's safety: at least so many reaction rows must name it.
+struct HeardBy {
+    std::uint8_t reactions = 1;
+};
+constexpr HeardBy heard_by(std::uint8_t reactions) noexcept { return {reactions}; }
 
 constexpr Range range(double low, double high) noexcept { return {low, high}; }
 
@@ -94,6 +99,7 @@ inline constexpr PropertyOperations property_of{
 
 constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; }
 constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
+constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
 constexpr void apply(Facet& facet, Range within) noexcept { facet.range = within; }
 
@@ -155,16 +161,17 @@ constexpr Facet output(std::string_view name, std::string_view unit, std::string
                 .port = &PortAccess::data<T>};
 }
 
-template <auto Member>
-constexpr Facet event(std::string_view name, std::string_view doc) {
+template <auto Member, class... Options>
+constexpr Facet event(std::string_view name, std::string_view doc, Options... options) {
     using M = detail::MemberOf<Member>;
     using E = detail::EventArguments<typename M::Type>;
-    return {.name = name,
-            .doc = doc,
-            .kind = FacetKind::event,
-            .type = type_id<typename E::Signature>,
-            .at = &M::at,
-            .event = E::operations};
+    return detail::with({.name = name,
+                         .doc = doc,
+                         .kind = FacetKind::event,
+                         .type = type_id<typename E::Signature>,
+                         .at = &M::at,
+                         .event = E::operations},
+                        options...);
 }
 
 /// A member function `void f(A...) noexcept TAPPET_REALTIME`.

@@ -15,6 +15,23 @@ template <class... Pieces> constexpr Sentence of_behaviour(const BehaviourRow& r
     return Sentence{row.is_slot() ? "slot of \"" : "behaviour of \"", row.component, "\"", fault...};
 }
 
+/// Events that must be heard, are.
+constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView& r) {
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
+            const Facet& facet = m.components[c].type->facets[f];
+            if (facet.least_reactions == 0) continue;
+            std::size_t heard = 0;
+            for (const Link& link : r.reactions) heard += link.from == End{c, f} ? 1u : 0u;
+            if (heard < facet.least_reactions)
+                return of_component(m.components[c].name, ": its event \"", facet.name, "\" is heard by ",
+                                    heard, " of at least ", std::size_t{facet.least_reactions},
+                                    " reactions; add when(\"", m.components[c].name, ".", facet.name,
+                                    "\", ...) to reactions(...)");
+        }
+    return {};
+}
+
 /// Fills the ends of each reaction.
 constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
     r.reactions_into.clear();
@@ -75,7 +92,7 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                     facet.name, "\"; add when(\"...\", tell(\"", m.components[c].name, ".",
                                     facet.name, "\"))");
         }
-    return {};
+    return check_heard_events(m, r);
 }
 
 /// "component.event", or "event" of the behaviour's own component.
@@ -156,6 +173,14 @@ constexpr Sentence check_behaviours(const MachineView& m) {
         }
     }
     for (const auto& row : m.components) {
+        if (row.type->slot_required) {
+            bool reserved = false;
+            for (const auto& behaviour : m.behaviours)
+                reserved |= behaviour.component == row.name && behaviour.is_slot();
+            if (!reserved)
+                return of_component(row.name, ": no slot is reserved for it; add behaviour(\"", row.name,
+                                    "\", slot(...)) to behaviours(...)");
+        }
         if (!row.type->behaviour_required) continue;
         bool driven = false;
         for (const auto& behaviour : m.behaviours)

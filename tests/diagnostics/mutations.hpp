@@ -268,7 +268,9 @@ private:
             return std::vector{"\"" + std::string{row.to} + "\""};
         });
         drop<ReactionRow>(&Copy::reactions, [](const ReactionRow& row) {
-            return std::vector{"\"" + std::string{row.target.operation} + "\""};
+            // Missed by the operation that is required, or by the event that must be heard.
+            return std::vector{"\"" + std::string{row.target.operation} + "\"",
+                               "when(\"" + std::string{row.event} + "\""};
         });
         drop<BehaviourRow>(&Copy::behaviours, [](const BehaviourRow& row) {
             return std::vector{"component \"" + std::string{row.component} + "\""};
