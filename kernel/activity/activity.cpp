@@ -67,7 +67,7 @@ void Activity::live() noexcept {
         state_.store(State::waiting, std::memory_order_release);
         cycles();
         faults_ = os::page_faults_of_this_thread() - before;
-        engine_->stop(clock_->now());
+        if (claim_engine_stop()) engine_->stop(clock_->now());
     }
     state_.store(State::stopped, std::memory_order_release);
 }

@@ -27,8 +27,10 @@ public:
     /// Lets the thread start its engine; true when that is done within `milliseconds`.
     [[nodiscard]] bool release(int milliseconds) noexcept;
     /// Ends the cycles, lets the engine stop on its own thread, and joins it; false when it did not within
-    /// `milliseconds`: its thread hangs, and whoever called may run the engine's stop in its place.
+    /// `milliseconds`: its thread hangs, and whoever called may claim the engine's stop and run it.
     [[nodiscard]] bool stop(int milliseconds) noexcept;
+    /// True once, for the one who then runs the engine's stop: its own thread, or whoever gave that up. Real-time.
+    [[nodiscard]] bool claim_engine_stop() noexcept TAPPET_REALTIME { return !engine_stop_claimed_.exchange(true, std::memory_order_acq_rel); }
     /// After a stop that failed: nobody waits for its thread any more.
     void abandon() noexcept { thread_.abandon(); }
     /// For a thread that must not go on (a broken contract): it says so and sleeps for ever. Real-time.
@@ -59,6 +61,7 @@ private:
     std::atomic<State> state_{State::inactive};
     std::atomic<bool> released_{false};
     std::atomic<bool> stop_asked_{false};
+    std::atomic<bool> engine_stop_claimed_{false};
     os::PageFaults faults_{};
 };
 

@@ -113,7 +113,7 @@ int RealWorld::stop() {
         if (activities_[a].state() == Activity::State::inactive || activities_[a].stop(patience_ms)) continue;
         // Parked by a broken contract, or hung: its components still leave their safe values.
         ++hung;
-        if (running_) activities_[a].engine().stop(instance_.clock().now());
+        if (running_ && activities_[a].claim_engine_stop()) activities_[a].engine().stop(instance_.clock().now());
         activities_[a].abandon(); // the process must end although this thread never does
     }
     running_ = false;

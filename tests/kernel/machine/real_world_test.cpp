@@ -104,7 +104,7 @@ TEST_F(InRealTime, stops_for_a_late_cycle_where_the_row_says_so) {
 }
 
 TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_leaves_all_safe) {
-    Rig<watched::table> rig;
+    Rig<watched::parked_table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker("middle").order = Order::break_contract;
     for (int n = 0; n < 20 && rig.world->supervise(100ms); ++n) {}
@@ -131,14 +131,17 @@ TEST_F(InRealTime, TERM_ends_the_supervision_as_a_request) {
 TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_its_components_are_stopped_in_its_place) {
     // A hung thread of high priority would keep the supervisor from its processor: it spins on the other one.
     if (sysconf(_SC_NPROCESSORS_ONLN) < 2) GTEST_SKIP() << "one processor: the hung thread would have it";
-    Rig<watched::table> rig;
+    Rig<watched::hung_table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker("logic").order = Order::hang;
     EXPECT_TRUE(rig.world->supervise(50ms));
     EXPECT_EQ(rig.world->stop(), 1);
     EXPECT_EQ(rig.worker("logic").at_wire.load(), 0);
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
-    rig.worker("logic").let_go = true; // so that the thread can be joined
+    rig.worker("logic").let_go = true; // the thread comes back when all is over, and touches nothing any more
+    for (int n = 0; n < 1000 && rig.world->activity(watched::logic).state() != Activity::State::stopped; ++n) os::sleep_for(1ms);
+    EXPECT_EQ(rig.world->activity(watched::logic).state(), Activity::State::stopped);
+    EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
 }
 
 } // namespace

@@ -74,6 +74,10 @@ inline constexpr auto table = machine("watched",
         activity("logic",   every(5ms), runs("logic"),                   budget(50us))),
     connections(), reactions(), behaviours());
 
+/// The same in memory of their own, for tests that leave a thread behind on one of its stacks.
+inline constexpr auto parked_table = table;
+inline constexpr auto hung_table = table;
+
 /// The same, where a late cycle of "motion" stops the machine.
 inline constexpr auto strict_table = machine("strict",
     components(component<Worker>("driver"), component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"), component<Worker>("logic")),
