@@ -74,7 +74,8 @@ TEST_F(LoomWires, stops_at_once_at_the_emergency_stop_and_counts_edges_that_were
 
     // The whole firmware sleeps while the emergency stop flutters: more edges than the kernel keeps. The last level counts.
     loom->machine->signal(SIGSTOP);
-    for (int i = 0; i < 601; ++i) pull(wires::line::emergency_stop, i % 2 != 0);
+    constexpr int kept_by_the_kernel = 1024;
+    for (int i = 0; i < kept_by_the_kernel + 201; ++i) pull(wires::line::emergency_stop, i % 2 != 0);
     loom->machine->signal(SIGCONT);
     EXPECT_TRUE(soon([] { return loom->last("edges_lost") != "0" && !loom->last("edges_lost").empty(); })) << loom->since();
     loom->forget();
