@@ -6,7 +6,7 @@ namespace {
 
 using loom::Fault;
 
-constexpr std::uint64_t seeds = 8;
+constexpr std::uint64_t seeds = 6;
 
 class SafeStates : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(seed, SafeStates, testing::Range<std::uint64_t>(1, seeds + 1));

@@ -10,7 +10,7 @@ namespace {
 
 using loom::Fault;
 
-constexpr std::uint64_t seeds = 10;
+constexpr std::uint64_t seeds = 4;
 
 class Weaving : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(seed, Weaving, testing::Range<std::uint64_t>(1, seeds + 1));
