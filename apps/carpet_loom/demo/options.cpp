@@ -62,14 +62,9 @@ std::expected<Options, std::string> parse_options(int count, const char* const* 
 }
 
 const char* usage() {
-    return "ci/demo: weaves a carpet on the bench and shows how\n"
-           "  --picks N        end when N picks are woven (200)\n"
-           "  --seed N         which loom, and which breaks (1)\n"
-           "  --summary FILE   where the JSON goes (build/demo.json)\n"
-           "  --plain          one line per second, without colours, as when the output is no terminal\n"
-           "The programs, which ci/demo builds and names itself: --firmware FILE --plant FILE --init FILE\n"
-           "Exit code: 0 all well, 1 the summary shows a fault, 2 the command line, 3 the run did not come "
-           "to its end, 130 interrupted\n";
+    return "carpet-loom-demo --firmware FILE --plant FILE --init FILE --summary FILE [--picks N] [--seed N] "
+           "[--plain]\n"
+           "ci/demo builds the programs and names them; ci/demo --help explains the rest\n";
 }
 
 } // namespace tappet::demo
