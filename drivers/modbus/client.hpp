@@ -40,7 +40,8 @@ struct Counters {
 
 struct Backoff {
     Duration first = 100ms;
-    Duration most = 10s; ///< each failure doubles the wait, up to this
+    /// Each failure doubles the wait, up to this. Its users wait as much longer for a server that is back.
+    Duration most = 2s;
 };
 
 /// Belongs to one activity of its own, not a real-time one: a step holds its caller for one request at most.

@@ -146,8 +146,8 @@ TEST_F(Utility, asks_a_silent_server_ever_more_seldom) {
     const auto first = server->counters().timeouts;
     EXPECT_LE(first, 8u) << "waits of 100, 200, 400 ... ms";
     run_until(60s);
-    EXPECT_LE(server->counters().timeouts - first, 6u) << "10 s apart at most";
-    EXPECT_GE(server->counters().timeouts - first, 3u) << "and never given up";
+    EXPECT_LE(server->counters().timeouts - first, 25u) << "2 s apart";
+    EXPECT_GE(server->counters().timeouts - first, 17u) << "and never given up";
 }
 
 TEST_F(Utility, reconnects_and_reads_fresh_values) {
