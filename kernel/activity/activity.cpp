@@ -60,7 +60,7 @@ void Activity::live() noexcept {
     current_activity = this;
     state_.store(State::starting, std::memory_order_release);
     while (!released_.load(std::memory_order_acquire) && !stop_asked_.load(std::memory_order_acquire))
-        static_cast<void>(engine_->waiter().wait(never));
+        engine_->waiter().wait_for_wake();
     if (!stop_asked_.load(std::memory_order_acquire)) {
         engine_->start(clock_->now());
         const os::PageFaults before = os::page_faults_of_this_thread();

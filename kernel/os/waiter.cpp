@@ -44,7 +44,7 @@ void Waiter::wake() noexcept TAPPET_REALTIME {
 
 bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     if (take()) return true;
-    if (!devices_.empty()) return wait_on_devices(until);
+    if (!devices_.empty()) return wait_on_devices(devices_.size(), until);
     std::uint32_t expected = idle;
     if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
         const timespec end = to_timespec(to_ns(until));
@@ -57,23 +57,28 @@ bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     return take();
 }
 
-bool Waiter::wait_on_devices(Time until) noexcept TAPPET_REALTIME {
+void Waiter::wait_for_wake() noexcept TAPPET_REALTIME {
+    if (devices_.empty()) static_cast<void>(wait(never));
+    else if (!take()) static_cast<void>(wait_on_devices(0, never));
+}
+
+bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME {
     pollfd polled[max_devices + 1] = {};
-    for (std::size_t i = 0; i < devices_.size(); ++i) polled[i] = {devices_[i], POLLIN, 0};
-    polled[devices_.size()] = {wake_descriptor_, POLLIN, 0};
+    for (std::size_t i = 0; i < count; ++i) polled[i] = {devices_[i], POLLIN, 0};
+    polled[count] = {wake_descriptor_, POLLIN, 0};
     std::uint32_t expected = idle;
     if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
         const std::int64_t left = until == never ? 0 : (until - Clock::monotonic()).count();
         const timespec timeout = to_timespec(left > 0 ? left : 0);
         TAPPET_ESCAPE("the activity's own wait",
-                      ppoll(polled, devices_.size() + 1, until == never ? nullptr : &timeout, nullptr));
+                      ppoll(polled, count + 1, until == never ? nullptr : &timeout, nullptr));
     }
     bool ready = take();
-    for (std::size_t i = 0; i < devices_.size(); ++i) ready |= polled[i].revents != 0;
-    if (polled[devices_.size()].revents != 0) {
-        std::uint64_t count = 0;
+    for (std::size_t i = 0; i < count; ++i) ready |= polled[i].revents != 0;
+    if (polled[count].revents != 0) {
+        std::uint64_t wakes = 0;
         TAPPET_ESCAPE("taking the wake",
-                      [[maybe_unused]] auto n = read(wake_descriptor_, &count, sizeof count));
+                      [[maybe_unused]] auto n = read(wake_descriptor_, &wakes, sizeof wakes));
     }
     return ready;
 }

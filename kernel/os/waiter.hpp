@@ -41,11 +41,15 @@ public:
     /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
     /// ready.
     bool wait(Time until) noexcept TAPPET_REALTIME;
+    /// Sleeps until a wake, whatever the devices have to say: before its engine runs, nobody takes from them, and
+    /// a thread that returned for each of them would spin, at a real-time priority for ever.
+    void wait_for_wake() noexcept TAPPET_REALTIME;
 
 private:
     static constexpr std::uint32_t idle = 0, woken = 1, asleep = 2;
 
-    bool wait_on_devices(Time until) noexcept TAPPET_REALTIME;
+    /// On the first `count` of them, and on the wake.
+    bool wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME;
 
     alignas(64) std::atomic<std::uint32_t> state_{idle};
     Bounded<int, max_devices> devices_{};

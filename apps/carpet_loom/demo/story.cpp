@@ -27,7 +27,9 @@ Story::Kind Story::take(std::string_view line) {
 
 void Story::note_stop(const Status& now) {
     const bool at_stop_angle = now.stops > status_.stops;
-    const bool came_to_stand = status_.speed_rpm != 0 && now.speed_rpm == 0;
+    // Everything else the machine counts once the shaft stands at the stop angle.
+    const bool wherever = now.cause == "emergency" || now.cause == "fault";
+    const bool came_to_stand = wherever && status_.speed_rpm != 0 && now.speed_rpm == 0;
     if (!at_stop_angle && !came_to_stand) return;
     SeenStop stop{.after_pick = now.picks, .cause = now.cause, .at_stop_angle = at_stop_angle};
     stop.error_deg = at_stop_angle ? now.stop_error_deg : 0.0;

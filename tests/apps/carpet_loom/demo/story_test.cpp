@@ -59,6 +59,19 @@ TEST(Story, sees_a_stop_that_was_over_before_the_next_line) {
               1U);
 }
 
+TEST(Story, counts_a_stop_once_although_the_shaft_stood_before_the_machine_said_so) {
+    const Story story =
+        story_of({line(1000, "weave", 600, 8, 0, "none"), line(1250, "stopping", 0, 9, 0, "weft", 0, 314),
+                  line(1500, "stopped", 0, 9, 1, "weft", 35, 314)});
+    EXPECT_EQ(story.stops().size(), 1U);
+}
+
+TEST(Story, takes_a_shaft_that_moved_a_little_when_the_brake_opened_for_no_stop) {
+    EXPECT_THAT(
+        story_of({line(1000, "preparing", 3, 9, 1, "none"), line(1250, "ready", 0, 9, 1, "none")}).stops(),
+        IsEmpty());
+}
+
 TEST(Story, counts_no_stop_while_the_shaft_stands_from_the_beginning) {
     EXPECT_THAT(story_of({line(0, "preparing", 0, 0, 0, "none"), line(250, "ready", 0, 0, 0, "none"),
                           line(500, "run-up", 90, 0, 0, "none")})
