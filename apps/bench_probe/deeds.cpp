@@ -28,12 +28,14 @@ void commit(Deed deed) noexcept {
     case Deed::nothing:
     case Deed::break_contract: return; // the component itself breaks it
     case Deed::allocate: {
-        void* volatile piece = std::malloc(1000); // volatile: a pair of malloc and free may be left out otherwise
+        void* volatile piece =
+            std::malloc(1000); // volatile: a pair of malloc and free may be left out otherwise
         std::free(piece);
         return;
     }
     case Deed::map: {
-        void* const piece = ::mmap(nullptr, page_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        void* const piece =
+            ::mmap(nullptr, page_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (piece != MAP_FAILED) ::munmap(piece, page_bytes);
         return;
     }

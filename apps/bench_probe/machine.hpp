@@ -1,4 +1,5 @@
-// The smallest machine that can go wrong: one component that does, one that does not, in one real-time activity.
+// The smallest machine that can go wrong: one component that does, one that does not, in one real-time
+// activity.
 #pragma once
 
 #include "apps/bench_probe/probe.hpp"
@@ -6,9 +7,9 @@
 
 namespace tappet::probe {
 
-inline constexpr auto bench_probe = machine("bench-probe",
-    components(component<Bystander>("bystander"), component<Culprit>("culprit")),
-    activities(activity("work", every(1ms), runs("bystander", "culprit"), budget(100us))),
-    connections(), reactions(), behaviours());
+inline constexpr auto bench_probe =
+    machine("bench-probe", components(component<Bystander>("bystander"), component<Culprit>("culprit")),
+            activities(activity("work", every(1ms), runs("bystander", "culprit"), budget(100us))),
+            connections(), reactions(), behaviours());
 
 } // namespace tappet::probe

@@ -1,4 +1,5 @@
-// bench-probe DEED: arms, runs for a third of a second, does the deed meanwhile, and tells what the machine noticed.
+// bench-probe DEED: arms, runs for a third of a second, does the deed meanwhile, and tells what the machine
+// noticed.
 #include "apps/bench_probe/machine.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/real_world.hpp"
@@ -31,10 +32,17 @@ bool find_deed(const char* word, probe::Deed& deed) {
 
 void print_counters(const MachineInstance& instance, const RealWorld& world, bool left_safe) {
     const EngineStatistics& seen = instance.engines()[0].statistics();
-    os::print(Sentence{"bench-probe: allocations=", os::heap::allocations_after_seal(), " mappings=", os::heap::mappings_after_seal(), " page_faults=", world.page_faults_in_real_time_threads(), " misses=", seen.misses, " safe=", left_safe ? "yes" : "no", "\n"}.view());
+    os::print(Sentence{"bench-probe: allocations=", os::heap::allocations_after_seal(),
+                       " mappings=", os::heap::mappings_after_seal(),
+                       " page_faults=", world.page_faults_in_real_time_threads(), " misses=", seen.misses,
+                       " safe=", left_safe ? "yes" : "no", "\n"}
+                  .view());
     if (seen.misses == 0) return;
     const Miss& miss = seen.recent_misses[0];
-    const std::string_view culprit = miss.function == Miss::nobody ? std::string_view{"nobody"} : instance.engines()[0].plan().parts[miss.function / functions_per_part].name;
+    const std::string_view culprit =
+        miss.function == Miss::nobody
+            ? std::string_view{"nobody"}
+            : instance.engines()[0].plan().parts[miss.function / functions_per_part].name;
     os::print(Sentence{"bench-probe: the first miss is blamed on ", culprit, "\n"}.view());
 }
 
@@ -60,7 +68,9 @@ int main(int count, char** words) {
     if (!world.start()) return stopped_by_fault;
     const bool by_itself = !world.supervise(300ms);
     static_cast<void>(world.stop());
-    const Sentence reason = !by_itself ? Sentence{"its time is over"} : world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
+    const Sentence reason = !by_itself                        ? Sentence{"its time is over"}
+                            : world.broken_contract().empty() ? instance.describe_stop()
+                                                              : world.broken_contract();
     os::print(Sentence{"bench-probe ", std::string_view{words[1]}, ": stopped: ", reason, "\n"}.view());
     print_counters(instance, world, culprit->left_safe);
     return by_itself ? stopped_by_fault : ended_well;

@@ -11,10 +11,11 @@
 namespace tappet::probe {
 
 enum class Deed : std::uint8_t { nothing, allocate, map, touch, overrun, break_contract };
-inline constexpr std::array<std::string_view, 6> deed_names{"nothing", "allocate", "map", "touch", "overrun", "break-contract"};
+inline constexpr std::array<std::string_view, 6> deed_names{"nothing", "allocate", "map",
+                                                            "touch",   "overrun",  "break-contract"};
 
-/// What is forbidden needs the operating system, or the very calls that the compiler would not let pass: they are in
-/// deeds.cpp.
+/// What is forbidden needs the operating system, or the very calls that the compiler would not let pass: they
+/// are in deeds.cpp.
 void commit(Deed deed) noexcept;
 
 /// Says when it left its safe value, so that a test sees that it did.
@@ -30,7 +31,10 @@ struct Culprit {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { left_safe = true; }
 
-    static constexpr auto interface() { return facets(property<&Culprit::after_cycles>("after_cycles", "", "cycles before the deed", range(1, 1'000'000))); }
+    static constexpr auto interface() {
+        return facets(property<&Culprit::after_cycles>("after_cycles", "", "cycles before the deed",
+                                                       range(1, 1'000'000)));
+    }
 
 private:
     std::int64_t cycles_ = 0;
@@ -40,7 +44,9 @@ private:
 struct Bystander {
     Property<std::int64_t> unused{0};
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
-    static constexpr auto interface() { return facets(property<&Bystander::unused>("unused", "", "a component has a facet", range(0, 0))); }
+    static constexpr auto interface() {
+        return facets(property<&Bystander::unused>("unused", "", "a component has a facet", range(0, 0)));
+    }
 };
 
 } // namespace tappet::probe

@@ -69,7 +69,9 @@ public:
     /// False once it has ended, though nobody waited for it.
     [[nodiscard]] bool runs() const {
         siginfo_t ended{};
-        return process_ > 0 && ::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
+        return process_ > 0 &&
+               ::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+               ended.si_pid == 0;
     }
 
 private:

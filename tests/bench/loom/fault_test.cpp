@@ -6,7 +6,8 @@ namespace {
 
 constexpr const char* bus_off = "cansend can0 20000040#0000000000000000"; // as the controller tells it
 
-TEST(LoomBus, goes_safe_when_the_bus_is_off_and_weaves_again_after_one_restart_and_the_operators_acknowledge) {
+TEST(LoomBus,
+     goes_safe_when_the_bus_is_off_and_weaves_again_after_one_restart_and_the_operators_acknowledge) {
     Loom loom;
     Foreign listener{listen_to_the_machine};
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();
@@ -22,13 +23,16 @@ TEST(LoomBus, goes_safe_when_the_bus_is_off_and_weaves_again_after_one_restart_a
     WallTime acknowledged{};
     bool pressed = false;
     std::string told;
-    EXPECT_TRUE(soon([&] {
-        const bool now_pressed = level(wires::line::button_acknowledge);
-        if (now_pressed && !pressed) acknowledged = wall_now();
-        pressed = now_pressed;
-        if (!pressed) told = loom.since();
-        return told.find("state=ready") != std::string::npos;
-    }, 8s)) << told;
+    EXPECT_TRUE(soon(
+        [&] {
+            const bool now_pressed = level(wires::line::button_acknowledge);
+            if (now_pressed && !pressed) acknowledged = wall_now();
+            pressed = now_pressed;
+            if (!pressed) told = loom.since();
+            return told.find("state=ready") != std::string::npos;
+        },
+        8s))
+        << told;
     EXPECT_TRUE(loom.weaves()) << loom.since();
     EXPECT_EQ(loom.last("restarts"), "1");
     EXPECT_GE(loom.picks(), picks_before);
@@ -37,9 +41,12 @@ TEST(LoomBus, goes_safe_when_the_bus_is_off_and_weaves_again_after_one_restart_a
     listener.signal(SIGINT);
     listener.wait();
     const auto frames = frames_of(listener.output());
-    const auto fault = std::find_if(frames.begin(), frames.end(), [](const Logged& f) { return f.id == 0x20000040; });
+    const auto fault =
+        std::find_if(frames.begin(), frames.end(), [](const Logged& f) { return f.id == 0x20000040; });
     ASSERT_NE(fault, frames.end());
-    const auto again = std::find_if(fault + 1, frames.end(), [&](const Logged& f) { return f.at > fault->at + 2ms; }); // what was in the controller already
+    const auto again = std::find_if(fault + 1, frames.end(), [&](const Logged& f) {
+        return f.at > fault->at + 2ms;
+    }); // what was in the controller already
     ASSERT_NE(again, frames.end());
     EXPECT_GE(again->at - fault->at, 900ms) << "a deliberate restart comes after a pause";
     int early = 0;
@@ -66,7 +73,9 @@ TEST(LoomBus, ends_safe_when_the_plant_dies_and_can_still_be_stopped) {
     EXPECT_TRUE(soon(is_safe, 200ms)) << "brake on, valve closed";
     EXPECT_TRUE(loom.says("state=fault")) << loom.since();
     EXPECT_NE(loom.since().find("encoder"), std::string::npos) << loom.since(); // what is waited for
-    EXPECT_NE(loom.machine->output().find("the loom goes to \"fault\": the encoder is stale"), std::string::npos) << loom.machine->output();
+    EXPECT_NE(loom.machine->output().find("the loom goes to \"fault\": the encoder is stale"),
+              std::string::npos)
+        << loom.machine->output();
     std::this_thread::sleep_for(500ms);
     EXPECT_TRUE(is_safe()) << "and stays so";
     EXPECT_TRUE(loom.machine->runs());

@@ -1,5 +1,5 @@
-// The carpet loom's firmware and its plant as processes of the bench, and what a test sees of them: their words, the
-// levels on the lines, and every frame as a foreign listener logged it.
+// The carpet loom's firmware and its plant as processes of the bench, and what a test sees of them: their
+// words, the levels on the lines, and every frame as a foreign listener logged it.
 #pragma once
 
 #include "apps/carpet_loom/wires.hpp"
@@ -24,8 +24,10 @@ using WallDuration = std::chrono::microseconds;
 inline WallTime wall_now() { return std::chrono::system_clock::now(); }
 
 /// Looks every so often until it is so; false after `patience`.
-template <class Condition> bool soon(Condition&& is_so, std::chrono::milliseconds patience = 5s, std::chrono::milliseconds every = 2ms) {
-    for (const auto end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
+template <class Condition> bool soon(Condition&& is_so, std::chrono::milliseconds patience = 5s,
+                                     std::chrono::milliseconds every = 2ms) {
+    for (const auto end = std::chrono::steady_clock::now() + patience;
+         std::chrono::steady_clock::now() < end;) {
         if (is_so()) return true;
         std::this_thread::sleep_for(every);
     }
@@ -38,11 +40,14 @@ inline std::string content_of(const std::string& path) {
 }
 
 /// The level that stands on a line of the simulated chip, whoever drives it.
-inline bool level(unsigned line) { return content_of("/sim/loom-io/sim_gpio" + std::to_string(line) + "/value").starts_with('1'); }
+inline bool level(unsigned line) {
+    return content_of("/sim/loom-io/sim_gpio" + std::to_string(line) + "/value").starts_with('1');
+}
 
 /// From the outside, as a button or a sensor would.
 inline void pull(unsigned line, bool high) {
-    std::ofstream{"/sim/loom-io/sim_gpio" + std::to_string(line) + "/pull"} << (high ? "pull-up" : "pull-down");
+    std::ofstream{"/sim/loom-io/sim_gpio" + std::to_string(line) + "/pull"}
+        << (high ? "pull-up" : "pull-down");
 }
 
 /// A frame in a log of `candump -L`.
@@ -51,11 +56,14 @@ struct Logged {
     std::uint32_t id = 0;
     std::vector<std::uint8_t> data;
 
-    [[nodiscard]] unsigned word() const { return data.size() < 2 ? 0u : data[0] | static_cast<unsigned>(data[1]) << 8; }
+    [[nodiscard]] unsigned word() const {
+        return data.size() < 2 ? 0u : data[0] | static_cast<unsigned>(data[1]) << 8;
+    }
     /// Of a drive's command: its target.
     [[nodiscard]] std::int32_t target() const {
         std::uint32_t value = 0;
-        for (std::size_t i = 2; i < 6 && i < data.size(); ++i) value |= static_cast<std::uint32_t>(data[i]) << (8 * (i - 2));
+        for (std::size_t i = 2; i < 6 && i < data.size(); ++i)
+            value |= static_cast<std::uint32_t>(data[i]) << (8 * (i - 2));
         return static_cast<std::int32_t>(value);
     }
     [[nodiscard]] bool enables_operation() const { return (word() & 0x8Fu) == 0x0Fu; }
@@ -70,7 +78,9 @@ inline std::vector<Logged> frames_of(const std::string& log) {
         long micros = 0;
         unsigned id = 0;
         int read = 0;
-        if (std::sscanf(line.c_str(), "(%lld.%ld) %*s %x#%n", &seconds, &micros, &id, &read) != 3 || read == 0) continue;
+        if (std::sscanf(line.c_str(), "(%lld.%ld) %*s %x#%n", &seconds, &micros, &id, &read) != 3 ||
+            read == 0)
+            continue;
         Logged frame{WallTime{std::chrono::seconds{seconds} + std::chrono::microseconds{micros}}, id, {}};
         for (std::size_t i = static_cast<std::size_t>(read); i + 1 < line.size(); i += 2)
             frame.data.push_back(static_cast<std::uint8_t>(std::stoul(line.substr(i, 2), nullptr, 16)));
@@ -86,15 +96,17 @@ inline double number_in(const std::string& json, std::string_view key) {
     return at == std::string::npos ? -1.0 : std::strtod(json.c_str() + at + wanted.size(), nullptr);
 }
 
-/// The loom, weaving or about to. The plant samples the lines each millisecond: the emulator is slow enough as it is,
-/// and no test here asks for more. Its priority keeps the test's own work from holding it up.
+/// The loom, weaving or about to. The plant samples the lines each millisecond: the emulator is slow enough
+/// as it is, and no test here asks for more. Its priority keeps the test's own work from holding it up.
 class Loom {
 public:
     static constexpr const char* summary_file = "/tmp/summary.json";
     static constexpr const char* report_file = "/tmp/report.json";
 
     explicit Loom(const std::string& plant_options = {})
-        : plant{"carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --period 1ms --fifo 1 --operator-reaction 1s --report " + std::string{report_file} + " " + plant_options} {
+        : plant{"carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --period 1ms --fifo 1 "
+                "--operator-reaction 1s --report " +
+                std::string{report_file} + " " + plant_options} {
         ::unlink(summary_file);
         std::this_thread::sleep_for(100ms); // its Modbus server listens
         machine.emplace("carpet_loom --summary " + std::string{summary_file});
@@ -155,6 +167,7 @@ inline bool is_safe() { return level(wires::line::brake) && !level(wires::line::
 
 /// Everything the machine sends, and error frames: not what the plant floods the bus with.
 /// -D: a restart takes the interface down and up, and a listener stays.
-inline constexpr const char* listen_to_the_machine = "candump -D -L can0,000:7FF,201:7FF,202:7FF,205:7FF,206:7FF,#FFFFFFFF";
+inline constexpr const char* listen_to_the_machine =
+    "candump -D -L can0,000:7FF,201:7FF,202:7FF,205:7FF,206:7FF,#FFFFFFFF";
 
 } // namespace tappet::bench

@@ -14,7 +14,8 @@ constexpr int refused_to_arm = 3;
 
 /// Runs the firmware until it ends, and what it said.
 struct Attempt {
-    explicit Attempt(const std::string& options = {}) : firmware{"carpet_loom " + options}, code{firmware.wait()}, said{firmware.output()} {}
+    explicit Attempt(const std::string& options = {})
+        : firmware{"carpet_loom " + options}, code{firmware.wait()}, said{firmware.output()} {}
     Foreign firmware;
     int code;
     std::string said;
@@ -44,7 +45,9 @@ TEST(LoomSetUp, names_a_can_interface_that_is_down) {
     const Attempt attempt;
     set_up("can0", true);
     EXPECT_EQ(attempt.code, wrong_set_up);
-    EXPECT_NE(attempt.said.find("device \"loom-can\" at \"can0\": CAN interface \"can0\" is down: set it up"), std::string::npos) << attempt.said;
+    EXPECT_NE(attempt.said.find("device \"loom-can\" at \"can0\": CAN interface \"can0\" is down: set it up"),
+              std::string::npos)
+        << attempt.said;
 }
 
 TEST(LoomSetUp, names_a_can_interface_that_is_not_there) {
@@ -54,7 +57,8 @@ TEST(LoomSetUp, names_a_can_interface_that_is_not_there) {
     rename_interface("can7", "can0");
     set_up("can0", true);
     EXPECT_EQ(attempt.code, wrong_set_up);
-    EXPECT_NE(attempt.said.find("board \"bench\", device \"loom-can\" at \"can0\": "), std::string::npos) << attempt.said;
+    EXPECT_NE(attempt.said.find("board \"bench\", device \"loom-can\" at \"can0\": "), std::string::npos)
+        << attempt.said;
 }
 
 TEST(LoomSetUp, names_a_gpio_chip_that_is_not_there) {
@@ -62,7 +66,9 @@ TEST(LoomSetUp, names_a_gpio_chip_that_is_not_there) {
     const Attempt attempt;
     EXPECT_EQ(::rename("/dev/elsewhere", "/dev/loom-io"), 0);
     EXPECT_EQ(attempt.code, wrong_set_up);
-    EXPECT_NE(attempt.said.find("board \"bench\", device \"loom-io\" at \"/dev/loom-io\": "), std::string::npos) << attempt.said;
+    EXPECT_NE(attempt.said.find("board \"bench\", device \"loom-io\" at \"/dev/loom-io\": "),
+              std::string::npos)
+        << attempt.said;
 }
 
 TEST(LoomSetUp, names_a_line_that_the_chip_does_not_have) {
@@ -71,7 +77,10 @@ TEST(LoomSetUp, names_a_line_that_the_chip_does_not_have) {
     const Attempt attempt;
     EXPECT_EQ(::rename("/dev/elsewhere", "/dev/loom-io"), 0);
     EXPECT_EQ(attempt.code, wrong_set_up);
-    EXPECT_NE(attempt.said.find("line 8 of chip \"/dev/loom-io\", does not exist: correct the offset in the board"), std::string::npos) << attempt.said;
+    EXPECT_NE(
+        attempt.said.find("line 8 of chip \"/dev/loom-io\", does not exist: correct the offset in the board"),
+        std::string::npos)
+        << attempt.said;
 }
 
 TEST(LoomSetUp, names_lines_that_another_program_holds) {
@@ -95,7 +104,8 @@ TEST(LoomSetUp, refuses_to_arm_while_real_time_threads_are_throttled) {
     std::ofstream{limit} << -1;
     EXPECT_EQ(attempt.code, refused_to_arm);
     EXPECT_NE(attempt.said.find("rt-throttling"), std::string::npos) << attempt.said;
-    EXPECT_NE(attempt.said.find("write -1 to /proc/sys/kernel/sched_rt_runtime_us"), std::string::npos) << attempt.said;
+    EXPECT_NE(attempt.said.find("write -1 to /proc/sys/kernel/sched_rt_runtime_us"), std::string::npos)
+        << attempt.said;
 }
 
 TEST(LoomSetUp, arms_without_its_modbus_device_but_never_gets_ready_and_says_why) {

@@ -1,4 +1,5 @@
-// The climate and lubrication unit goes away for ten seconds: the loom weaves on with the last oil pressure it heard of.
+// The climate and lubrication unit goes away for ten seconds: the loom weaves on with the last oil pressure
+// it heard of.
 #include "tests/bench/loom/loom_rig.hpp"
 
 namespace tappet::bench {

@@ -1,5 +1,5 @@
-// What must not upset a weaving loom, and what must stop it at once. One loom for all of these tests, in this order: a
-// start takes seconds of the bench.
+// What must not upset a weaving loom, and what must stop it at once. One loom for all of these tests, in this
+// order: a start takes seconds of the bench.
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <memory>
@@ -28,13 +28,17 @@ struct LoomWires : testing::Test {
 
 TEST_F(LoomWires, does_not_decode_what_is_not_on_its_map_and_keeps_weaving) {
     loom->forget();
-    for (const char* frame : {"183#0102", "183#0102030405060708", "181#00", "703#0000", "184#"}) // wrong lengths: counted
+    for (const char* frame :
+         {"183#0102", "183#0102030405060708", "181#00", "703#0000", "184#"}) // wrong lengths: counted
         ASSERT_EQ(run(std::string{"cansend can0 "} + frame), 0) << frame;
-    for (const char* frame : {"7A5#DEADBEEF", "187#0102030405060708",             // of nobody
-                              "00000183#01020304", "00000703#00", "00000181#0800000000000000", // an extended frame's low bits are no standard identifier
-                              "183#R", "703#R"})                                  // a request carries no data
+    for (const char* frame :
+         {"7A5#DEADBEEF", "187#0102030405060708", // of nobody
+          "00000183#01020304", "00000703#00",
+          "00000181#0800000000000000", // an extended frame's low bits are no standard identifier
+          "183#R", "703#R"})           // a request carries no data
         ASSERT_EQ(run(std::string{"cansend can0 "} + frame), 0) << frame;
-    ASSERT_EQ(run("cansend can0 205#01DC05"), 0); // the machine's own identifier, from somebody else: the feeder's usual command
+    ASSERT_EQ(run("cansend can0 205#01DC05"),
+              0); // the machine's own identifier, from somebody else: the feeder's usual command
     ASSERT_EQ(run("cangen can0 -e -g 1 -n 200 -L r"), 0);
     EXPECT_TRUE(keeps_weaving(5)) << loom->since();
     EXPECT_EQ(loom->last("bus"), "0");
@@ -59,27 +63,34 @@ TEST_F(LoomWires, stops_at_once_at_the_emergency_stop_and_counts_edges_that_were
     pull(wires::line::emergency_stop, true);
     const bool safe = soon(is_safe, 100ms);
     const WallDuration took = std::chrono::duration_cast<WallDuration>(wall_now() - pressed);
-    std::printf("emergency stop: brake on and valve closed at most %lld us after the line\n", static_cast<long long>(took.count()));
+    std::printf("emergency stop: brake on and valve closed at most %lld us after the line\n",
+                static_cast<long long>(took.count()));
     EXPECT_TRUE(safe);
     EXPECT_LT(took, 5ms);
-    EXPECT_TRUE(loom->says("the loom goes to \"emergency\": the emergency stop was pressed")) << loom->since();
+    EXPECT_TRUE(loom->says("the loom goes to \"emergency\": the emergency stop was pressed"))
+        << loom->since();
     EXPECT_TRUE(loom->says("waits_for=emergency-stop"));
     listener.signal(SIGINT);
     listener.wait();
     const auto frames = frames_of(listener.output());
-    const auto stop = std::find_if(frames.begin(), frames.end(), [](const Logged& f) { return f.id == wires::cob::main_drive_command && (f.word() & 0x06u) == 0x02u; });
+    const auto stop = std::find_if(frames.begin(), frames.end(), [](const Logged& f) {
+        return f.id == wires::cob::main_drive_command && (f.word() & 0x06u) == 0x02u;
+    });
     ASSERT_NE(stop, frames.end()) << "the drive's quick stop";
     EXPECT_LT(stop->at - pressed, 10ms);
     EXPECT_EQ(stop->target(), 0);
 
-    // The whole firmware sleeps while the emergency stop flutters: more edges than the kernel keeps. The last level counts.
+    // The whole firmware sleeps while the emergency stop flutters: more edges than the kernel keeps. The last
+    // level counts.
     loom->machine->signal(SIGSTOP);
     constexpr int kept_by_the_kernel = 1024;
     for (int i = 0; i < kept_by_the_kernel + 201; ++i) pull(wires::line::emergency_stop, i % 2 != 0);
     loom->machine->signal(SIGCONT);
-    EXPECT_TRUE(soon([] { return loom->last("edges_lost") != "0" && !loom->last("edges_lost").empty(); })) << loom->since();
+    EXPECT_TRUE(soon([] { return loom->last("edges_lost") != "0" && !loom->last("edges_lost").empty(); }))
+        << loom->since();
     loom->forget();
-    EXPECT_TRUE(soon([] { return loom->last("waits_for") != "emergency-stop"; })) << "the line has fallen, and the machine knows";
+    EXPECT_TRUE(soon([] { return loom->last("waits_for") != "emergency-stop"; }))
+        << "the line has fallen, and the machine knows";
     EXPECT_TRUE(loom->weaves()) << loom->since();
 }
 
@@ -90,21 +101,26 @@ TEST_F(LoomWires, leaves_safe_values_on_every_wire_when_it_is_told_to_stop) {
     loom->machine->signal(SIGTERM);
     EXPECT_TRUE(soon(is_safe, 1s)) << "brake on, valve closed, while it stops";
     EXPECT_EQ(loom->end(), 0) << loom->machine->output();
-    EXPECT_NE(loom->machine->output().find("carpet-loom: stopped: asked for from outside"), std::string::npos);
+    EXPECT_NE(loom->machine->output().find("carpet-loom: stopped: asked for from outside"),
+              std::string::npos);
     EXPECT_FALSE(level(wires::line::weft_release));
     std::this_thread::sleep_for(50ms);
     listener.signal(SIGINT);
     listener.wait();
     const auto frames = frames_of(listener.output());
     for (const std::uint32_t id : {wires::cob::main_drive_command, wires::cob::let_off_drive_command}) {
-        const auto last = std::find_if(frames.rbegin(), frames.rend(), [id](const Logged& f) { return f.id == id; });
+        const auto last =
+            std::find_if(frames.rbegin(), frames.rend(), [id](const Logged& f) { return f.id == id; });
         ASSERT_NE(last, frames.rend());
         EXPECT_FALSE(last->enables_operation()) << id;
         EXPECT_EQ(last->target(), 0) << id;
     }
-    const auto first = std::find_if(frames.begin(), frames.end(), [](const Logged& f) { return f.id == wires::cob::main_drive_command && !f.enables_operation(); });
+    const auto first = std::find_if(frames.begin(), frames.end(), [](const Logged& f) {
+        return f.id == wires::cob::main_drive_command && !f.enables_operation();
+    });
     ASSERT_NE(first, frames.end());
-    EXPECT_EQ(first->word() & 0x06u, 0x02u) << "a drive at speed gets its quick stop, it is not left to coast";
+    EXPECT_EQ(first->word() & 0x06u, 0x02u)
+        << "a drive at speed gets its quick stop, it is not left to coast";
 
     EXPECT_EQ(number_in(loom->summary, "can_wrong_lengths"), 5);
     EXPECT_EQ(number_in(loom->summary, "can_impostors"), 1);
@@ -114,7 +130,8 @@ TEST_F(LoomWires, leaves_safe_values_on_every_wire_when_it_is_told_to_stop) {
     EXPECT_EQ(number_in(loom->summary, "page_faults_after_arming"), 0);
     loom->plant.signal(SIGTERM);
     loom->plant.wait();
-    EXPECT_EQ(number_in(content_of(Loom::report_file), "total"), 0) << "damage to the loom:\n" << content_of(Loom::report_file);
+    EXPECT_EQ(number_in(content_of(Loom::report_file), "total"), 0) << "damage to the loom:\n"
+                                                                    << content_of(Loom::report_file);
 }
 
 } // namespace
