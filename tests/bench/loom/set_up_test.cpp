@@ -26,17 +26,17 @@ void ask_interface(unsigned long request, ifreq& what) {
     EXPECT_EQ(::ioctl(fd, request, &what), 0) << std::strerror(errno);
     ::close(fd);
 }
-void set_up(const char* name, bool up) {
+void set_up(std::string_view name, bool up) {
     ifreq request{};
-    std::strcpy(request.ifr_name, name);
+    name.copy(request.ifr_name, IFNAMSIZ - 1);
     ask_interface(SIOCGIFFLAGS, request);
     request.ifr_flags = static_cast<short>(up ? request.ifr_flags | IFF_UP : request.ifr_flags & ~IFF_UP);
     ask_interface(SIOCSIFFLAGS, request);
 }
-void rename_interface(const char* from, const char* to) {
+void rename_interface(std::string_view from, std::string_view to) {
     ifreq request{};
-    std::strcpy(request.ifr_name, from);
-    std::strcpy(request.ifr_newname, to);
+    from.copy(request.ifr_name, IFNAMSIZ - 1);
+    to.copy(request.ifr_newname, IFNAMSIZ - 1);
     ask_interface(SIOCSIFNAME, request);
 }
 
