@@ -29,8 +29,11 @@ public:
     /// Ends the cycles, lets the engine stop on its own thread, and joins it; false when it did not within
     /// `milliseconds`: its thread hangs, and whoever called may claim the engine's stop and run it.
     [[nodiscard]] bool stop(int milliseconds) noexcept;
-    /// True once, for the one who then runs the engine's stop: its own thread, or whoever gave that up. Real-time.
-    [[nodiscard]] bool claim_engine_stop() noexcept TAPPET_REALTIME { return !engine_stop_claimed_.exchange(true, std::memory_order_acq_rel); }
+    /// True once, for the one who then runs the engine's stop: its own thread, or whoever gave that up.
+    /// Real-time.
+    [[nodiscard]] bool claim_engine_stop() noexcept TAPPET_REALTIME {
+        return !engine_stop_claimed_.exchange(true, std::memory_order_acq_rel);
+    }
     /// After a stop that failed: nobody waits for its thread any more.
     void abandon() noexcept { thread_.abandon(); }
     /// For a thread that must not go on (a broken contract): it says so and sleeps for ever. Real-time.

@@ -56,6 +56,7 @@ void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
 
 bool RealWorld::arm(os::ArmingReport& report, int file) {
     const auto& machine = instance_.machine();
+    os::touch(machine.memory); // before there are threads: their stacks are part of it
     const auto engines = instance_.engines();
     int highest = 1;
     Bounded<int, checks::max_activities> processors;
@@ -69,7 +70,6 @@ bool RealWorld::arm(os::ArmingReport& report, int file) {
         if (plan.priority > highest) highest = plan.priority;
         static_cast<void>(processors.push(plan.processor));
     }
-    os::touch(machine.memory);
     if (const auto locked = os::lock_memory(); !locked)
         report.fault("memory-lock", locked.error(), Sentence{"see the reason"});
     if (auto held = os::hold_cpu_dma_latency(); held) latency_ = std::move(*held);
@@ -113,7 +113,8 @@ int RealWorld::stop() {
         if (activities_[a].state() == Activity::State::inactive || activities_[a].stop(patience_ms)) continue;
         // Parked by a broken contract, or hung: its components still leave their safe values.
         ++hung;
-        if (running_ && activities_[a].claim_engine_stop()) activities_[a].engine().stop(instance_.clock().now());
+        if (running_ && activities_[a].claim_engine_stop())
+            activities_[a].engine().stop(instance_.clock().now());
         activities_[a].abandon(); // the process must end although this thread never does
     }
     running_ = false;

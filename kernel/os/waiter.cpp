@@ -58,8 +58,10 @@ bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
 }
 
 void Waiter::wait_for_wake() noexcept TAPPET_REALTIME {
-    if (devices_.empty()) static_cast<void>(wait(never));
-    else if (!take()) static_cast<void>(wait_on_devices(0, never));
+    if (devices_.empty())
+        static_cast<void>(wait(never));
+    else if (!take())
+        static_cast<void>(wait_on_devices(0, never));
 }
 
 bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME {

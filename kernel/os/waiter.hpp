@@ -41,8 +41,8 @@ public:
     /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
     /// ready.
     bool wait(Time until) noexcept TAPPET_REALTIME;
-    /// Sleeps until a wake, whatever the devices have to say: before its engine runs, nobody takes from them, and
-    /// a thread that returned for each of them would spin, at a real-time priority for ever.
+    /// Sleeps until a wake, whatever the devices have to say: before its engine runs, nobody takes from them,
+    /// and a thread that returned for each of them would spin, at a real-time priority for ever.
     void wait_for_wake() noexcept TAPPET_REALTIME;
 
 private:

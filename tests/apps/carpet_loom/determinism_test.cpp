@@ -1,4 +1,5 @@
-// One seed is one run, bit for bit: in one process and in two, with both compilers, whatever goes wrong on the wires.
+// One seed is one run, bit for bit: in one process and in two, with both compilers, whatever goes wrong on
+// the wires.
 #include "kernel/os/heap.hpp"
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 #include "tests/apps/carpet_loom/program.hpp"
@@ -32,9 +33,9 @@ std::uint64_t digest_of(std::uint64_t seed, bool bad_wires = false) {
     return rig.run().event_log_digest();
 }
 
-/// What both compilers, at every level of optimisation, make of the seeds. They change with the machine's table, its
-/// components and the plant, and with nothing else: after such a change the failing test shows the new ones, which both
-/// presets (gcc, clang) must then show alike.
+/// What both compilers, at every level of optimisation, make of the seeds. They change with the machine's
+/// table, its components and the plant, and with nothing else: after such a change the failing test shows the
+/// new ones, which both presets (gcc, clang) must then show alike.
 struct Golden {
     std::uint64_t seed;
     std::uint64_t digest;
@@ -46,7 +47,9 @@ constexpr Golden golden[] = {
 };
 
 TEST(Determinism, the_event_log_of_a_seed_is_the_same_with_both_compilers) {
-    for (const Golden& each : golden) EXPECT_EQ(digest_of(each.seed), each.digest) << "seed " << each.seed << std::hex << ": the new digest is 0x" << digest_of(each.seed);
+    for (const Golden& each : golden)
+        EXPECT_EQ(digest_of(each.seed), each.digest)
+            << "seed " << each.seed << std::hex << ": the new digest is 0x" << digest_of(each.seed);
 }
 
 TEST(Determinism, a_second_run_in_the_same_process_is_the_first_one_again) {
@@ -55,9 +58,13 @@ TEST(Determinism, a_second_run_in_the_same_process_is_the_first_one_again) {
     EXPECT_EQ(digest_of(17), first);
 }
 
-TEST(Determinism, faults_on_the_wires_repeat_with_the_seed) { EXPECT_EQ(digest_of(5, true), digest_of(5, true)); }
+TEST(Determinism, faults_on_the_wires_repeat_with_the_seed) {
+    EXPECT_EQ(digest_of(5, true), digest_of(5, true));
+}
 
-TEST(Determinism, faults_on_the_wires_are_seen_in_the_event_log) { EXPECT_NE(digest_of(5, true), digest_of(5, false)); }
+TEST(Determinism, faults_on_the_wires_are_seen_in_the_event_log) {
+    EXPECT_NE(digest_of(5, true), digest_of(5, false));
+}
 
 TEST(Determinism, seeds_differ) {
     std::array<std::uint64_t, 6> seen{};
@@ -70,7 +77,11 @@ TEST(Determinism, seeds_differ) {
 TEST(Determinism, two_processes_report_the_same_but_for_the_memory_they_took) {
     const std::string first = temporary_file("first.json");
     const std::string second = temporary_file("second.json");
-    for (const std::string& path : {first, second}) EXPECT_EQ(run_loom({"--world", "host", "--virtual", "--quiet", "--seed", "3", "--picks", "100", "--summary", path}).exit_code, 0);
+    for (const std::string& path : {first, second})
+        EXPECT_EQ(run_loom({"--world", "host", "--virtual", "--quiet", "--seed", "3", "--picks", "100",
+                            "--summary", path})
+                      .exit_code,
+                  0);
     const std::string one = without_field(contents(first), "rss_bytes");
     EXPECT_NE(one.find("\"event_log_digest\": \"abace12e7fb3dc5f\""), std::string::npos) << one;
     EXPECT_EQ(one, without_field(contents(second), "rss_bytes"));
@@ -84,7 +95,9 @@ TEST(Speed, virtual_time_runs_a_hundred_times_faster_than_real_time) {
     const double ratio = to_seconds(rig.now().time_since_epoch()) / took_s;
     std::cout << "virtual time runs " << ratio << " times faster than real time\n";
 #if defined(NDEBUG)
-    if constexpr (!os::heap::sanitizer_owns_malloc) { EXPECT_GE(ratio, 100.0); }
+    if constexpr (!os::heap::sanitizer_owns_malloc) {
+        EXPECT_GE(ratio, 100.0);
+    }
 #endif
 }
 

@@ -27,13 +27,16 @@ inline Ended run_loom(const std::vector<std::string>& words) {
     std::FILE* output = popen(line.c_str(), "r");
     if (output == nullptr) return ended;
     char letters[4096];
-    for (std::size_t n = 0; (n = std::fread(letters, 1, sizeof letters, output)) != 0;) ended.text.append(letters, n);
+    for (std::size_t n = 0; (n = std::fread(letters, 1, sizeof letters, output)) != 0;)
+        ended.text.append(letters, n);
     const int status = pclose(output);
     ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return ended;
 }
 
-inline std::string temporary_file(const std::string& name) { return testing::TempDir() + "carpet_loom_" + std::to_string(getpid()) + "_" + name; }
+inline std::string temporary_file(const std::string& name) {
+    return testing::TempDir() + "carpet_loom_" + std::to_string(getpid()) + "_" + name;
+}
 
 inline std::string contents(const std::string& path) {
     std::ifstream file{path};

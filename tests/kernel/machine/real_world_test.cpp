@@ -1,4 +1,5 @@
-// A machine in threads of its own under real time. What needs SCHED_FIFO is left out, and says so, where it is not granted.
+// A machine in threads of its own under real time. What needs SCHED_FIFO is left out, and says so, where it
+// is not granted.
 #include "kernel/machine/real_world.hpp"
 
 #include "kernel/base/random.hpp"
@@ -27,7 +28,8 @@ public:
     os::Clock clock{os::Clock::Kind::real};
     MachineInstance instance{Firmware<table, watched::board>::machine(), clock};
     std::unique_ptr<RealWorld> world = std::make_unique<RealWorld>(instance);
-    std::unique_ptr<os::ArmingReport> report = std::make_unique<os::ArmingReport>(std::span{watched::board.only_warned.begin(), watched::board.only_warned.end()});
+    std::unique_ptr<os::ArmingReport> report = std::make_unique<os::ArmingReport>(
+        std::span{watched::board.only_warned.begin(), watched::board.only_warned.end()});
 
     /// Armed and started.
     bool runs() {
@@ -43,7 +45,8 @@ public:
 class InRealTime : public testing::Test {
 protected:
     void SetUp() override {
-        if (os::observe_process(watched::board.highest_priority).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+        if (os::observe_process(watched::board.highest_priority).fifo_error != 0)
+            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
     }
 };
 
@@ -60,7 +63,8 @@ TEST_F(InRealTime, arms_runs_and_stops_the_last_row_first) {
 }
 
 TEST_F(InRealTime, takes_no_page_fault_in_a_real_time_thread) {
-    if constexpr (os::heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer's shadow is mapped as it is used";
+    if constexpr (os::heap::sanitizer_owns_malloc)
+        GTEST_SKIP() << "a sanitizer's shadow is mapped as it is used";
     Rig<watched::table> rig;
     ASSERT_TRUE(rig.runs());
     EXPECT_TRUE(rig.world->supervise(300ms));
@@ -84,7 +88,8 @@ TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
     for (const Miss& miss : engine.statistics().recent_misses) {
         if (miss.took <= most) continue;
         most = miss.took;
-        blamed = miss.function == Miss::nobody ? "nobody" : engine.plan().parts[miss.function / functions_per_part].name;
+        blamed = miss.function == Miss::nobody ? "nobody"
+                                               : engine.plan().parts[miss.function / functions_per_part].name;
     }
     EXPECT_EQ(blamed, victim);
     EXPECT_GE(most, 50ms);
@@ -96,10 +101,12 @@ TEST_F(InRealTime, stops_for_a_late_cycle_where_the_row_says_so) {
     ASSERT_TRUE(rig.runs());
     rig.worker("right").overrun = 50ms;
     rig.worker("right").order = Order::overrun;
-    while (rig.world->supervise(1s)) {}
+    while (rig.world->supervise(1s)) {
+    }
     EXPECT_EQ(rig.world->stop(), 0);
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::missed_deadline);
-    EXPECT_THAT(std::string{rig.instance.describe_stop().view()}, testing::StartsWith("activity \"motion\" missed its deadline: "));
+    EXPECT_THAT(std::string{rig.instance.describe_stop().view()},
+                testing::StartsWith("activity \"motion\" missed its deadline: "));
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
 }
 
@@ -107,13 +114,16 @@ TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_lea
     Rig<watched::parked_table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker("middle").order = Order::break_contract;
-    for (int n = 0; n < 20 && rig.world->supervise(100ms); ++n) {}
+    for (int n = 0; n < 20 && rig.world->supervise(100ms); ++n) {
+    }
     ASSERT_TRUE(rig.instance.stop_asked());
     EXPECT_EQ(rig.world->stop(), 1) << "the thread whose contract is broken goes on nowhere";
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::broken_contract);
     EXPECT_EQ(rig.instance.describe_stop().view(), "a contract was broken in activity \"motion\"");
-    EXPECT_THAT(std::string{rig.world->broken_contract().view()}, testing::HasSubstr("A function was called with 7, which its declaration forbids."));
-    for (const char* name : {"driver", "left", "middle", "right", "logic"}) EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
+    EXPECT_THAT(std::string{rig.world->broken_contract().view()},
+                testing::HasSubstr("A function was called with 7, which its declaration forbids."));
+    for (const char* name : {"driver", "left", "middle", "right", "logic"})
+        EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
     EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
 }
 
@@ -139,7 +149,8 @@ TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_its_components_are_stoppe
     EXPECT_EQ(rig.worker("logic").at_wire.load(), 0);
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
     rig.worker("logic").let_go = true; // the thread comes back when all is over, and touches nothing any more
-    for (int n = 0; n < 1000 && rig.world->activity(watched::logic).state() != Activity::State::stopped; ++n) os::sleep_for(1ms);
+    for (int n = 0; n < 1000 && rig.world->activity(watched::logic).state() != Activity::State::stopped; ++n)
+        os::sleep_for(1ms);
     EXPECT_EQ(rig.world->activity(watched::logic).state(), Activity::State::stopped);
     EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
 }

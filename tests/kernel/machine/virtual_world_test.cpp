@@ -1,5 +1,5 @@
-// A machine under virtual time: nothing sleeps, every run of a seed is the same, and an overrun is laid at the door of
-// whoever caused it.
+// A machine under virtual time: nothing sleeps, every run of a seed is the same, and an overrun is laid at
+// the door of whoever caused it.
 #include "kernel/machine/virtual_world.hpp"
 
 #include "kernel/base/random.hpp"
@@ -16,7 +16,8 @@ using watched::Worker;
 
 /// The name of the component that a miss blames.
 std::string_view culprit(const Engine& engine, const Miss& miss) {
-    return miss.function == Miss::nobody ? "nobody" : engine.plan().parts[miss.function / functions_per_part].name;
+    return miss.function == Miss::nobody ? "nobody"
+                                         : engine.plan().parts[miss.function / functions_per_part].name;
 }
 
 template <const auto& table>
@@ -84,7 +85,8 @@ TEST(VirtualWorld, an_overrun_is_blamed_on_the_component_that_took_the_time) {
         EXPECT_EQ(seen.recent_misses[0].took, rig.worker(victim).overrun);
         EXPECT_EQ(seen.skipped_periods, 2u);
         std::uint64_t blamed = 0;
-        for (const FunctionTiming& function : rig.engine(watched::motion).plan().functions) blamed += function.blamed;
+        for (const FunctionTiming& function : rig.engine(watched::motion).plan().functions)
+            blamed += function.blamed;
         EXPECT_EQ(blamed, 1u);
         EXPECT_FALSE(rig.instance.stop_asked());
     }
@@ -100,7 +102,10 @@ TEST(VirtualWorld, a_row_that_says_so_stops_the_machine_for_it_with_a_sentence_t
         EXPECT_FALSE(rig.world.run_until(at_ns(0) + 300ms));
         EXPECT_LT(rig.clock.now(), at_ns(0) + 30ms);
         EXPECT_EQ(rig.instance.stop_request().reason, StopReason::missed_deadline);
-        EXPECT_EQ(rig.instance.describe_stop().view(), Sentence("activity \"motion\" missed its deadline: component \"", victim, "\" took the time").view());
+        EXPECT_EQ(
+            rig.instance.describe_stop().view(),
+            Sentence("activity \"motion\" missed its deadline: component \"", victim, "\" took the time")
+                .view());
     }
 }
 

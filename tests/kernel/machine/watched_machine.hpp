@@ -1,4 +1,5 @@
-// A small machine for tests of the worlds: three activities, one of several components, that note what happens to them.
+// A small machine for tests of the worlds: three activities, one of several components, that note what
+// happens to them.
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -12,7 +13,8 @@
 
 namespace tappet::watched {
 
-/// Whose stop came when; filled after the cycles, in the supervisor's order, so that no two threads meet in it.
+/// Whose stop came when; filled after the cycles, in the supervisor's order, so that no two threads meet in
+/// it.
 inline std::vector<std::string>& stops() {
     static std::vector<std::string> list;
     return list;
@@ -47,7 +49,8 @@ struct Worker {
         case Order::none: break;
         case Order::overrun: clock->consume(overrun); break;
         case Order::hang:
-            while (!let_go.load()) {}
+            while (!let_go.load()) {
+            }
             break;
         case Order::break_contract: TAPPET_CONTRACT(false, Contract::precondition, 7); break;
         }
@@ -57,9 +60,7 @@ struct Worker {
         at_wire.store(0);
         TAPPET_ESCAPE("a test's note, after the cycles", stops().push_back(std::string{name}));
     }
-    static constexpr auto interface() {
-        return facets(output<&Worker::level>("level", "", "0: safe"));
-    }
+    static constexpr auto interface() { return facets(output<&Worker::level>("level", "", "0: safe")); }
 };
 
 // clang-format off
@@ -69,9 +70,9 @@ inline constexpr auto table = machine("watched",
         component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"),
         component<Worker>("logic")),
     activities(
-        activity("drivers", every(2ms), runs("driver"),                  budget(50us)),
-        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us)),
-        activity("logic",   every(5ms), runs("logic"),                   budget(50us))),
+        activity("drivers", every(2ms), runs("driver"),                  budget(50us), stack(256 * 1024)),
+        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stack(256 * 1024)),
+        activity("logic",   every(5ms), runs("logic"),                   budget(50us), stack(256 * 1024))),
     connections(), reactions(), behaviours());
 
 /// The same in memory of their own, for tests that leave a thread behind on one of its stacks.
@@ -82,9 +83,9 @@ inline constexpr auto hung_table = table;
 inline constexpr auto strict_table = machine("strict",
     components(component<Worker>("driver"), component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"), component<Worker>("logic")),
     activities(
-        activity("drivers", every(2ms), runs("driver"),                  budget(50us)),
-        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stop_when_late),
-        activity("logic",   every(5ms), runs("logic"),                   budget(50us))),
+        activity("drivers", every(2ms), runs("driver"),                  budget(50us), stack(256 * 1024)),
+        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stop_when_late, stack(256 * 1024)),
+        activity("logic",   every(5ms), runs("logic"),                   budget(50us), stack(256 * 1024))),
     connections(), reactions(), behaviours());
 
 inline constexpr Board board{

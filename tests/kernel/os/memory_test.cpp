@@ -37,6 +37,7 @@ private:
 };
 
 TEST(PageFaults, rise_with_each_fresh_page_and_not_with_a_touched_one) {
+    if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer has pages of its own beside each of ours";
     const Pages pages{200};
     const PageFaults before = page_faults_of_this_thread();
     touch(pages.span());
@@ -109,6 +110,7 @@ StackUse on_fresh_stack(StackUse use) {
 }
 
 TEST(Memory, makes_a_touched_stack_free_of_faults) {
+    if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer has pages of its own beside each of ours";
     const std::size_t used = 64 * page_bytes();
     EXPECT_GE(on_fresh_stack({0, used, 0}).faults, 50u) << "without touching, each page is a fault";
     EXPECT_LT(on_fresh_stack({used + 16 * page_bytes(), used, 0}).faults, 5u);
