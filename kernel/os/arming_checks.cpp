@@ -178,20 +178,24 @@ ProcessFacts observe_process(int highest_priority) noexcept {
     if (clock_getres(CLOCK_MONOTONIC, &resolution) == 0)
         facts.clock_resolution_ns = resolution.tv_sec * 1'000'000'000 + resolution.tv_nsec;
 
+    // Trying SCHED_FIFO gives the thread its default slack back: it is read before, and restored behind.
+    facts.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
     int policy = SCHED_OTHER;
     sched_param before{};
     pthread_getschedparam(pthread_self(), &policy, &before);
     sched_param wanted{};
     wanted.sched_priority = highest_priority;
     facts.fifo_error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
-    if (facts.fifo_error == 0) pthread_setschedparam(pthread_self(), policy, &before);
+    if (facts.fifo_error == 0) {
+        pthread_setschedparam(pthread_self(), policy, &before);
+        prctl(PR_SET_TIMERSLACK, static_cast<unsigned long>(facts.timer_slack_ns), 0UL, 0UL, 0UL);
+    }
 
     rlimit limit{};
     if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
         facts.lockable_bytes = limit.rlim_cur == RLIM_INFINITY ? ~std::uint64_t{0} : limit.rlim_cur;
     facts.memory_locked = memory_is_locked();
     facts.latency_held = cpu_dma_latency_is_held();
-    facts.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
     facts.heap_sealed = heap::state() == heap::State::sealed;
     facts.seal_counts = heap::seal_counts();
     return facts;

@@ -33,7 +33,7 @@ std::uint64_t digest_of(std::uint64_t seed, bool bad_wires = false) {
     return rig.run().event_log_digest();
 }
 
-/// What both compilers, at every level of optimisation, make of the seeds. They change with the machine's
+/// What both compilers make of the seeds. They change with the machine's
 /// table, its components and the plant, and with nothing else: after such a change the failing test shows the
 /// new ones, which both presets (gcc, clang) must then show alike.
 struct Golden {

@@ -53,7 +53,7 @@ TEST(Waiter, takes_a_wake_that_came_before_the_wait) {
     for (const bool with_device : {false, true}) {
         const ReadyDevice device;
         Waiter waiter;
-        if (with_device) ASSERT_TRUE(waiter.watch(device.ends[0]));
+        ASSERT_TRUE(!with_device || waiter.watch(device.ends[0]));
         waiter.wake();
         waiter.wait_for_wake();
         EXPECT_FALSE(waiter.is_woken());
