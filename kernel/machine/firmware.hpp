@@ -95,7 +95,7 @@ struct Instance<table, board, true> {
     // Start-up reads these through spans of mutable elements and does not write them.
     static inline constinit auto index = From::verdict.index;
     static inline constinit auto plan = From::plan;
-    [[gnu::section("tappet_instance")]] alignas(
+    [[gnu::section(".bss.tappet_instance")]] alignas(
         4096) static inline constinit std::byte memory[From::plan.bytes]{};
 
     static AcceptedMachine machine() { return {table.view(), &board, index.view(), plan.view(), memory}; }
