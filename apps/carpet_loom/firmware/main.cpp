@@ -54,11 +54,10 @@ Options parse(int count, char** words) {
     return options;
 }
 
-int write_summary(const MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices,
+int write_summary(MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices,
                   const Sentence& reason, const char* path) {
-    auto& machine = const_cast<MachineInstance&>(instance); // find() hands out what can be written
-    const auto* bus = machine.find<can::Bus<carpet::can_signals>>("can");
-    const auto* utility = machine.find<modbus::Slave<carpet::utility_registers>>("utility");
+    const auto* bus = instance.find<can::Bus<carpet::can_signals>>("can");
+    const auto* utility = instance.find<modbus::Slave<carpet::utility_registers>>("utility");
     carpet::RunFacts facts;
     facts.world = board_here.world;
     facts.realtime = os::kernel_is_realtime();
