@@ -2,19 +2,23 @@
 // object.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
 namespace tappet {
 
+struct TypeTag;
+using TypeId = const TypeTag*;
 struct TypeTag {
     std::string_view name{};
     std::size_t size = 0;
     std::size_t align = 0;
     bool arithmetic = false;
+    std::span<const TypeId> elements{}; ///< of an argument list
 };
-using TypeId = const TypeTag*;
 
 /// The argument list of an event or an operation, as a type.
 template <class... Types>
@@ -49,7 +53,9 @@ struct TagOf {
 };
 template <class... T>
 struct TagOf<Arguments<T...>> {
-    static constexpr TypeTag tag{printed_list<T...>(), (std::size_t{0} + ... + sizeof(T)), 1, false};
+    static constexpr std::array<TypeId, sizeof...(T)> elements{&TagOf<T>::tag...};
+    static constexpr TypeTag tag{printed_list<T...>(), (std::size_t{0} + ... + sizeof(T)), 1, false,
+                                 elements};
 };
 template <>
 struct TagOf<Arguments<>> {

@@ -1,0 +1,142 @@
+// Activity rows: the threads of the machine, what makes each run, and what it may take.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/time.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+enum class Trigger : std::uint8_t { every, on_work, on_device, background };
+enum class WhenLate : std::uint8_t { count, stop };
+
+struct ActivityRow {
+    static constexpr std::size_t max_runs = 64;
+    static constexpr std::size_t default_stack_bytes = 64 * 1024;
+    std::string_view name{};
+    Trigger trigger = Trigger::background;
+    Duration period{};          ///< of every; of background: how often it looks
+    std::string_view device{};  ///< of on_device: the component whose device wakes it
+    std::int64_t at_most_n = 1; ///< sporadic activities: at most n wakes ...
+    Duration at_most_per{};     ///< ... in any window of this length
+    Duration deadline_after{};  ///< zero: the period
+    Duration budget_each{};     ///< processor time of one cycle, synchronous reactions included
+    bool real_time = true;
+    WhenLate when_late = WhenLate::count;
+    std::size_t stack = default_stack_bytes;
+    Bounded<std::string_view, max_runs> runs{};
+    bool too_many_runs = false;
+    bool has_trigger = false;
+    std::string_view twice{}; ///< the option that the row was given twice
+
+    [[nodiscard]] constexpr Duration shortest_period() const noexcept {
+        return trigger == Trigger::every ? period : at_most_per;
+    }
+    [[nodiscard]] constexpr Duration deadline() const noexcept {
+        return deadline_after.count() != 0 ? deadline_after : shortest_period();
+    }
+    [[nodiscard]] constexpr bool periodic() const noexcept {
+        return trigger == Trigger::every || trigger == Trigger::background;
+    }
+};
+
+struct TriggerOption {
+    Trigger trigger;
+    Duration period;
+    std::string_view device{};
+};
+/// Periodic. Without not_real_time it needs a budget; its deadline is the period unless stated.
+constexpr TriggerOption every(Duration period) noexcept { return {Trigger::every, period, {}}; }
+/// Sporadic: runs when a message, a connection that wakes, or a timer of its components asks. Needs at_most.
+constexpr TriggerOption on_work() noexcept { return {Trigger::on_work, {}, {}}; }
+/// Sporadic: runs when the device of this component is ready. Needs at_most.
+constexpr TriggerOption on_device(std::string_view component) noexcept {
+    return {Trigger::on_device, {}, component};
+}
+
+struct AtMost {
+    std::int64_t n;
+    Duration per;
+};
+/// At most n wakes in any window of this length: what the schedulability analysis believes.
+constexpr AtMost at_most(std::int64_t n, Duration per) noexcept { return {n, per}; }
+
+struct Budget {
+    Duration each;
+};
+constexpr Budget budget(Duration each) noexcept { return {each}; }
+struct Deadline {
+    Duration after;
+};
+constexpr Deadline deadline(Duration after) noexcept { return {after}; }
+struct NotRealTime {};
+/// May block; runs below every real-time activity, without budget or deadline.
+inline constexpr NotRealTime not_real_time{};
+struct StackBytes {
+    std::size_t bytes;
+};
+constexpr StackBytes stack(std::size_t bytes) noexcept { return {bytes}; }
+struct StopWhenLate {};
+/// A missed deadline stops the machine; without this it is counted and reported.
+inline constexpr StopWhenLate stop_when_late{};
+
+struct Runs {
+    Bounded<std::string_view, ActivityRow::max_runs> names{};
+    bool too_many = false;
+};
+template <class... Names>
+constexpr Runs runs(const Names&... names) {
+    Runs row;
+    ((row.too_many |= !row.names.push(std::string_view{names})), ...);
+    return row;
+}
+
+namespace detail {
+
+constexpr void give(ActivityRow& row, std::string_view option, bool is_given) noexcept {
+    if (is_given && row.twice.empty()) row.twice = option;
+}
+constexpr void apply(ActivityRow& row, const TriggerOption& option) noexcept {
+    give(row, "a trigger", row.has_trigger);
+    row.trigger = option.trigger == Trigger::every && !row.real_time ? Trigger::background : option.trigger;
+    row.period = option.period;
+    row.device = option.device;
+    row.has_trigger = true;
+}
+constexpr void apply(ActivityRow& row, AtMost option) noexcept {
+    give(row, "at_most", row.at_most_per != Duration::zero());
+    row.at_most_n = option.n;
+    row.at_most_per = option.per;
+}
+constexpr void apply(ActivityRow& row, Budget option) noexcept {
+    give(row, "a budget", row.budget_each != Duration::zero());
+    row.budget_each = option.each;
+}
+constexpr void apply(ActivityRow& row, Deadline option) noexcept {
+    give(row, "a deadline", row.deadline_after != Duration::zero());
+    row.deadline_after = option.after;
+}
+constexpr void apply(ActivityRow& row, NotRealTime) noexcept {
+    row.real_time = false;
+    if (row.trigger == Trigger::every) row.trigger = Trigger::background;
+}
+constexpr void apply(ActivityRow& row, StackBytes option) noexcept { row.stack = option.bytes; }
+constexpr void apply(ActivityRow& row, StopWhenLate) noexcept { row.when_late = WhenLate::stop; }
+constexpr void apply(ActivityRow& row, const Runs& option) noexcept {
+    give(row, "runs", !row.runs.empty());
+    row.runs = option.names;
+    row.too_many_runs = option.too_many;
+}
+
+} // namespace detail
+
+template <class... Options>
+constexpr ActivityRow activity(std::string_view name, const Options&... options) {
+    ActivityRow row{.name = name};
+    (detail::apply(row, options), ...);
+    return row;
+}
+
+} // namespace tappet

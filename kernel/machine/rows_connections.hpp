@@ -1,0 +1,79 @@
+// Connection rows: what flows from an output to an input, and what happens when it does not.
+#pragma once
+
+#include "kernel/base/time.hpp"
+#include "kernel/component/port.hpp"
+#include "kernel/exchange/ring.hpp"
+
+#include <cstddef>
+#include <string_view>
+
+namespace tappet {
+
+struct ConnectionRow {
+    std::string_view from{};
+    std::string_view to{};
+    bool buffered = false;
+    std::size_t capacity = 0;
+    Overflow overflow = Overflow::reject;
+    Duration max_age{};
+    WhenStale when_stale = WhenStale::hold;
+    double substitute_value = 0;
+    bool has_substitute = false;
+    bool wakes_reader = false;
+    bool delayed_step = false;
+};
+
+struct StaleAfter {
+    Duration age;
+};
+/// A value older than this is stale; hold, substitute(x) or stop_machine say what the reader then gets.
+constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
+inline constexpr WhenStale hold = WhenStale::hold;
+inline constexpr WhenStale stop_machine = WhenStale::stop;
+struct Substitute {
+    double value;
+};
+/// What the reader gets instead of a stale or never written value (arithmetic types).
+constexpr Substitute substitute(double value) noexcept { return {value}; }
+struct Wakes {};
+/// Each write wakes the reader's activity.
+inline constexpr Wakes wakes{};
+struct Delayed {};
+/// The reader sees the value of the previous cycle: breaks a data-flow cycle inside one activity.
+inline constexpr Delayed delayed{};
+inline constexpr Overflow reject_newest = Overflow::reject;
+inline constexpr Overflow drop_oldest = Overflow::drop_oldest;
+
+namespace detail {
+
+constexpr void apply(ConnectionRow& row, StaleAfter option) noexcept { row.max_age = option.age; }
+constexpr void apply(ConnectionRow& row, WhenStale option) noexcept { row.when_stale = option; }
+constexpr void apply(ConnectionRow& row, Substitute option) noexcept {
+    row.when_stale = WhenStale::substitute;
+    row.substitute_value = option.value;
+    row.has_substitute = true;
+}
+constexpr void apply(ConnectionRow& row, Wakes) noexcept { row.wakes_reader = true; }
+constexpr void apply(ConnectionRow& row, Delayed) noexcept { row.delayed_step = true; }
+constexpr void apply(ConnectionRow& row, Overflow option) noexcept { row.overflow = option; }
+
+} // namespace detail
+
+/// The last value of an output, for an input.
+template <class... Options>
+constexpr ConnectionRow data(std::string_view from, std::string_view to, const Options&... options) {
+    ConnectionRow row{.from = from, .to = to};
+    (detail::apply(row, options), ...);
+    return row;
+}
+
+/// Every value of a buffered output, in order, for a buffered input; at most Capacity wait.
+template <std::size_t Capacity, class... Options>
+constexpr ConnectionRow buffer(std::string_view from, std::string_view to, const Options&... options) {
+    ConnectionRow row{.from = from, .to = to, .buffered = true, .capacity = Capacity};
+    (detail::apply(row, options), ...);
+    return row;
+}
+
+} // namespace tappet

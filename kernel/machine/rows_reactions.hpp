@@ -1,0 +1,33 @@
+// Reaction rows: which operation runs upon which event, and in whose activity.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+struct ReactionTarget {
+    std::string_view operation{};
+    bool synchronous = false;
+    std::uint32_t quota = 8;
+};
+struct Queue {
+    std::uint32_t n;
+};
+/// How many unserved emissions of this row may wait; one more is lost and counted. Eight unless stated.
+constexpr Queue queue(std::uint32_t n) noexcept { return {n}; }
+
+/// Asynchronous: in the receiver's engine, with the arguments of the emission.
+constexpr ReactionTarget tell(std::string_view operation, Queue waiting = {8}) noexcept {
+    return {operation, false, waiting.n};
+}
+/// Synchronous: in the emitter, here and now.
+constexpr ReactionTarget call(std::string_view operation) noexcept { return {operation, true, 0}; }
+
+struct ReactionRow {
+    std::string_view event{};
+    ReactionTarget target;
+};
+constexpr ReactionRow when(std::string_view event, ReactionTarget target) noexcept { return {event, target}; }
+
+} // namespace tappet
