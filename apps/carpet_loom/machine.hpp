@@ -29,6 +29,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<Loom>("loom"),                             // the states of the whole
         component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
+        component<WeftRecord>("record"),                     // when the wefts arrived
         component<Console>("console")),
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
         activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
@@ -38,7 +39,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
-        activity("console", every(250ms),     runs("console"), not_real_time)),
+        activity("console", every(250ms),     runs("record", "console"), not_real_time)),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
         data("shaft.motion",              "weft.shaft"),
@@ -82,6 +83,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("loom.lamp_stop",            "io.lamp_stop",         wakes),
         data("loom.lamp_fault",           "io.lamp_fault",        wakes),
         data("weft.cutter",               "io.yarn_cutter",       wakes),
+        buffer<64>("weft.arrivals",       "record.arrivals",      drop_oldest), // none is missed: 250 ms hold three
         data("loom.state",                "console.state"),
         data("loom.cause",                "console.cause"),
         data("loom.waits_for",            "console.waits_for"),

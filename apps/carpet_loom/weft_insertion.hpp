@@ -1,6 +1,7 @@
 // The weft: released at its angle, watched for in its window, and the pattern of each pick.
 #pragma once
 
+#include "apps/carpet_loom/weft_record.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/cam/motion.hpp"
 #include "kernel/component/component.hpp"
@@ -20,6 +21,7 @@ struct WeftInsertion {
     Output<std::int64_t> pattern;
     Output<std::int64_t> picks_woven;
     Output<double> arrival_deg;
+    BufferOutput<Arrival> arrivals;
     Output<bool> cutter;
     Event<> open_valve, close_valve, missed;
 
@@ -58,8 +60,11 @@ struct WeftInsertion {
     }
     void on_arrival(Time at) noexcept TAPPET_REALTIME {
         if (!released_) return;
+        const double angle_deg = shaft.get().at(at).position.angle().in_degrees();
+        arrival_deg.write(angle_deg, at);
+        // A second pulse of the same weft is none.
+        if (!arrived_) static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg}));
         arrived_ = true;
-        arrival_deg.write(shaft.get().at(at).position.angle().in_degrees(), at);
         cutter.write(true);
     }
 
@@ -78,6 +83,7 @@ struct WeftInsertion {
             output<&WeftInsertion::pattern>("pattern", "", "harnesses to lift, one bit each"),
             output<&WeftInsertion::picks_woven>("picks_woven", "", "picks whose weft arrived, since start"),
             output<&WeftInsertion::arrival_deg>("arrival_deg", "deg", "of the last weft"),
+            output<&WeftInsertion::arrivals>("arrivals", "", "every weft that arrived, with its angle"),
             output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
             event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
             event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
