@@ -19,16 +19,22 @@ void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
 void Engine::start(Time now) noexcept TAPPET_REALTIME {
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     if (plan_.periodic) next_release_ = now + plan_.period;
-    for (const EnginePart& part : plan_.parts)
+    for (EnginePart& part : plan_.parts) {
+        part.state.store(ComponentState::starting, std::memory_order_release);
         if (part.type->start != nullptr) part.type->start(part.component, cycle_);
+        part.state.store(ComponentState::running, std::memory_order_release);
+    }
     for (const Behaviour& each : plan_.behaviours) each.start(each.self, now);
 }
 
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     cycle_.now = cycle_.release = now;
     for (const Behaviour& each : plan_.behaviours) each.stop(each.self, now);
-    for (const EnginePart& part : plan_.parts)
+    for (EnginePart& part : plan_.parts) {
+        part.state.store(ComponentState::stopping, std::memory_order_release);
         if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
+        part.state.store(ComponentState::stopped, std::memory_order_release);
+    }
 }
 
 Time Engine::next_wake() const noexcept TAPPET_REALTIME {

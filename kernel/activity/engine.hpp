@@ -6,6 +6,7 @@
 #include "kernel/activity/timing.hpp"
 #include "kernel/base/digest.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/life.hpp"
 #include "kernel/exchange/mailbox.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/waiter.hpp"
@@ -38,6 +39,7 @@ struct EnginePart {
     std::string_view name{};
     void* component = nullptr;
     const ComponentType* type = nullptr;
+    AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
 };
 
 struct EngineTimer {

@@ -61,7 +61,9 @@ struct ExecutionEngine : testing::Test {
             workers[i].log = &log;
             workers[i].clock = &clock;
             workers[i].name = names[i];
-            parts[i] = {names[i], &workers[i], &component_type<Worker>};
+            parts[i].name = names[i];
+            parts[i].component = &workers[i];
+            parts[i].type = &component_type<Worker>;
             timers[i] = {&workers[i].timer, detail::TimerCall<&Worker::ring>::operations.fire,
                          static_cast<std::uint32_t>(i)};
         }
@@ -164,8 +166,10 @@ TEST_F(ExecutionEngine, starts_components_before_behaviours_and_stops_behaviours
     engine.place(plan, clock);
     engine.start(clock.now());
     EXPECT_EQ(log.lines, (Lines{"a starts", "b starts"}));
+    for (const EnginePart& part : parts) EXPECT_EQ(part.state.load(), ComponentState::running);
     log.lines.clear();
     engine.stop(clock.now());
+    for (const EnginePart& part : parts) EXPECT_EQ(part.state.load(), ComponentState::stopped);
     EXPECT_EQ(log.lines, (Lines{"behaviour stops", "a stops", "b stops"}));
 }
 
