@@ -12,6 +12,8 @@
 
 namespace tappet {
 
+class MachineInstance;
+
 /// A device as this world has it: the real one, or its twin. `type` is the abstract device class.
 struct ProvidedDevice {
     TypeId type = nullptr;
@@ -25,6 +27,7 @@ struct Setup {
     std::span<const ProvidedDevice> devices;
     os::Clock* clock = nullptr;
     os::Waiter* waiter = nullptr;
+    MachineInstance* machine = nullptr; ///< only for a type that says `sees_machine = true`
 
     /// The row's device, or null when this world has none of that name and class.
     template <class Device>

@@ -5,6 +5,7 @@
 #include "kernel/machine/check_board.hpp"
 #include "kernel/machine/check_components.hpp"
 #include "kernel/machine/check_flow.hpp"
+#include "kernel/machine/check_operations.hpp"
 #include "kernel/machine/check_reactions.hpp"
 #include "kernel/machine/check_time.hpp"
 
@@ -16,6 +17,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
     const auto first_fault = [&]() -> Sentence {
         if (Sentence fault = checks::check_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_activities(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_observers(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_connections(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reactions(m, r); !fault.empty()) return fault;

@@ -8,8 +8,9 @@
 
 namespace tappet::checks {
 
-inline constexpr std::size_t max_activities = 64; // a receiver marks each sending activity in one 64-bit word
-static_assert(max_activities <= Inbox::max_senders);
+// A receiver marks each sending activity, and the requests of what sees the machine, in one 64-bit word.
+inline constexpr std::size_t max_activities = 63;
+static_assert(max_activities < Inbox::max_senders);
 
 constexpr int processor_of(const Board& board, std::string_view activity) noexcept {
     for (const auto& each : board.placement)

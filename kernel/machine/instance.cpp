@@ -17,7 +17,12 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     for (std::size_t c = 0; c < table.components.size(); ++c) {
         const ComponentRow& row = table.components[c];
         if (row.type->configure == nullptr) continue;
-        Setup setup{row.name, row.device, devices, clock_, &engines()[machine_.index.activity[c]].waiter()};
+        Setup setup{row.name,
+                    row.device,
+                    devices,
+                    clock_,
+                    &engines()[machine_.index.activity[c]].waiter(),
+                    row.type->sees_machine ? this : nullptr};
         if (const Sentence refusal = row.type->configure(component(c), setup); !refusal.empty())
             return std::unexpected(refusal);
     }
@@ -44,7 +49,7 @@ void* MachineInstance::facet(End end) noexcept {
     return row.at(component(end.component), row.index);
 }
 
-std::span<Engine> MachineInstance::engines() noexcept {
+std::span<Engine> MachineInstance::engines() noexcept TAPPET_REALTIME {
     return {at<Engine>(machine_.plan.engines_at), machine_.table.activities.size()};
 }
 
@@ -110,7 +115,7 @@ void MachineInstance::connect_clocks() {
     }
 }
 
-Waker MachineInstance::waker_of(std::size_t activity) noexcept {
+Waker MachineInstance::waker_of(std::size_t activity) noexcept TAPPET_REALTIME {
     Engine& engine = engines()[activity];
     // A periodic activity serves its messages at its next period: nothing wakes it in between.
     if (engine.plan().periodic) return {};

@@ -30,8 +30,8 @@ public:
     std::expected<void, Sentence> configure(std::span<const ProvidedDevice> devices);
 
     /// In the order of the table's activities.
-    [[nodiscard]] std::span<Engine> engines() noexcept;
-    [[nodiscard]] std::span<const Engine> engines() const noexcept {
+    [[nodiscard]] std::span<Engine> engines() noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::span<const Engine> engines() const noexcept TAPPET_REALTIME {
         return const_cast<MachineInstance*>(this)->engines();
     }
     [[nodiscard]] std::span<std::byte> stack_of(std::size_t activity) noexcept;
@@ -52,6 +52,11 @@ public:
     /// The state machine that drives a component; null when none does.
     [[nodiscard]] const StateMachineExecution* state_machine_of(std::string_view component) const noexcept;
 
+    /// Runs a call in the engine of an activity, between two of its steps; `message.id` is the part it is
+    /// timed as. For the components that see the machine, from their own activity only. False: there are
+    /// `requests_waiting` of them there already, and the receiver did not get this one. Real-time.
+    [[nodiscard]] bool post_request(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME;
+
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
@@ -70,11 +75,11 @@ public:
 
 private:
     template <class T>
-    [[nodiscard]] T* at(std::size_t offset) noexcept {
+    [[nodiscard]] T* at(std::size_t offset) noexcept TAPPET_REALTIME {
         return reinterpret_cast<T*>(machine_.memory.data() + offset);
     }
     [[nodiscard]] void* facet(End end) noexcept;
-    [[nodiscard]] Waker waker_of(std::size_t activity) noexcept;
+    [[nodiscard]] Waker waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
 
     void construct();
     void apply_settings(std::size_t component);

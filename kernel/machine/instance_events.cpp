@@ -62,6 +62,9 @@ void MachineInstance::place_mailboxes() {
                 mailboxes[mail.sender_index].place(at<std::byte>(mail.storage_at), mail.capacity,
                                                    Overflow::reject);
         }
+        if (const MailPlan& mail = machine_.plan.requests[receiver]; mail.capacity != 0)
+            mailboxes[mail.sender_index].place(at<std::byte>(mail.storage_at), mail.capacity,
+                                               Overflow::reject);
         engines()[receiver].inbox().place({mailboxes, plan.sender_count});
     }
 }

@@ -59,6 +59,9 @@ struct MailPlan {
     std::size_t sender_index = 0;
 };
 
+/// So many requests of the components that see the machine wait at one engine.
+inline constexpr std::uint32_t requests_waiting = 16;
+
 struct PlanView {
     std::span<std::size_t> component_at;
     std::span<std::uint32_t> part_of; ///< the component's index in its engine
@@ -67,7 +70,8 @@ struct PlanView {
     std::span<Subscription> subscriptions;
     std::span<SubscriptionPlan> subscription_at;
     std::span<BehaviourPlan> behaviours;
-    std::span<MailPlan> mail; ///< [sender * activities + receiver]
+    std::span<MailPlan> mail;     ///< [sender * activities + receiver]
+    std::span<MailPlan> requests; ///< into each activity, of the components that see the machine
     std::size_t engines_at = 0;
     std::size_t bytes = 0;       ///< of everything below
     std::size_t stack_bytes = 0; ///< of these, stacks
@@ -174,6 +178,8 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
     }
     // At each receiver the senders stand in order of their urgency.
     const std::size_t n = m.activities.size();
+    bool seen = false;
+    for (const ComponentRow& row : m.components) seen |= row.type->sees_machine;
     for (std::size_t receiver = 0; receiver < n; ++receiver) {
         ActivityPlan& activity = p.activities[receiver];
         for (std::size_t rank = 0; rank < n; ++rank)
@@ -183,6 +189,13 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
                 mail.sender_index = activity.sender_count++;
                 mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
             }
+        // Behind them all stand the requests: what only watches the machine delays nobody's message.
+        if (seen) {
+            MailPlan& mail = p.requests[receiver];
+            mail.capacity = requests_waiting;
+            mail.sender_index = activity.sender_count++;
+            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+        }
         activity.mailboxes_at = ground.take<Mailbox>(activity.sender_count);
     }
 }
@@ -250,13 +263,14 @@ struct Plan {
     std::array<SubscriptionPlan, S> subscription_at{};
     std::array<BehaviourPlan, B> behaviours{};
     std::array<MailPlan, A * A> mail{};
+    std::array<MailPlan, A> requests{};
     std::size_t engines_at = 0;
     std::size_t bytes = 0;
     std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
         return {component_at, part_of, activities, connections, subscriptions, subscription_at,
-                behaviours,   mail,    engines_at, bytes,       stack_bytes};
+                behaviours,   mail,    requests,   engines_at,  bytes,         stack_bytes};
     }
     constexpr void take_sizes(const PlanView& v) noexcept {
         engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;

@@ -24,10 +24,18 @@ constexpr ReactionTarget tell(std::string_view operation, Queue waiting = {8}) n
 /// Synchronous: in the emitter, here and now.
 constexpr ReactionTarget call(std::string_view operation) noexcept { return {operation, true, 0}; }
 
-struct ReactionRow {
-    std::string_view event{};
-    ReactionTarget target;
+/// What a row of the section reactions says.
+enum class ReactionKind : std::uint8_t {
+    when, ///< an operation runs upon an event
+    uses  ///< a requester of one component reaches a method or a command of another
 };
-constexpr ReactionRow when(std::string_view event, ReactionTarget target) noexcept { return {event, target}; }
+struct ReactionRow {
+    std::string_view event{}; ///< of a uses row: the requester
+    ReactionTarget target;    ///< of a uses row: its operation is the method or command
+    ReactionKind kind = ReactionKind::when;
+};
+constexpr ReactionRow when(std::string_view event, ReactionTarget target) noexcept {
+    return {event, target, ReactionKind::when};
+}
 
 } // namespace tappet

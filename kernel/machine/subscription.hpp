@@ -23,7 +23,8 @@ inline constexpr std::uint32_t trigger_quota = 8;
 
 /// How many subscriptions a checked table has.
 constexpr std::size_t count_subscriptions(const MachineView& m) {
-    std::size_t count = m.reactions.size();
+    std::size_t count = 0;
+    for (const auto& row : m.reactions) count += row.kind == ReactionKind::when;
     for (const auto& row : m.behaviours)
         if (!row.is_slot()) count += measure(row.machine).triggers;
     return count;
@@ -34,6 +35,7 @@ constexpr void list_subscriptions(const MachineView& m, const TableIndexView& r,
                                   std::span<Subscription> into) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < m.reactions.size(); ++i) {
+        if (m.reactions[i].kind != ReactionKind::when) continue;
         Subscription& s = into[n++];
         s.event = r.reactions[i].from;
         s.operation = r.reactions[i].to;
