@@ -21,7 +21,8 @@ public:
     /// lost).
     bool push(const T& value) noexcept TAPPET_REALTIME {
         bool all = true;
-        for (std::size_t i = 0; i < rings_.size(); ++i) all &= rings_[i]->push(value);
+        const std::size_t count = rings_.size(); // a bound that no push can move: a counted loop
+        for (std::size_t i = 0; i < count; ++i) all &= rings_[i]->push(value);
         waker_();
         return all;
     }
@@ -39,7 +40,8 @@ public:
 
     /// The oldest value of the first row that has one. False when all are empty.
     bool pop(T& into) noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < rings_.size(); ++i)
+        const std::size_t count = rings_.size();
+        for (std::size_t i = 0; i < count; ++i)
             if (rings_[i]->pop(into)) return true;
         return false;
     }

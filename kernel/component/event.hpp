@@ -31,7 +31,8 @@ class Event {
 
 public:
     void emit(A... arguments) noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < count_; ++i) subscribers_[i].react(subscribers_[i].context, arguments...);
+        const std::size_t count = count_; // a bound that no handler can move: a counted loop
+        for (std::size_t i = 0; i < count; ++i) subscribers_[i].react(subscribers_[i].context, arguments...);
     }
     void operator()(A... arguments) noexcept TAPPET_REALTIME { emit(arguments...); }
 

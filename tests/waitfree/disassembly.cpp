@@ -1,0 +1,141 @@
+// Reads objdump's lines: a heading for each function, an instruction or a relocation on each line below it.
+#include "tests/waitfree/disassembly.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+
+namespace tappet::waitfree {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin == text.npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+bool hexadecimal(std::string_view text, std::uint64_t& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+/// One function while its lines are read: jumps are known by address until it is complete.
+struct Open {
+    Function function;
+    std::string section;
+    std::uint64_t begin = 0;
+};
+
+Instruction instruction(std::uint64_t address, std::string_view text) {
+    static constexpr std::array prefixes{"lock", "rep", "repz", "repnz", "notrack", "bnd", "data16", "cs"};
+    Instruction one;
+    one.address = address;
+    // What follows a mark of comment is objdump's own reckoning.
+    text = trimmed(text.substr(0, text.find('#')));
+    for (bool more = true; more;) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        const std::string_view word = text.substr(0, end);
+        more = std::ranges::find(prefixes, word) != prefixes.end();
+        one.mnemonic += (one.mnemonic.empty() ? "" : " ") + std::string(word);
+        text = trimmed(text.substr(end));
+    }
+    while (!text.empty()) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        one.operands.emplace_back(trimmed(text.substr(0, comma)));
+        text = comma == text.size() ? "" : text.substr(comma + 1);
+    }
+    return one;
+}
+
+/// "memcpy-0x4" is memcpy: the call's own displacement counts from its end.
+void relocate(Instruction& call, std::string_view symbol) {
+    const std::size_t end = symbol.rfind("-0x");
+    call.symbol = symbol.substr(0, end);
+}
+
+/// "30 <f+0x30>": the address, and the function's name for one that lies outside.
+void resolve(std::vector<Open>& open) {
+    for (Open& each : open) {
+        const std::uint64_t end = each.function.code.empty() ? each.begin : each.function.code.back().address;
+        for (Instruction& one : each.function.code) {
+            if (!one.symbol.empty() || one.operands.empty() ||
+                !(one.is_jump() || one.is_conditional() || one.is_call()))
+                continue;
+            std::uint64_t to = 0;
+            const std::string_view operand = one.operands[0];
+            if (!hexadecimal(operand.substr(0, operand.find(' ')), to)) continue; // computed
+            if (!one.is_call() && to >= each.begin && to <= end) {
+                const auto found = std::ranges::find(each.function.code, to, &Instruction::address);
+                if (found != each.function.code.end()) {
+                    one.target = static_cast<std::size_t>(found - each.function.code.begin());
+                    continue;
+                }
+            }
+            one.symbol = "(the middle of a function)";
+            for (const Open& other : open)
+                if (other.section == each.section && other.begin == to) one.symbol = other.function.name;
+        }
+    }
+}
+
+} // namespace
+
+std::vector<std::size_t> Function::successors(std::size_t at) const {
+    const Instruction& one = code[at];
+    std::vector<std::size_t> next;
+    if (one.target != none) next.push_back(one.target);
+    if (!one.ends() && !one.is_jump() && at + 1 < code.size()) next.push_back(at + 1);
+    return next;
+}
+
+void add_disassembly(Program& into, std::string_view text) {
+    std::vector<Open> open;
+    std::string section;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = text.substr(0, end);
+        text = text.substr(std::min(end + 1, text.size()));
+        static constexpr std::string_view heading = "Disassembly of section ";
+        if (line.starts_with(heading)) {
+            section = line.substr(heading.size());
+        } else if (line.ends_with(">:")) {
+            const std::size_t name = line.find('<');
+            Open next{{}, section, 0};
+            if (!hexadecimal(line.substr(0, line.find(' ')), next.begin)) continue;
+            next.function.name = line.substr(name + 1, line.size() - name - 3);
+            open.push_back(next);
+        } else if (const std::size_t colon = line.find(':'); colon != line.npos && !open.empty()) {
+            std::uint64_t address = 0;
+            if (!hexadecimal(trimmed(line.substr(0, colon)), address)) continue;
+            auto& code = open.back().function.code;
+            const std::string_view rest = trimmed(line.substr(colon + 1));
+            if (!rest.starts_with("R_X86_64_"))
+                code.push_back(instruction(address, rest));
+            else if (!code.empty() && (code.back().is_call() || code.back().mnemonic[0] == 'j'))
+                relocate(code.back(), trimmed(rest.substr(std::min(rest.find_first_of(" \t"), rest.size()))));
+        }
+    }
+    resolve(open);
+    for (Open& each : open) into.try_emplace(each.function.name, std::move(each.function));
+}
+
+Program disassemble(const std::vector<std::string>& objects) {
+    Program program;
+    for (const std::string& object : objects) {
+        const std::string command = "objdump -d -r --no-show-raw-insn -M intel '" + object + "'";
+        std::FILE* const pipe =
+            popen(command.c_str(), "r"); // NOLINT: the command is made of the build's own names
+        if (pipe == nullptr) return {};
+        std::string text;
+        std::array<char, 65536> part{};
+        for (std::size_t n = 0; (n = std::fread(part.data(), 1, part.size(), pipe)) != 0;)
+            text.append(part.data(), n);
+        if (pclose(pipe) != 0) return {};
+        add_disassembly(program, text);
+    }
+    return program;
+}
+
+} // namespace tappet::waitfree

@@ -1,0 +1,53 @@
+// The object code of functions as `objdump -d -r -M intel` prints it: instructions, where each may go next,
+// and what is called.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::waitfree {
+
+inline constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+struct Instruction {
+    std::uint64_t address = 0;
+    std::string mnemonic; ///< prefixes such as lock and rep stand before it, with a blank
+    std::vector<std::string> operands;
+    std::string symbol; ///< of a call or a jump out of the function: where to; empty: to an address computed
+
+    /// Within the function: index of the jump's target. none: no jump, or one that leaves.
+    std::size_t target = none;
+
+    [[nodiscard]] bool is(std::string_view name) const { return mnemonic == name; }
+    [[nodiscard]] bool is_call() const { return mnemonic == "call"; }
+    [[nodiscard]] bool is_jump() const { return mnemonic == "jmp"; }
+    [[nodiscard]] bool is_conditional() const {
+        return mnemonic.size() > 1 && mnemonic[0] == 'j' && !is_jump();
+    }
+    /// Nothing of this function comes after it.
+    [[nodiscard]] bool ends() const {
+        return mnemonic == "ret" || mnemonic == "ud2" || mnemonic == "hlt" || (is_jump() && target == none);
+    }
+};
+
+struct Function {
+    std::string name;
+    std::vector<Instruction> code;
+
+    /// The instructions that may come directly after `at`.
+    [[nodiscard]] std::vector<std::size_t> successors(std::size_t at) const;
+};
+
+using Program = std::map<std::string, Function>;
+
+/// From what objdump printed for one object; what is met in several objects is taken once.
+void add_disassembly(Program& into, std::string_view text);
+
+/// Runs objdump over the objects. Empty when it cannot be run.
+Program disassemble(const std::vector<std::string>& objects);
+
+} // namespace tappet::waitfree

@@ -1,0 +1,66 @@
+// Each operation that is claimed to be wait-free as a function of its own, so that its object code can be
+// looked at: the containers (thesis 4.4), emission, posting and waking (thesis 4.6, 4.2.3).
+#include "kernel/component/buffer_port.hpp"
+#include "kernel/component/event.hpp"
+#include "kernel/exchange/data_object.hpp"
+#include "kernel/exchange/mailbox.hpp"
+#include "kernel/exchange/ring.hpp"
+#include "kernel/os/waiter.hpp"
+
+#include <array>
+
+using namespace tappet;
+
+namespace tappet::waitfree {
+
+/// A value that is copied in a loop. With a name outside: of functions that only this file can know the
+/// compiler also knows which registers they leave alone, and their callers follow no convention.
+struct Frame {
+    std::array<std::uint64_t, 40> words;
+};
+
+} // namespace tappet::waitfree
+
+using tappet::waitfree::Frame;
+
+extern "C" {
+
+void data_object_write_number(DataObject<double>& object, const double& value) noexcept {
+    object.write(value);
+}
+bool data_object_read_number(const DataObject<double>& object, double& into,
+                             std::uint64_t& generation) noexcept {
+    return object.read(into, generation);
+}
+void data_object_write_frame(DataObject<Frame>& object, const Frame& value) noexcept { object.write(value); }
+bool data_object_read_frame(const DataObject<Frame>& object, Frame& into,
+                            std::uint64_t& generation) noexcept {
+    return object.read(into, generation);
+}
+
+bool ring_push_number(Ring<double>& ring, const double& value) noexcept { return ring.push(value); }
+bool ring_pop_number(Ring<double>& ring, double& into) noexcept { return ring.pop(into); }
+bool ring_push_frame(Ring<Frame>& ring, const Frame& value) noexcept { return ring.push(value); }
+bool ring_pop_frame(Ring<Frame>& ring, Frame& into) noexcept { return ring.pop(into); }
+std::uint64_t ring_lost(const Ring<Frame>& ring) noexcept { return ring.lost(); }
+
+bool inbox_post(Inbox& inbox, std::size_t sender, const Message& message) noexcept {
+    return inbox.post(sender, message);
+}
+bool inbox_pending(const Inbox& inbox) noexcept { return inbox.pending(); }
+std::size_t inbox_serve(Inbox& inbox) noexcept { return inbox.run_all(); }
+
+void waiter_wake(os::Waiter& waiter) noexcept { waiter.wake(); }
+bool waiter_take(os::Waiter& waiter) noexcept { return waiter.take(); }
+
+void output_write(Output<Frame>& output, const Frame& value) noexcept { output.write(value, Time{}); }
+Flow input_read(Input<Frame>& input, Frame& into) noexcept { return input.read(into); }
+bool buffer_push(BufferOutput<Frame>& output, const Frame& value) noexcept { return output.push(value); }
+bool buffer_pop(BufferInput<Frame>& input, Frame& into) noexcept { return input.pop(into); }
+
+void event_emit(Event<int, double>& event, int first, double second) noexcept { event.emit(first, second); }
+void event_post(void* reaction, int first, double second) noexcept {
+    detail::post<int, double>(reaction, first, second);
+}
+
+} // extern "C"

@@ -1,0 +1,140 @@
+// Wait-freedom in the object code of this tree's compiler (thesis 4.4, 4.6: bounded communication in real
+// time): every operation between activities has counted loops only, and the versions that retry are refused.
+#include "tests/waitfree/loops.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <iostream>
+#include <sstream>
+
+namespace tappet::waitfree {
+namespace {
+
+const Program& program() {
+    static const Program all = [] {
+        std::vector<std::string> objects;
+        std::istringstream list{TAPPET_OBJECTS};
+        for (std::string object; std::getline(list, object, '|');) objects.push_back(object);
+        return disassemble(objects);
+    }();
+    return all;
+}
+
+/// Copies whose length is given with them; the operating system, which wakes a thread that sleeps.
+const Permission plain{{"memcpy", "memset", "memmove"}, false};
+const Permission calling{plain.outside, true};
+const Permission waking{{"syscall", "write"}, false};
+
+struct Claim {
+    std::string operation;
+    Permission permission;
+};
+void PrintTo(const Claim& claim, std::ostream* out) { *out << claim.operation; }
+
+class Operation : public testing::TestWithParam<Claim> {};
+
+TEST_P(Operation, has_no_loop_but_counted_ones) {
+    const auto& [operation, permission] = GetParam();
+    ASSERT_FALSE(program().empty()) << "objdump shows nothing; ci/setup installs it with the compiler";
+    const Verdict verdict = check(program(), operation, permission);
+    for (const std::string& fault : verdict.faults) ADD_FAILURE() << fault;
+    std::cout << operation << ": " << verdict.functions.size() << " functions";
+    for (const Loop& loop : verdict.loops)
+        std::cout << ", a loop counted by " << loop.counter << " to "
+                  << (loop.passes ? std::to_string(*loop.passes) : "a bound that stays");
+    for (const std::string& each : verdict.outside) std::cout << ", calls " << each;
+    if (verdict.makes_given_calls) std::cout << ", calls its handlers";
+    std::cout << "\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    BetweenActivities, Operation,
+    testing::Values(Claim{"data_object_write_number", plain}, Claim{"data_object_read_number", plain},
+                    Claim{"data_object_write_frame", plain}, Claim{"data_object_read_frame", plain},
+                    Claim{"ring_push_number", plain}, Claim{"ring_pop_number", plain},
+                    Claim{"ring_push_frame", plain}, Claim{"ring_pop_frame", plain},
+                    Claim{"ring_lost", plain}, Claim{"inbox_post", plain}, Claim{"inbox_pending", plain},
+                    Claim{"inbox_serve", calling}, Claim{"waiter_wake", waking}, Claim{"waiter_take", plain},
+                    Claim{"output_write", calling}, Claim{"input_read", plain}, Claim{"buffer_push", calling},
+                    Claim{"buffer_pop", plain}, Claim{"event_emit", calling}, Claim{"event_post", calling}),
+    [](const auto& one) { return one.param.operation; });
+
+class Retry : public testing::TestWithParam<std::string> {};
+
+TEST_P(Retry, is_refused) {
+    const Verdict verdict = check(program(), GetParam(), calling);
+    EXPECT_FALSE(verdict.faults.empty()) << GetParam() << " goes on as long as others make it";
+    for (const std::string& fault : verdict.faults) std::cout << fault << "\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(Deliberate, Retry,
+                         testing::Values("retry_push", "retry_set_bit", "retry_wait_for_flag", "retry_read",
+                                         "retry_while_more_comes", "retry_with_a_counter_that_is_set_back",
+                                         "retry_by_recursion"),
+                         [](const auto& one) { return one.param; });
+
+TEST(Check, finds_the_loop_of_a_sum_and_its_count) {
+    const Verdict verdict = check(program(), "counted_sum", plain);
+    EXPECT_TRUE(verdict.faults.empty());
+    for (const Loop& loop : verdict.loops) EXPECT_LE(loop.passes.value_or(~std::uint64_t{0}), 40u);
+}
+
+TEST(Check, refuses_a_function_that_is_not_there_and_one_that_calls_into_the_dark) {
+    EXPECT_FALSE(check(program(), "misspelt", plain).faults.empty());
+    EXPECT_FALSE(check(program(), "waiter_wake", plain).faults.empty()) << "it makes a system call";
+    EXPECT_FALSE(check(program(), "event_emit", plain).faults.empty()) << "it calls its handlers";
+}
+
+/// Object code written by hand, for shapes that no compiler can be asked for.
+Verdict of(std::string_view lines) {
+    Program hand;
+    std::string text = "Disassembly of section .text:\n0000000000000000 <f>:\n";
+    add_disassembly(hand, text.append(lines));
+    return check(hand, "f", plain);
+}
+
+TEST(Check, accepts_a_jump_backwards_that_closes_no_cycle) {
+    const Verdict verdict = of(" 0:\tjmp    4 <f+0x4>\n 2:\tret\n 4:\tjmp    2 <f+0x2>\n");
+    EXPECT_TRUE(verdict.faults.empty());
+    EXPECT_TRUE(verdict.loops.empty());
+}
+
+TEST(Check, follows_a_counter_that_is_kept_in_the_frame_meanwhile) {
+    const Verdict verdict =
+        of(" 0:\txor    edx,edx\n 2:\tmov    QWORD PTR [rsp-0x10],rdx\n 8:\tmov    rdx,QWORD PTR [rdi]\n"
+           " c:\tmov    rdx,QWORD PTR [rsp-0x10]\n 10:\tadd    rdx,0x1\n 14:\tcmp    rdx,0x3f\n"
+           " 18:\tjbe    2 <f+0x2>\n 1a:\tret\n");
+    ASSERT_TRUE(verdict.faults.empty());
+    ASSERT_EQ(verdict.loops.size(), 1u);
+    EXPECT_EQ(verdict.loops[0].passes.value_or(0) / 2, 32u) << "sixty-four, or one more";
+}
+
+struct Shape {
+    std::string name;
+    std::string lines;
+};
+void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
+class Uncounted : public testing::TestWithParam<Shape> {};
+TEST_P(Uncounted, is_refused) { EXPECT_FALSE(of(GetParam().lines).faults.empty()); }
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, Uncounted,
+    testing::Values(
+        Shape{"moves_away_from_its_bound", " 0:\txor    eax,eax\n 2:\tsub    rax,0x1\n 6:\tcmp    rax,0x10\n a:\tjle    2 <f+0x2>\n c:\tret\n"},
+        Shape{"steps_over_its_end",        " 0:\txor    eax,eax\n 2:\tadd    rax,0x3\n 6:\tcmp    rax,0x10\n a:\tjne    2 <f+0x2>\n c:\tret\n"},
+        Shape{"bound_in_shared_memory",    " 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 6:\tcmp    rax,QWORD PTR [rdi]\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"bound_moves_too",           " 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 4:\tadd    rsi,0x1\n 6:\tcmp    rax,rsi\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"counter_in_shared_memory",  " 2:\tadd    QWORD PTR [rdi],0x1\n 6:\tcmp    QWORD PTR [rdi],0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"counter_lost_in_a_call",    " 0:\txor    eax,eax\n 2:\tcall   20 <f+0x20>\n 4:\tadd    rax,0x1\n 6:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"exit_not_on_every_pass",    " 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 4:\ttest   BYTE PTR [rdi],0x1\n 6:\tje     2 <f+0x2>\n 8:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"counter_kept_on_one_path",  " 0:\txor    eax,eax\n 2:\ttest   BYTE PTR [rdi],0x1\n 4:\tje     8 <f+0x8>\n 6:\tadd    rax,0x1\n 8:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"entered_twice",             " 0:\tje     6 <f+0x6>\n 2:\tadd    rax,0x1\n 6:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"no_exit",                   " 0:\tjmp    0 <f>\n"}),
+    [](const auto& one) { return one.param.name; });
+// clang-format on
+
+} // namespace
+} // namespace tappet::waitfree
