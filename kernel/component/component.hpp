@@ -5,6 +5,7 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/interface.hpp"
+#include "kernel/component/proposal.hpp"
 #include "kernel/component/setup.hpp"
 
 #include <new>
@@ -20,6 +21,9 @@ namespace tappet {
 ///     work(const Cycle&)                             instead of step: may block; for activities that are
 ///     not_real_time void stop(const Cycle&) noexcept TAPPET_REALTIME    once, last: leaves safe values
 ///     behind
+///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME   before properties change, together;
+///     an empty sentence is consent
+///     void changed() noexcept TAPPET_REALTIME        after they did, between two steps
 struct ComponentType {
     TypeId tag = nullptr;
     std::size_t size = 0;
@@ -37,12 +41,14 @@ struct ComponentType {
     void (*step)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     void (*work)(void* component, const Cycle&) = nullptr;
     void (*stop)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
+    Sentence (*accepts)(const void* component, const Proposal&) noexcept TAPPET_REALTIME = nullptr;
+    void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
 };
 
 namespace detail {
 
 template <class T>
-inline constexpr auto facets_of = T::interface();
+inline constexpr const auto& facets_of = full_facets<T>();
 
 template <class T>
 constexpr ComponentType describe() {
@@ -71,6 +77,18 @@ constexpr ComponentType describe() {
     if constexpr (requires(T& t, const Cycle& c) { t.stop(c); })
         type.stop = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
+    // A check of properties that is spelled wrong must not be one that never runs.
+    if constexpr (requires { &T::accepts; }) {
+        static_assert(std::is_convertible_v<decltype(&T::accepts), Sentence (T::*)(const Proposal&) const noexcept>,
+                      "accepts is spelled: Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME");
+        type.accepts = [](const void* c, const Proposal& proposal) noexcept
+            TAPPET_REALTIME { return static_cast<const T*>(c)->accepts(proposal); };
+    }
+    if constexpr (requires { &T::changed; }) {
+        static_assert(std::is_convertible_v<decltype(&T::changed), void (T::*)() noexcept>,
+                      "changed is spelled: void changed() noexcept TAPPET_REALTIME");
+        type.changed = [](void* c) noexcept TAPPET_REALTIME { static_cast<T*>(c)->changed(); };
+    }
     return type;
 }
 

@@ -25,6 +25,7 @@ enum class FacetKind : std::uint8_t {
     event,
     operation,
     property,
+    bag,
     timer
 };
 
@@ -62,12 +63,6 @@ struct OperationOperations {
     void (*run)(void* component, const std::byte* packed) noexcept TAPPET_REALTIME;
 };
 
-struct PropertyOperations {
-    PropertySetting::Kind kind;
-    void (*set)(void* property, const PropertySetting&);
-    PropertySetting (*get)(const void* property);
-};
-
 struct TimerOperations {
     void (*fire)(void* component, const Cycle&) noexcept TAPPET_REALTIME;
 };
@@ -83,6 +78,7 @@ struct Facet {
     bool any_thread = false;          ///< an operation that any activity may call
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
+    std::size_t members = 0;          ///< of a bag: so many facets behind it are in it, those of bags in it too
     void* (*at)(void* component, std::size_t index) noexcept = nullptr;
     // One of these, by kind.
     const PortOperations* port = nullptr;
@@ -102,6 +98,7 @@ constexpr std::string_view to_text(FacetKind kind) noexcept {
     case FacetKind::event: return "an event";
     case FacetKind::operation: return "an operation";
     case FacetKind::property: return "a property";
+    case FacetKind::bag: return "a bag of properties";
     case FacetKind::timer: return "a timer";
     }
     return "a facet";

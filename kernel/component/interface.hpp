@@ -12,6 +12,7 @@
 #pragma once
 
 #include "kernel/component/facet.hpp"
+#include "kernel/component/property_interface.hpp"
 
 #include <array>
 #include <type_traits>
@@ -33,18 +34,7 @@ struct HeardBy {
 };
 constexpr HeardBy heard_by(std::uint8_t reactions) noexcept { return {reactions}; }
 
-constexpr Range range(double low, double high) noexcept { return {low, high}; }
-
 namespace detail {
-
-template <auto Member>
-struct MemberOf;
-template <class C, class M, M C::* Member>
-struct MemberOf<Member> {
-    using Component = C;
-    using Type = M;
-    static void* at(void* component, std::size_t) noexcept { return &(static_cast<C*>(component)->*Member); }
-};
 
 template <class>
 struct EventArguments;
@@ -66,42 +56,10 @@ struct TimerCall<Method> {
         TAPPET_REALTIME { (static_cast<Component*>(component)->*Method)(cycle); }};
 };
 
-template <PropertyValue T>
-inline constexpr PropertyOperations property_of{
-    .kind = std::same_as<T, double>     ? PropertySetting::Kind::real
-            : std::same_as<T, bool>     ? PropertySetting::Kind::truth
-            : std::same_as<T, Duration> ? PropertySetting::Kind::duration
-                                        : PropertySetting::Kind::whole,
-    .set =
-        [](void* property, const PropertySetting& setting) {
-            auto& target = *static_cast<Property<T>*>(property);
-            if constexpr (std::same_as<T, double>)
-                target.set(setting.kind == PropertySetting::Kind::real ? setting.real
-                                                                       : static_cast<double>(setting.whole));
-            else if constexpr (std::same_as<T, bool>)
-                target.set(setting.whole != 0);
-            else
-                target.set(T{setting.whole});
-        },
-    .get =
-        [](const void* property) {
-            const T& value = static_cast<const Property<T>*>(property)->get();
-            if constexpr (std::same_as<T, double>)
-                return PropertySetting{PropertySetting::Kind::real, value, 0};
-            else if constexpr (std::same_as<T, bool>)
-                return PropertySetting{PropertySetting::Kind::truth, 0, value ? 1 : 0};
-            else if constexpr (std::same_as<T, Duration>)
-                return PropertySetting{PropertySetting::Kind::duration, 0, value.count()};
-            else
-                return PropertySetting{PropertySetting::Kind::whole, 0, value};
-        },
-};
-
 constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; }
 constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
-constexpr void apply(Facet& facet, Range within) noexcept { facet.range = within; }
 
 template <class... Options>
 constexpr Facet with(Facet facet, Options... options) noexcept {
@@ -188,21 +146,6 @@ constexpr Facet operation(std::string_view name, std::string_view doc, Options..
                         options...);
 }
 
-template <auto Member, class... Options>
-constexpr Facet property(std::string_view name, std::string_view unit, std::string_view doc,
-                         Options... options) {
-    using M = detail::MemberOf<Member>;
-    using T = typename M::Type::Value;
-    return detail::with({.name = name,
-                         .unit = unit,
-                         .doc = doc,
-                         .kind = FacetKind::property,
-                         .type = type_id<T>,
-                         .at = &M::at,
-                         .property = &detail::property_of<T>},
-                        options...);
-}
-
 /// A timer and the member function it runs: `void f(const Cycle&) noexcept TAPPET_REALTIME`.
 template <auto Member, auto Method>
 constexpr Facet timer(std::string_view name, std::string_view doc) {
@@ -214,9 +157,17 @@ constexpr Facet timer(std::string_view name, std::string_view doc) {
             .timer = &detail::TimerCall<Method>::operations};
 }
 
+/// The list itself, of facets and bags.
 template <class... F>
-constexpr std::array<Facet, sizeof...(F)> facets(const F&... each) {
-    return {each...};
+constexpr auto facets(const F&... each) {
+    if constexpr ((std::same_as<F, Facet> && ...)) {
+        return std::array<Facet, sizeof...(F)>{each...};
+    } else {
+        std::array<Facet, (std::size_t{0} + ... + detail::facet_count<F>)> all{};
+        std::size_t at = 0;
+        (detail::put(all, at, each), ...);
+        return all;
+    }
 }
 
 } // namespace tappet

@@ -1,26 +1,97 @@
-// Properties (thesis 4.7): configuration of a component, with its default in the component and its value in
-// the table.
+// Properties (thesis 4.7): configuration of a component, with its default in the component, its value in the
+// table, and what the commissioning engineer made of it in a file.
 #pragma once
 
+#include "kernel/base/bounded.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/base/type_tag.hpp"
+#include "kernel/exchange/words.hpp"
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string_view>
+#include <type_traits>
 
 namespace tappet {
 
-/// The value types a property may have.
-template <class T>
-concept PropertyValue = std::same_as<T, double> || std::same_as<T, std::int64_t> || std::same_as<T, bool> ||
-                        std::same_as<T, Duration>;
+/// Up to N values of one kind, in place: a property whose length may change.
+template <class T, std::size_t N>
+using Sequence = Bounded<T, N>;
 
+/// Up to N letters, in place, as a property's value.
+template <std::size_t N>
+struct Text {
+    std::array<char, N> letters{};
+    std::uint32_t length = 0;
+
+    constexpr Text() = default;
+    // NOLINTNEXTLINE: a literal is a text
+    template <std::size_t M>
+        requires(M <= N + 1)
+    constexpr Text(const char (&from)[M]) noexcept {
+        static_cast<void>(assign({from, M - 1}));
+    }
+    /// Real-time. False, and nothing changed, when it is too long.
+    constexpr bool assign(std::string_view from) noexcept TAPPET_REALTIME {
+        if (from.size() > N) return false;
+        letters = {};
+        for (std::size_t i = 0; i < from.size(); ++i) letters[i] = from[i];
+        length = static_cast<std::uint32_t>(from.size());
+        return true;
+    }
+    [[nodiscard]] constexpr std::string_view view() const noexcept TAPPET_REALTIME {
+        return {letters.data(), length};
+    }
+    friend constexpr bool operator==(const Text&, const Text&) = default;
+};
+
+namespace detail {
+
+template <class T>
+inline constexpr bool is_text = false;
+template <std::size_t N>
+inline constexpr bool is_text<Text<N>> = true;
+template <class T>
+inline constexpr bool is_sequence = false;
+template <class T, std::size_t N>
+inline constexpr bool is_sequence<Bounded<T, N>> = true;
+
+template <class T>
+concept PropertyScalar =
+    std::same_as<T, bool> || std::same_as<T, double> || std::same_as<T, float> || std::same_as<T, Duration> ||
+    (std::integral<T> && !std::same_as<T, char>) || std::is_enum_v<T> || is_text<T>;
+
+template <class T>
+struct ListElement {
+    using Type = void;
+};
+template <class T, std::size_t N>
+struct ListElement<Bounded<T, N>> {
+    using Type = T;
+};
+template <FixedSizeEigen T>
+struct ListElement<T> {
+    using Type = typename T::Scalar;
+};
+
+} // namespace detail
+
+/// The value types a property may have: truth, numbers, Duration, Text<N>, enumerations, and lists of these:
+/// Sequence<T, N> and vectors and matrices of Eigen of fixed size (column by column).
+template <class T>
+concept PropertyValue = detail::PropertyScalar<T> || detail::PropertyScalar<typename detail::ListElement<T>::Type>;
+
+/// Read by its own component, from its own activity. Once the machine runs it is changed by a
+/// PropertyTransaction only, between two steps.
 template <PropertyValue T>
 class Property {
 public:
     using Value = T;
-    constexpr explicit Property(T initial = T{}) noexcept : value_{initial} {}
+    constexpr Property() noexcept = default;
+    constexpr explicit Property(const T& initial) noexcept : value_{initial} {}
     [[nodiscard]] constexpr const T& get() const noexcept TAPPET_REALTIME { return value_; }
     constexpr operator const T&() const noexcept TAPPET_REALTIME {
         return value_;
@@ -28,21 +99,54 @@ public:
     constexpr void set(const T& value) noexcept TAPPET_REALTIME { value_ = value; }
 
 private:
-    T value_;
+    T value_{};
 };
 
-/// A property's value in a table row: one of the value types, as plain data.
+struct ListSetting;
+
+/// A property's value in a table row, as plain data.
 struct PropertySetting {
-    enum class Kind : std::uint8_t { real, whole, truth, duration };
+    enum class Kind : std::uint8_t { real, whole, truth, duration, text, enumeration, list };
     Kind kind = Kind::real;
     double real = 0;
-    std::int64_t whole = 0; ///< whole number, truth (0 or 1), or nanoseconds
+    std::int64_t whole = 0; ///< whole number, truth (0 or 1), nanoseconds, or an enumeration's value
+    std::string_view text{};
+    TypeId type = nullptr; ///< of an enumeration
+    const ListSetting* list = nullptr;
 };
 
-/// The range a property's value lies in, both ends included.
+/// The elements of a list that stands in a constant of the program.
+struct ListSetting {
+    std::size_t size = 0;
+    PropertySetting (*at)(std::size_t i) = nullptr;
+};
+
+/// The range a property's value lies in, both ends included; of a time in seconds, of a list for each
+/// element.
 struct Range {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
+};
+
+/// What start-up, transactions and files do with a property's value of one type. A property lies where its
+/// value lies: the functions take the value's bytes, in place or as a copy.
+struct PropertyOperations {
+    PropertySetting::Kind kind = PropertySetting::Kind::real; ///< of the value, or of a list's elements
+    bool is_list = false;
+    TypeId element = nullptr; ///< of a list; else the value's own
+    std::size_t least_size = 1;
+    std::size_t most_size = 1;
+    std::int64_t least = 0; ///< what a whole number of this type can hold
+    std::int64_t most = 0;
+    std::size_t most_letters = 0; ///< of a text
+    /// The value that a table's row gives; a setting that was checked to fit.
+    void (*set)(std::byte* value, const PropertySetting&) noexcept = nullptr;
+    std::size_t (*size)(const std::byte* value) noexcept TAPPET_REALTIME = nullptr;
+    /// False when the type does not have room for so many, or always has another number of elements.
+    bool (*resize)(std::byte* value, std::size_t size) noexcept TAPPET_REALTIME = nullptr;
+    std::byte* (*at)(std::byte* value, std::size_t i) noexcept TAPPET_REALTIME = nullptr;
+    /// Element i as a number in the range's unit; 0 for what has no number.
+    double (*number)(const std::byte* value, std::size_t i) noexcept TAPPET_REALTIME = nullptr;
 };
 
 } // namespace tappet

@@ -3,128 +3,12 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
-#include "kernel/machine/table_index.hpp"
+#include "kernel/machine/check_properties.hpp"
 
 namespace tappet::checks {
 
-/// What is said of a row: which one, and what is wrong with it.
-template <class... Pieces> constexpr Sentence of_component(std::string_view name, const Pieces&... fault) {
-    return Sentence{"component \"", name, "\"", fault...};
-}
-template <class... Pieces> constexpr Sentence of_activity(std::string_view name, const Pieces&... fault) {
-    return Sentence{"activity \"", name, "\"", fault...};
-}
-
 /// The engine remembers so many wakes to hold a sporadic activity to its promise.
 inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
-
-constexpr bool fits(const Facet& property, const PropertySetting& setting) noexcept {
-    const auto wanted = property.property->kind;
-    return wanted == setting.kind ||
-           (wanted == PropertySetting::Kind::real && setting.kind == PropertySetting::Kind::whole);
-}
-
-/// A number as an engineer writes it, to the third decimal.
-constexpr Sentence decimal(double value) {
-    constexpr double largest = 1e15; // in thousandths still a whole number of 64 bits
-    if (!(value > -largest && value < largest))
-        return Sentence{value < 0 ? "less than -1e15" : "more than 1e15"};
-    const double size = value < 0 ? -value : value;
-    auto thousandths = static_cast<std::int64_t>(size * 1000 + 0.5);
-    Sentence text{value < 0 ? "-" : "", thousandths / 1000};
-    thousandths %= 1000;
-    if (thousandths != 0) text.add(".");
-    for (std::int64_t digit = 100; thousandths != 0; digit /= 10) {
-        text.add(thousandths / digit);
-        thousandths %= digit;
-    }
-    return text;
-}
-
-/// In the unit of a range: seconds for a time.
-constexpr double value_of(const PropertySetting& setting) noexcept {
-    switch (setting.kind) {
-    case PropertySetting::Kind::real: return setting.real;
-    case PropertySetting::Kind::duration: return static_cast<double>(setting.whole) * 1e-9;
-    case PropertySetting::Kind::whole:
-    case PropertySetting::Kind::truth: break;
-    }
-    return static_cast<double>(setting.whole);
-}
-
-constexpr Sentence value_text(const PropertySetting& setting) {
-    switch (setting.kind) {
-    case PropertySetting::Kind::real: return decimal(setting.real);
-    case PropertySetting::Kind::duration: return decimal(value_of(setting)).add(" s");
-    case PropertySetting::Kind::truth: return Sentence{setting.whole != 0 ? "true" : "false"};
-    case PropertySetting::Kind::whole: break;
-    }
-    return Sentence{setting.whole};
-}
-
-constexpr std::string_view kind_text(PropertySetting::Kind kind) noexcept {
-    switch (kind) {
-    case PropertySetting::Kind::real: return "a number";
-    case PropertySetting::Kind::whole: return "a whole number";
-    case PropertySetting::Kind::truth: return "true or false";
-    case PropertySetting::Kind::duration: break;
-    }
-    return "a time";
-}
-
-constexpr std::string_view example_of(PropertySetting::Kind kind) noexcept {
-    switch (kind) {
-    case PropertySetting::Kind::real: return "it like 2.5";
-    case PropertySetting::Kind::whole: return "it like 2";
-    case PropertySetting::Kind::truth: return "true or false";
-    case PropertySetting::Kind::duration: break;
-    }
-    return "it with its unit, like 2ms";
-}
-
-constexpr Sentence unknown_property(const ComponentRow& row, std::string_view name) {
-    Nearest nearest{name};
-    for (const auto& facet : row.type->facets)
-        if (facet.kind == FacetKind::property) nearest.consider(facet.name);
-    Sentence text = of_component(row.name, " has no property \"", name, "\"");
-    detail::add_suggestion(text, nearest, "add it to the component's interface");
-    return text;
-}
-
-constexpr Sentence check_settings(const ComponentRow& row) {
-    if (row.too_many_settings)
-        return of_component(row.name, " sets more than ", ComponentRow::max_settings,
-                            " properties; give the others their default in the component");
-    for (std::size_t i = 0; i < row.settings.size(); ++i) {
-        const PropertyRow& setting = row.settings[i];
-        for (std::size_t j = 0; j < i; ++j)
-            if (row.settings[j].name == setting.name)
-                return of_component(row.name, " sets property \"", setting.name, "\" twice; keep one");
-        const std::size_t found = find_facet(row, setting.name);
-        if (found == nowhere) return unknown_property(row, setting.name);
-        const Facet& facet = row.type->facets[found];
-        if (facet.kind != FacetKind::property)
-            return of_component(row.name, " sets \"", setting.name, "\", which is ", to_text(facet.kind),
-                                ", not a property; set one of its properties");
-        if (!fits(facet, setting.setting))
-            return of_component(row.name, " sets property \"", setting.name, "\" to ",
-                                value_text(setting.setting), ", but it is ", kind_text(facet.property->kind),
-                                "; write ", example_of(facet.property->kind));
-        const double value = value_of(setting.setting);
-        if (!(value >= facet.range.low && value <= facet.range.high)) {
-            Sentence text = of_component(row.name, " sets property \"", setting.name, "\" to ",
-                                         value_text(setting.setting), ", which is ");
-            if (value < facet.range.low)
-                text.add("under its least value ").add(decimal(facet.range.low));
-            else
-                text.add("over its greatest value ").add(decimal(facet.range.high));
-            if (facet.property->kind == PropertySetting::Kind::duration) text.add(" s");
-            return text.add("; set a value in its range, or widen range(...) in the interface of ")
-                .add(row.type->tag->name);
-        }
-    }
-    return {};
-}
 
 constexpr Sentence check_interface(const ComponentRow& row) {
     const auto& facets = row.type->facets;
@@ -151,6 +35,8 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
             return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
+        if (Sentence fault = check_bags(row); !fault.empty()) return fault;
+        if (Sentence fault = check_properties_file(m, row); !fault.empty()) return fault;
         if (!row.type->device_kind.empty() && row.device.empty())
             return of_component(row.name, " drives a ", row.type->device_kind,
                                 " device but its row names none; add device(\"...\")");

@@ -21,22 +21,57 @@ struct DeviceName {
 /// The logical name of the device that a driver component drives; board/ says what stands behind it.
 constexpr DeviceName device(std::string_view name) noexcept { return {name}; }
 
-/// A property's value in this machine.
-constexpr PropertyRow set(std::string_view name, bool value) {
-    return {name, {PropertySetting::Kind::truth, 0, value ? 1 : 0}};
+namespace detail {
+
+template <class T>
+constexpr PropertySetting setting_of(const T& value) noexcept {
+    using Kind = PropertySetting::Kind;
+    if constexpr (std::same_as<T, bool>)
+        return {.kind = Kind::truth, .whole = value ? 1 : 0};
+    else if constexpr (std::integral<T>)
+        return {.kind = Kind::whole, .whole = static_cast<std::int64_t>(value)};
+    else if constexpr (std::floating_point<T>)
+        return {.kind = Kind::real, .real = static_cast<double>(value)};
+    else if constexpr (std::is_enum_v<T>)
+        return {.kind = Kind::enumeration, .whole = static_cast<std::int64_t>(value), .type = type_id<T>};
+    else if constexpr (std::is_convertible_v<T, std::string_view>)
+        return {.kind = Kind::text, .text = value};
+    else if constexpr (is_text<T>)
+        return {.kind = Kind::text, .text = value.view()};
+    else
+        return {.kind = Kind::duration, .whole = Duration{value}.count()};
 }
-template <std::integral T>
-constexpr PropertyRow set(std::string_view name, T value) {
-    return {name, {PropertySetting::Kind::whole, 0, static_cast<std::int64_t>(value)}};
+
+template <const auto& values>
+inline constexpr ListSetting list_setting{
+    values.size(), [](std::size_t i) { return setting_of(values[i]); }};
+
+} // namespace detail
+
+/// A property's value in this machine: truth, a number, a time with its unit, a text, a value of an
+/// enumeration. Of a property in a bag the whole name: "gains.roll.p".
+template <class T>
+constexpr PropertyRow set(std::string_view name, const T& value) {
+    return {name, detail::setting_of(value)};
 }
-template <std::floating_point T>
-constexpr PropertyRow set(std::string_view name, T value) {
-    return {name, {PropertySetting::Kind::real, static_cast<double>(value), 0}};
+constexpr PropertyRow set(std::string_view name, const char* value) {
+    return {name, detail::setting_of(std::string_view{value})};
 }
-template <class Rep, class Period>
-constexpr PropertyRow set(std::string_view name, std::chrono::duration<Rep, Period> value) {
-    return {name, {PropertySetting::Kind::duration, 0, Duration{value}.count()}};
+/// A list: an array or Sequence that is a constant at namespace scope: set<offsets>("offsets").
+template <const auto& values>
+constexpr PropertyRow set(std::string_view name) {
+    return {name, {.kind = PropertySetting::Kind::list, .list = &detail::list_setting<values>}};
 }
+
+struct PropertiesFile {
+    std::string_view name{};
+    bool may_be_missing = false;
+};
+/// The component's properties are read from this file while it is configured, and saved to it. It lies in the
+/// board's properties_directory; one that is missing is an error unless `optional`. What it says goes before
+/// what the row sets.
+constexpr PropertiesFile properties_file(std::string_view name) noexcept { return {name, false}; }
+constexpr PropertiesFile properties_file(std::string_view name, Optional) noexcept { return {name, true}; }
 
 struct ComponentRow {
     static constexpr std::size_t max_settings = 24;
@@ -45,6 +80,8 @@ struct ComponentRow {
     std::string_view device{};
     Bounded<PropertyRow, max_settings> settings{};
     bool too_many_settings = false;
+    bool has_properties_file = false;
+    PropertiesFile properties{};
 };
 
 namespace detail {
@@ -52,6 +89,10 @@ namespace detail {
 constexpr void apply(ComponentRow& row, DeviceName option) noexcept { row.device = option.name; }
 constexpr void apply(ComponentRow& row, const PropertyRow& option) noexcept {
     row.too_many_settings |= !row.settings.push(option);
+}
+constexpr void apply(ComponentRow& row, const PropertiesFile& option) noexcept {
+    row.has_properties_file = true;
+    row.properties = option;
 }
 
 } // namespace detail

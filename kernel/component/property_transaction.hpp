@@ -1,0 +1,165 @@
+// Several properties of one component changed as one (thesis 4.7.1): checked where they are proposed, then
+// offered to the component between two of its steps, which takes all of them or none.
+#pragma once
+
+#include "kernel/component/component.hpp"
+#include "kernel/exchange/mailbox.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstring>
+
+namespace tappet {
+
+/// Filled by one thread, which then posts message() to the component's engine and leaves the object alone
+/// until finished(). Also holds a copy of what is, taken in the engine or of a component that stands still.
+class PropertyTransaction {
+public:
+    static constexpr std::size_t max_values = 64;
+    static constexpr std::size_t max_bytes = 2048;
+    static constexpr std::size_t alignment = 16;
+
+    enum class State : std::uint8_t { open, posted, done, refused };
+
+    static constexpr std::size_t bytes_for(const Facet& facet) noexcept {
+        return (facet.type->size + alignment - 1) / alignment * alignment;
+    }
+
+    /// Empties it; what is proposed next is for this component. `name` lives as long as it.
+    void begin(std::string_view name, const ComponentType& type, void* component) noexcept {
+        name_ = name, type_ = &type, component_ = component;
+        count_ = used_ = 0;
+        refusal_ = Sentence{};
+        state_.store(State::open, std::memory_order_relaxed);
+    }
+
+    /// Room for the value of that property, which holds what the component has, or what was proposed before.
+    /// Null: no property, or no room, which the table's check rules out for one component's own.
+    [[nodiscard]] std::byte* change(std::size_t facet_index) noexcept TAPPET_REALTIME {
+        const Facet& facet = type_->facets[facet_index];
+        if (facet.kind != FacetKind::property) return nullptr;
+        for (std::size_t i = 0; i < count_; ++i)
+            if (values_[i].facet == facet_index) return bytes_.data() + (values_[i].value - bytes_.data());
+        const std::size_t needed = bytes_for(facet);
+        if (count_ == max_values || used_ + needed > max_bytes) return nullptr;
+        std::byte* place = bytes_.data() + used_;
+        auto* target = static_cast<std::byte*>(address(facet));
+        std::memcpy(place, target, facet.type->size);
+        values_[count_++] = {target, place, static_cast<std::uint32_t>(facet.type->size),
+                             static_cast<std::uint32_t>(facet_index)};
+        used_ += needed;
+        return place;
+    }
+
+    /// What is wrong with a value for that property: out of its range, or no number. Not real-time only for
+    /// the length of its sentence.
+    [[nodiscard]] static Sentence check_range(const Facet& facet, const std::byte* value) noexcept {
+        const PropertyOperations& of = *facet.property;
+        if (of.kind == PropertySetting::Kind::text) return {};
+        for (std::size_t i = 0; i < of.size(value); ++i) {
+            const double number = of.number(value, i);
+            if (number >= facet.range.low && number <= facet.range.high) continue;
+            Sentence text{"property \"", facet.name, "\": "};
+            if (of.is_list) text.add("element ").add(i).add(" ");
+            text.add(number < facet.range.low    ? "is under its least value "
+                     : number > facet.range.high ? "is over its greatest value "
+                                                 : "is no number");
+            if (number < facet.range.low) add_number(text, facet.range.low);
+            if (number > facet.range.high) add_number(text, facet.range.high);
+            if (of.kind == PropertySetting::Kind::duration) text.add(" s");
+            return text.add("; propose a value in its range");
+        }
+        return {};
+    }
+
+    /// Checks every proposed value, asks the component and, when it consents, gives it all of them. Only
+    /// where the component runs, or while it stands still. Real-time.
+    void commit() noexcept TAPPET_REALTIME {
+        State end = State::done;
+        if (type_->accepts != nullptr) refusal_ = type_->accepts(component_, Proposal{values()});
+        if (refusal_.empty()) {
+            for (const ProposedValue& each : values()) std::memcpy(each.target, each.value, each.size);
+            if (type_->changed != nullptr) type_->changed(component_);
+        } else {
+            end = State::refused;
+        }
+        state_.store(end, std::memory_order_release);
+    }
+    /// Takes a copy of every property. Where the component runs, or while it stands still. Real-time.
+    void capture() noexcept TAPPET_REALTIME {
+        count_ = used_ = 0;
+        for (std::size_t f = 0; f < type_->facets.size(); ++f) static_cast<void>(change(f));
+        state_.store(State::done, std::memory_order_release);
+    }
+
+    /// The calls to post to the component's engine; `part` is the component's number there.
+    [[nodiscard]] Message commit_message(std::uint32_t part) noexcept {
+        return message(part, [](void* self, const std::byte*) noexcept
+                       TAPPET_REALTIME { static_cast<PropertyTransaction*>(self)->commit(); });
+    }
+    [[nodiscard]] Message capture_message(std::uint32_t part) noexcept {
+        return message(part, [](void* self, const std::byte*) noexcept
+                       TAPPET_REALTIME { static_cast<PropertyTransaction*>(self)->capture(); });
+    }
+    /// After a message that could not be posted.
+    void reopen() noexcept { state_.store(State::open, std::memory_order_relaxed); }
+
+    [[nodiscard]] State state() const noexcept TAPPET_REALTIME {
+        return state_.load(std::memory_order_acquire);
+    }
+    [[nodiscard]] bool finished() const noexcept TAPPET_REALTIME {
+        return state() == State::done || state() == State::refused;
+    }
+    /// Why the component did not consent; once refused.
+    [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
+
+    [[nodiscard]] std::span<const ProposedValue> values() const noexcept TAPPET_REALTIME {
+        return {values_.data(), count_};
+    }
+    [[nodiscard]] const ComponentType& type() const noexcept { return *type_; }
+    [[nodiscard]] void* component() const noexcept { return component_; }
+    [[nodiscard]] std::string_view name() const noexcept { return name_; }
+
+private:
+    [[nodiscard]] void* address(const Facet& facet) const noexcept TAPPET_REALTIME {
+        void* at = nullptr;
+        TAPPET_ESCAPE("adds a member's offset, as every facet's function does", at = facet.at(component_, facet.index));
+        return at;
+    }
+    [[nodiscard]] Message message(std::uint32_t part, Message::Run run) noexcept {
+        Message made;
+        made.run = run;
+        made.object = this;
+        made.id = part;
+        state_.store(State::posted, std::memory_order_relaxed);
+        return made;
+    }
+    /// As an engineer reads a bound: to the third decimal.
+    static void add_number(Sentence& text, double value) noexcept {
+        const double size = value < 0 ? -value : value;
+        if (size >= 1e15) {
+            text.add(value < 0 ? "-1e15" : "1e15");
+            return;
+        }
+        auto thousandths = static_cast<std::int64_t>(size * 1000 + 0.5);
+        text.add(value < 0 ? "-" : "").add(thousandths / 1000);
+        thousandths %= 1000;
+        if (thousandths != 0) text.add(".");
+        for (std::int64_t digit = 100; thousandths != 0; digit /= 10) {
+            text.add(thousandths / digit);
+            thousandths %= digit;
+        }
+    }
+
+    std::string_view name_{};
+    const ComponentType* type_ = nullptr;
+    void* component_ = nullptr;
+    std::size_t count_ = 0;
+    std::size_t used_ = 0;
+    std::array<ProposedValue, max_values> values_{};
+    alignas(alignment) std::array<std::byte, max_bytes> bytes_{};
+    Sentence refusal_{};
+    std::atomic<State> state_{State::open};
+};
+
+} // namespace tappet
