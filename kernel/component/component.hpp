@@ -79,8 +79,9 @@ constexpr ComponentType describe() {
             TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
     // A check of properties that is spelled wrong must not be one that never runs.
     if constexpr (requires { &T::accepts; }) {
-        static_assert(std::is_convertible_v<decltype(&T::accepts), Sentence (T::*)(const Proposal&) const noexcept>,
-                      "accepts is spelled: Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME");
+        static_assert(
+            std::is_convertible_v<decltype(&T::accepts), Sentence (T::*)(const Proposal&) const noexcept>,
+            "accepts is spelled: Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME");
         type.accepts = [](const void* c, const Proposal& proposal) noexcept
             TAPPET_REALTIME { return static_cast<const T*>(c)->accepts(proposal); };
     }

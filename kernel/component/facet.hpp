@@ -78,7 +78,7 @@ struct Facet {
     bool any_thread = false;          ///< an operation that any activity may call
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
-    std::size_t members = 0;          ///< of a bag: so many facets behind it are in it, those of bags in it too
+    std::size_t members = 0; ///< of a bag: so many facets behind it are in it, those of bags in it too
     void* (*at)(void* component, std::size_t index) noexcept = nullptr;
     // One of these, by kind.
     const PortOperations* port = nullptr;

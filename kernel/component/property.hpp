@@ -82,7 +82,8 @@ struct ListElement<T> {
 /// The value types a property may have: truth, numbers, Duration, Text<N>, enumerations, and lists of these:
 /// Sequence<T, N> and vectors and matrices of Eigen of fixed size (column by column).
 template <class T>
-concept PropertyValue = detail::PropertyScalar<T> || detail::PropertyScalar<typename detail::ListElement<T>::Type>;
+concept PropertyValue =
+    detail::PropertyScalar<T> || detail::PropertyScalar<typename detail::ListElement<T>::Type>;
 
 /// Read by its own component, from its own activity. Once the machine runs it is changed by a
 /// PropertyTransaction only, between two steps.

@@ -37,18 +37,19 @@ struct MemberOf<Member> {
 };
 
 template <PropertyScalar T>
-inline constexpr PropertySetting::Kind property_kind = std::same_as<T, bool>       ? PropertySetting::Kind::truth
-                                                       : std::floating_point<T>    ? PropertySetting::Kind::real
-                                                       : std::same_as<T, Duration> ? PropertySetting::Kind::duration
-                                                       : is_text<T>                ? PropertySetting::Kind::text
-                                                       : std::is_enum_v<T> ? PropertySetting::Kind::enumeration
-                                                                           : PropertySetting::Kind::whole;
+inline constexpr PropertySetting::Kind property_kind =
+    std::same_as<T, bool>       ? PropertySetting::Kind::truth
+    : std::floating_point<T>    ? PropertySetting::Kind::real
+    : std::same_as<T, Duration> ? PropertySetting::Kind::duration
+    : is_text<T>                ? PropertySetting::Kind::text
+    : std::is_enum_v<T>         ? PropertySetting::Kind::enumeration
+                                : PropertySetting::Kind::whole;
 
 template <PropertyScalar T>
 constexpr void assign(T& target, const PropertySetting& setting) noexcept TAPPET_REALTIME {
     if constexpr (std::floating_point<T>)
-        target = static_cast<T>(setting.kind == PropertySetting::Kind::real ? setting.real
-                                                                           : static_cast<double>(setting.whole));
+        target = static_cast<T>(
+            setting.kind == PropertySetting::Kind::real ? setting.real : static_cast<double>(setting.whole));
     else if constexpr (std::same_as<T, bool>)
         target = setting.whole != 0;
     else if constexpr (is_text<T>)
@@ -70,7 +71,8 @@ constexpr double number_of(const T& value) noexcept TAPPET_REALTIME {
 template <class T>
 constexpr void add_limits(PropertyOperations& operations) noexcept {
     if constexpr (std::integral<T> && !std::same_as<T, bool>) {
-        operations.least = std::signed_integral<T> ? static_cast<std::int64_t>(std::numeric_limits<T>::min()) : 0;
+        operations.least =
+            std::signed_integral<T> ? static_cast<std::int64_t>(std::numeric_limits<T>::min()) : 0;
         operations.most = static_cast<std::int64_t>(
             std::min<std::uint64_t>(std::numeric_limits<T>::max(), std::numeric_limits<std::int64_t>::max()));
     }
@@ -281,7 +283,8 @@ template <class... Members>
 constexpr auto bag(std::string_view name, std::string_view doc, const Members&... members) {
     constexpr std::size_t count = (std::size_t{0} + ... + detail::facet_count<Members>);
     std::array<Facet, count + 1> all{};
-    all[0] = {.name = name, .doc = doc, .kind = FacetKind::bag, .type = type_id<Arguments<>>, .members = count};
+    all[0] = {
+        .name = name, .doc = doc, .kind = FacetKind::bag, .type = type_id<Arguments<>>, .members = count};
     std::size_t at = 1;
     (detail::put(all, at, members), ...);
     return all;

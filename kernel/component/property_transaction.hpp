@@ -2,6 +2,7 @@
 // offered to the component between two of its steps, which takes all of them or none.
 #pragma once
 
+#include "kernel/base/decimal.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/exchange/mailbox.hpp"
 
@@ -33,26 +34,34 @@ public:
         state_.store(State::open, std::memory_order_relaxed);
     }
 
-    /// Room for the value of that property, which holds what the component has, or what was proposed before.
-    /// Null: no property, or no room, which the table's check rules out for one component's own.
-    [[nodiscard]] std::byte* change(std::size_t facet_index) noexcept TAPPET_REALTIME {
+    /// Room for a new value of that property: zeros, or what was proposed before. Null: no property, or no
+    /// room, which the table's check rules out for one component's own.
+    [[nodiscard]] std::byte* change(std::size_t facet_index) noexcept {
         const Facet& facet = type_->facets[facet_index];
         if (facet.kind != FacetKind::property) return nullptr;
         for (std::size_t i = 0; i < count_; ++i)
-            if (values_[i].facet == facet_index) return bytes_.data() + (values_[i].value - bytes_.data());
+            if (values_[i].facet == facet_index) return place_of(values_[i]);
         const std::size_t needed = bytes_for(facet);
         if (count_ == max_values || used_ + needed > max_bytes) return nullptr;
         std::byte* place = bytes_.data() + used_;
-        auto* target = static_cast<std::byte*>(address(facet));
-        std::memcpy(place, target, facet.type->size);
-        values_[count_++] = {target, place, static_cast<std::uint32_t>(facet.type->size),
+        std::memset(place, 0, needed);
+        values_[count_++] = {static_cast<std::byte*>(facet.at(component_, facet.index)), place,
+                             static_cast<std::uint32_t>(facet.type->size),
                              static_cast<std::uint32_t>(facet_index)};
         used_ += needed;
         return place;
     }
+    [[nodiscard]] bool changes(std::size_t facet_index) const noexcept {
+        for (const ProposedValue& each : values())
+            if (each.facet == facet_index) return true;
+        return false;
+    }
+    /// Makes room for all properties, for capture().
+    void change_all() noexcept {
+        for (std::size_t f = 0; f < type_->facets.size(); ++f) static_cast<void>(change(f));
+    }
 
-    /// What is wrong with a value for that property: out of its range, or no number. Not real-time only for
-    /// the length of its sentence.
+    /// What is wrong with a value for that property: out of its range, or no number.
     [[nodiscard]] static Sentence check_range(const Facet& facet, const std::byte* value) noexcept {
         const PropertyOperations& of = *facet.property;
         if (of.kind == PropertySetting::Kind::text) return {};
@@ -64,15 +73,15 @@ public:
             text.add(number < facet.range.low    ? "is under its least value "
                      : number > facet.range.high ? "is over its greatest value "
                                                  : "is no number");
-            if (number < facet.range.low) add_number(text, facet.range.low);
-            if (number > facet.range.high) add_number(text, facet.range.high);
+            if (number < facet.range.low) text.add(decimal(facet.range.low));
+            if (number > facet.range.high) text.add(decimal(facet.range.high));
             if (of.kind == PropertySetting::Kind::duration) text.add(" s");
             return text.add("; propose a value in its range");
         }
         return {};
     }
 
-    /// Checks every proposed value, asks the component and, when it consents, gives it all of them. Only
+    /// Asks the component and, when it consents, gives it all of them. Only
     /// where the component runs, or while it stands still. Real-time.
     void commit() noexcept TAPPET_REALTIME {
         State end = State::done;
@@ -85,10 +94,10 @@ public:
         }
         state_.store(end, std::memory_order_release);
     }
-    /// Takes a copy of every property. Where the component runs, or while it stands still. Real-time.
+    /// Takes a copy of what the properties are that there is room for. Where the component runs, or while it
+    /// stands still. Real-time.
     void capture() noexcept TAPPET_REALTIME {
-        count_ = used_ = 0;
-        for (std::size_t f = 0; f < type_->facets.size(); ++f) static_cast<void>(change(f));
+        for (const ProposedValue& each : values()) std::memcpy(place_of(each), each.target, each.size);
         state_.store(State::done, std::memory_order_release);
     }
 
@@ -121,10 +130,8 @@ public:
     [[nodiscard]] std::string_view name() const noexcept { return name_; }
 
 private:
-    [[nodiscard]] void* address(const Facet& facet) const noexcept TAPPET_REALTIME {
-        void* at = nullptr;
-        TAPPET_ESCAPE("adds a member's offset, as every facet's function does", at = facet.at(component_, facet.index));
-        return at;
+    [[nodiscard]] std::byte* place_of(const ProposedValue& value) noexcept TAPPET_REALTIME {
+        return bytes_.data() + (value.value - bytes_.data());
     }
     [[nodiscard]] Message message(std::uint32_t part, Message::Run run) noexcept {
         Message made;
@@ -134,23 +141,6 @@ private:
         state_.store(State::posted, std::memory_order_relaxed);
         return made;
     }
-    /// As an engineer reads a bound: to the third decimal.
-    static void add_number(Sentence& text, double value) noexcept {
-        const double size = value < 0 ? -value : value;
-        if (size >= 1e15) {
-            text.add(value < 0 ? "-1e15" : "1e15");
-            return;
-        }
-        auto thousandths = static_cast<std::int64_t>(size * 1000 + 0.5);
-        text.add(value < 0 ? "-" : "").add(thousandths / 1000);
-        thousandths %= 1000;
-        if (thousandths != 0) text.add(".");
-        for (std::int64_t digit = 100; thousandths != 0; digit /= 10) {
-            text.add(thousandths / digit);
-            thousandths %= digit;
-        }
-    }
-
     std::string_view name_{};
     const ComponentType* type_ = nullptr;
     void* component_ = nullptr;

@@ -1,6 +1,7 @@
 // Checks of the properties that component rows set: names, types, ranges, bags, and the file they come from.
 #pragma once
 
+#include "kernel/base/decimal.hpp"
 #include "kernel/component/property_transaction.hpp"
 #include "kernel/machine/table_index.hpp"
 
@@ -15,7 +16,8 @@ template <class... Pieces> constexpr Sentence of_activity(std::string_view name,
 }
 
 /// The fault of one value, as the part of a sentence that stands behind "sets property ... to ...".
-constexpr bool of_kind(const PropertyOperations& wanted, const PropertySetting& setting, TypeId element) noexcept {
+constexpr bool of_kind(const PropertyOperations& wanted, const PropertySetting& setting,
+                       TypeId element) noexcept {
     using Kind = PropertySetting::Kind;
     if (wanted.kind == Kind::enumeration) return setting.kind == Kind::enumeration && setting.type == element;
     return wanted.kind == setting.kind || (wanted.kind == Kind::real && setting.kind == Kind::whole);
@@ -28,23 +30,6 @@ constexpr bool fits(const Facet& property, const PropertySetting& setting) {
     for (std::size_t i = 0; i < setting.list->size; ++i)
         if (!of_kind(wanted, setting.list->at(i), wanted.element)) return false;
     return true;
-}
-
-/// A number as an engineer writes it, to the third decimal.
-constexpr Sentence decimal(double value) {
-    constexpr double largest = 1e15; // in thousandths still a whole number of 64 bits
-    if (!(value > -largest && value < largest))
-        return Sentence{value < 0 ? "less than -1e15" : "more than 1e15"};
-    const double size = value < 0 ? -value : value;
-    auto thousandths = static_cast<std::int64_t>(size * 1000 + 0.5);
-    Sentence text{value < 0 ? "-" : "", thousandths / 1000};
-    thousandths %= 1000;
-    if (thousandths != 0) text.add(".");
-    for (std::int64_t digit = 100; thousandths != 0; digit /= 10) {
-        text.add(thousandths / digit);
-        thousandths %= digit;
-    }
-    return text;
 }
 
 /// In the unit of a range: seconds for a time.
@@ -120,7 +105,8 @@ constexpr Sentence check_value(const ComponentRow& row, std::string_view name, c
     using Kind = PropertySetting::Kind;
     const PropertyOperations& wanted = *facet.property;
     const auto sets = [&] {
-        return of_component(row.name, " sets property \"", name, "\" to ", value_text(setting), ", which is ");
+        return of_component(row.name, " sets property \"", name, "\" to ", value_text(setting),
+                            ", which is ");
     };
     if (wanted.kind == Kind::text)
         return setting.text.size() <= wanted.most_letters

@@ -1,4 +1,4 @@
-// Makes a machine out of its plan: constructs, sets properties, places engines and wires every row.
+// Makes a machine out of its plan: constructs, places engines, wires every row and configures.
 #include "kernel/machine/instance.hpp"
 
 #include <new>
@@ -16,6 +16,8 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     const MachineView& table = machine_.table;
     for (std::size_t c = 0; c < table.components.size(); ++c) {
         const ComponentRow& row = table.components[c];
+        if (const Sentence refusal = configure_properties(c); !refusal.empty())
+            return std::unexpected(refusal);
         if (row.type->configure == nullptr) continue;
         Setup setup{row.name,
                     row.device,
@@ -30,18 +32,8 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
 }
 
 void MachineInstance::construct() {
-    for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
+    for (std::size_t c = 0; c < machine_.table.components.size(); ++c)
         machine_.table.components[c].type->construct(component(c));
-        apply_settings(c);
-    }
-}
-
-void MachineInstance::apply_settings(std::size_t c) {
-    const ComponentRow& row = machine_.table.components[c];
-    for (const PropertyRow& setting : row.settings) {
-        const std::size_t index = find_facet(row, setting.name);
-        row.type->facets[index].property->set(facet({c, index}), setting.setting);
-    }
 }
 
 void* MachineInstance::facet(End end) noexcept {

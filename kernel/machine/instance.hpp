@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
+#include "kernel/machine/property_store.hpp"
 
 #include <atomic>
 #include <expected>
@@ -25,6 +26,13 @@ public:
         : machine_{machine}, clock_{&clock} {}
     MachineInstance(const MachineInstance&) = delete;
     MachineInstance& operator=(const MachineInstance&) = delete;
+
+    /// Where rows with a properties file have their values from; before configure().
+    void read_properties_from(const PropertyStore& store) noexcept { store_ = store; }
+    /// Writes every properties file anew. While the machine stands still, before or after it ran; of a
+    /// machine that runs see PropertySaving in kernel/services/configuration. The first file that cannot be
+    /// written is the error, the others are written all the same.
+    [[nodiscard]] Sentence save_properties();
 
     /// Constructs, wires and configures. An error is the first component's refusal.
     std::expected<void, Sentence> configure(std::span<const ProvidedDevice> devices);
@@ -82,7 +90,7 @@ private:
     [[nodiscard]] Waker waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
 
     void construct();
-    void apply_settings(std::size_t component);
+    [[nodiscard]] Sentence configure_properties(std::size_t component);
     void place_engines();
     void connect_clocks();
     void connect_data();
@@ -94,6 +102,7 @@ private:
 
     AcceptedMachine machine_;
     os::Clock* clock_;
+    PropertyStore store_{};
     os::Waiter supervisor_{};
     std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
     StopRequest stop_{};

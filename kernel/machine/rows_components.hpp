@@ -43,8 +43,7 @@ constexpr PropertySetting setting_of(const T& value) noexcept {
 }
 
 template <const auto& values>
-inline constexpr ListSetting list_setting{
-    values.size(), [](std::size_t i) { return setting_of(values[i]); }};
+inline constexpr ListSetting list_setting{values.size(), [](std::size_t i) { return setting_of(values[i]); }};
 
 } // namespace detail
 

@@ -23,6 +23,17 @@ struct Encoder {
     }
 };
 
+enum class Turn { left, right };
+
+struct Axis {
+    Property<double> low{0.0};
+    Property<double> high{1.0};
+    static constexpr auto interface() {
+        return facets(property<&Axis::low>("low", "deg", "from here", range(0, 360)),
+                      property<&Axis::high>("high", "deg", "to there", range(0, 360)));
+    }
+};
+
 struct Shaft {
     Input<double> measured;
     Input<double> reference;
@@ -33,6 +44,11 @@ struct Shaft {
     Property<double> gain{1.0};
     Property<bool> reversed{false};
     Property<Duration> filter{1ms};
+    Property<std::int8_t> teeth{60};
+    Property<Text<8>> label{"main"};
+    Property<Turn> turn{Turn::left};
+    Property<Sequence<double, 3>> offsets;
+    Axis window_axis;
     void on_index(double) noexcept TAPPET_REALTIME {}
     void clear() noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
@@ -46,7 +62,12 @@ struct Shaft {
                       operation<&Shaft::clear>("clear", "forgets the turns"),
                       property<&Shaft::gain>("gain", "", "of the estimator", range(0, 10)),
                       property<&Shaft::reversed>("reversed", "", "mounted the other way round"),
-                      property<&Shaft::filter>("filter", "s", "time constant", range(0, 0.5)));
+                      property<&Shaft::filter>("filter", "s", "time constant", range(0, 0.5)),
+                      property<&Shaft::teeth>("teeth", "", "of its wheel"),
+                      property<&Shaft::label>("label", "", "on its plate"),
+                      property<&Shaft::turn>("turn", "", "it turns this way"),
+                      property<&Shaft::offsets>("offsets", "deg", "of the sensors", range(-1, 1)),
+                      bag("angles", "where it acts", bag<&Shaft::window_axis>("window", "of the weft")));
     }
 };
 

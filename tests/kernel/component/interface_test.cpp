@@ -1,4 +1,4 @@
-// A component's interface as data: facets, calls through packed arguments, properties, timers; and what of a
+// A component's interface as data: facets, calls through packed arguments, timers; and what of a
 // component's functions its type finds.
 #include "kernel/component/component.hpp"
 
@@ -122,37 +122,6 @@ TEST(Operation, runs_on_packed_arguments_of_any_sizes) {
     EXPECT_EQ(probe.mixed_, 200 + 0.25 - 1000);
     facet("home").operation->run(&probe, packed.data());
     EXPECT_TRUE(probe.homed_);
-}
-
-TEST(Property, has_its_default_until_it_is_set) {
-    Probe probe;
-    EXPECT_EQ(probe.gain.get(), 1.5);
-    const auto set = [&probe](std::string_view name, PropertySetting to) {
-        facet(name).property->set(facet(name).at(&probe, 0), to);
-    };
-    set("gain", {PropertySetting::Kind::real, 4.25, 0});
-    EXPECT_EQ(probe.gain.get(), 4.25);
-    set("gain", {PropertySetting::Kind::whole, 0, 7}); // a whole number is a number
-    EXPECT_EQ(probe.gain.get(), 7.0);
-    set("steps", {PropertySetting::Kind::whole, 0, -12});
-    EXPECT_EQ(probe.steps.get(), -12);
-    set("reversed", {PropertySetting::Kind::truth, 0, 0});
-    EXPECT_FALSE(probe.reversed.get());
-    set("filter", {PropertySetting::Kind::duration, 0, 5'000'000});
-    EXPECT_EQ(probe.filter.get(), 5ms);
-}
-
-TEST(Property, is_read_back_as_it_was_set) {
-    Probe probe;
-    const auto get = [&probe](std::string_view name) {
-        return facet(name).property->get(facet(name).at(&probe, 0));
-    };
-    EXPECT_EQ(get("gain").kind, PropertySetting::Kind::real);
-    EXPECT_EQ(get("gain").real, 1.5);
-    EXPECT_EQ(get("steps").whole, 3);
-    EXPECT_EQ(get("reversed").whole, 1);
-    EXPECT_EQ(get("filter").kind, PropertySetting::Kind::duration);
-    EXPECT_EQ(get("filter").whole, 2'000'000);
 }
 
 TEST(Timer, stands_still_until_armed_and_is_moved_by_arming_again) {

@@ -1,0 +1,25 @@
+// A number as an engineer writes it in a sentence, in constant expressions too.
+#pragma once
+
+#include "kernel/base/text.hpp"
+
+namespace tappet {
+
+/// To the third decimal, without zeros at the end; far beyond it says no more than that.
+constexpr Sentence decimal(double value) noexcept {
+    constexpr double largest = 1e15; // in thousandths still a whole number of 64 bits
+    if (!(value > -largest && value < largest))
+        return Sentence{value < 0 ? "less than -1e15" : "more than 1e15"};
+    const double size = value < 0 ? -value : value;
+    auto thousandths = static_cast<std::int64_t>(size * 1000 + 0.5);
+    Sentence text{value < 0 ? "-" : "", thousandths / 1000};
+    thousandths %= 1000;
+    if (thousandths != 0) text.add(".");
+    for (std::int64_t digit = 100; thousandths != 0; digit /= 10) {
+        text.add(thousandths / digit);
+        thousandths %= digit;
+    }
+    return text;
+}
+
+} // namespace tappet

@@ -1,0 +1,13 @@
+// A property in a bag is misspelt.
+// refused: loom: component "shaft" has no property "angles.window.hihg"; did you mean "angles.window.high"?
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+constexpr auto table =
+    loom(components(component<Encoder>("encoder", device("main_encoder")),
+                    component<Shaft>("shaft", set("angles.window.hihg", 2.0)), component<Tension>("tension"),
+                    component<Weft>("weft"), component<Climate>("climate", device("hall")),
+                    component<Lamps>("lamps", device("panel"))),
+         good_activities, good_connections, good_reactions, good_behaviours);
+template struct tappet::Firmware<table, good_board>;

@@ -1,0 +1,276 @@
+// Properties, their bags and their transactions (thesis 4.7, 4.7.1): every value type, the names in nested
+// bags, and several values changed as one, or not at all.
+#include "kernel/component/component.hpp"
+#include "kernel/component/property_transaction.hpp"
+
+#include <Eigen/Core>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+enum class Mode : std::uint8_t { idle, slow, fast };
+
+struct Pid {
+    Property<double> p{1.0};
+    Property<double> i{0.5};
+    static constexpr auto interface() {
+        return facets(property<&Pid::p>("p", "N/deg", "proportional", range(0, 10)),
+                      property<&Pid::i>("i", "N/(deg s)", "integral", range(0, 10)));
+    }
+};
+
+struct Limits {
+    Property<double> low{-1.0};
+    Property<double> high{1.0};
+    static constexpr auto interface() {
+        return facets(property<&Limits::low>("low", "N", "least force"),
+                      property<&Limits::high>("high", "N", "greatest force"));
+    }
+};
+
+struct Arm {
+    Event<> moved;
+    Pid roll, pitch;
+    Limits limits;
+    Property<double> gain{1.5};
+    Property<float> scale{2.0f};
+    Property<std::int64_t> steps{3};
+    Property<std::int8_t> small{4};
+    Property<std::uint16_t> word{5};
+    Property<bool> reversed{true};
+    Property<Duration> filter{2ms};
+    Property<Text<8>> label{"left"};
+    Property<Mode> mode{Mode::slow};
+    Property<Sequence<double, 4>> offsets;
+    Property<Eigen::Vector3d> axis{Eigen::Vector3d{0, 0, 1}};
+
+    int changes = 0;
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        if (proposal.of(limits.low) > proposal.of(limits.high)) return Sentence{"low is above high"};
+        return {};
+    }
+    void changed() noexcept TAPPET_REALTIME { ++changes; }
+
+    static constexpr auto interface() {
+        return facets(
+            event<&Arm::moved>("moved", "it did"),
+            bag("gains", "of both axes", bag<&Arm::roll>("roll", "of the wrist"),
+                bag<&Arm::pitch>("pitch", "of the elbow"), property<&Arm::gain>("all", "", "of all")),
+            bag<&Arm::limits>("limits", "of the force"), property<&Arm::scale>("scale", "", "of the drawing"),
+            property<&Arm::steps>("steps", "", "per turn"), property<&Arm::small>("small", "", "a byte"),
+            property<&Arm::word>("word", "", "two bytes"),
+            property<&Arm::reversed>("reversed", "", "mounted so"),
+            property<&Arm::filter>("filter", "s", "time constant", range(0, 0.5)),
+            property<&Arm::label>("label", "", "on the plate"), property<&Arm::mode>("mode", "", "of moving"),
+            property<&Arm::offsets>("offsets", "mm", "of the joints", range(-5, 5)),
+            property<&Arm::axis>("axis", "", "of the tool", range(-1, 1)));
+    }
+};
+
+const ComponentType& type = component_type<Arm>;
+
+std::size_t index_of(std::string_view name) {
+    for (std::size_t f = 0; f < type.facets.size(); ++f)
+        if (type.facets[f].name == name) return f;
+    throw std::string{"no facet of that name"};
+}
+const Facet& facet(std::string_view name) { return type.facets[index_of(name)]; }
+
+struct Proposed : testing::Test {
+    Arm arm;
+    PropertyTransaction transaction;
+    Proposed() { transaction.begin("arm", type, &arm); }
+    void set(std::string_view name, const PropertySetting& to) {
+        std::byte* place = transaction.change(index_of(name));
+        ASSERT_NE(place, nullptr) << name;
+        facet(name).property->set(place, to);
+    }
+    void real(std::string_view name, double value) {
+        set(name, {.kind = PropertySetting::Kind::real, .real = value});
+    }
+    std::string range_fault(std::string_view name) {
+        return std::string{
+            PropertyTransaction::check_range(facet(name), transaction.change(index_of(name))).view()};
+    }
+};
+
+TEST(Bag, gives_each_property_in_it_its_whole_name) {
+    std::vector<std::string> names;
+    for (const Facet& each : type.facets) names.emplace_back(each.name);
+    const std::vector<std::string> expected{
+        "moved",         "gains",         "gains.roll", "gains.roll.p", "gains.roll.i", "gains.pitch",
+        "gains.pitch.p", "gains.pitch.i", "gains.all",  "limits",       "limits.low",   "limits.high",
+        "scale",         "steps",         "small",      "word",         "reversed",     "filter",
+        "label",         "mode",          "offsets",    "axis"};
+    EXPECT_EQ(names, expected);
+}
+
+TEST(Bag, says_how_many_facets_are_in_it) {
+    EXPECT_EQ(facet("gains").kind, FacetKind::bag);
+    EXPECT_EQ(facet("gains").members, 7u);
+    EXPECT_EQ(facet("gains.roll").members, 2u);
+    EXPECT_EQ(facet("limits").members, 2u);
+    EXPECT_EQ(facet("gains.roll").doc, "of the wrist");
+    EXPECT_EQ(facet("gains.pitch.i").unit, "N/(deg s)");
+}
+
+TEST(Bag, of_one_struct_used_twice_reaches_two_members) {
+    Arm arm;
+    EXPECT_EQ(facet("gains.roll.p").at(&arm, 0), &arm.roll.p);
+    EXPECT_EQ(facet("gains.pitch.p").at(&arm, 0), &arm.pitch.p);
+    EXPECT_EQ(facet("gains.pitch.i").at(&arm, 0), &arm.pitch.i);
+    EXPECT_EQ(facet("gains.all").at(&arm, 0), &arm.gain);
+    EXPECT_EQ(facet("limits.high").at(&arm, 0), &arm.limits.high);
+}
+
+TEST_F(Proposed, values_of_every_type_arrive_together) {
+    using Kind = PropertySetting::Kind;
+    static constexpr std::array<double, 3> three{0.5, -0.5, 1.0};
+    static constexpr ListSetting list{
+        3,
+        [](std::size_t i) { return PropertySetting{.kind = PropertySetting::Kind::real, .real = three[i]}; }};
+    real("gains.roll.p", 4.25);
+    set("gains.pitch.p", {.kind = Kind::whole, .whole = 7}); // a whole number is a number
+    real("scale", 0.25);
+    set("steps", {.kind = Kind::whole, .whole = -12});
+    set("small", {.kind = Kind::whole, .whole = -128});
+    set("word", {.kind = Kind::whole, .whole = 65535});
+    set("reversed", {.kind = Kind::truth, .whole = 0});
+    set("filter", {.kind = Kind::duration, .whole = 5'000'000});
+    set("label", {.kind = Kind::text, .text = "right"});
+    set("mode", {.kind = Kind::enumeration, .whole = 2});
+    set("offsets", {.kind = Kind::list, .list = &list});
+    set("axis", {.kind = Kind::list, .list = &list});
+    EXPECT_EQ(arm.roll.p.get(), 1.0) << "nothing takes effect before it is committed";
+    transaction.commit();
+    EXPECT_EQ(transaction.state(), PropertyTransaction::State::done);
+    EXPECT_EQ(arm.roll.p.get(), 4.25);
+    EXPECT_EQ(arm.pitch.p.get(), 7.0);
+    EXPECT_EQ(arm.scale.get(), 0.25f);
+    EXPECT_EQ(arm.steps.get(), -12);
+    EXPECT_EQ(arm.small.get(), -128);
+    EXPECT_EQ(arm.word.get(), 65535);
+    EXPECT_FALSE(arm.reversed.get());
+    EXPECT_EQ(arm.filter.get(), 5ms);
+    EXPECT_EQ(arm.label.get().view(), "right");
+    EXPECT_EQ(arm.mode.get(), Mode::fast);
+    ASSERT_EQ(arm.offsets.get().size(), 3u);
+    EXPECT_EQ(arm.offsets.get()[1], -0.5);
+    EXPECT_EQ(arm.axis.get(), (Eigen::Vector3d{0.5, -0.5, 1.0}));
+    EXPECT_EQ(arm.roll.i.get(), 0.5) << "what was not proposed stays";
+    EXPECT_EQ(arm.changes, 1) << "the component is told once, of all";
+}
+
+TEST_F(Proposed, values_are_seen_together_by_the_component_that_is_asked) {
+    real("limits.low", 5.0);  // above the present high ...
+    real("limits.high", 6.0); // ... and below the proposed one
+    transaction.commit();
+    EXPECT_EQ(transaction.state(), PropertyTransaction::State::done);
+    EXPECT_EQ(arm.limits.low.get(), 5.0);
+    EXPECT_EQ(arm.limits.high.get(), 6.0);
+}
+
+TEST_F(Proposed, values_that_the_component_refuses_change_nothing_at_all) {
+    real("gains.roll.p", 9.0);
+    real("limits.low", 5.0);
+    transaction.commit();
+    EXPECT_EQ(transaction.state(), PropertyTransaction::State::refused);
+    EXPECT_EQ(transaction.refusal().view(), "low is above high");
+    EXPECT_EQ(arm.roll.p.get(), 1.0) << "the good one of two goes with the bad one";
+    EXPECT_EQ(arm.limits.low.get(), -1.0);
+    EXPECT_EQ(arm.changes, 0);
+}
+
+TEST_F(Proposed, value_given_twice_is_one_proposal_and_the_last_one_counts) {
+    real("gains.roll.p", 2.0);
+    real("gains.roll.p", 3.0);
+    EXPECT_EQ(transaction.values().size(), 1u);
+    transaction.commit();
+    EXPECT_EQ(arm.roll.p.get(), 3.0);
+}
+
+TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
+    real("gains.roll.p", 10.0);
+    EXPECT_EQ(range_fault("gains.roll.p"), "");
+    real("gains.roll.p", std::nextafter(10.0, 11.0));
+    EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("over its greatest value 10"));
+    real("gains.roll.p", -0.001);
+    EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("under its least value 0"));
+    real("gains.roll.p", std::numeric_limits<double>::quiet_NaN());
+    EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("is no number"));
+    real("limits.low", std::numeric_limits<double>::quiet_NaN());
+    EXPECT_NE(range_fault("limits.low"), "") << "also where every number is allowed";
+    set("filter", {.kind = PropertySetting::Kind::duration, .whole = 500'000'001});
+    EXPECT_THAT(range_fault("filter"), testing::HasSubstr("over its greatest value 0.5 s"));
+    static constexpr ListSetting list{2, [](std::size_t i) {
+                                          return PropertySetting{.kind = PropertySetting::Kind::real,
+                                                                 .real = i == 0 ? 5.0 : 5.5};
+                                      }};
+    set("offsets", {.kind = PropertySetting::Kind::list, .list = &list});
+    EXPECT_THAT(range_fault("offsets"), testing::HasSubstr("element 1 is over its greatest value 5"));
+}
+
+TEST_F(Proposed, transaction_is_for_properties_only) {
+    EXPECT_EQ(transaction.change(index_of("moved")), nullptr);
+    EXPECT_EQ(transaction.change(index_of("gains")), nullptr);
+}
+
+TEST_F(Proposed, message_runs_the_transaction_where_it_is_served) {
+    real("gains.roll.p", 2.5);
+    const Message message = transaction.commit_message(3);
+    EXPECT_EQ(transaction.state(), PropertyTransaction::State::posted);
+    EXPECT_EQ(message.id, 3u);
+    EXPECT_FALSE(transaction.finished());
+    message.run(message.object, message.arguments.data());
+    EXPECT_TRUE(transaction.finished());
+    EXPECT_EQ(arm.roll.p.get(), 2.5);
+}
+
+TEST_F(Proposed, capture_takes_every_property_as_it_is) {
+    arm.roll.p.set(8.0);
+    arm.label.set("both");
+    transaction.change_all();
+    transaction.capture();
+    EXPECT_EQ(transaction.values().size(), 17u);
+    Arm other;
+    PropertyTransaction copy;
+    copy.begin("other", type, &other);
+    for (const ProposedValue& each : transaction.values())
+        std::memcpy(copy.change(each.facet), each.value, each.size);
+    copy.commit();
+    EXPECT_EQ(other.roll.p.get(), 8.0);
+    EXPECT_EQ(other.label.get().view(), "both");
+    EXPECT_EQ(other.axis.get(), arm.axis.get());
+}
+
+TEST(Sequence, does_not_take_more_than_it_has_room_for) {
+    const PropertyOperations& offsets = *facet("offsets").property;
+    Sequence<double, 4> value;
+    auto* bytes = reinterpret_cast<std::byte*>(&value);
+    EXPECT_TRUE(offsets.resize(bytes, 4));
+    EXPECT_FALSE(offsets.resize(bytes, 5));
+    EXPECT_EQ(value.size(), 4u);
+    const PropertyOperations& axis = *facet("axis").property;
+    Eigen::Vector3d vector;
+    EXPECT_TRUE(axis.resize(reinterpret_cast<std::byte*>(&vector), 3));
+    EXPECT_FALSE(axis.resize(reinterpret_cast<std::byte*>(&vector), 2));
+}
+
+TEST(Text, is_cut_nowhere_but_refused_when_it_is_too_long) {
+    Text<4> text{"warp"};
+    EXPECT_EQ(text.view(), "warp");
+    EXPECT_FALSE(text.assign("wefts"));
+    EXPECT_EQ(text.view(), "warp");
+    EXPECT_TRUE(text.assign(""));
+    EXPECT_EQ(text, Text<4>{});
+}
+
+} // namespace
