@@ -12,6 +12,8 @@
 #include "kernel/component/timer.hpp"
 
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <new>
 #include <string_view>
 
@@ -40,6 +42,10 @@ struct PortOperations {
     void (*set_waker)(void* output, Waker waker);
     void (*set_policy)(void* input, Duration max_age, WhenStale, double substitute);
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
+    PortPlaces (*places)(const void* port, bool is_input);
+    /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
+    void (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
+    void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
 };
 
 struct BufferOperations {
@@ -138,6 +144,31 @@ struct PortAccess {
                 if constexpr (std::is_arithmetic_v<T>) in.substitute_ = static_cast<T>(substitute);
             },
         .flow = [](void* input) noexcept TAPPET_REALTIME { return static_cast<Input<T>*>(input)->flow(); },
+        .places =
+            [](const void* port, bool is_input) {
+                if (!is_input) {
+                    const auto& out = *static_cast<const Output<T>*>(port);
+                    return PortPlaces{&out.last_.value, &out.last_.stamp, &out.generation_, &out.forced_,
+                                      nullptr};
+                }
+                const auto& in = *static_cast<const Input<T>*>(port);
+                if (in.local_ == nullptr)
+                    return PortPlaces{&in.cache_.value, &in.cache_.stamp, &in.cached_generation_, &in.forced_,
+                                      &in.cache_.value};
+                return PortPlaces{&in.local_->last_.value, &in.local_->last_.stamp, &in.local_->generation_,
+                                  &in.forced_, &in.cache_.value};
+            },
+        .force =
+            [](void* port, bool is_input, const std::byte* bytes) noexcept TAPPET_REALTIME {
+                T value{};
+                std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
+                is_input ? static_cast<Input<T>*>(port)->force(value)
+                         : static_cast<Output<T>*>(port)->force(value);
+            },
+        .release =
+            [](void* port, bool is_input) noexcept TAPPET_REALTIME {
+                is_input ? static_cast<Input<T>*>(port)->release() : static_cast<Output<T>*>(port)->release();
+            },
     };
 
     template <class T>

@@ -27,6 +27,16 @@ struct Sample {
 template <class T>
 inline constexpr bool copied_as_bytes<Sample<T>> = copied_as_bytes<T>;
 
+/// Where an observer finds what a port holds; null where there is nothing. They change in the port's own
+/// activity only.
+struct PortPlaces {
+    const void* value = nullptr;
+    const Time* stamp = nullptr;
+    const std::uint64_t* writes = nullptr; ///< how many values came so far
+    const bool* forced = nullptr;
+    const void* forced_value = nullptr; ///< an input's, while it is forced
+};
+
 /// A place to wake: the engine of an activity that a connection row wakes.
 struct Waker {
     void (*wake)(void*) noexcept TAPPET_REALTIME = nullptr;
@@ -48,12 +58,14 @@ public:
     void write(const T& value) noexcept TAPPET_REALTIME { write(value, *now_); }
     /// Writes a value that was true at `stamp`.
     void write(const T& value, Time stamp) noexcept TAPPET_REALTIME {
-        last_.value = value;
+        if (forced_)
+            hidden_ = value;
+        else
+            last_.value = value;
         last_.stamp = stamp;
-        ++generation_;
-        if (shared_ != nullptr) shared_->write(last_);
-        waker_();
+        publish();
     }
+    /// What readers get: the forced value while the port is forced, else what was written last.
     [[nodiscard]] const T& last() const noexcept TAPPET_REALTIME { return last_.value; }
 
 private:
@@ -61,7 +73,29 @@ private:
     friend class Input;
     friend struct PortAccess;
 
+    void publish() noexcept TAPPET_REALTIME {
+        ++generation_;
+        if (shared_ != nullptr) shared_->write(last_);
+        waker_();
+    }
+    /// In the port's own activity, between two steps.
+    void force(const T& value) noexcept TAPPET_REALTIME {
+        if (!forced_) hidden_ = last_.value;
+        forced_ = true;
+        last_ = {value, *now_};
+        publish();
+    }
+    /// What the component wrote last, be it before or meanwhile, is published again.
+    void release() noexcept TAPPET_REALTIME {
+        if (!forced_) return;
+        forced_ = false;
+        last_ = {hidden_, *now_};
+        publish();
+    }
+
     Sample<T> last_{};
+    T hidden_{}; ///< of a forced port: what its component wrote
+    bool forced_ = false;
     std::uint64_t generation_ = 0;
     DataObject<Sample<T>>* shared_ = nullptr;
     const Time* now_ = &detail_epoch;
@@ -86,7 +120,7 @@ public:
     [[nodiscard]] T get() noexcept TAPPET_REALTIME { return value_of(refresh()); }
     /// When the value read last was true.
     [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME {
-        return local_ != nullptr ? local_->last_.stamp : cache_.stamp;
+        return local_ != nullptr && !forced_ ? local_->last_.stamp : cache_.stamp;
     }
     /// Tells what the value is, without copying it out; a fresh value stays fresh for read().
     [[nodiscard]] Flow flow() noexcept TAPPET_REALTIME {
@@ -104,6 +138,11 @@ private:
 
     Flow refresh() noexcept TAPPET_REALTIME {
         std::uint64_t generation = 0;
+        if (forced_) {
+            const bool is_new = seen_ != forced_generation;
+            seen_ = forced_generation;
+            return is_new ? Flow::fresh : Flow::old;
+        }
         if (local_ != nullptr) {
             generation = local_->generation_;
         } else if (shared_ != nullptr) {
@@ -121,14 +160,30 @@ private:
     [[nodiscard]] const T& value_of(Flow flow) const noexcept TAPPET_REALTIME {
         if (flow == Flow::never_written || (flow == Flow::stale && when_stale_ == WhenStale::substitute))
             return substitute_;
-        return local_ != nullptr ? local_->last_.value : cache_.value;
+        return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
+    /// In the port's own activity, between two steps. The component reads this value, whatever comes: fresh
+    /// once, never stale.
+    void force(const T& value) noexcept TAPPET_REALTIME {
+        cache_ = {value, *now_};
+        seen_ = 0;
+        forced_ = true;
+    }
+    void release() noexcept TAPPET_REALTIME {
+        if (!forced_) return;
+        forced_ = false;
+        seen_ = cached_generation_ = 0; // what stands at the other end is read again
+        cache_ = {};
+    }
+
+    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0};
 
     const Output<T>* local_ = nullptr;
     const DataObject<Sample<T>>* shared_ = nullptr;
     const Time* now_ = &Output<T>::detail_epoch;
     Duration max_age_{};
     WhenStale when_stale_ = WhenStale::hold;
+    bool forced_ = false;
     std::uint64_t seen_ = 0;
     std::uint64_t cached_generation_ = 0;
     Sample<T> cache_{};

@@ -1,0 +1,132 @@
+// Forced ports (thesis 4.8: a browser changes what a task reads and writes): what is forced is what flows,
+// whatever the component does, and releasing leaves no trace.
+#include "kernel/component/facet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+
+namespace {
+
+using namespace tappet;
+
+/// An output and an input, linked as start-up links them, in one activity or across two.
+class Forcing : public testing::TestWithParam<bool> {
+protected:
+    static constexpr const PortOperations& port = PortAccess::data<double>;
+    Output<double> output;
+    Input<double> input;
+    Time now = at_ns(0);
+    double value = -1;
+    alignas(512) std::array<std::byte, 8192> memory{};
+
+    Forcing() {
+        port.set_clock(&output, false, &now);
+        port.set_clock(&input, true, &now);
+        if (GetParam()) {
+            port.place_shared(&output, memory.data());
+            port.link_shared(&input, &output);
+        } else {
+            port.link_local(&input, &output);
+        }
+    }
+    void force_output(double to) { port.force(&output, false, reinterpret_cast<const std::byte*>(&to)); }
+    void force_input(double to) { port.force(&input, true, reinterpret_cast<const std::byte*>(&to)); }
+    template <class T> static T at(const void* place) { return *static_cast<const T*>(place); }
+};
+
+INSTANTIATE_TEST_SUITE_P(, Forcing, testing::Bool(), [](const auto& each) {
+    return each.param ? "across_activities" : "inside_one_activity";
+});
+
+TEST_P(Forcing, an_output_publishes_the_forced_value_at_once_and_whatever_its_component_writes) {
+    output.write(1.0);
+    force_output(9.0);
+    EXPECT_EQ(input.read(value), Flow::fresh);
+    EXPECT_EQ(value, 9.0);
+    output.write(2.0);
+    EXPECT_EQ(input.read(value), Flow::fresh) << "each write stays a sign of life";
+    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(output.last(), 9.0);
+}
+
+TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
+    output.write(1.0);
+    force_output(9.0);
+    port.release(&output, false);
+    EXPECT_EQ(input.get(), 1.0) << "written before";
+    force_output(9.0);
+    output.write(2.0);
+    force_output(8.0);
+    EXPECT_EQ(input.get(), 8.0) << "forced again, to another value";
+    port.release(&output, false);
+    EXPECT_EQ(input.get(), 2.0) << "written meanwhile";
+    output.write(3.0);
+    EXPECT_EQ(input.get(), 3.0);
+}
+
+TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
+    port.set_policy(&input, 4ms, WhenStale::substitute, -5);
+    output.write(1.0);
+    EXPECT_EQ(input.get(), 1.0);
+    force_input(9.0);
+    EXPECT_EQ(input.read(value), Flow::fresh);
+    EXPECT_EQ(value, 9.0);
+    output.write(2.0);
+    EXPECT_EQ(input.read(value), Flow::old);
+    EXPECT_EQ(value, 9.0);
+    now += 1h;
+    EXPECT_EQ(input.read(value), Flow::old);
+    EXPECT_EQ(value, 9.0);
+}
+
+TEST_P(Forcing, an_input_that_nobody_ever_wrote_can_be_forced) {
+    force_input(9.0);
+    EXPECT_EQ(input.read(value), Flow::fresh);
+    EXPECT_EQ(value, 9.0);
+    port.release(&input, true);
+    EXPECT_EQ(input.read(value), Flow::never_written);
+    EXPECT_EQ(value, 0.0);
+}
+
+TEST_P(Forcing, releasing_an_input_reads_again_what_stands_at_the_other_end) {
+    output.write(1.0);
+    EXPECT_EQ(input.get(), 1.0);
+    force_input(9.0);
+    EXPECT_EQ(input.get(), 9.0);
+    port.release(&input, true);
+    EXPECT_EQ(input.read(value), Flow::fresh);
+    EXPECT_EQ(value, 1.0) << "although nothing was written meanwhile";
+}
+
+TEST_P(Forcing, releasing_what_is_not_forced_changes_nothing) {
+    output.write(1.0);
+    EXPECT_EQ(input.get(), 1.0);
+    port.release(&input, true);
+    port.release(&output, false);
+    EXPECT_EQ(input.read(value), Flow::old);
+    EXPECT_EQ(value, 1.0);
+}
+
+TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
+    now = at_ns(700);
+    output.write(1.0);
+    static_cast<void>(input.get());
+    for (const bool is_input : {false, true}) {
+        const void* of = is_input ? static_cast<const void*>(&input) : &output;
+        const PortPlaces places = port.places(of, is_input);
+        EXPECT_EQ(at<double>(places.value), 1.0);
+        EXPECT_EQ(*places.stamp, at_ns(700));
+        EXPECT_EQ(*places.writes, 1u);
+        EXPECT_FALSE(*places.forced);
+    }
+    force_output(9.0);
+    force_input(8.0);
+    EXPECT_TRUE(*port.places(&output, false).forced);
+    EXPECT_EQ(at<double>(port.places(&output, false).value), 9.0);
+    EXPECT_TRUE(*port.places(&input, true).forced);
+    EXPECT_EQ(at<double>(port.places(&input, true).forced_value), 8.0);
+}
+
+} // namespace

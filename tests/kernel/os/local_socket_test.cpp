@@ -1,0 +1,154 @@
+// The door of a browser (thesis 4.8): packets arrive whole, both ends are known, nothing blocks.
+#include "kernel/os/local_socket.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace tappet::os {
+namespace {
+
+using What = LocalConnection::Received::What;
+using Sent = LocalConnection::Sent;
+
+class LocalSocket : public testing::Test {
+protected:
+    std::string directory = "/tmp/tappet-socket-" + std::to_string(getpid());
+    std::string path = directory + "/machine.socket";
+    LocalListener listener;
+    std::array<char, 256> room{};
+
+    ~LocalSocket() override {
+        listener.close();
+        std::filesystem::remove_all(directory);
+    }
+    std::string_view text(const LocalConnection::Received& received) const {
+        return {room.data(), received.bytes};
+    }
+};
+
+TEST_F(LocalSocket, carries_packets_both_ways_each_whole) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    LocalConnection server = listener.accept();
+    ASSERT_TRUE(server.open());
+    EXPECT_EQ(client->send("1 hello"), Sent::sent);
+    EXPECT_EQ(client->send("2 map"), Sent::sent);
+    EXPECT_EQ(text(server.receive(room)), "1 hello");
+    EXPECT_EQ(text(server.receive(room)), "2 map");
+    EXPECT_EQ(server.receive(room).what, What::nothing);
+    EXPECT_EQ(server.send("{}"), Sent::sent);
+    EXPECT_EQ(text(client->receive(room)), "{}");
+}
+
+TEST_F(LocalSocket, tells_who_is_at_the_other_end) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const auto peer = listener.accept().peer();
+    ASSERT_TRUE(peer);
+    EXPECT_EQ(peer->process, getpid());
+    EXPECT_EQ(peer->user, geteuid());
+    EXPECT_EQ(peer->group, getegid());
+    EXPECT_TRUE(peer->is_in(getegid()));
+}
+
+TEST_F(LocalSocket, passes_a_descriptor) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const LocalConnection server = listener.accept();
+    std::array<int, 2> pipe_ends{};
+    ASSERT_EQ(pipe(pipe_ends.data()), 0);
+    EXPECT_EQ(server.send("{}", pipe_ends[1]), Sent::sent);
+    const auto received = client->receive(room);
+    ASSERT_GE(received.passed, 0);
+    EXPECT_EQ(write(received.passed, "x", 1), 1);
+    EXPECT_EQ(read(pipe_ends[0], room.data(), 1), 1);
+    for (const int each : {received.passed, pipe_ends[0], pipe_ends[1]}) close(each);
+}
+
+TEST_F(LocalSocket, says_when_a_packet_was_longer_than_the_room_for_it) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const LocalConnection server = listener.accept();
+    EXPECT_EQ(client->send(std::string(300, 'x')), Sent::sent);
+    const auto received = server.receive(room);
+    EXPECT_TRUE(received.cut);
+    EXPECT_EQ(received.bytes, room.size());
+}
+
+TEST_F(LocalSocket, a_reader_that_does_not_read_fills_its_own_buffer_and_blocks_nobody) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const LocalConnection server = listener.accept();
+    const std::string packet(2000, 'x');
+    Sent last = Sent::sent;
+    for (int i = 0; i < 100'000 && last == Sent::sent; ++i) last = server.send(packet);
+    EXPECT_EQ(last, Sent::full);
+}
+
+TEST_F(LocalSocket, says_when_the_other_end_is_gone) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const LocalConnection server = listener.accept();
+    client->close();
+    EXPECT_EQ(server.receive(room).what, What::closed);
+    EXPECT_EQ(server.send("{}"), Sent::closed);
+}
+
+TEST_F(LocalSocket, has_the_permissions_that_were_asked_for) {
+    ASSERT_TRUE(listener.listen(path, 0640));
+    struct stat facts{};
+    ASSERT_EQ(stat(path.c_str(), &facts), 0);
+    EXPECT_EQ(facts.st_mode & 0777u, 0640u);
+}
+
+TEST_F(LocalSocket, replaces_what_a_killed_machine_left_and_removes_its_own) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const std::string kept = directory + "/kept";
+    std::filesystem::rename(path, kept); // so that closing does not remove it: as after a kill
+    listener.close();
+    std::filesystem::rename(kept, path);
+    ASSERT_TRUE(listener.listen(path, 0600));
+    listener.close();
+    EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST_F(LocalSocket, does_not_take_the_place_of_a_running_machine_nor_of_another_file) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    LocalListener second;
+    const auto refused = second.listen(path, 0600);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().view().find("another machine of this name runs"), std::string_view::npos);
+    const std::string file = directory + "/notes.txt";
+    std::ofstream{file} << "kept";
+    EXPECT_FALSE(second.listen(file, 0600));
+    EXPECT_TRUE(std::filesystem::is_regular_file(file));
+}
+
+TEST_F(LocalSocket, refuses_a_path_that_is_too_long_or_cannot_be_made) {
+    const auto too_long = listener.listen(std::string(200, 'x'), 0600);
+    ASSERT_FALSE(too_long);
+    EXPECT_NE(too_long.error().view().find("107 letters"), std::string_view::npos);
+    EXPECT_FALSE(listener.listen("/proc/nowhere/x.socket", 0600));
+}
+
+TEST_F(LocalSocket, connecting_to_nobody_says_so_with_the_cure) {
+    const auto refused = LocalConnection::connect(path.c_str());
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().view().find("start the machine"), std::string_view::npos);
+}
+
+} // namespace
+} // namespace tappet::os
