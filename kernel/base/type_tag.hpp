@@ -1,28 +1,83 @@
-// The identity and the name of a type, as plain data: two ends of a row fit when their tags are the same
-// object.
+// The identity, the name and the shape of a type, as plain data: two ends of a row fit when their tags are
+// the same object, and what shows, reads or stores a value needs nothing but its bytes and its tag.
 #pragma once
 
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/bounded_text.hpp"
+#include "kernel/base/fixed_matrix.hpp"
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
 #include <array>
+#include <bit>
+#include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <type_traits>
 
 namespace tappet {
 
+/// What the bytes of a value mean.
+enum class ValueKind : std::uint8_t {
+    opaque,      ///< nobody but the component's own code knows
+    truth,       ///< bool
+    whole,       ///< signed integer of `size` bytes, also an enumeration without names
+    natural,     ///< unsigned integer of `size` bytes, likewise
+    real,        ///< float or double
+    duration,    ///< Duration, or Time since the machine's epoch: nanoseconds in an int64
+    text,        ///< Text<N>
+    matrix,      ///< fixed-size Eigen, or std::array: rows * columns elements
+    record,      ///< a struct that names its fields
+    enumeration, ///< an enum that names its values
+    sequence,    ///< Bounded<T, N>
+};
+
 struct TypeTag;
 using TypeId = const TypeTag*;
+
+/// A named member of a record.
+struct RecordField {
+    std::string_view name{};
+    std::string_view unit{};
+    TypeId type = nullptr;
+    /// Bytes from the beginning of the record. Real-time.
+    std::size_t (*offset)() noexcept TAPPET_REALTIME = nullptr;
+};
+
 struct TypeTag {
     std::string_view name{};
     std::size_t size = 0;
     std::size_t align = 0;
     bool arithmetic = false;
-    std::span<const TypeId> elements{}; ///< of an argument list
+    std::span<const TypeId> elements{}; ///< of an argument list, packed one behind the other without gaps
+    ValueKind kind = ValueKind::opaque;
+    bool row_major = false;   ///< of a matrix; otherwise its columns lie one behind the other
+    TypeId element = nullptr; ///< of a matrix or a sequence; of an enumeration the integer that it is
+    std::size_t rows = 0;     ///< of a matrix
+    std::size_t columns = 0;  ///< of a matrix; of a text or a sequence: how many there may be, from byte 0 on
+    std::size_t length_at = 0;    ///< of a text or a sequence: where the number that there are stands,
+    std::size_t length_bytes = 0; ///< and how wide it is: 4 or 8
+    std::span<const RecordField> fields{};     ///< of a record, in its own order
+    std::span<const std::string_view> names{}; ///< of an enumeration: the value is the index
 };
 
 /// The argument list of an event or an operation, as a type.
 template <class... Types>
 struct Arguments {};
+
+/// Names the fields of a struct; what has none is opaque:
+///     template <> inline constexpr auto tappet::fields_of<Pose> =
+///         fields(field<&Pose::x>("x", "mm"), field<&Pose::turn>("turn", "deg"));
+template <class T>
+inline constexpr std::array<RecordField, 0> fields_of{};
+
+/// Names the values of an enum, from 0 on; one without is shown as a number:
+///     template <> inline constexpr auto tappet::names_of<Cause> =
+///         std::array<std::string_view, 2>{"none", "weft"};
+template <class E>
+inline constexpr std::array<std::string_view, 0> names_of{};
 
 namespace detail {
 
@@ -48,8 +103,76 @@ consteval std::string_view printed_list() {
 }
 
 template <class T>
+struct TagOf;
+
+template <class T>
+struct ShapeOf {
+    static constexpr void put(TypeTag& tag) noexcept {
+        if constexpr (std::same_as<T, bool>)
+            tag.kind = ValueKind::truth;
+        else if constexpr (std::integral<T> && sizeof(T) <= sizeof(std::int64_t))
+            tag.kind = std::signed_integral<T> ? ValueKind::whole : ValueKind::natural;
+        else if constexpr (std::same_as<T, float> || std::same_as<T, double>)
+            tag.kind = ValueKind::real;
+        else if constexpr (std::same_as<T, Duration> || std::same_as<T, Time>)
+            tag.kind = ValueKind::duration;
+        else if constexpr (std::is_enum_v<T>)
+            put_enumeration(tag);
+        else if constexpr (!fields_of<T>.empty())
+            tag.kind = ValueKind::record, tag.fields = fields_of<T>;
+        else if constexpr (FixedSizeEigen<T>)
+            put_matrix<typename T::Scalar>(tag, T::RowsAtCompileTime, T::ColsAtCompileTime, T::IsRowMajor);
+    }
+    static constexpr void put_enumeration(TypeTag& tag) noexcept {
+        using Integer = std::underlying_type_t<T>;
+        tag.kind = !names_of<T>.empty()            ? ValueKind::enumeration
+                   : std::signed_integral<Integer> ? ValueKind::whole
+                                                   : ValueKind::natural;
+        tag.element = &TagOf<Integer>::tag;
+        tag.names = names_of<T>;
+    }
+    template <class Element>
+    static constexpr void put_matrix(TypeTag& tag, std::size_t rows, std::size_t columns,
+                                     bool row_major) noexcept {
+        tag.kind = ValueKind::matrix;
+        tag.element = &TagOf<Element>::tag;
+        tag.rows = rows, tag.columns = columns, tag.row_major = row_major;
+    }
+};
+template <class T, std::size_t N>
+    requires(N > 0)
+struct ShapeOf<std::array<T, N>> {
+    static constexpr void put(TypeTag& tag) noexcept { ShapeOf<T>::template put_matrix<T>(tag, N, 1, false); }
+};
+template <std::size_t N>
+struct ShapeOf<Text<N>> {
+    static constexpr void put(TypeTag& tag) noexcept {
+        tag.kind = ValueKind::text;
+        tag.columns = N;
+        tag.length_bytes = sizeof(Text<N>::length);
+        tag.length_at = (N + tag.length_bytes - 1) / tag.length_bytes * tag.length_bytes;
+        static_assert(sizeof(Text<N>) == (N + 3) / 4 * 4 + 4, "the letters, then their number");
+    }
+};
+template <class T, std::size_t N>
+struct ShapeOf<Bounded<T, N>> {
+    static constexpr void put(TypeTag& tag) noexcept {
+        tag.kind = ValueKind::sequence;
+        tag.element = &TagOf<T>::tag;
+        tag.columns = N;
+        tag.length_bytes = sizeof(std::size_t);
+        tag.length_at = (sizeof(std::array<T, N>) + alignof(std::size_t) - 1) / alignof(std::size_t) *
+                        alignof(std::size_t);
+    }
+};
+
+template <class T>
 struct TagOf {
-    static constexpr TypeTag tag{printed_name<T>(), sizeof(T), alignof(T), std::is_arithmetic_v<T>};
+    static constexpr TypeTag tag = [] {
+        TypeTag made{printed_name<T>(), sizeof(T), alignof(T), std::is_arithmetic_v<T>};
+        ShapeOf<T>::put(made);
+        return made;
+    }();
 };
 template <class... T>
 struct TagOf<Arguments<T...>> {
@@ -62,9 +185,31 @@ struct TagOf<Arguments<>> {
     static constexpr TypeTag tag{"", 0, 1, false};
 };
 
+template <auto Member>
+struct FieldOf;
+template <class Record, class T, T Record::* Member>
+struct FieldOf<Member> {
+    using Type = T;
+    // A pointer to a data member is the member's offset (Itanium C++ ABI, 2.3).
+    static std::size_t offset() noexcept TAPPET_REALTIME {
+        return static_cast<std::size_t>(std::bit_cast<std::ptrdiff_t>(Member));
+    }
+};
+
 } // namespace detail
 
 template <class T>
 inline constexpr TypeId type_id = &detail::TagOf<T>::tag;
+
+/// A field for fields_of.
+template <auto Member>
+constexpr RecordField field(std::string_view name, std::string_view unit = {}) noexcept {
+    using Field = detail::FieldOf<Member>;
+    return {name, unit, type_id<typename Field::Type>, &Field::offset};
+}
+template <class... Fields>
+constexpr std::array<RecordField, sizeof...(Fields)> fields(const Fields&... each) noexcept {
+    return {each...};
+}
 
 } // namespace tappet

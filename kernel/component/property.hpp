@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/bounded_text.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
@@ -20,33 +21,6 @@ namespace tappet {
 /// Up to N values of one kind, in place: a property whose length may change.
 template <class T, std::size_t N>
 using Sequence = Bounded<T, N>;
-
-/// Up to N letters, in place, as a property's value.
-template <std::size_t N>
-struct Text {
-    std::array<char, N> letters{};
-    std::uint32_t length = 0;
-
-    constexpr Text() = default;
-    // NOLINTNEXTLINE: a literal is a text
-    template <std::size_t M>
-        requires(M <= N + 1)
-    constexpr Text(const char (&from)[M]) noexcept {
-        static_cast<void>(assign({from, M - 1}));
-    }
-    /// Real-time. False, and nothing changed, when it is too long.
-    constexpr bool assign(std::string_view from) noexcept TAPPET_REALTIME {
-        if (from.size() > N) return false;
-        letters = {};
-        for (std::size_t i = 0; i < from.size(); ++i) letters[i] = from[i];
-        length = static_cast<std::uint32_t>(from.size());
-        return true;
-    }
-    [[nodiscard]] constexpr std::string_view view() const noexcept TAPPET_REALTIME {
-        return {letters.data(), length};
-    }
-    friend constexpr bool operator==(const Text&, const Text&) = default;
-};
 
 namespace detail {
 

@@ -2,11 +2,11 @@
 // copy torn by the other side is no data race but a value to be thrown away.
 #pragma once
 
+#include "kernel/base/fixed_matrix.hpp"
 #include "kernel/base/realtime.hpp"
 
 #include <array>
 #include <atomic>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,13 +17,6 @@ namespace tappet {
 /// What two threads write must lie this far apart: a line is 64 bytes, but the hardware fetches them in
 /// pairs.
 inline constexpr std::size_t line_pair_bytes = 128;
-
-/// A fixed-size Eigen matrix or array: plain numbers, though Eigen 3.4 writes out its copy constructor, so
-/// that the language does not call it trivially copyable. Maps and blocks, which hold pointers, are not their
-/// own PlainObject.
-template <class T>
-concept FixedSizeEigen = std::is_trivially_destructible_v<T> && (T::SizeAtCompileTime > 0) &&
-                         std::same_as<typename T::PlainObject, T>;
 
 /// True when a copy of the bytes is a copy of the value. A struct with fixed-size Eigen members says so
 /// itself:

@@ -1,0 +1,39 @@
+// A text of at most N letters, in place: a value like a number, copied as bytes.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+template <std::size_t N>
+struct Text {
+    std::array<char, N> letters{};
+    std::uint32_t length = 0;
+
+    constexpr Text() = default;
+    // NOLINTNEXTLINE: a literal is a text
+    template <std::size_t M>
+        requires(M <= N + 1)
+    constexpr Text(const char (&from)[M]) noexcept {
+        static_cast<void>(assign({from, M - 1}));
+    }
+    /// Real-time. False, and nothing changed, when it is too long.
+    constexpr bool assign(std::string_view from) noexcept TAPPET_REALTIME {
+        if (from.size() > N) return false;
+        letters = {};
+        for (std::size_t i = 0; i < from.size(); ++i) letters[i] = from[i];
+        length = static_cast<std::uint32_t>(from.size());
+        return true;
+    }
+    [[nodiscard]] constexpr std::string_view view() const noexcept TAPPET_REALTIME {
+        return {letters.data(), length};
+    }
+    friend constexpr bool operator==(const Text&, const Text&) = default;
+};
+
+} // namespace tappet

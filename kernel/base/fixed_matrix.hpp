@@ -1,0 +1,16 @@
+// What a fixed-size matrix of Eigen is, known by its shape: the kernel names no header of Eigen for it.
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+namespace tappet {
+
+/// A fixed-size Eigen matrix or array: plain numbers, though Eigen 3.4 writes out its copy constructor, so
+/// that the language does not call it trivially copyable. Maps and blocks, which hold pointers, are not their
+/// own PlainObject.
+template <class T>
+concept FixedSizeEigen = std::is_trivially_destructible_v<T> && (T::SizeAtCompileTime > 0) &&
+                         std::same_as<typename T::PlainObject, T>;
+
+} // namespace tappet
