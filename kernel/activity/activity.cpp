@@ -29,18 +29,27 @@ bool Activity::wait_for(State wanted, int milliseconds) const noexcept {
     return true;
 }
 
-bool Activity::release(int milliseconds) noexcept {
+bool Activity::start(int milliseconds) noexcept {
+    stop_asked_.store(false, std::memory_order_relaxed);
+    engine_stop_claimed_.store(false, std::memory_order_relaxed);
+    state_.store(State::starting, std::memory_order_relaxed);
     released_.store(true, std::memory_order_release);
     engine_->waiter().wake();
     return wait_for(State::waiting, milliseconds);
 }
 
 bool Activity::stop(int milliseconds) noexcept {
-    if (!thread_.running()) return true;
+    if (state() == State::inactive || state() == State::stopped) return true;
     stop_asked_.store(true, std::memory_order_release);
     engine_->waiter().wake();
-    return wait_for(State::stopped, milliseconds) && state() == State::stopped &&
-           thread_.join_within(milliseconds + 1);
+    return wait_for(State::stopped, milliseconds) && state() == State::stopped;
+}
+
+bool Activity::end(int milliseconds) noexcept {
+    if (!thread_.running()) return true;
+    ended_.store(true, std::memory_order_release);
+    engine_->waiter().wake();
+    return thread_.join_within(milliseconds + 1);
 }
 
 std::size_t Activity::stack_high_water_bytes() const noexcept {
@@ -58,23 +67,32 @@ void Activity::enter(void* self) noexcept { static_cast<Activity*>(self)->live()
 
 void Activity::live() noexcept {
     current_activity = this;
-    state_.store(State::starting, std::memory_order_release);
-    while (!released_.load(std::memory_order_acquire) && !stop_asked_.load(std::memory_order_acquire))
-        engine_->waiter().wait_for_wake();
-    if (!stop_asked_.load(std::memory_order_acquire)) {
-        engine_->start(clock_->now());
-        const os::PageFaults before = os::page_faults_of_this_thread();
-        state_.store(State::waiting, std::memory_order_release);
-        cycles();
-        faults_ = os::page_faults_of_this_thread() - before;
-        if (claim_engine_stop()) engine_->stop(clock_->now());
+    while (!ended_.load(std::memory_order_acquire)) {
+        if (released_.load(std::memory_order_acquire))
+            run_once();
+        else
+            engine_->waiter().wait_for_wake();
     }
+}
+
+void Activity::run_once() noexcept {
+    engine_->start(clock_->now());
+    const os::PageFaults before = os::page_faults_of_this_thread();
+    state_.store(State::waiting, std::memory_order_release);
+    cycles();
+    const os::PageFaults here = os::page_faults_of_this_thread() - before;
+    faults_.minor += here.minor;
+    faults_.major += here.major;
+    if (claim_engine_stop()) engine_->stop(clock_->now());
+    released_.store(false, std::memory_order_relaxed);
     state_.store(State::stopped, std::memory_order_release);
 }
 
 void Activity::cycles() noexcept TAPPET_REALTIME {
     while (true) {
-        const bool woken = engine_->waiter().wait(engine_->next_wake());
+        const Time next = engine_->next_wake();
+        const bool woken = engine_->heeds_devices() ? engine_->waiter().wait(next)
+                                                    : engine_->waiter().wait_without_devices(next);
         if (stop_asked_.load(std::memory_order_acquire)) return;
         state_.store(State::running, std::memory_order_relaxed);
         engine_->run(woken);

@@ -11,31 +11,39 @@
 
 namespace tappet {
 
-/// initialise and finalise run on the starter's thread, before and after the thread lives; start, cycles and
-/// stop of the engine run on its own. Not real-time but for what the thread does.
+/// Its thread is created once, before arming, and kept: between a stop and the next start it waits. Start,
+/// cycles and stop of the engine run on it; initialise and finalise are the starter's and the stopper's. Not
+/// real-time but for what the thread does; called by one thread, the supervisor's.
 class Activity {
 public:
-    enum class State : std::uint8_t { inactive, starting, waiting, running, stopping, stopped, parked };
+    enum class State : std::uint8_t { inactive, starting, waiting, running, stopped, parked };
 
     Activity() = default;
     Activity(const Activity&) = delete;
     Activity& operator=(const Activity&) = delete;
 
-    /// `stack` is painted and touched here. The thread waits for release().
+    /// `stack` is painted and touched here. The thread waits for start().
     std::expected<void, Sentence> create(Engine& engine, const os::Clock& clock, int priority, int processor,
                                          std::span<std::byte> stack);
-    /// Lets the thread start its engine; true when that is done within `milliseconds`.
-    [[nodiscard]] bool release(int milliseconds) noexcept;
-    /// Ends the cycles, lets the engine stop on its own thread, and joins it; false when it did not within
-    /// `milliseconds`: its thread hangs, and whoever called may claim the engine's stop and run it.
+    /// Lets the thread start its engine, for the first time or again; true when that is done within
+    /// `milliseconds`.
+    [[nodiscard]] bool start(int milliseconds) noexcept;
+    /// Ends the cycles and lets the engine stop on its own thread, which then waits for another start();
+    /// false when it did not within `milliseconds`: its thread hangs, and whoever called may claim the
+    /// engine's stop and run it.
     [[nodiscard]] bool stop(int milliseconds) noexcept;
+    /// Ends the thread of an activity that is stopped, or never started; false when it does not end.
+    [[nodiscard]] bool end(int milliseconds) noexcept;
     /// True once, for the one who then runs the engine's stop: its own thread, or whoever gave that up.
     /// Real-time.
     [[nodiscard]] bool claim_engine_stop() noexcept TAPPET_REALTIME {
         return !engine_stop_claimed_.exchange(true, std::memory_order_acq_rel);
     }
-    /// After a stop that failed: nobody waits for its thread any more.
-    void abandon() noexcept { thread_.abandon(); }
+    /// After a stop that failed: nobody waits for its thread any more, which ends should it ever come back.
+    void abandon() noexcept {
+        ended_.store(true, std::memory_order_release);
+        thread_.abandon();
+    }
     /// For a thread that must not go on (a broken contract): it says so and sleeps for ever. Real-time.
     [[noreturn]] void park() noexcept TAPPET_REALTIME;
 
@@ -43,7 +51,7 @@ public:
         return state_.load(std::memory_order_acquire);
     }
     [[nodiscard]] Engine& engine() const noexcept TAPPET_REALTIME { return *engine_; }
-    /// Page faults of its thread from its first cycle to its stop; complete when stopped.
+    /// Page faults of its thread from each first cycle to the stop; complete when stopped.
     [[nodiscard]] os::PageFaults page_faults() const noexcept { return faults_; }
     [[nodiscard]] std::size_t stack_high_water_bytes() const noexcept;
     [[nodiscard]] std::size_t stack_bytes() const noexcept { return plan_.stack.size(); }
@@ -55,6 +63,7 @@ private:
     static void enter(void* self) noexcept;
     void live() noexcept;
     void cycles() noexcept TAPPET_REALTIME;
+    void run_once() noexcept;
     [[nodiscard]] bool wait_for(State wanted, int milliseconds) const noexcept;
 
     Engine* engine_ = nullptr;
@@ -64,6 +73,7 @@ private:
     std::atomic<State> state_{State::inactive};
     std::atomic<bool> released_{false};
     std::atomic<bool> stop_asked_{false};
+    std::atomic<bool> ended_{false};
     std::atomic<bool> engine_stop_claimed_{false};
     os::PageFaults faults_{};
 };

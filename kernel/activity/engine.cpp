@@ -16,31 +16,12 @@ void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
 
 } // namespace
 
-void Engine::start(Time now) noexcept TAPPET_REALTIME {
-    cycle_.now = cycle_.release = lap_ = ended_ = now;
-    if (plan_.periodic) next_release_ = now + plan_.period;
-    for (EnginePart& part : plan_.parts) {
-        part.state.store(ComponentState::starting, std::memory_order_release);
-        if (part.type->start != nullptr) part.type->start(part.component, cycle_);
-        part.state.store(ComponentState::running, std::memory_order_release);
-    }
-    for (const Behaviour& each : plan_.behaviours) each.start(each.self, now);
-}
-
-void Engine::stop(Time now) noexcept TAPPET_REALTIME {
-    cycle_.now = cycle_.release = now;
-    for (const Behaviour& each : plan_.behaviours) each.stop(each.self, now);
-    for (EnginePart& part : plan_.parts) {
-        part.state.store(ComponentState::stopping, std::memory_order_release);
-        if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
-        part.state.store(ComponentState::stopped, std::memory_order_release);
-    }
-}
-
 Time Engine::next_wake() const noexcept TAPPET_REALTIME {
     Time next = next_release_;
-    for (const EngineTimer& each : plan_.timers) next = std::min(next, each.timer->when());
-    for (const Behaviour& each : plan_.behaviours) next = std::min(next, each.next(each.self));
+    for (const EngineTimer& each : plan_.timers) next = std::min(next, due_at(each));
+    for (const Behaviour& each : plan_.behaviours)
+        if (is_running(plan_.parts[each.part].state)) next = std::min(next, each.next(each.self));
+    if (awaiting_ != 0) next = std::min(next, cycle_.now + awaiting_period);
     return next;
 }
 
@@ -49,13 +30,15 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     Time release = now;
     const bool due = plan_.periodic ? now >= next_release_ : woken;
     if (due && plan_.periodic) release = next_release_;
-    for (const EngineTimer& each : plan_.timers) release = std::min(release, each.timer->when());
+    for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
     generation_.fetch_add(1, std::memory_order_acq_rel);
     cycle_.now = lap_ = now;
     cycle_.release = release;
     worst_excess_ = Duration::zero();
     worst_function_ = Miss::nobody;
     watch_wakes();
+    if (asked_.load(std::memory_order_relaxed)) serve_requests();
+    if (awaiting_ != 0) start_awaiting();
     bool acted = run_timers();
     if (due) run_components();
     acted |= run_messages();
@@ -68,7 +51,7 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
 bool Engine::run_timers() noexcept TAPPET_REALTIME {
     bool acted = false;
     for (const EngineTimer& each : plan_.timers) {
-        const Time when = each.timer->when();
+        const Time when = due_at(each);
         if (when > cycle_.now) continue;
         each.timer->cancel();
         Cycle at = cycle_;
@@ -84,6 +67,7 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
 void Engine::run_components() noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         const EnginePart& part = plan_.parts[i];
+        if (!is_running(part.state)) continue;
         if (part.type->step != nullptr)
             timed(i, FunctionKind::step,
                   [&]() noexcept TAPPET_REALTIME { part.type->step(part.component, cycle_); });
@@ -110,6 +94,7 @@ bool Engine::run_messages() noexcept TAPPET_REALTIME {
 
 void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
     for (const Behaviour& each : plan_.behaviours) {
+        if (!is_running(plan_.parts[each.part].state)) continue;
         if (!all && each.next(each.self) > cycle_.now) continue;
         timed(each.part, FunctionKind::behaviour,
               [&]() noexcept TAPPET_REALTIME { each.step(each.self, cycle_.now); });
@@ -118,6 +103,10 @@ void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
 
 void Engine::watch_inputs() noexcept TAPPET_REALTIME {
     for (GuardedInput& each : plan_.guarded) {
+        if (!is_running(plan_.parts[each.part].state)) {
+            each.was_valid = false;
+            continue;
+        }
         const Flow flow = each.flow(each.input);
         if (flow == Flow::stale && each.was_valid) ask_stop(StopReason::stale_input, each.connection);
         each.was_valid = flow == Flow::fresh || flow == Flow::old;

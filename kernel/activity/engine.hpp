@@ -40,6 +40,7 @@ struct EnginePart {
     void* component = nullptr;
     const ComponentType* type = nullptr;
     AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
+    LifeRequests requests{};
 };
 
 struct EngineTimer {
@@ -54,6 +55,18 @@ struct GuardedInput {
     Flow (*flow)(void*) noexcept TAPPET_REALTIME = nullptr;
     std::size_t connection = 0; ///< its row
     bool was_valid = false;     ///< only a value that was once good can become stale
+    std::uint32_t part = 0;     ///< of the component that reads it
+};
+
+/// An input that a component needs before it starts.
+struct NeededInput {
+    void* input = nullptr;
+    Flow (*flow)(void*) noexcept TAPPET_REALTIME = nullptr;
+    std::uint32_t part = 0;
+    std::uint16_t facet = 0;
+    bool has_initial = false;    ///< its row gives it a value before the first one comes
+    bool same_activity = false;  ///< what it reads is written by the same engine
+    bool valid_to_start = false; ///< awaited also when the whole machine starts
 };
 
 /// Why an engine asks for the machine to stop.
@@ -81,6 +94,7 @@ struct EnginePlan {
     std::span<EngineTimer> timers;
     std::span<Behaviour> behaviours;
     std::span<GuardedInput> guarded;
+    std::span<const NeededInput> inputs;
 };
 
 /// Counters that an observer may read while the machine runs; each is written by the engine alone.
@@ -112,13 +126,36 @@ public:
     }
     void on_stop(StopCall call, void* context) noexcept { stop_call_ = call, stop_context_ = context; }
 
-    /// In its own thread, before the first cycle: components, then behaviours start.
+    /// On the starter's thread, while the engine does not run: initialises the components; those that had
+    /// been before one refused are finalised again. Empty: all are ready. Not real-time.
+    [[nodiscard]] Sentence initialise();
+    /// On the stopper's thread, after stop(): the last one initialised comes first. Not real-time.
+    void finalise();
+
+    /// In its own thread, before the first cycle: components, then behaviours start. A component whose
+    /// valid_to_start inputs have no valid value yet stays `starting` and follows when they have.
     void start(Time now) noexcept TAPPET_REALTIME;
     /// One cycle. `woken`: by a message, a connection or the device; otherwise by time.
     void run(bool woken) noexcept TAPPET_REALTIME;
     /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values,
     /// in data-flow order, so that what a source writes last reaches the driver behind it.
     void stop(Time now) noexcept TAPPET_REALTIME;
+
+    /// Asks for a change in the life of one component; served between two steps (thesis 3.1.3). A component
+    /// starts only when each of its required inputs has a valid value. Real-time, any thread.
+    LifeTicket ask(std::uint32_t part, LifeChange change) noexcept TAPPET_REALTIME;
+    [[nodiscard]] LifeAnswer answer_to(std::uint32_t part, LifeTicket ticket) const noexcept TAPPET_REALTIME;
+    /// Whether it is between start() and stop(). Real-time, any thread.
+    [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME {
+        return active_.load(std::memory_order_acquire);
+    }
+    /// Why it could not start while the rest of the machine runs: an input that another activity writes has
+    /// no valid value. Only while the engine does not run.
+    [[nodiscard]] LifeAnswer readiness(Time now) noexcept TAPPET_REALTIME;
+    /// Its thread hangs or broke a contract, and its stop was run in its place: its components are failed.
+    void mark_failed() noexcept TAPPET_REALTIME;
+    /// All drivers among its components run: whoever waits for it listens to its devices.
+    [[nodiscard]] bool heeds_devices() const noexcept TAPPET_REALTIME;
 
     /// When it wants to run although nothing wakes it.
     [[nodiscard]] Time next_wake() const noexcept TAPPET_REALTIME;
@@ -162,6 +199,17 @@ private:
         timing.add(took);
         lap_ = end;
     }
+    [[nodiscard]] Time due_at(const EngineTimer& timer) const noexcept TAPPET_REALTIME {
+        return is_running(plan_.parts[timer.part].state) ? timer.timer->when() : never;
+    }
+    enum class Rule : std::uint8_t { with_the_machine, alone };
+    [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
+    void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;
+    void stop_part(std::uint32_t part) noexcept TAPPET_REALTIME;
+    void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
+    [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;
+    void serve_requests() noexcept TAPPET_REALTIME;
+    void start_awaiting() noexcept TAPPET_REALTIME;
     bool run_timers() noexcept TAPPET_REALTIME;
     void run_components() noexcept TAPPET_REALTIME;
     bool run_messages() noexcept TAPPET_REALTIME;
@@ -176,6 +224,12 @@ private:
     EnginePlan plan_{};
     os::Clock* clock_ = nullptr;
     Cycle cycle_{};
+    /// How often it looks whether a component that waits for an input may start.
+    static constexpr Duration awaiting_period = 10ms;
+    std::atomic<bool> active_{false};
+    std::atomic<bool> asked_{false}; ///< one of the parts has a request
+    bool was_stopped_ = false;
+    std::uint32_t awaiting_ = 0; ///< parts that wait for an input
     Time next_release_ = never;
     Time lap_{};
     Time ended_{};

@@ -14,16 +14,18 @@
 
 namespace tappet {
 
+// clang-format off
 /// A component is a plain struct. What it has of the following is used, in this order of its life:
-///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty
-///     sentence is consent void start(const Cycle&) noexcept TAPPET_REALTIME   once, in its activity, before
-///     the first step void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity void
-///     work(const Cycle&)                             instead of step: may block; for activities that are
-///     not_real_time void stop(const Cycle&) noexcept TAPPET_REALTIME    once, last: leaves safe values
-///     behind
-///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME   before properties change, together;
-///     an empty sentence is consent
-///     void changed() noexcept TAPPET_REALTIME        after they did, between two steps
+///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty sentence is consent
+///     Sentence initialise()                               before each start of its activity, on the starter's thread; not real-time
+///     void start(const Cycle&) noexcept TAPPET_REALTIME   in its activity, before the first step; again after each stop
+///     void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity
+///     void work(const Cycle&)                             instead of step: may block; for activities that are not_real_time
+///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME   before properties change, together; an empty sentence is consent
+///     void changed() noexcept TAPPET_REALTIME             after they did, between two steps
+///     void stop(const Cycle&) noexcept TAPPET_REALTIME    leaves safe values behind; also when an input kept it from its start
+///     void finalise()                                     after its activity stopped, on the stopper's thread; not real-time
+// clang-format on
 struct ComponentType {
     TypeId tag = nullptr;
     std::size_t size = 0;
@@ -37,6 +39,8 @@ struct ComponentType {
     bool slot_required = false; ///< room for a behaviour that is loaded later
     void (*construct)(void* memory) = nullptr;
     Sentence (*configure)(void* component, Setup&) = nullptr;
+    Sentence (*initialise)(void* component) = nullptr;
+    void (*finalise)(void* component) = nullptr;
     void (*start)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     void (*step)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     void (*work)(void* component, const Cycle&) = nullptr;
@@ -66,6 +70,10 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::behaviour_required; }) type.behaviour_required = T::behaviour_required;
     if constexpr (requires(T& t, Setup& s) { t.configure(s); })
         type.configure = [](void* c, Setup& s) { return static_cast<T*>(c)->configure(s); };
+    if constexpr (requires(T& t) { t.initialise(); })
+        type.initialise = [](void* c) -> Sentence { return static_cast<T*>(c)->initialise(); };
+    if constexpr (requires(T& t) { t.finalise(); })
+        type.finalise = [](void* c) { static_cast<T*>(c)->finalise(); };
     if constexpr (requires(T& t, const Cycle& c) { t.start(c); })
         type.start = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->start(cycle); };

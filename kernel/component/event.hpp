@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/component/life.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/exchange/mailbox.hpp"
 
@@ -50,12 +51,14 @@ struct AsyncReaction {
     Waker waker{};
     Message::Run run = nullptr; ///< in the receiver: the operation, or the trigger of a behaviour
     void* object = nullptr;
+    const AtomicComponentState* receiver = nullptr; ///< of the component that the operation belongs to
     std::uint32_t part = 0; ///< the receiver's number for the component it is timed as
     std::uint32_t quota = 0;
     std::uint32_t posted = 0; ///< the sender's own count
     std::uint32_t lost = 0;
     std::uint32_t high_water = 0;
     alignas(64) std::atomic<std::uint32_t> served{0}; ///< the receiver's count
+    std::uint32_t dropped = 0; ///< the receiver's own count: they reached a component that does not run
 
     void post(Message& message) noexcept TAPPET_REALTIME {
         message.run = &serve;
@@ -76,7 +79,10 @@ private:
         auto& row = *static_cast<AsyncReaction*>(self);
         // Its place in the mailbox is free again, so one more may be posted while this one runs.
         row.served.store(row.served.load(std::memory_order_relaxed) + 1, std::memory_order_release);
-        row.run(row.object, arguments);
+        if (row.receiver != nullptr && !is_running(*row.receiver))
+            ++row.dropped;
+        else
+            row.run(row.object, arguments);
     }
 };
 

@@ -78,8 +78,9 @@ struct Facet {
     std::string_view unit{};
     std::string_view doc{};
     FacetKind kind = FacetKind::input;
-    TypeId type = nullptr; ///< of the value, or of the argument list
-    bool required = false; ///< an input that must be connected, an operation that a reaction must name
+    TypeId type = nullptr;       ///< of the value, or of the argument list
+    bool required = false;       ///< an input that must be connected, an operation that a reaction must name
+    bool valid_to_start = false; ///< an input: its component does not start before it has a valid value
     std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
     bool any_thread = false;          ///< an operation that any activity may call
     Range range{};                    ///< of a property

@@ -28,6 +28,10 @@ inline constexpr AnyThread any_thread{};
 /// Marks an operation that at least one reaction of the table must name.
 struct Required {};
 inline constexpr Required required{};
+/// Marks an input without whose valid value its component does not start, not even with the machine: it waits
+/// for it. (A single component that is started while the machine runs needs all its required inputs.)
+struct ValidToStart {};
+inline constexpr ValidToStart valid_to_start{};
 /// An event that means something to the machine's safety: at least so many reaction rows must name it.
 struct HeardBy {
     std::uint8_t reactions = 1;
@@ -58,6 +62,7 @@ struct TimerCall<Method> {
 
 constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; }
 constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
+constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start = true; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
 

@@ -35,9 +35,79 @@ constexpr std::string_view to_text(ComponentState state) noexcept {
 using AtomicComponentState = std::atomic<ComponentState>;
 static_assert(AtomicComponentState::is_always_lock_free);
 
-/// Whether messages and steps reach it. Real-time, any thread.
+/// Whether steps and messages reach it. Real-time, any thread.
 inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTIME {
     return state.load(std::memory_order_acquire) == ComponentState::running;
 }
+
+enum class LifeChange : std::uint8_t { start, stop, restart };
+
+/// What became of a request. Superseded: another one came after it, which is the one that counts.
+enum class LifeOutcome : std::uint8_t { pending, done, refused, superseded };
+
+/// Why a start is refused.
+enum class LifeRefusal : std::uint8_t {
+    none,
+    input_never_written,
+    input_stale,
+    not_initialised,  ///< initialise() refused, or nobody called it since the failure
+    activity_stopped, ///< the activity that runs it does not run
+    thread_lost       ///< its thread hangs or broke a contract
+};
+
+/// The answer to a request: the refusal, and where it lies.
+struct LifeAnswer {
+    LifeOutcome outcome = LifeOutcome::pending;
+    LifeRefusal refusal = LifeRefusal::none;
+    std::uint8_t part = 0;   ///< the component's number in its engine
+    std::uint16_t facet = 0; ///< of an input
+};
+
+struct LifeTicket {
+    std::uint32_t number = 0;
+};
+
+/// Requests to one component or activity. Any thread asks, one serves; the last request counts. Wait-free for
+/// both: a ticket, and one word each for what is wanted and what came of it. Real-time.
+class LifeRequests {
+public:
+    LifeTicket ask(LifeChange change) noexcept TAPPET_REALTIME {
+        const std::uint32_t number = tickets_.fetch_add(1, std::memory_order_relaxed) + 1;
+        wanted_.store(std::uint64_t{number} << 32 | static_cast<std::uint64_t>(change),
+                      std::memory_order_release);
+        return {number};
+    }
+    /// The serving thread only: true when there is a request that it has not taken yet.
+    [[nodiscard]] bool take(LifeTicket& ticket, LifeChange& change) noexcept TAPPET_REALTIME {
+        const std::uint64_t wanted = wanted_.load(std::memory_order_acquire);
+        if (wanted == taken_) return false;
+        taken_ = wanted;
+        ticket.number = static_cast<std::uint32_t>(wanted >> 32);
+        change = static_cast<LifeChange>(wanted & 3);
+        return true;
+    }
+    /// The serving thread only.
+    void answer(LifeTicket ticket, LifeAnswer answer) noexcept TAPPET_REALTIME {
+        answered_.store(std::uint64_t{ticket.number} << 32 | std::uint64_t{answer.facet} << 16 |
+                            std::uint64_t{answer.part} << 8 |
+                            static_cast<std::uint64_t>(answer.refusal) << 4 |
+                            static_cast<std::uint64_t>(answer.outcome),
+                        std::memory_order_release);
+    }
+    [[nodiscard]] LifeAnswer answer_to(LifeTicket ticket) const noexcept TAPPET_REALTIME {
+        const std::uint64_t wanted = wanted_.load(std::memory_order_acquire);
+        const std::uint64_t answered = answered_.load(std::memory_order_acquire);
+        if (answered >> 32 == ticket.number)
+            return {static_cast<LifeOutcome>(answered & 0xf), static_cast<LifeRefusal>(answered >> 4 & 0xf),
+                    static_cast<std::uint8_t>(answered >> 8), static_cast<std::uint16_t>(answered >> 16)};
+        return {.outcome = wanted >> 32 == ticket.number ? LifeOutcome::pending : LifeOutcome::superseded};
+    }
+
+private:
+    std::atomic<std::uint32_t> tickets_{0};
+    std::atomic<std::uint64_t> wanted_{0};
+    std::atomic<std::uint64_t> answered_{0};
+    std::uint64_t taken_ = 0;
+};
 
 } // namespace tappet

@@ -10,6 +10,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     place_engines();
     connect_clocks();
     connect_data();
+    place_needed_inputs();
     place_behaviours();
     connect_events();
     place_mailboxes();
@@ -65,7 +66,8 @@ void MachineInstance::place_engines() {
             if (machine_.index.activity[c] != a) continue;
             const ComponentRow& component_row = table.components[c];
             const std::uint32_t part = machine_.plan.part_of[c];
-            new (parts + part) EnginePart{component_row.name, component(c), component_row.type};
+            new (parts + part)
+                EnginePart{.name = component_row.name, .component = component(c), .type = component_row.type};
             for (std::size_t f = 0; f < component_row.type->facets.size(); ++f) {
                 const Facet& each = component_row.type->facets[f];
                 if (each.kind == FacetKind::timer)
@@ -87,6 +89,7 @@ void MachineInstance::place_engines() {
         engine.functions = {functions, plan.part_count * functions_per_part};
         engine.timers = {timers, timer_count};
         engine.behaviours = {at<Behaviour>(plan.behaviours_at), plan.behaviour_count};
+        engine.inputs = {at<NeededInput>(plan.inputs_at), plan.input_count};
         engine.guarded = {at<GuardedInput>(plan.guarded_at), plan.guarded_count};
         auto* placed = new (&engines()[a]) Engine;
         placed->place(engine, *clock_);

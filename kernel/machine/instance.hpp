@@ -5,6 +5,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/property_store.hpp"
 
+#include <array>
 #include <atomic>
 #include <expected>
 #include <span>
@@ -17,6 +18,14 @@ struct StopRequest {
     StopReason reason = StopReason::none;
     std::uint64_t detail = 0; ///< stale input: the connection row; missed deadline: the function
     const Engine* from = nullptr;
+};
+
+/// How a world lets the engine of an activity start and stop. Called by the supervisor's thread.
+struct ActivityControl {
+    void* world = nullptr;
+    bool (*start)(void* world, std::size_t activity) = nullptr; ///< false: its thread did not come up
+    /// False: its thread hangs; the engine's stop was run in its place.
+    bool (*stop)(void* world, std::size_t activity) = nullptr;
 };
 
 /// Not real-time but for ask_stop(), stop_asked() and what is const. One machine has one instance at a time.
@@ -65,6 +74,30 @@ public:
     /// `requests_waiting` of them there already, and the receiver did not get this one. Real-time.
     [[nodiscard]] bool post_request(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME;
 
+    /// Starts, stops or restarts one component while the rest goes on (thesis 3.1.3): its engine does it
+    /// between two steps, and answers. Real-time, any thread.
+    LifeTicket ask_component(std::size_t index, LifeChange change) noexcept TAPPET_REALTIME;
+    [[nodiscard]] LifeAnswer answer_of_component(std::size_t index, LifeTicket ticket) noexcept
+        TAPPET_REALTIME;
+    [[nodiscard]] ComponentState state_of(std::size_t component) noexcept TAPPET_REALTIME;
+    /// The same for a whole activity, with initialise and finalise of its components: the supervisor does it.
+    /// Real-time, any thread.
+    LifeTicket ask_activity(std::size_t index, LifeChange change) noexcept TAPPET_REALTIME;
+    [[nodiscard]] LifeAnswer answer_of_activity(std::size_t index, LifeTicket ticket) const noexcept
+        TAPPET_REALTIME;
+    /// What a refusal says, with its cure; empty when nothing was refused.
+    [[nodiscard]] Sentence describe(std::size_t activity, LifeAnswer answer) const;
+
+    /// For worlds. In the table's order; the first refusal ends it.
+    [[nodiscard]] Sentence start_activities(const ActivityControl& control);
+    /// Empty: done. To start, what its components read from other activities must be valid.
+    [[nodiscard]] Sentence change_activity(std::size_t index, LifeChange change,
+                                           const ActivityControl& control) {
+        LifeAnswer answer;
+        return change_activity(index, change, control, answer);
+    }
+    void serve_activity_requests(const ActivityControl& control);
+
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
@@ -89,11 +122,17 @@ private:
     [[nodiscard]] void* facet(End end) noexcept;
     [[nodiscard]] Waker waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
 
+    [[nodiscard]] Sentence change_activity(std::size_t index, LifeChange change,
+                                           const ActivityControl& control, LifeAnswer& answer);
+    [[nodiscard]] Sentence initialise_and_start(std::size_t index, const ActivityControl& control,
+                                                LifeAnswer& answer);
+
     void construct();
     [[nodiscard]] Sentence configure_properties(std::size_t component);
     void place_engines();
     void connect_clocks();
     void connect_data();
+    void place_needed_inputs();
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);
     void connect_events();
@@ -106,6 +145,8 @@ private:
     os::Waiter supervisor_{};
     std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
     StopRequest stop_{};
+    std::array<LifeRequests, checks::max_activities> activity_requests_{};
+    std::array<bool, checks::max_activities> thread_lost_{};
 };
 
 } // namespace tappet

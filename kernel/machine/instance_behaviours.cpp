@@ -17,6 +17,11 @@ StateMachineExecution& execution_of(void* self) noexcept TAPPET_REALTIME {
     return *static_cast<StateMachineExecution*>(self);
 }
 
+// The stop of a component leaves its machine in the final state; the next start leads from there.
+void start_again(StateMachineExecution& execution, Time now) noexcept TAPPET_REALTIME {
+    if (execution.start(now) == StateOutcome::ignored) static_cast<void>(execution.request_initial(now));
+}
+
 } // namespace
 
 void MachineInstance::place_behaviours() {
@@ -43,10 +48,10 @@ void MachineInstance::place_behaviours() {
         behaviour.self = execution;
         behaviour.part = machine_.plan.part_of[c];
         behaviour.start = [](void* self, Time now) noexcept
-            TAPPET_REALTIME { static_cast<void>(execution_of(self).start(now)); };
+            TAPPET_REALTIME { start_again(execution_of(self), now); };
         behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { execution_of(self).step(now); };
         behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME {
-            static_cast<void>(execution_of(self).request_final(now, "the machine stops"));
+            static_cast<void>(execution_of(self).request_final(now, "its component stops"));
         };
         behaviour.next = [](const void* self) noexcept
             TAPPET_REALTIME { return static_cast<const StateMachineExecution*>(self)->next_timeout(); };

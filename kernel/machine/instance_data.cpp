@@ -25,7 +25,8 @@ void MachineInstance::connect_data() {
         if (row.when_stale != WhenStale::stop) continue;
         const std::size_t reader = machine_.index.activity[link.to.component];
         new (at<GuardedInput>(machine_.plan.activities[reader].guarded_at) + guarded[reader]++)
-            GuardedInput{facet(link.to), facet_at(machine_.table, link.to).port->flow, x, false};
+            GuardedInput{facet(link.to), facet_at(machine_.table, link.to).port->flow, x, false,
+                         machine_.plan.part_of[link.to.component]};
     }
 }
 

@@ -46,6 +46,7 @@ void MachineInstance::connect_events() {
             reaction->part = plan.part_of[find_component(machine_.table,
                                                          machine_.table.behaviours[row.behaviour].component)];
         }
+        reaction->receiver = &receiver.plan().parts[reaction->part].state;
         event.subscribe(facet(row.event), event.post, reaction);
     }
 }

@@ -22,6 +22,8 @@ struct ActivityPlan {
     std::size_t behaviour_count = 0;
     std::size_t guarded_at = 0;
     std::size_t guarded_count = 0;
+    std::size_t inputs_at = 0; ///< what its components need before they start
+    std::size_t input_count = 0;
     std::size_t mailboxes_at = 0;
     std::size_t sender_count = 0;
     std::size_t stack_at = 0;
@@ -90,6 +92,11 @@ struct WakerNode {
     WakerNode* next;
 };
 
+/// Whether the row feeds an input that a component needs before it starts.
+constexpr bool is_needed_input(const MachineView& m, const ConnectionRow& row, const Link& link) noexcept {
+    return !row.buffered && facet_at(m, link.to).required;
+}
+
 namespace detail {
 
 class Ground {
@@ -151,9 +158,12 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
         }
         if (row.wakes_reader) plan.waker_at = ground.take<WakerNode>();
         if (row.when_stale == WhenStale::stop) ++p.activities[reader].guarded_count;
+        if (is_needed_input(m, row, link)) ++p.activities[reader].input_count;
     }
-    for (auto& activity : p.activities)
+    for (auto& activity : p.activities) {
         activity.guarded_at = ground.take<GuardedInput>(activity.guarded_count);
+        activity.inputs_at = ground.take<NeededInput>(activity.input_count);
+    }
 }
 
 constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p,

@@ -84,19 +84,37 @@ bool RealWorld::arm(os::ArmingReport& report, int file) {
     return fit;
 }
 
+ActivityControl RealWorld::control() noexcept {
+    return {this,
+            [](void* self, std::size_t a) {
+                return static_cast<RealWorld*>(self)->activities_[a].start(patience_ms);
+            },
+            [](void* self, std::size_t a) { return static_cast<RealWorld*>(self)->stop_engine(a); }};
+}
+
 bool RealWorld::start() {
-    running_ = true;
-    for (std::size_t a = 0; a < instance_.engines().size(); ++a)
-        if (!activities_[a].release(patience_ms)) {
-            static_cast<void>(stop());
-            return false;
-        }
-    return true;
+    refusal_ = instance_.start_activities(control());
+    if (!refusal_.empty()) static_cast<void>(stop());
+    return refusal_.empty();
+}
+
+Sentence RealWorld::change_activity(std::size_t activity, LifeChange change) {
+    return instance_.change_activity(activity, change, control());
+}
+
+bool RealWorld::stop_engine(std::size_t a) noexcept {
+    if (activities_[a].stop(patience_ms)) return true;
+    // Parked by a broken contract, or hung: its components still leave their safe values.
+    if (activities_[a].claim_engine_stop()) activities_[a].engine().stop(instance_.clock().now());
+    activities_[a].engine().mark_failed();
+    activities_[a].abandon(); // the process must end although this thread never does
+    return false;
 }
 
 bool RealWorld::supervise(Duration time) {
     const Time end = instance_.clock().now() + time;
     while (!instance_.stop_asked()) {
+        instance_.serve_activity_requests(control());
         if (signal_came.load(std::memory_order_acquire)) {
             instance_.ask_stop(StopReason::requested, 0, nullptr);
             return false;
@@ -109,15 +127,10 @@ bool RealWorld::supervise(Duration time) {
 
 int RealWorld::stop() {
     int hung = 0;
-    for (std::size_t a = instance_.engines().size(); a-- > 0;) {
-        if (activities_[a].state() == Activity::State::inactive || activities_[a].stop(patience_ms)) continue;
-        // Parked by a broken contract, or hung: its components still leave their safe values.
-        ++hung;
-        if (running_ && activities_[a].claim_engine_stop())
-            activities_[a].engine().stop(instance_.clock().now());
-        activities_[a].abandon(); // the process must end although this thread never does
-    }
-    running_ = false;
+    for (std::size_t a = instance_.engines().size(); a-- > 0;)
+        hung += !instance_.change_activity(a, LifeChange::stop, control()).empty();
+    for (std::size_t a = instance_.engines().size(); a-- > 0;)
+        if (!activities_[a].end(patience_ms)) activities_[a].abandon();
     os::heap::release();
     return hung;
 }

@@ -30,11 +30,17 @@ public:
     /// locks the memory. False: the report says why, on `file`, each reason with its cure; nothing has moved.
     [[nodiscard]] bool arm(os::ArmingReport& report, int file);
 
-    /// Activities start in the table's order. False: one did not; the machine is stopped again.
+    /// Activities start in the table's order, each initialised on this thread. False: one did not, refusal()
+    /// says why; the machine is stopped again.
     [[nodiscard]] bool start();
+    [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
 
-    /// Sleeps until a stop is asked for, a signal (INT, TERM) came, or `time` passed. True while the machine
-    /// runs.
+    /// Starts, stops or restarts one activity while the others run; initialise and finalise of its components
+    /// run on this thread, its own thread is kept. Empty: done; else why not.
+    [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
+
+    /// Sleeps until a stop is asked for, a signal (INT, TERM) came, or `time` passed; serves the requests to
+    /// activities meanwhile. True while the machine runs.
     bool supervise(Duration time);
 
     /// Activities stop from the last row of the table to the first: list drivers first, so that the safe
@@ -50,12 +56,14 @@ public:
 private:
     static void on_breach(const struct Breach& breach) noexcept TAPPET_REALTIME;
     static void on_signal(int) noexcept;
+    [[nodiscard]] ActivityControl control() noexcept;
+    [[nodiscard]] bool stop_engine(std::size_t activity) noexcept;
 
     MachineInstance& instance_;
     std::array<Activity, checks::max_activities> activities_{};
     os::CpuDmaLatency latency_{};
     Sentence breach_{};
-    bool running_ = false;
+    Sentence refusal_{};
 };
 
 } // namespace tappet

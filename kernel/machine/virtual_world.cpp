@@ -14,10 +14,30 @@ VirtualWorld::VirtualWorld(MachineInstance& instance) noexcept : instance_{insta
             if (rank[a] == r) static_cast<void>(by_urgency_.push(a));
 }
 
-void VirtualWorld::start() {
-    const auto engines = instance_.engines();
-    for (Engine& engine : engines) engine.start(instance_.clock().now());
-    for (std::size_t a = 0; a < engines.size(); ++a) wake_at_[a] = engines[a].next_wake();
+ActivityControl VirtualWorld::control() noexcept {
+    return {this,
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<VirtualWorld*>(self);
+                Engine& engine = world.instance_.engines()[a];
+                engine.start(world.instance_.clock().now());
+                world.wake_at_[a] = engine.next_wake();
+                return true;
+            },
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<VirtualWorld*>(self);
+                world.instance_.engines()[a].stop(world.instance_.clock().now());
+                return true;
+            }};
+}
+
+Sentence VirtualWorld::start() {
+    const Sentence refusal = instance_.start_activities(control());
+    if (!refusal.empty()) stop();
+    return refusal;
+}
+
+Sentence VirtualWorld::change_activity(std::size_t activity, LifeChange change) {
+    return instance_.change_activity(activity, change, control());
 }
 
 Time VirtualWorld::next_time() const {
@@ -25,6 +45,7 @@ Time VirtualWorld::next_time() const {
     for (const VirtualProcess& process : processes_) next = std::min(next, process.next(process.self));
     const auto engines = instance_.engines();
     for (std::size_t a = 0; a < engines.size(); ++a) {
+        if (!engines[a].is_active()) continue;
         if (engines[a].waiter().is_woken()) return instance_.clock().now();
         next = std::min(next, wake_at_[a]);
     }
@@ -37,6 +58,7 @@ void VirtualWorld::run_engines(Time now) {
         bool ran = false;
         for (const std::size_t a : by_urgency_) {
             Engine& engine = engines[a];
+            if (!engine.is_active()) continue;
             const bool woken = engine.waiter().is_woken() && engine.waiter().take();
             if (!woken && wake_at_[a] > now) continue;
             engine.run(woken);
@@ -53,6 +75,7 @@ void VirtualWorld::run_engines(Time now) {
 bool VirtualWorld::run_until(Time end) {
     os::Clock& clock = instance_.clock();
     while (!instance_.stop_asked()) {
+        instance_.serve_activity_requests(control());
         const Time next = std::max(next_time(), clock.now());
         if (next > end) {
             clock.advance_to(end);
@@ -67,8 +90,8 @@ bool VirtualWorld::run_until(Time end) {
 }
 
 void VirtualWorld::stop() {
-    const auto engines = instance_.engines();
-    for (std::size_t a = engines.size(); a-- > 0;) engines[a].stop(instance_.clock().now());
+    for (std::size_t a = instance_.engines().size(); a-- > 0;)
+        static_cast<void>(change_activity(a, LifeChange::stop));
 }
 
 } // namespace tappet

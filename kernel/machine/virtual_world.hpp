@@ -24,7 +24,10 @@ public:
     /// Before start. Processes of one instant run in the order they were added, before the engines.
     void add(const VirtualProcess& process) noexcept { static_cast<void>(processes_.push(process)); }
 
-    void start();
+    /// Activities start in the table's order. Empty: all did; else the first refusal, and all are stopped.
+    Sentence start();
+    /// As RealWorld's.
+    [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
     /// Runs to `end`, or until a stop is asked for: then false.
     bool run_until(Time end);
     /// Engines stop, the last row of the table first.
@@ -36,6 +39,7 @@ private:
     /// Engines of one instant: a message wakes another, and so on, so many times at most.
     static constexpr int max_rounds_per_instant = 1000;
 
+    [[nodiscard]] ActivityControl control() noexcept;
     [[nodiscard]] Time next_time() const;
     void run_engines(Time now);
 

@@ -57,11 +57,9 @@ bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     return take();
 }
 
-void Waiter::wait_for_wake() noexcept TAPPET_REALTIME {
-    if (devices_.empty())
-        static_cast<void>(wait(never));
-    else if (!take())
-        static_cast<void>(wait_on_devices(0, never));
+bool Waiter::wait_without_devices(Time until) noexcept TAPPET_REALTIME {
+    if (devices_.empty()) return wait(until);
+    return take() || wait_on_devices(0, until);
 }
 
 bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME {

@@ -41,9 +41,10 @@ public:
     /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
     /// ready.
     bool wait(Time until) noexcept TAPPET_REALTIME;
-    /// Sleeps until a wake, whatever the devices have to say: before its engine runs, nobody takes from them,
-    /// and a thread that returned for each of them would spin, at a real-time priority for ever.
-    void wait_for_wake() noexcept TAPPET_REALTIME;
+    /// Sleeps until `until` or a wake, whatever the devices have to say: while nobody takes from them, a
+    /// thread that returned for each of them would spin, at a real-time priority for ever. True when woken.
+    bool wait_without_devices(Time until) noexcept TAPPET_REALTIME;
+    void wait_for_wake() noexcept TAPPET_REALTIME { static_cast<void>(wait_without_devices(never)); }
 
 private:
     static constexpr std::uint32_t idle = 0, woken = 1, asleep = 2;

@@ -145,7 +145,7 @@ int main(int count, char** words) {
         arming.fault("can-bus", Sentence{"the CAN bus is faulted"},
                      Sentence{"look at its wiring and at the other nodes' power"});
     if (!world.arm(arming, 2)) return refused_to_arm;
-    if (!world.start()) return fail(stopped_by_fault, Sentence{"an activity did not start in time"});
+    if (!world.start()) return fail(stopped_by_fault, world.refusal());
     os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ",
                        static_cast<std::int64_t>(arming.warnings()), " warnings\n"}
                   .view());

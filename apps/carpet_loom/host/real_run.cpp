@@ -24,9 +24,7 @@ std::expected<void, Sentence> RealRun::start(int file) {
     plant_plan_ = {"plant", plant_priority, -1, plant_stack_, &RealRun::live, this};
     if (auto started = plant_thread_.start(plant_plan_); !started) return started;
     running_ = true;
-    if (!world_.start())
-        return std::unexpected(
-            Sentence{"an activity did not start in time; free the processor of other real-time work"});
+    if (!world_.start()) return std::unexpected(world_.refusal());
     return {};
 }
 

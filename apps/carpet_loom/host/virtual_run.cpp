@@ -25,7 +25,7 @@ std::expected<void, Sentence> VirtualRun::start() {
                     run.seen_steps_ = run.world_.steps();
                     run.loom_.advance(now);
                 }});
-    world_.start();
+    if (const Sentence refusal = world_.start(); !refusal.empty()) return std::unexpected(refusal);
     return {};
 }
 

@@ -1,0 +1,192 @@
+// The lives of an engine's components (thesis 3.1.3): all of them with their activity, or one while the
+// others go on. A component starts with valid inputs and leaves safe values.
+#include "kernel/activity/engine.hpp"
+
+namespace tappet {
+
+namespace {
+
+constexpr std::uint64_t life_note = 0x6c696665u; // "life": no transition of a state machine has this number
+
+} // namespace
+
+Sentence Engine::initialise() {
+    for (std::size_t i = 0; i < plan_.parts.size(); ++i) {
+        EnginePart& part = plan_.parts[i];
+        if (part.type->initialise != nullptr)
+            if (const Sentence refusal = part.type->initialise(part.component); !refusal.empty()) {
+                part.state.store(ComponentState::failed, std::memory_order_release);
+                while (i-- > 0)
+                    if (plan_.parts[i].type->finalise != nullptr)
+                        plan_.parts[i].type->finalise(plan_.parts[i].component);
+                return Sentence{"component \"", part.name, "\" could not be initialised: ", refusal};
+            }
+        if (part.state.load(std::memory_order_relaxed) == ComponentState::failed)
+            part.state.store(ComponentState::stopped, std::memory_order_release);
+    }
+    return {};
+}
+
+void Engine::finalise() {
+    for (std::size_t i = plan_.parts.size(); i-- > 0;)
+        if (plan_.parts[i].type->finalise != nullptr) plan_.parts[i].type->finalise(plan_.parts[i].component);
+}
+
+void Engine::start(Time now) noexcept TAPPET_REALTIME {
+    cycle_.now = cycle_.release = lap_ = ended_ = now;
+    next_release_ = plan_.periodic ? now + plan_.period : never;
+    if (was_stopped_) {
+        static_cast<void>(run_messages()); // what came meanwhile reached nobody: each row counts its own
+        asked_.store(true, std::memory_order_relaxed);
+        serve_requests();
+    }
+    active_.store(true, std::memory_order_release);
+    awaiting_ = 0;
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        if (plan_.parts[i].state.load(std::memory_order_relaxed) == ComponentState::failed) continue;
+        if (check_inputs(i, Rule::with_the_machine).refusal == LifeRefusal::none) {
+            start_part(i);
+        } else {
+            plan_.parts[i].state.store(ComponentState::starting, std::memory_order_release);
+            ++awaiting_;
+        }
+    }
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) start_behaviours(i);
+}
+
+void Engine::stop(Time now) noexcept TAPPET_REALTIME {
+    cycle_.now = cycle_.release = now;
+    for (const Behaviour& each : plan_.behaviours)
+        if (is_running(plan_.parts[each.part].state)) each.stop(each.self, now);
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
+    awaiting_ = 0;
+    was_stopped_ = true;
+    active_.store(false, std::memory_order_release);
+}
+
+void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
+    EnginePart& part = plan_.parts[i];
+    part.state.store(ComponentState::starting, std::memory_order_release);
+    if (part.type->start != nullptr) part.type->start(part.component, cycle_);
+    part.state.store(ComponentState::running, std::memory_order_release);
+}
+
+// A component that failed or stopped before has left its safe values already.
+void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
+    EnginePart& part = plan_.parts[i];
+    const ComponentState state = part.state.load(std::memory_order_relaxed);
+    if (state == ComponentState::stopped || state == ComponentState::failed) return;
+    part.state.store(ComponentState::stopping, std::memory_order_release);
+    if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
+    for (const EngineTimer& each : plan_.timers)
+        if (each.part == i) each.timer->cancel();
+    part.state.store(ComponentState::stopped, std::memory_order_release);
+}
+
+void Engine::start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME {
+    for (const Behaviour& each : plan_.behaviours)
+        if (each.part == part && is_running(plan_.parts[part].state)) each.start(each.self, cycle_.now);
+}
+
+LifeAnswer Engine::check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME {
+    for (const NeededInput& each : plan_.inputs) {
+        if (each.part != part || (rule == Rule::with_the_machine && !each.valid_to_start)) continue;
+        const Flow flow = each.flow(each.input);
+        if (flow == Flow::stale || (flow == Flow::never_written && !each.has_initial))
+            return {LifeOutcome::refused,
+                    flow == Flow::stale ? LifeRefusal::input_stale : LifeRefusal::input_never_written,
+                    static_cast<std::uint8_t>(part), each.facet};
+    }
+    return {LifeOutcome::done, LifeRefusal::none, static_cast<std::uint8_t>(part), 0};
+}
+
+// Its own components have not written yet: only what other activities give can be judged.
+LifeAnswer Engine::readiness(Time now) noexcept TAPPET_REALTIME {
+    cycle_.now = now; // the ages of values are told by it
+    for (const NeededInput& each : plan_.inputs) {
+        if (each.same_activity) continue;
+        const Flow flow = each.flow(each.input);
+        if (flow == Flow::stale || (flow == Flow::never_written && !each.has_initial))
+            return {LifeOutcome::refused,
+                    flow == Flow::stale ? LifeRefusal::input_stale : LifeRefusal::input_never_written,
+                    static_cast<std::uint8_t>(each.part), each.facet};
+    }
+    return {.outcome = LifeOutcome::done};
+}
+
+LifeTicket Engine::ask(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME {
+    const LifeTicket ticket = plan_.parts[part].requests.ask(wanted);
+    asked_.store(true, std::memory_order_release);
+    // A periodic real-time activity is not disturbed between its periods.
+    if (!plan_.periodic || !plan_.real_time) waiter_.wake();
+    return ticket;
+}
+
+LifeAnswer Engine::answer_to(std::uint32_t part, LifeTicket ticket) const noexcept TAPPET_REALTIME {
+    const LifeAnswer answer = plan_.parts[part].requests.answer_to(ticket);
+    if (answer.outcome != LifeOutcome::pending || is_active()) return answer;
+    return {LifeOutcome::refused, LifeRefusal::activity_stopped, static_cast<std::uint8_t>(part), 0};
+}
+
+void Engine::serve_requests() noexcept TAPPET_REALTIME {
+    if (!asked_.exchange(false, std::memory_order_acquire)) return;
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        LifeTicket ticket;
+        LifeChange wanted{};
+        if (!plan_.parts[i].requests.take(ticket, wanted)) continue;
+        if (!is_active()) { // they came while the activity was stopped
+            plan_.parts[i].requests.answer(ticket, {LifeOutcome::refused, LifeRefusal::activity_stopped,
+                                                    static_cast<std::uint8_t>(i), 0});
+            continue;
+        }
+        LifeAnswer answer;
+        timed(i, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { answer = change(i, wanted); });
+        note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(wanted), cycle_.now);
+        plan_.parts[i].requests.answer(ticket, answer);
+    }
+}
+
+LifeAnswer Engine::change(std::uint32_t i, LifeChange wanted) noexcept TAPPET_REALTIME {
+    EnginePart& part = plan_.parts[i];
+    const ComponentState state = part.state.load(std::memory_order_relaxed);
+    const LifeAnswer done{LifeOutcome::done, LifeRefusal::none, static_cast<std::uint8_t>(i), 0};
+    if (state == ComponentState::failed)
+        return {LifeOutcome::refused, LifeRefusal::not_initialised, static_cast<std::uint8_t>(i), 0};
+    if (wanted != LifeChange::start) {
+        if (state == ComponentState::starting) --awaiting_;
+        for (const Behaviour& each : plan_.behaviours)
+            if (each.part == i && is_running(part.state)) each.stop(each.self, cycle_.now);
+        stop_part(i);
+    }
+    if (wanted == LifeChange::stop || is_running(part.state)) return done;
+    if (const LifeAnswer inputs = check_inputs(i, Rule::alone); inputs.refusal != LifeRefusal::none)
+        return inputs;
+    if (part.state.load(std::memory_order_relaxed) == ComponentState::starting) --awaiting_;
+    start_part(i);
+    start_behaviours(i);
+    return done;
+}
+
+void Engine::start_awaiting() noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        if (plan_.parts[i].state.load(std::memory_order_relaxed) != ComponentState::starting ||
+            check_inputs(i, Rule::with_the_machine).refusal != LifeRefusal::none)
+            continue;
+        --awaiting_;
+        timed(i, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { start_part(i); });
+        start_behaviours(i);
+    }
+}
+
+void Engine::mark_failed() noexcept TAPPET_REALTIME {
+    for (EnginePart& part : plan_.parts) part.state.store(ComponentState::failed, std::memory_order_release);
+}
+
+bool Engine::heeds_devices() const noexcept TAPPET_REALTIME {
+    for (const EnginePart& part : plan_.parts)
+        if (!part.type->device_kind.empty() && !part.type->shares_device && !is_running(part.state))
+            return false;
+    return true;
+}
+
+} // namespace tappet
