@@ -113,6 +113,8 @@ public:
     [[nodiscard]] std::uint64_t event_log_digest() const noexcept;
     /// Emissions that found their queue full, over all rows.
     [[nodiscard]] std::uint64_t lost_emissions() const noexcept;
+    /// Messages that reached a component that did not run, over all rows.
+    [[nodiscard]] std::uint64_t dropped_messages() const noexcept;
 
 private:
     template <class T>

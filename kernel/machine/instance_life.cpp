@@ -19,6 +19,7 @@ void MachineInstance::place_needed_inputs() {
                         .flow = input.port->flow,
                         .part = machine_.plan.part_of[link.to.component],
                         .facet = static_cast<std::uint16_t>(link.to.facet),
+                        .has_initial = table.connections[x].has_substitute,
                         .same_activity = machine_.index.activity[link.from.component] == reader,
                         .valid_to_start = input.valid_to_start};
     }
@@ -133,6 +134,15 @@ Sentence MachineInstance::change_activity(std::size_t a, LifeChange change, cons
         return describe(a, answer);
     }
     return initialise_and_start(a, control, answer);
+}
+
+std::uint64_t MachineInstance::dropped_messages() const noexcept {
+    std::uint64_t dropped = 0;
+    for (const SubscriptionPlan& place : machine_.plan.subscription_at)
+        if (place.async_at != nowhere)
+            dropped +=
+                reinterpret_cast<const AsyncReaction*>(machine_.memory.data() + place.async_at)->dropped;
+    return dropped;
 }
 
 void MachineInstance::serve_activity_requests(const ActivityControl& control) {

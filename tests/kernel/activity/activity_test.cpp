@@ -1,0 +1,234 @@
+// An activity in a thread of its own (thesis 4.2.2: lifetime and trigger semantics): inactive, started,
+// waiting, running, stopped and started again, on one thread that is kept; what the starter and the stopper
+// do is theirs. The components' states are asked for by several threads at once.
+#include "kernel/activity/activity.hpp"
+
+#include "kernel/base/random.hpp"
+#include "kernel/os/sleep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <pthread.h>
+
+namespace tappet {
+namespace {
+
+/// Notes on whose thread each function of its life ran, and whether any ran out of turn.
+struct Worker {
+    std::atomic<int> initialised{0}, started{0}, stepped{0}, stopped{0}, finalised{0};
+    std::atomic<int> out_of_turn{0};
+    std::atomic<pthread_t> initialiser{}, starter{}, stepper{}, stopper{}, finaliser{};
+    std::atomic<bool> hang{false};
+    std::atomic<bool> runs{false};
+    std::atomic<bool> refuses{false};
+
+    static pthread_t self() noexcept TAPPET_REALTIME {
+        pthread_t id{};
+        TAPPET_ESCAPE("a test asks which thread this is", id = pthread_self());
+        return id;
+    }
+    Sentence initialise() {
+        initialiser = self();
+        ++initialised;
+        return refuses ? Sentence{"it will not"} : Sentence{};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        starter = self();
+        ++started;
+        if (runs.exchange(true)) ++out_of_turn;
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        stepper = self();
+        ++stepped;
+        if (!runs) ++out_of_turn;
+        while (hang) {
+        }
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        stopper = self();
+        ++stopped;
+        if (!runs.exchange(false)) ++out_of_turn;
+    }
+    void finalise() {
+        finaliser = self();
+        ++finalised;
+    }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+constexpr int patience_ms = 2000;
+
+struct AnActivity : testing::Test {
+    os::Clock clock{os::Clock::Kind::real};
+    std::array<Worker, 3> workers{};
+    std::array<EnginePart, 3> parts{};
+    std::array<FunctionTiming, 3 * functions_per_part> functions{};
+    Engine engine;
+    alignas(4096) static inline std::array<std::byte, 256 * 1024> stack{};
+    Activity activity;
+
+    AnActivity() {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            parts[i].name = "worker";
+            parts[i].component = &workers[i];
+            parts[i].type = &component_type<Worker>;
+        }
+        EnginePlan plan;
+        plan.name = "tested";
+        plan.periodic = true;
+        plan.period = 1ms;
+        plan.parts = parts;
+        plan.functions = functions;
+        engine.place(plan, clock);
+    }
+    void create() { ASSERT_TRUE(activity.create(engine, clock, 0, -1, stack)); }
+    void start() {
+        ASSERT_TRUE(engine.initialise().empty());
+        ASSERT_TRUE(activity.start(patience_ms));
+    }
+    void stop() {
+        ASSERT_TRUE(activity.stop(patience_ms));
+        engine.finalise();
+    }
+    void wait_for_steps(int n) {
+        const int before = workers[0].stepped;
+        for (int i = 0; i < patience_ms && workers[0].stepped < before + n; ++i) os::sleep_for(1ms);
+        ASSERT_GE(workers[0].stepped, before + n);
+    }
+};
+
+TEST_F(AnActivity, is_inactive_upon_its_creation_and_runs_nothing) {
+    EXPECT_EQ(activity.state(), Activity::State::inactive);
+    create();
+    os::sleep_for(20ms);
+    EXPECT_EQ(activity.state(), Activity::State::inactive);
+    EXPECT_FALSE(engine.is_active());
+    EXPECT_EQ(workers[0].started, 0);
+    EXPECT_TRUE(activity.end(patience_ms));
+}
+
+TEST_F(AnActivity, initialises_and_finalises_on_the_callers_thread_and_lives_on_its_own) {
+    create();
+    start();
+    wait_for_steps(3);
+    stop();
+    EXPECT_EQ(activity.state(), Activity::State::stopped);
+    EXPECT_TRUE(activity.end(patience_ms));
+    for (Worker& worker : workers) {
+        EXPECT_TRUE(pthread_equal(worker.initialiser, pthread_self()));
+        EXPECT_TRUE(pthread_equal(worker.finaliser, pthread_self()));
+        EXPECT_FALSE(pthread_equal(worker.stepper, pthread_self()));
+        EXPECT_TRUE(pthread_equal(worker.starter, worker.stepper));
+        EXPECT_TRUE(pthread_equal(worker.stopper, worker.stepper));
+        EXPECT_EQ(worker.out_of_turn, 0);
+    }
+}
+
+TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has) {
+    create();
+    start();
+    wait_for_steps(1);
+    const pthread_t thread = workers[0].stepper;
+    for (int n = 0; n < 50; ++n) {
+        stop();
+        const int steps = workers[0].stepped;
+        os::sleep_for(1ms);
+        EXPECT_EQ(workers[0].stepped, steps) << "stopped";
+        start();
+        wait_for_steps(1);
+        ASSERT_TRUE(pthread_equal(workers[0].stepper, thread));
+    }
+    stop();
+    EXPECT_TRUE(activity.end(patience_ms));
+    EXPECT_EQ(workers[2].started, 51);
+    EXPECT_EQ(workers[2].stopped, 51);
+    EXPECT_EQ(workers[2].initialised, 51);
+    EXPECT_EQ(workers[2].finalised, 51);
+    EXPECT_EQ(workers[2].out_of_turn, 0);
+}
+
+TEST_F(AnActivity, a_stop_before_any_start_and_a_second_stop_do_nothing) {
+    create();
+    EXPECT_TRUE(activity.stop(patience_ms));
+    start();
+    wait_for_steps(1);
+    stop();
+    EXPECT_TRUE(activity.stop(patience_ms));
+    EXPECT_TRUE(activity.end(patience_ms));
+    EXPECT_EQ(workers[0].stopped, 1);
+}
+
+TEST_F(AnActivity, is_not_started_when_a_component_refuses_and_those_before_it_are_finalised) {
+    create();
+    workers[1].refuses = true;
+    EXPECT_EQ(engine.initialise().view(), "component \"worker\" could not be initialised: it will not");
+    EXPECT_EQ(workers[0].finalised, 1);
+    EXPECT_EQ(workers[1].finalised, 0);
+    EXPECT_EQ(workers[2].initialised, 0);
+    EXPECT_EQ(parts[1].state.load(), ComponentState::failed);
+    workers[1].refuses = false;
+    start();
+    wait_for_steps(1);
+    EXPECT_EQ(parts[1].state.load(), ComponentState::running);
+    stop();
+    EXPECT_TRUE(activity.end(patience_ms));
+}
+
+TEST_F(AnActivity, a_stop_of_a_thread_that_hangs_says_so_and_the_engine_can_be_stopped_in_its_place_once) {
+    create();
+    start();
+    wait_for_steps(1);
+    workers[0].hang = true;
+    os::sleep_for(5ms);
+    EXPECT_FALSE(activity.stop(50));
+    EXPECT_TRUE(activity.claim_engine_stop());
+    EXPECT_FALSE(activity.claim_engine_stop());
+    workers[0].hang = false; // it comes back: the stop is not its own any more
+    EXPECT_TRUE(activity.stop(patience_ms));
+    EXPECT_EQ(workers[0].stopped, 0);
+    EXPECT_TRUE(activity.end(patience_ms));
+}
+
+TEST_F(AnActivity, answers_each_of_many_threads_that_ask_for_its_components_lives) {
+    create();
+    start();
+    constexpr int askers = 3, wishes_each = 200;
+    std::array<std::atomic<int>, 4> outcomes{};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < askers; ++t)
+        threads.emplace_back([&, t] {
+            Random random{static_cast<std::uint64_t>(t) + 1};
+            for (int n = 0; n < wishes_each; ++n) {
+                const auto part = static_cast<std::uint32_t>(random.below(parts.size()));
+                const LifeTicket ticket = engine.ask(part, static_cast<LifeChange>(random.between(0, 2)));
+                LifeAnswer answer;
+                for (int i = 0; i < patience_ms * 10; ++i) {
+                    answer = engine.answer_to(part, ticket);
+                    if (answer.outcome != LifeOutcome::pending) break;
+                    os::sleep_for(100us);
+                }
+                ++outcomes[static_cast<std::size_t>(answer.outcome)];
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(outcomes[static_cast<std::size_t>(LifeOutcome::pending)], 0);
+    EXPECT_EQ(outcomes[static_cast<std::size_t>(LifeOutcome::refused)], 0); // they have no inputs
+    EXPECT_EQ(outcomes[static_cast<std::size_t>(LifeOutcome::done)] +
+                  outcomes[static_cast<std::size_t>(LifeOutcome::superseded)],
+              askers * wishes_each);
+    EXPECT_GT(outcomes[static_cast<std::size_t>(LifeOutcome::done)], wishes_each / 2);
+    stop();
+    EXPECT_TRUE(activity.end(patience_ms));
+    for (Worker& worker : workers) {
+        EXPECT_EQ(worker.out_of_turn, 0);
+        EXPECT_EQ(worker.started, worker.stopped);
+    }
+}
+
+} // namespace
+} // namespace tappet
