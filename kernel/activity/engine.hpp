@@ -176,6 +176,7 @@ public:
         digest_.add(what);
     }
     /// Odd while a cycle runs: an observer whose two readings differ, or are odd, reads again.
+    [[nodiscard]] const void* generation_address() const noexcept { return &generation_; }
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
         return generation_.load(std::memory_order_acquire);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/base/type_tag.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -31,6 +32,10 @@ constexpr std::string_view to_text(ComponentState state) noexcept {
     }
     return "?";
 }
+
+template <>
+inline constexpr auto names_of<ComponentState> =
+    std::array<std::string_view, 6>{"inactive", "stopped", "starting", "running", "stopping", "failed"};
 
 using AtomicComponentState = std::atomic<ComponentState>;
 static_assert(AtomicComponentState::is_always_lock_free);

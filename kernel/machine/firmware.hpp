@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/check.hpp"
+#include "kernel/machine/map.hpp"
 #include "kernel/machine/plan.hpp"
 
 namespace tappet {
@@ -30,10 +31,10 @@ struct machine_table<text<0>{}> {};
 
 template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
 constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, const Board& board,
-                                       TableIndex<C, A, X, R> index) {
+                                       TableIndex<C, A, X, R> index, std::size_t map_bytes) {
     Plan<C, A, X, S, B> plan;
     PlanView view = plan.view();
-    make_plan(table.view(), board, index.view(), view);
+    make_plan(table.view(), board, index.view(), map_bytes, view);
     plan.take_sizes(view);
     return plan;
 }
@@ -63,13 +64,40 @@ struct AcceptedMachine {
     TableIndexView index;
     PlanView plan;
     std::span<std::byte> memory;
+    std::span<const std::byte> map{};    ///< as the compiler drew it; empty when nothing sees the machine
+    std::span<const TypeId> map_types{}; ///< that the map describes, in its order
 };
+
+/// Whether a component of the table sees the machine: then it carries its map, and its memory is shared.
+constexpr bool is_observed(const MachineView& m) noexcept {
+    for (const ComponentRow& row : m.components)
+        if (row.type->sees_machine) return true;
+    return false;
+}
 
 namespace detail {
 
 template <const auto& table, const Board& board>
 struct Judged {
     static constexpr auto verdict = judge(table, board);
+};
+
+template <const auto& table, const Board& board, bool observed>
+struct Mapped {
+    static constexpr std::size_t bytes = 0;
+    static std::span<const std::byte> map() { return {}; }
+    static std::span<const TypeId> types() { return {}; }
+};
+
+template <const auto& table, const Board& board>
+struct Mapped<table, board, true> {
+    static constexpr auto& index = Judged<table, board>::verdict.index;
+    static constexpr map::Counts counts = map::count(table.view(), board, index);
+    static constexpr auto drawn = map::draw<counts>(table.view(), board, index);
+    static constexpr std::size_t bytes = sizeof drawn.map;
+    static_assert(drawn.map.header.map_bytes == bytes, "no gap stands between the map's sections");
+    static std::span<const std::byte> map() { return std::as_bytes(std::span{&drawn.map, 1}); }
+    static std::span<const TypeId> types() { return {drawn.types.data(), counts.types}; }
 };
 
 template <const auto& table, const Board& board, bool good>
@@ -80,7 +108,9 @@ struct Planned {
 template <const auto& table, const Board& board>
 struct Planned<table, board, true> {
     static constexpr auto& verdict = Judged<table, board>::verdict;
-    static constexpr auto plan = plan_for<count_subscriptions(table.view())>(table, board, verdict.index);
+    using Map = Mapped<table, board, is_observed(table.view())>;
+    static constexpr auto plan =
+        plan_for<count_subscriptions(table.view())>(table, board, verdict.index, Map::bytes);
     static constexpr Sentence refusal = over_budget(table.view(), board, plan.bytes, plan.stack_bytes);
 };
 
@@ -98,7 +128,10 @@ struct Instance<table, board, true> {
     [[gnu::section(".bss.tappet_instance")]] alignas(
         4096) static inline constinit std::byte memory[From::plan.bytes]{};
 
-    static AcceptedMachine machine() { return {table.view(), &board, index.view(), plan.view(), memory}; }
+    static AcceptedMachine machine() {
+        return {table.view(), &board,           index.view(),      plan.view(),
+                memory,       From::Map::map(), From::Map::types()};
+    }
 };
 
 } // namespace detail
@@ -117,6 +150,13 @@ struct Firmware {
 #endif
 
     static AcceptedMachine machine() { return detail::Instance<table, board, accepted>::machine(); }
+
+    /// The machine's map (thesis 4.7.2) as a constant: map::Storage. Of any accepted table, also of one that
+    /// nothing sees.
+    template <bool good = accepted>
+    static constexpr const auto& map() {
+        return detail::Mapped<table, board, good>::drawn.map;
+    }
 };
 
 } // namespace tappet

@@ -6,6 +6,7 @@
 namespace tappet {
 
 std::expected<void, Sentence> MachineInstance::configure(std::span<const ProvidedDevice> devices) {
+    if (auto shared = share_memory(); !shared) return shared;
     construct();
     place_engines();
     connect_clocks();
@@ -14,6 +15,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     place_behaviours();
     connect_events();
     place_mailboxes();
+    place_map();
     const MachineView& table = machine_.table;
     for (std::size_t c = 0; c < table.components.size(); ++c) {
         const ComponentRow& row = table.components[c];

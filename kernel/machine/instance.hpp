@@ -4,6 +4,7 @@
 
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/property_store.hpp"
+#include "kernel/os/shared_memory.hpp"
 
 #include <array>
 #include <atomic>
@@ -98,6 +99,23 @@ public:
     }
     void serve_activity_requests(const ActivityControl& control);
 
+    /// What others may map, read-only, of a machine that a component sees: its map and its values, see
+    /// map_layout.hpp; empty otherwise. The stacks lie outside.
+    [[nodiscard]] std::span<const std::byte> shared_memory() const noexcept {
+        return machine_.map.empty() ? std::span<const std::byte>{}
+                                    : machine_.memory.first(machine_.plan.shared_bytes);
+    }
+    /// The same as a descriptor to give away; -1 when there is none.
+    [[nodiscard]] int shared_descriptor() const noexcept { return shared_.descriptor(); }
+    /// Of a machine that a component sees.
+    [[nodiscard]] Observed& observed() noexcept TAPPET_REALTIME {
+        return *at<Observed>(machine_.plan.observed_at);
+    }
+    /// A member of a component, by the place of its facet; null for what is none (an operation).
+    [[nodiscard]] void* place_of(End end) noexcept {
+        return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
+    }
+
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
@@ -129,6 +147,13 @@ private:
     [[nodiscard]] Sentence initialise_and_start(std::size_t index, const ActivityControl& control,
                                                 LifeAnswer& answer);
 
+    [[nodiscard]] std::expected<void, Sentence> share_memory();
+    void place_map();
+    void place_facet(End end, map::Facet& record);
+    void place_figure(map::Figure& figure);
+    void place_fields(const map::Header& header);
+    [[nodiscard]] std::uint64_t offset_of(const void* place) const noexcept;
+
     void construct();
     [[nodiscard]] Sentence configure_properties(std::size_t component);
     void place_engines();
@@ -144,6 +169,7 @@ private:
     AcceptedMachine machine_;
     os::Clock* clock_;
     PropertyStore store_{};
+    os::SharedMemory shared_{};
     os::Waiter supervisor_{};
     std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
     StopRequest stop_{};

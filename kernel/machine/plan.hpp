@@ -75,8 +75,15 @@ struct PlanView {
     std::span<MailPlan> mail;     ///< [sender * activities + receiver]
     std::span<MailPlan> requests; ///< into each activity, of the components that see the machine
     std::size_t engines_at = 0;
-    std::size_t bytes = 0;       ///< of everything below
-    std::size_t stack_bytes = 0; ///< of these, stacks
+    std::size_t observed_at = 0;  ///< Observed
+    std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
+    std::size_t bytes = 0;        ///< of everything below
+    std::size_t stack_bytes = 0;  ///< of these, stacks
+};
+
+/// What stands once in a machine for whoever looks at it.
+struct Observed {
+    std::atomic<std::uint32_t> forced{0}; ///< ports that are forced now
 };
 
 /// Runs a state machine's trigger out of a message.
@@ -240,9 +247,12 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
 
 } // namespace detail
 
-/// Plans a checked table for a board.
-constexpr void make_plan(const MachineView& m, const Board& board, const TableIndexView& r, PlanView& p) {
+/// Plans a checked table for a board. The map comes first: whoever looks at the memory begins there.
+constexpr void make_plan(const MachineView& m, const Board& board, const TableIndexView& r,
+                         std::size_t map_bytes, PlanView& p) {
     detail::Ground ground;
+    ground.take(map_bytes, alignof(std::max_align_t));
+    p.observed_at = ground.take<Observed>();
     detail::plan_components(m, r, p, ground);
     detail::plan_connections(m, r, p, ground);
     detail::plan_subscriptions(m, r, p, ground);
@@ -250,6 +260,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const TableIn
     p.engines_at = ground.take<Engine>(m.activities.size());
     const std::size_t before_stacks = ground.used();
     constexpr std::size_t page = 4096;
+    p.shared_bytes = (before_stacks + page - 1) / page * page;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& plan = p.activities[a];
         const ActivityRow& row = m.activities[a];
@@ -275,15 +286,18 @@ struct Plan {
     std::array<MailPlan, A * A> mail{};
     std::array<MailPlan, A> requests{};
     std::size_t engines_at = 0;
+    std::size_t observed_at = 0;
+    std::size_t shared_bytes = 0;
     std::size_t bytes = 0;
     std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
-        return {component_at, part_of, activities, connections, subscriptions, subscription_at,
-                behaviours,   mail,    requests,   engines_at,  bytes,         stack_bytes};
+        return {component_at, part_of,  activities, connections, subscriptions, subscription_at, behaviours,
+                mail,         requests, engines_at, observed_at, shared_bytes,  bytes,           stack_bytes};
     }
     constexpr void take_sizes(const PlanView& v) noexcept {
         engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;
+        observed_at = v.observed_at, shared_bytes = v.shared_bytes;
     }
 };
 

@@ -3,7 +3,9 @@
 
 #include "kernel/base/text.hpp"
 
+#include <array>
 #include <cstddef>
+#include <string_view>
 
 namespace tappet::os {
 
@@ -13,5 +15,13 @@ namespace tappet::os {
 [[nodiscard]] bool kernel_is_realtime() noexcept;
 /// The size of this program's file; 0 when it cannot be told.
 [[nodiscard]] std::size_t binary_bytes() noexcept;
+
+/// The linker's mark of this program (--build-id), in hexadecimal; empty when it was linked without.
+struct BuildId {
+    std::array<char, 40> digits{};
+    std::size_t length = 0;
+    [[nodiscard]] std::string_view view() const noexcept { return {digits.data(), length}; }
+};
+[[nodiscard]] BuildId build_id() noexcept;
 
 } // namespace tappet::os
