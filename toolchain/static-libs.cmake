@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # A firmware is one static binary, so what it stands on must be there as archives:
 #   tappet::libgpiod   Debian's own libgpiod.a, version 2
+#   tappet::libedit    Debian's own libedit.a with what it stands on; not for a firmware, but for tappet-browse beside it
 #   tappet::libmodbus  built here from Debian's source package (with its security patches): no package has the archive
 include_guard(GLOBAL)
 include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
@@ -19,6 +20,23 @@ endif()
 add_library(tappet_libgpiod STATIC IMPORTED GLOBAL)
 set_target_properties(tappet_libgpiod PROPERTIES IMPORTED_LOCATION "${TAPPET_GPIOD_ARCHIVE}")
 add_library(tappet::libgpiod ALIAS tappet_libgpiod)
+
+# --- libedit ------------------------------------------------------------------------------------------------------
+find_path(TAPPET_EDIT_INCLUDE histedit.h)
+find_library(TAPPET_EDIT_ARCHIVE libedit.a)
+find_library(TAPPET_TINFO_ARCHIVE libtinfo.a)
+find_library(TAPPET_BSD_ARCHIVE libbsd.a)
+find_library(TAPPET_MD_ARCHIVE libmd.a)
+foreach(part IN ITEMS EDIT_INCLUDE EDIT_ARCHIVE TINFO_ARCHIVE BSD_ARCHIVE MD_ARCHIVE)
+    if(NOT TAPPET_${part})
+        message(FATAL_ERROR "libedit-dev is not installed completely (${part}); run ci/setup once as root")
+    endif()
+endforeach()
+add_library(tappet_libedit STATIC IMPORTED GLOBAL)
+set_target_properties(
+    tappet_libedit PROPERTIES IMPORTED_LOCATION "${TAPPET_EDIT_ARCHIVE}"
+    INTERFACE_LINK_LIBRARIES "${TAPPET_TINFO_ARCHIVE};${TAPPET_BSD_ARCHIVE};${TAPPET_MD_ARCHIVE}")
+add_library(tappet::libedit ALIAS tappet_libedit)
 
 # --- libmodbus ----------------------------------------------------------------------------------------------------
 set(tappet_modbus_source "${TAPPET_CACHE}/libmodbus")

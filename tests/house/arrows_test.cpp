@@ -47,7 +47,11 @@ const std::vector<Row> house{
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
 
-    {"tests",             {"apps", "apps/carpet_loom/plant"}},
+    // A browser meets a machine at its memory and its socket only.
+    {"apps/browser",      {"kernel/base", "kernel/machine/map_layout.hpp", "kernel/machine/map_view.hpp",
+                           "kernel/services/browsing/protocol.hpp"}},
+
+    {"tests",             {"apps", "apps/browser", "apps/carpet_loom/plant"}},
     {"toolchain",         {}},
 };
 // clang-format on

@@ -1,0 +1,35 @@
+// One line of the browser, from a shell or typed: its words and its options.
+#pragma once
+
+#include "kernel/services/browsing/protocol.hpp"
+
+#include <chrono>
+#include <expected>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::browser {
+
+struct Line {
+    std::vector<std::string> words{}; ///< the command, if any, and its arguments
+    bool json = false;                ///< one JSON object a line
+    bool follow = false;              ///< send: until the command has come to its end
+    bool help = false;
+    long count = 0;                       ///< of pictures or events; 0: without end
+    std::chrono::milliseconds every{200}; ///< between two pictures
+    std::chrono::milliseconds patience{3000};
+    std::string socket{}; ///< empty: the only one in `directory`
+    std::string directory{browsing::default_directory};
+};
+
+/// Options may stand anywhere; behind "--" everything is a word. The error says what is wrong and the cure.
+[[nodiscard]] std::expected<Line, std::string> parse_line(std::span<const std::string> words);
+/// A typed line into words as a request has them: quotes and brackets keep blanks.
+[[nodiscard]] std::expected<std::vector<std::string>, std::string> split_line(std::string_view text);
+/// "200ms", "1.5s", "2s"; a bare number is milliseconds.
+[[nodiscard]] std::expected<std::chrono::milliseconds, std::string> parse_time(std::string_view text);
+[[nodiscard]] std::span<const std::string_view> option_names();
+
+} // namespace tappet::browser
