@@ -1,4 +1,4 @@
-// One cycle of an engine: timers, components, messages, behaviours, and the account of their time.
+// One cycle of an engine: timers, components, commands, messages, behaviours, and the account of their time.
 #include "kernel/activity/engine.hpp"
 
 #include <algorithm>
@@ -41,6 +41,7 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     if (awaiting_ != 0) start_awaiting();
     bool acted = run_timers();
     if (due) run_components();
+    acted |= run_commands();
     acted |= run_messages();
     run_behaviours(due || acted); // what ran may have changed a condition
     watch_inputs();
@@ -74,6 +75,25 @@ void Engine::run_components() noexcept TAPPET_REALTIME {
         else if (part.type->work != nullptr)
             timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { work(part, cycle_); });
     }
+}
+
+bool Engine::run_commands() noexcept TAPPET_REALTIME {
+    const auto note_state = [this](std::uint32_t part, CommandState state) noexcept
+        TAPPET_REALTIME { note((std::uint64_t{part} << 8) | static_cast<std::uint64_t>(state), cycle_.now); };
+    std::size_t served = 0;
+    if (commands_.pending())
+        served = commands_.serve([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
+            timed(part, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME {
+                note_state(part, commands_.take_up(slot, is_running(plan_.parts[part].state)));
+            });
+        });
+    const bool ended = commands_.follow([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
+        CommandState state{};
+        timed(part, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { state = slot.follow(); });
+        if (!in_flight(state)) note_state(part, state);
+        return !in_flight(state);
+    });
+    return served != 0 || ended;
 }
 
 bool Engine::run_messages() noexcept TAPPET_REALTIME {

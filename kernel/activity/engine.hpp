@@ -1,8 +1,9 @@
 // The execution engine (thesis 5.3): what one activity runs in each cycle, in a fixed order: due timers, the
-// components in data-flow order, then messages and behaviours. It knows no thread: a thread or a virtual
-// world calls it.
+// components in data-flow order, then commands, messages and behaviours. It knows no thread: a thread or a
+// virtual world calls it.
 #pragma once
 
+#include "kernel/activity/command_processor.hpp"
 #include "kernel/activity/timing.hpp"
 #include "kernel/base/digest.hpp"
 #include "kernel/component/component.hpp"
@@ -164,6 +165,7 @@ public:
     [[nodiscard]] const EnginePlan& plan() const noexcept TAPPET_REALTIME { return plan_; }
     [[nodiscard]] os::Waiter& waiter() noexcept TAPPET_REALTIME { return waiter_; }
     [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
+    [[nodiscard]] CommandProcessor& commands() noexcept TAPPET_REALTIME { return commands_; }
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
     [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
@@ -213,6 +215,7 @@ private:
     void start_awaiting() noexcept TAPPET_REALTIME;
     bool run_timers() noexcept TAPPET_REALTIME;
     void run_components() noexcept TAPPET_REALTIME;
+    bool run_commands() noexcept TAPPET_REALTIME;
     bool run_messages() noexcept TAPPET_REALTIME;
     void run_behaviours(bool all) noexcept TAPPET_REALTIME;
     void watch_inputs() noexcept TAPPET_REALTIME;
@@ -247,6 +250,7 @@ private:
     std::atomic<std::uint64_t> generation_{0};
     os::Waiter waiter_{};
     Inbox inbox_{};
+    CommandProcessor commands_{};
 };
 
 } // namespace tappet

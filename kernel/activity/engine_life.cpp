@@ -37,6 +37,7 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     next_release_ = plan_.periodic ? now + plan_.period : never;
     if (was_stopped_) {
         static_cast<void>(run_messages()); // what came meanwhile reached nobody: each row counts its own
+        commands_.reject_sent();
         asked_.store(true, std::memory_order_relaxed);
         serve_requests();
     }
@@ -59,6 +60,7 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     for (const Behaviour& each : plan_.behaviours)
         if (is_running(plan_.parts[each.part].state)) each.stop(each.self, now);
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
+    commands_.reject_sent();
     awaiting_ = 0;
     was_stopped_ = true;
     active_.store(false, std::memory_order_release);
@@ -77,6 +79,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     const ComponentState state = part.state.load(std::memory_order_relaxed);
     if (state == ComponentState::stopped || state == ComponentState::failed) return;
     part.state.store(ComponentState::stopping, std::memory_order_release);
+    commands_.fail(i);
     if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
     for (const EngineTimer& each : plan_.timers)
         if (each.part == i) each.timer->cancel();

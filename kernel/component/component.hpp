@@ -5,6 +5,7 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/interface.hpp"
+#include "kernel/component/operation_interface.hpp"
 #include "kernel/component/proposal.hpp"
 #include "kernel/component/setup.hpp"
 

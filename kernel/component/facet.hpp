@@ -4,8 +4,10 @@
 
 #include "kernel/base/type_tag.hpp"
 #include "kernel/component/buffer_port.hpp"
+#include "kernel/component/command.hpp"
 #include "kernel/component/cycle.hpp"
 #include "kernel/component/event.hpp"
+#include "kernel/component/method.hpp"
 #include "kernel/component/operation.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/component/property.hpp"
@@ -26,6 +28,10 @@ enum class FacetKind : std::uint8_t {
     buffer_output,
     event,
     operation,
+    method,
+    method_call,
+    command,
+    command_call,
     property,
     bag,
     timer
@@ -78,11 +84,12 @@ struct Facet {
     std::string_view unit{};
     std::string_view doc{};
     FacetKind kind = FacetKind::input;
-    TypeId type = nullptr;       ///< of the value, or of the argument list
-    bool required = false;       ///< an input that must be connected, an operation that a reaction must name
-    bool valid_to_start = false; ///< an input: its component does not start before it has a valid value
+    TypeId type = nullptr; ///< of the value, or of the argument list
+    bool required =
+        false; ///< an input or a call that must be connected, an operation that a reaction must name
+    bool valid_to_start = false;      ///< an input: its component does not start before it has a valid value
     std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
-    bool any_thread = false;          ///< an operation that any activity may call
+    bool any_thread = false;          ///< an operation or a method that any activity may call
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
     std::size_t members = 0; ///< of a bag: so many facets behind it are in it, those of bags in it too
@@ -92,6 +99,10 @@ struct Facet {
     const BufferOperations* buffer = nullptr;
     const EventOperations* event = nullptr;
     const OperationOperations* operation = nullptr;
+    const MethodOperations* method = nullptr;
+    const MethodCallOperations* method_call = nullptr;
+    const CommandOperations* command = nullptr;
+    const CommandCallOperations* command_call = nullptr;
     const PropertyOperations* property = nullptr;
     const TimerOperations* timer = nullptr;
 };
@@ -104,6 +115,10 @@ constexpr std::string_view to_text(FacetKind kind) noexcept {
     case FacetKind::buffer_output: return "a buffered output";
     case FacetKind::event: return "an event";
     case FacetKind::operation: return "an operation";
+    case FacetKind::method: return "a method";
+    case FacetKind::method_call: return "a method call";
+    case FacetKind::command: return "a command";
+    case FacetKind::command_call: return "a command call";
     case FacetKind::property: return "a property";
     case FacetKind::bag: return "a bag of properties";
     case FacetKind::timer: return "a timer";

@@ -21,6 +21,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_connections(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reactions(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_behaviours(m); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
         return checks::check_schedulability(m, board, r);

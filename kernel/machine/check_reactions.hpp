@@ -37,6 +37,7 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
     r.reactions_into.clear();
     for (std::size_t i = 0; i < m.reactions.size(); ++i) {
         const ReactionRow& row = m.reactions[i];
+        if (row.kind != ReactionKind::when) continue;
         Link& link = r.reactions[i];
         if (Sentence fault = resolve(m, r.by_name, row.event, FacetKind::event, link.from); !fault.empty())
             return of_reaction(row, ": ", fault);

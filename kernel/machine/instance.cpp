@@ -15,6 +15,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     place_behaviours();
     connect_events();
     place_mailboxes();
+    connect_operations();
     place_map();
     const MachineView& table = machine_.table;
     for (std::size_t c = 0; c < table.components.size(); ++c) {

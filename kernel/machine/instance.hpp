@@ -75,6 +75,13 @@ public:
     /// `requests_waiting` of them there already, and the receiver did not get this one. Real-time.
     [[nodiscard]] bool post_request(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME;
 
+    /// Aims a command slot of a component that sees the machine at a command of the table: set its packed
+    /// arguments in `values`, which has room for the command's value_bytes() and outlives the slot, then
+    /// send() it from that component's activity and read the packed results behind the arguments when it is
+    /// done. False: the facet is no command, the slot is on its way, or `values` are too small. At most
+    /// `requests_waiting` are at work in one engine: one more is rejected. Wait-free.
+    [[nodiscard]] bool bind_command(End to, CommandSlot& slot, std::span<std::byte> values) noexcept;
+
     /// Starts, stops or restarts one component while the rest goes on (thesis 3.1.3): its engine does it
     /// between two steps, and answers. Real-time, any thread.
     LifeTicket ask_component(std::size_t index, LifeChange change) noexcept TAPPET_REALTIME;
@@ -164,6 +171,9 @@ private:
     void add_waker(std::size_t row);
     void connect_events();
     void place_mailboxes();
+    void connect_operations();
+    void place_command_processors();
+    [[nodiscard]] CommandSlot::Route route_to(End to) noexcept;
     void place_behaviours();
 
     AcceptedMachine machine_;

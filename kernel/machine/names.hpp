@@ -102,9 +102,8 @@ constexpr Sentence resolve(const MachineView& m, std::span<const std::size_t> by
     const std::size_t dot = path.find('.');
     if (dot == std::string_view::npos)
         return Sentence{"\"", path, "\" is not of the form \"component.",
-                        wanted == FacetKind::event       ? "event"
-                        : wanted == FacetKind::operation ? "operation"
-                                                         : "port",
+                        wanted == FacetKind::input ? "port"
+                                                   : to_text(wanted).substr(to_text(wanted).find(' ') + 1),
                         "\"; name both"};
     const std::string_view component_name = path.substr(0, dot);
     const std::string_view facet_name = path.substr(dot + 1);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
+#include "kernel/machine/plan_operations.hpp"
 #include "kernel/machine/subscription.hpp"
 
 #include <algorithm>
@@ -26,6 +27,10 @@ struct ActivityPlan {
     std::size_t input_count = 0;
     std::size_t mailboxes_at = 0;
     std::size_t sender_count = 0;
+    std::size_t command_mailboxes_at = 0;
+    std::size_t command_sender_count = 0;
+    std::size_t followed_at = 0;
+    std::size_t followed_count = 0; ///< commands that may be at work at once
     std::size_t stack_at = 0;
     std::size_t stack_bytes = 0;
     int priority = 0; ///< SCHED_FIFO; 0: not real-time
@@ -61,9 +66,6 @@ struct MailPlan {
     std::size_t sender_index = 0;
 };
 
-/// So many requests of the components that see the machine wait at one engine.
-inline constexpr std::uint32_t requests_waiting = 16;
-
 struct PlanView {
     std::span<std::size_t> component_at;
     std::span<std::uint32_t> part_of; ///< the component's index in its engine
@@ -72,8 +74,10 @@ struct PlanView {
     std::span<Subscription> subscriptions;
     std::span<SubscriptionPlan> subscription_at;
     std::span<BehaviourPlan> behaviours;
-    std::span<MailPlan> mail;     ///< [sender * activities + receiver]
-    std::span<MailPlan> requests; ///< into each activity, of the components that see the machine
+    std::span<MailPlan> mail;             ///< [sender * activities + receiver]
+    std::span<MailPlan> requests;         ///< into each activity, of the components that see the machine
+    std::span<MailPlan> command_mail;     ///< as mail, of commands alone
+    std::span<MailPlan> command_requests; ///< as requests, of commands alone
     std::size_t engines_at = 0;
     std::size_t observed_at = 0;  ///< Observed
     std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
@@ -256,6 +260,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const TableIn
     detail::plan_components(m, r, p, ground);
     detail::plan_connections(m, r, p, ground);
     detail::plan_subscriptions(m, r, p, ground);
+    detail::plan_commands(m, r, p, ground);
     detail::plan_behaviours(m, r, p, ground);
     p.engines_at = ground.take<Engine>(m.activities.size());
     const std::size_t before_stacks = ground.used();
@@ -285,6 +290,8 @@ struct Plan {
     std::array<BehaviourPlan, B> behaviours{};
     std::array<MailPlan, A * A> mail{};
     std::array<MailPlan, A> requests{};
+    std::array<MailPlan, A * A> command_mail{};
+    std::array<MailPlan, A> command_requests{};
     std::size_t engines_at = 0;
     std::size_t observed_at = 0;
     std::size_t shared_bytes = 0;
@@ -292,8 +299,9 @@ struct Plan {
     std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
-        return {component_at, part_of,  activities, connections, subscriptions, subscription_at, behaviours,
-                mail,         requests, engines_at, observed_at, shared_bytes,  bytes,           stack_bytes};
+        return {component_at, part_of,      activities, connections,  subscriptions,    subscription_at,
+                behaviours,   mail,         requests,   command_mail, command_requests, engines_at,
+                observed_at,  shared_bytes, bytes,      stack_bytes};
     }
     constexpr void take_sizes(const PlanView& v) noexcept {
         engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;

@@ -33,9 +33,21 @@ struct ReactionRow {
     std::string_view event{}; ///< of a uses row: the requester
     ReactionTarget target;    ///< of a uses row: its operation is the method or command
     ReactionKind kind = ReactionKind::when;
+    std::string_view sent_by{}; ///< of a uses row: the component that sends the command; empty: the requester
 };
 constexpr ReactionRow when(std::string_view event, ReactionTarget target) noexcept {
-    return {event, target, ReactionKind::when};
+    return {event, target, ReactionKind::when, {}};
+}
+
+struct SentBy {
+    std::string_view component{};
+};
+/// The command object is sent by this component, to which it is handed on, in that component's activity.
+constexpr SentBy sent_by(std::string_view component) noexcept { return {component}; }
+
+/// A requester (a MethodCall or a CommandCall) of one component reaches a method or a command of another.
+constexpr ReactionRow uses(std::string_view requester, std::string_view operation, SentBy by = {}) noexcept {
+    return {requester, {operation, false, 0}, ReactionKind::uses, by.component};
 }
 
 } // namespace tappet

@@ -64,7 +64,8 @@ inline std::string label(const ConnectionRow& row) {
     return "connection \"" + std::string{row.from} + "\" -> \"" + std::string{row.to} + "\"";
 }
 inline std::string label(const ReactionRow& row) {
-    return "reaction \"" + std::string{row.event} + "\" -> \"" + std::string{row.target.operation} + "\"";
+    return (row.kind == ReactionKind::uses ? "use \"" : "reaction \"") + std::string{row.event} + "\" -> \"" +
+           std::string{row.target.operation} + "\"";
 }
 inline std::string label(const BehaviourRow& row) {
     return (row.is_slot() ? "slot of \"" : "behaviour of \"") + std::string{row.component} + "\"";
@@ -176,6 +177,10 @@ private:
             misspell(
                 table_.reactions[i].target.operation,
                 [i](Copy& c) -> std::string_view& { return c.reactions[i].target.operation; }, named);
+            if (!table_.reactions[i].sent_by.empty())
+                misspell(
+                    table_.reactions[i].sent_by,
+                    [i](Copy& c) -> std::string_view& { return c.reactions[i].sent_by; }, named);
         }
         for (std::size_t i = 0; i < table_.behaviours.size(); ++i) misspell_behaviour(i);
     }
@@ -268,9 +273,10 @@ private:
             return std::vector{"\"" + std::string{row.to} + "\""};
         });
         drop<ReactionRow>(&Copy::reactions, [](const ReactionRow& row) {
-            // Missed by the operation that is required, or by the event that must be heard.
+            // Missed by the operation that is required, by the event that must be heard, or by the call.
             return std::vector{"\"" + std::string{row.target.operation} + "\"",
-                               "when(\"" + std::string{row.event} + "\""};
+                               "when(\"" + std::string{row.event} + "\"",
+                               "uses(\"" + std::string{row.event} + "\""};
         });
         drop<BehaviourRow>(&Copy::behaviours, [](const BehaviourRow& row) {
             return std::vector{"component \"" + std::string{row.component} + "\""};

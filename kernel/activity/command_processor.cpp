@@ -1,0 +1,32 @@
+// Taking up commands, and what becomes of them when their component stops.
+#include "kernel/activity/command_processor.hpp"
+
+namespace tappet {
+
+CommandState CommandProcessor::take_up(CommandSlot& slot, bool receiver_runs) noexcept TAPPET_REALTIME {
+    const bool planned = slot.route().planned;
+    // What a row plans always has a place; of the others there may be too many.
+    if (count_ == followed_.size() || (!planned && requests_at_work_ == requests_)) {
+        slot.reject();
+        return CommandState::rejected;
+    }
+    if (!slot.begin(receiver_runs)) return CommandState::rejected;
+    if (!planned) ++requests_at_work_;
+    followed_[count_++] = &slot;
+    return CommandState::accepted;
+}
+
+void CommandProcessor::fail(std::uint32_t part) noexcept TAPPET_REALTIME {
+    static_cast<void>(follow([part](std::uint32_t of, CommandSlot& slot) noexcept TAPPET_REALTIME {
+        if (of != part) return false;
+        slot.fail();
+        return true;
+    }));
+}
+
+void CommandProcessor::reject_sent() noexcept TAPPET_REALTIME {
+    static_cast<void>(
+        serve([](std::uint32_t, CommandSlot& slot) noexcept TAPPET_REALTIME { slot.reject(); }));
+}
+
+} // namespace tappet

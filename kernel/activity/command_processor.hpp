@@ -1,0 +1,73 @@
+// The command processor of an engine (thesis 4.5.2, 5.3): takes up what peers sent, in the order of their
+// urgency, and follows each accepted command to its end. Room for every command is planned: none overflows.
+#pragma once
+
+#include "kernel/component/command.hpp"
+
+#include <span>
+
+namespace tappet {
+
+/// The engine's thread only, but for inbox().post().
+class CommandProcessor {
+public:
+    /// Before the first cycle. `followed` has a place for each command that may be at work, `requests` of
+    /// them for those that no row of the table plans; both outlive the processor.
+    void place(std::span<Mailbox> mailboxes, std::span<CommandSlot*> followed,
+               std::size_t requests) noexcept {
+        inbox_.place(mailboxes);
+        followed_ = followed;
+        requests_ = requests;
+        count_ = 0;
+        requests_at_work_ = 0;
+    }
+    [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
+    [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME { return inbox_.pending(); }
+
+    /// Hands each sent command, with the part it is for, to visit(part, slot), which calls take_up(). Returns
+    /// how many.
+    template <class Visit>
+    std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
+        return inbox_.serve([&visit](const Message& message) noexcept TAPPET_REALTIME {
+            visit(message.id, *static_cast<CommandSlot*>(message.object));
+        });
+    }
+    /// Runs the action; an accepted command is followed from now on. Returns how it stands.
+    CommandState take_up(CommandSlot& slot, bool receiver_runs) noexcept TAPPET_REALTIME;
+
+    /// Hands each command at work to visit(part, slot), oldest first, which asks slot.follow() and returns
+    /// whether it has ended. Returns whether any has.
+    template <class Visit>
+    bool follow(Visit&& visit) noexcept TAPPET_REALTIME {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            CommandSlot* const slot = followed_[i];
+            // Once it has ended its sender may send it elsewhere.
+            const std::uint32_t part = slot->route().part;
+            const bool planned = slot->route().planned;
+            if (!visit(part, *slot))
+                followed_[kept++] = slot;
+            else if (!planned)
+                --requests_at_work_;
+        }
+        const bool ended = kept != count_;
+        count_ = kept;
+        return ended;
+    }
+
+    /// A component stops: what it has at work failed.
+    void fail(std::uint32_t part) noexcept TAPPET_REALTIME;
+    /// The engine stops: what was sent and not taken up is rejected.
+    void reject_sent() noexcept TAPPET_REALTIME;
+
+    [[nodiscard]] std::size_t at_work() const noexcept TAPPET_REALTIME { return count_; }
+
+private:
+    Inbox inbox_{};
+    std::span<CommandSlot*> followed_{};
+    std::size_t count_ = 0;
+    std::size_t requests_ = 0;
+    std::size_t requests_at_work_ = 0;
+};
+
+} // namespace tappet

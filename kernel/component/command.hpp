@@ -1,0 +1,369 @@
+// Commands (thesis 4.5): a goal that a component reaches upon a peer's request, in its own engine and time.
+// The receiver gives an action, which accepts or rejects, and a completion condition; the sender holds the
+// command as an object, sends it and asks how far it is. Each object is one slot, so nothing can overflow.
+//
+//     struct Axis {
+//         bool move_to(double position, int& steps) noexcept TAPPET_REALTIME;         // false: rejected
+//         CommandProgress moved_to(double position, int& steps) noexcept TAPPET_REALTIME;
+//         ... command<&Axis::move_to, &Axis::moved_to>("move_to", "...")
+//     };
+//     struct Panel { CommandCall<double, int&> move; ... sends<&Panel::move>("move", "...") };
+//     uses("panel.move", "axis.move_to")
+#pragma once
+
+#include "kernel/component/life.hpp"
+#include "kernel/component/port.hpp"
+#include "kernel/component/signature.hpp"
+#include "kernel/exchange/mailbox.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/waiter.hpp"
+
+#include <string_view>
+
+namespace tappet {
+
+/// How far a command is. From `sent` to the end the receiver writes it, otherwise the sender.
+enum class CommandState : std::uint8_t {
+    ready,     ///< not sent, or made ready again
+    sent,      ///< in the receiver's mailbox
+    accepted,  ///< its action ran and said yes; the completion was not asked yet
+    rejected,  ///< its action said no, or its receiver does not run
+    executing, ///< its completion was asked and said: not yet
+    failed,    ///< its completion said so, or its receiver stopped
+    done       ///< its results are there
+};
+
+constexpr std::string_view to_text(CommandState state) noexcept {
+    switch (state) {
+    case CommandState::ready: return "ready";
+    case CommandState::sent: return "sent";
+    case CommandState::accepted: return "accepted";
+    case CommandState::rejected: return "rejected";
+    case CommandState::executing: return "executing";
+    case CommandState::failed: return "failed";
+    case CommandState::done: return "done";
+    }
+    return "?";
+}
+
+/// Between send() and the end: the receiver has it.
+constexpr bool in_flight(CommandState state) noexcept TAPPET_REALTIME {
+    return state == CommandState::sent || state == CommandState::accepted || state == CommandState::executing;
+}
+
+/// What a completion condition says.
+enum class CommandProgress : std::uint8_t { executing, done, failed };
+
+/// What a facet knows of the command behind it. All of it runs in the receiver's engine.
+struct CommandOperations {
+    TypeId arguments = nullptr; ///< of an Arguments<...>: what is sent
+    TypeId results = nullptr;   ///< of an Arguments<...>: what comes back
+    std::size_t argument_bytes = 0;
+    std::size_t result_bytes = 0; ///< packed behind the arguments
+    bool (*begin)(void* component, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
+    CommandProgress (*progress)(void* component, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
+
+    [[nodiscard]] constexpr std::size_t value_bytes() const noexcept { return argument_bytes + result_bytes; }
+};
+
+/// One command on its way, whatever its signature: its state and its packed values have one writer at a time,
+/// the sender until `sent` is posted, the receiver until an end is stored, which hands them back. Wait-free.
+class CommandSlot {
+public:
+    /// Where a slot is sent to and who waits for it; by start-up.
+    struct Route {
+        const CommandOperations* command = nullptr;
+        void* component = nullptr;
+        std::uint32_t part = 0; ///< of the component in its engine
+        const AtomicComponentState* receiver_state = nullptr;
+        Inbox* inbox = nullptr;
+        std::size_t sender = 0; ///< the sending activity's mailbox there
+        Waker wake_receiver{};
+        Waker wake_sender{}; ///< when it has ended
+        const os::Clock* clock = nullptr;
+        bool planned = true; ///< by a row of the table, not bound while the machine runs
+    };
+
+    CommandSlot() = default;
+    CommandSlot(const CommandSlot&) = delete;
+    CommandSlot& operator=(const CommandSlot&) = delete;
+
+    /// Before anybody sends. `values` has room for the command's value_bytes() and outlives the slot.
+    void place(const Route& route, std::byte* values) noexcept { route_ = route, values_ = values; }
+    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return route_.command != nullptr; }
+
+    // ---- the sender's side: one thread, real-time but for wait()
+
+    [[nodiscard]] CommandState state() const noexcept TAPPET_REALTIME {
+        return state_.load(std::memory_order_acquire);
+    }
+    /// Whether values() are the sender's now.
+    [[nodiscard]] bool is_mine() const noexcept TAPPET_REALTIME { return !in_flight(state()); }
+    /// Sends it with the arguments that stand in values(). False: it is on its way already, or no row
+    /// connects it.
+    [[nodiscard]] bool send() noexcept TAPPET_REALTIME {
+        if (!connected() || !is_mine()) return false;
+        // An engine that was stopped serves nobody: its answer is given here.
+        const ComponentState receiver = route_.receiver_state->load(std::memory_order_acquire);
+        if (receiver == ComponentState::stopped || receiver == ComponentState::failed) {
+            state_.store(CommandState::rejected, std::memory_order_relaxed);
+            return true;
+        }
+        // Before the message: from then on the receiver writes it.
+        state_.store(CommandState::sent, std::memory_order_relaxed);
+        Message message;
+        message.object = this;
+        message.id = route_.part;
+        if (!route_.inbox->post(route_.sender, message)) { // the mailbox has a place for each of its slots
+            state_.store(CommandState::rejected, std::memory_order_relaxed);
+            return true;
+        }
+        route_.wake_receiver();
+        return true;
+    }
+    /// Forgets how it ended. False while the receiver has it.
+    bool reset() noexcept TAPPET_REALTIME {
+        if (!is_mine()) return false;
+        state_.store(CommandState::ready, std::memory_order_relaxed);
+        return true;
+    }
+    /// Sleeps until it has ended, at most so long; for activities that are not_real_time. True: it has ended,
+    /// or was never sent. Under virtual time nothing may sleep: it answers at once.
+    [[nodiscard]] bool wait(Duration at_most) noexcept {
+        if (is_mine()) return true;
+        if (route_.clock->is_virtual()) return false;
+        const Time end = route_.clock->now() + at_most;
+        // A wake of an earlier sending may be left over.
+        while (!is_mine() && route_.clock->now() < end) static_cast<void>(ended_.wait(end));
+        return is_mine();
+    }
+    [[nodiscard]] std::byte* values() noexcept TAPPET_REALTIME { return values_; }
+    [[nodiscard]] const std::byte* values() const noexcept TAPPET_REALTIME { return values_; }
+    [[nodiscard]] const Route& route() const noexcept TAPPET_REALTIME { return route_; }
+
+    // ---- the receiver's side: its engine's thread, real-time
+
+    /// Takes the message up: runs the action. Returns whether it is to be followed.
+    [[nodiscard]] bool begin(bool receiver_runs) noexcept TAPPET_REALTIME {
+        const bool accepted = receiver_runs && route_.command->begin(route_.component, values_);
+        if (accepted)
+            state_.store(CommandState::accepted, std::memory_order_release);
+        else
+            reject();
+        return accepted;
+    }
+    /// Asks the completion condition. Returns how it stands.
+    [[nodiscard]] CommandState follow() noexcept TAPPET_REALTIME {
+        switch (route_.command->progress(route_.component, values_)) {
+        case CommandProgress::executing:
+            state_.store(CommandState::executing, std::memory_order_release);
+            return CommandState::executing;
+        case CommandProgress::done: return end(CommandState::done);
+        case CommandProgress::failed: break;
+        }
+        return end(CommandState::failed);
+    }
+    void fail() noexcept TAPPET_REALTIME { static_cast<void>(end(CommandState::failed)); }
+    void reject() noexcept TAPPET_REALTIME { static_cast<void>(end(CommandState::rejected)); }
+
+private:
+    // The results are read behind the state. From the store on the slot is the sender's, which may place it
+    // anew.
+    CommandState end(CommandState how) noexcept TAPPET_REALTIME {
+        const Waker wake_sender = route_.wake_sender;
+        state_.store(how, std::memory_order_release);
+        ended_.wake();
+        wake_sender();
+        return how;
+    }
+
+    Route route_{};
+    std::byte* values_ = nullptr;
+    alignas(64) std::atomic<CommandState> state_{CommandState::ready};
+    os::Waiter ended_{};
+};
+
+template <class... P>
+class CommandCall;
+
+/// A command as something to hand on: an argument of an event, an operation or another command. Whoever gets
+/// it may send it only if the row says sent_by(...) its component. Trivially copyable; outlived by the
+/// machine.
+template <class... P>
+class CommandRef {
+public:
+    CommandRef() = default;
+    explicit CommandRef(CommandCall<P...>& command) noexcept TAPPET_REALTIME : command_{&command} {}
+    [[nodiscard]] CommandCall<P...>* operator->() const noexcept TAPPET_REALTIME { return command_; }
+    explicit operator bool() const noexcept TAPPET_REALTIME { return command_ != nullptr; }
+
+private:
+    CommandCall<P...>* command_ = nullptr;
+};
+
+/// The sender's side: the command as an object. P as the receiver's action spells them, a result as T&. Sent,
+/// asked and reset by one activity only: its component's, or that of the row's sent_by(...).
+template <class... P>
+class CommandCall {
+    using Pack = detail::Packing<P...>;
+    template <std::size_t N, class List>
+    struct Nth;
+    template <std::size_t N, class First, class... Rest>
+    struct Nth<N, Arguments<First, Rest...>> : Nth<N - 1, Arguments<Rest...>> {
+        static constexpr std::size_t offset = sizeof(First) + Nth<N - 1, Arguments<Rest...>>::offset;
+    };
+    template <class First, class... Rest>
+    struct Nth<0, Arguments<First, Rest...>> {
+        using Type = First;
+        static constexpr std::size_t offset = 0;
+    };
+
+public:
+    using Signature = Arguments<typename detail::Parameter<P>::InName...>;
+
+    CommandCall() = default;
+    CommandCall(const CommandCall&) = delete;
+    CommandCall& operator=(const CommandCall&) = delete;
+
+    /// Sends it with the arguments: of P those that are no results. False, and nothing happens, while it is
+    /// still on its way or when no row connects it. Real-time.
+    template <class... Given>
+    [[nodiscard]] bool send(const Given&... arguments) noexcept TAPPET_REALTIME {
+        return slot_.connected() && prepare(arguments...) && slot_.send();
+    }
+    /// Sets the arguments for a send_prepared() of whoever it is handed on to. False while it is on its way.
+    template <class... Given>
+    bool prepare(const Given&... arguments) noexcept TAPPET_REALTIME {
+        if (!slot_.is_mine()) return false;
+        put(typename Pack::Inputs{}, arguments...);
+        std::memset(values_.data() + Pack::input_bytes, 0, Pack::result_bytes);
+        return true;
+    }
+    [[nodiscard]] bool send_prepared() noexcept TAPPET_REALTIME { return slot_.send(); }
+
+    [[nodiscard]] CommandState state() const noexcept TAPPET_REALTIME { return slot_.state(); }
+    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return slot_.connected(); }
+    bool reset() noexcept TAPPET_REALTIME { return slot_.reset(); }
+    /// See CommandSlot::wait: not real-time.
+    [[nodiscard]] bool wait(Duration at_most) noexcept { return slot_.wait(at_most); }
+
+    /// The Nth result; what the receiver left there once state() is done.
+    template <std::size_t N = 0>
+    [[nodiscard]] auto result() const noexcept TAPPET_REALTIME {
+        using R = Nth<N, typename Pack::Results>;
+        return detail::load_packed<typename R::Type>(values_.data() + Pack::input_bytes + R::offset);
+    }
+    /// As a completion condition: for a command whose action sent this one. Copies the results when it is
+    /// done.
+    template <class... R>
+    [[nodiscard]] CommandProgress progress(R&... results) const noexcept TAPPET_REALTIME {
+        static_assert(std::is_same_v<Arguments<R...>, typename Pack::Results>,
+                      "one variable for each result");
+        const CommandState now = state();
+        if (in_flight(now)) return CommandProgress::executing;
+        if (now != CommandState::done) return CommandProgress::failed;
+        [[maybe_unused]] const std::byte* from = values_.data() + Pack::input_bytes;
+        ((std::memcpy(&results, from, sizeof(R)), from += sizeof(R)), ...);
+        return CommandProgress::done;
+    }
+
+    /// For start-up: the slot, and its values' place.
+    [[nodiscard]] CommandSlot& slot() noexcept { return slot_; }
+    [[nodiscard]] std::byte* values() noexcept { return values_.data(); }
+
+private:
+    template <class... In, class... Given>
+    void put(Arguments<In...>, const Given&... arguments) noexcept TAPPET_REALTIME {
+        static_assert(sizeof...(In) == sizeof...(Given), "one value for each argument of the command");
+        static_assert((std::is_convertible_v<const Given&, In> && ...), "values of the command's types");
+        [[maybe_unused]] std::byte* into = values_.data();
+        ((detail::store_packed(into, static_cast<In>(arguments)), into += sizeof(In)), ...);
+    }
+
+    std::array<std::byte, Pack::bytes + 1> values_{}; // never of size zero
+    CommandSlot slot_{};
+};
+
+/// What start-up does with the sender's side.
+struct CommandCallOperations {
+    CommandSlot* (*slot)(void* command_call) = nullptr;
+    std::byte* (*values)(void* command_call) = nullptr;
+};
+
+namespace detail {
+
+template <auto Function, class = decltype(Function)>
+struct CommandFunction {
+    static constexpr bool is_good = false;
+    using Name = Arguments<>;
+    using Returned = void;
+    using Pack = Packing<>;
+};
+
+template <auto Function, class Component, class R, class... P>
+struct CommandFunctionOf {
+    static constexpr bool is_good = true;
+    using Name = Arguments<typename Parameter<P>::InName...>;
+    using Returned = R;
+    using Pack = Packing<P...>;
+
+    static R call(Component& component, Unpacked<P>... each) noexcept TAPPET_REALTIME {
+        const R answer = (component.*Function)(each.value...);
+        (each.put_back(), ...);
+        return answer;
+    }
+    template <std::size_t... I>
+    static R call_packed(void* component, std::byte* values, std::index_sequence<I...>) noexcept
+        TAPPET_REALTIME {
+        return call(*static_cast<Component*>(component), Unpacked<P>{values + Pack::offsets[I]}...);
+    }
+    static R run(void* component, std::byte* values) noexcept TAPPET_REALTIME {
+        return call_packed(component, values, std::index_sequence_for<P...>{});
+    }
+};
+template <auto Function, class Component, class R, class... P>
+struct CommandFunction<Function, R (Component::*)(P...) noexcept TAPPET_REALTIME>
+    : CommandFunctionOf<Function, Component, R, P...> {};
+template <auto Function, class Component, class R, class... P>
+struct CommandFunction<Function, R (Component::*)(P...) const noexcept TAPPET_REALTIME>
+    : CommandFunctionOf<Function, Component, R, P...> {};
+
+template <auto Action, auto Completion>
+struct CommandOf {
+    using Begin = CommandFunction<Action>;
+    using Follow = CommandFunction<Completion>;
+    static constexpr bool begin_is_good = Begin::is_good && std::is_same_v<typename Begin::Returned, bool>;
+    /// Without a completion it is done when its action has run.
+    static constexpr bool is_instant = std::is_same_v<decltype(Completion), std::nullptr_t>;
+    static constexpr bool follow_is_good =
+        is_instant ||
+        (Follow::is_good &&
+         (std::is_same_v<typename Follow::Returned, CommandProgress> ||
+          std::is_same_v<typename Follow::Returned, bool>) &&
+         (Follow::Pack::count == 0 || std::is_same_v<typename Follow::Name, typename Begin::Name>));
+
+    static bool begin(void* component, std::byte* values) noexcept TAPPET_REALTIME {
+        if constexpr (begin_is_good) return Begin::run(component, values);
+        return false;
+    }
+    static CommandProgress progress(void* component, std::byte* values) noexcept TAPPET_REALTIME {
+        if constexpr (is_instant)
+            return CommandProgress::done;
+        else if constexpr (!follow_is_good)
+            return CommandProgress::failed;
+        else if constexpr (std::is_same_v<typename Follow::Returned, bool>)
+            return Follow::run(component, values) ? CommandProgress::done : CommandProgress::executing;
+        else
+            return Follow::run(component, values);
+    }
+    static constexpr CommandOperations operations{type_id<typename Begin::Pack::Inputs>,
+                                                  type_id<typename Begin::Pack::Results>,
+                                                  Begin::Pack::input_bytes,
+                                                  Begin::Pack::result_bytes,
+                                                  &begin,
+                                                  &progress};
+};
+
+} // namespace detail
+
+} // namespace tappet

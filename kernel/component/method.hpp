@@ -1,0 +1,125 @@
+// Methods (thesis 4.5): an algorithm of a component that a peer runs in its own thread, with typed arguments
+// and a result. The peer holds a MethodCall; a row of the table says whose method it is.
+//
+//     struct Keeper {                                          struct Bus {
+//         MethodCall<bool(int)> restart;                           bool restart(int tries) noexcept
+//         TAPPET_REALTIME;
+//         ... calls<&Keeper::restart>("restart", "the bus")        ... method<&Bus::restart>("restart",
+//         "...", any_thread)
+//     };                                                       };
+//     uses("keeper.restart", "bus.restart")
+#pragma once
+
+#include "kernel/base/contract.hpp"
+#include "kernel/component/signature.hpp"
+
+namespace tappet {
+
+/// What a facet knows of the method behind it.
+struct MethodOperations {
+    const void* call = nullptr; ///< points at a `R (*const)(void* component, const A&...)`
+    TypeId result = nullptr;    ///< of Arguments<> when it returns nothing
+    std::size_t argument_bytes = 0;
+    std::size_t result_bytes = 0;
+    /// From packed arguments, for callers that know no C++ type. In the caller's thread; real-time.
+    void (*call_packed)(void* component, const std::byte* arguments, std::byte* result) noexcept
+        TAPPET_REALTIME = nullptr;
+};
+
+/// What start-up does with the caller's side.
+struct MethodCallOperations {
+    TypeId result = nullptr;
+    void (*bind)(void* method_call, const void* call, void* component) = nullptr;
+};
+
+template <class Signature>
+class MethodCall;
+
+/// The caller's side. Called by its own component only. Real-time, as the method is.
+template <class R, class... A>
+class MethodCall<R(A...)> {
+    static_assert((!detail::Parameter<A>::is_result && ...),
+                  "a method returns its result; for several, a struct");
+
+public:
+    using Function = R (*)(void*, const std::remove_cvref_t<A>&...) noexcept TAPPET_REALTIME;
+
+    /// Calling what no row connects breaks a contract: an optional one is asked first.
+    R operator()(const std::remove_cvref_t<A>&... arguments) const noexcept TAPPET_REALTIME {
+        TAPPET_CONTRACT(function_ != nullptr, Contract::precondition, 0);
+        if (function_ == nullptr) return R();
+        return function_(component_, arguments...);
+    }
+    /// Whether a row connects it. Always true of one that is not optional.
+    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return function_ != nullptr; }
+
+    static constexpr MethodCallOperations operations{
+        type_id<std::conditional_t<std::is_void_v<R>, Arguments<>, R>>,
+        [](void* method_call, const void* call, void* component) {
+            auto& self = *static_cast<MethodCall*>(method_call);
+            self.function_ = *static_cast<const Function*>(call);
+            self.component_ = component;
+        }};
+    using Signature = Arguments<std::remove_cvref_t<A>...>;
+
+private:
+    Function function_ = nullptr;
+    void* component_ = nullptr;
+};
+
+/// `Method` is a `R (Component::*)(A...) noexcept TAPPET_REALTIME`.
+template <auto Method, class = decltype(Method)>
+struct MethodFunction {
+    static constexpr bool is_method = false;
+    // So that saying so stays the only error.
+    using Signature = Arguments<>;
+    static constexpr MethodOperations operations{};
+};
+
+namespace detail {
+
+template <auto Method, class Component, class R, class... A>
+struct MethodOf {
+    static constexpr bool is_method =
+        (!Parameter<A>::is_result && ...) && (std::is_void_v<R> || std::is_trivially_copyable_v<R>);
+    using Signature = Arguments<std::remove_cvref_t<A>...>;
+    using Pack = Packing<A...>;
+    using Returned = std::conditional_t<std::is_void_v<R>, Arguments<>, R>;
+
+    static R call(void* component, const std::remove_cvref_t<A>&... arguments) noexcept TAPPET_REALTIME {
+        return (static_cast<Component*>(component)->*Method)(arguments...);
+    }
+    template <std::size_t... I>
+    static void unpack_and_call(void* component, const std::byte* packed, std::byte* result,
+                                std::index_sequence<I...>) noexcept TAPPET_REALTIME {
+        if constexpr (std::is_void_v<R>)
+            call(component, load_packed<std::remove_cvref_t<A>>(packed + Pack::offsets[I])...);
+        else
+            store_packed(result,
+                         call(component, load_packed<std::remove_cvref_t<A>>(packed + Pack::offsets[I])...));
+    }
+    static void call_packed(void* component, const std::byte* packed, std::byte* result) noexcept
+        TAPPET_REALTIME {
+        unpack_and_call(component, packed, result, std::index_sequence_for<A...>{});
+    }
+    static constexpr typename MethodCall<R(A...)>::Function function = &call;
+    static constexpr std::size_t bytes_of_result() {
+        if constexpr (std::is_void_v<R>)
+            return 0;
+        else
+            return sizeof(R);
+    }
+    static constexpr MethodOperations operations{&function, type_id<Returned>, Pack::bytes, bytes_of_result(),
+                                                 &call_packed};
+};
+
+} // namespace detail
+
+template <auto Method, class Component, class R, class... A>
+struct MethodFunction<Method, R (Component::*)(A...) noexcept TAPPET_REALTIME>
+    : detail::MethodOf<Method, Component, R, A...> {};
+template <auto Method, class Component, class R, class... A>
+struct MethodFunction<Method, R (Component::*)(A...) const noexcept TAPPET_REALTIME>
+    : detail::MethodOf<Method, Component, R, A...> {};
+
+} // namespace tappet
