@@ -30,10 +30,10 @@ public:
     void write(const T& value) noexcept TAPPET_REALTIME {
         const std::uint64_t generation = ++own_;
         Slot& slot = slots_[generation % Slots];
-        slot.generation.store(being_written, std::memory_order_relaxed);
+        slot.generation.store(being_written, std::memory_order_relaxed); // data.write_mark
         slot.value.store(value);
-        slot.generation.store(generation, std::memory_order_release);
-        published_.store(generation, std::memory_order_release);
+        slot.generation.store(generation, std::memory_order_release); // data.write_number
+        published_.store(generation, std::memory_order_release);      // data.write_publish
     }
 
     /// Any thread. `generation` is the one the caller has (0: none). True: `into` is newer, and `generation`
@@ -41,14 +41,14 @@ public:
     /// otherwise, because the writer overtook every attempt.
     [[nodiscard]] bool read(T& into, std::uint64_t& generation) const noexcept TAPPET_REALTIME {
         for (std::size_t attempt = 0; attempt < Attempts; ++attempt) {
-            const std::uint64_t published = published_.load(std::memory_order_acquire);
+            const std::uint64_t published = published_.load(std::memory_order_acquire); // data.read_index
             if (published == generation || published == never_written) return false;
             const Slot& slot = slots_[published % Slots];
             typename Value::Copy copy;
             slot.value.load(copy);
             // Equal to the published one, not just unchanged: a slot that rests may hold a value older than
             // one this reader has seen.
-            if (slot.generation.load(std::memory_order_relaxed) != published) continue;
+            if (slot.generation.load(std::memory_order_relaxed) != published) continue; // data.read_check
             Value::unpack(copy, into);
             generation = published;
             return true;
@@ -58,7 +58,7 @@ public:
 
     /// How many values were written so far; 0: never written. Any thread.
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
-        return published_.load(std::memory_order_acquire);
+        return published_.load(std::memory_order_acquire); // data.generation
     }
 
 private:

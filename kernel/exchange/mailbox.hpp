@@ -51,38 +51,39 @@ public:
     /// The sending activity's thread only, real-time. False: no such sender, or its mailbox is full and
     /// counts the loss.
     [[nodiscard]] bool post(std::size_t sender, const Message& message) noexcept TAPPET_REALTIME {
-        if (sender >= mailboxes_.size() || !mailboxes_[sender].push(message)) return false;
+        if (sender >= mailboxes_.size()) return false;
+        if (!mailboxes_[sender].push(message)) return false; // inbox.push
         // The result stays unused: with it both compilers would emit a loop of compare-and-exchange.
-        pending_.fetch_or(std::uint64_t{1} << sender, std::memory_order_release);
+        pending_.fetch_or(std::uint64_t{1} << sender, std::memory_order_release); // inbox.bit
         return true;
     }
 
     /// Any thread, real-time: whether serve() would find something.
     [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME {
-        return pending_.load(std::memory_order_acquire) != 0;
+        return pending_.load(std::memory_order_acquire) != 0; // inbox.pending
     }
 
     /// The receiver's thread only, real-time if visit(const Message&) is. Serves from each mailbox what is in
     /// it when its turn comes, so a message posted by a visited one may wait for the next call: pending()
     /// then says so. Returns how many were served.
     template <class Visit> std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
-        std::uint64_t waiting = pending_.exchange(0, std::memory_order_acquire);
+        std::uint64_t waiting = pending_.exchange(0, std::memory_order_acquire); // inbox.take_bits
         std::uint64_t left = 0;
         std::size_t served = 0;
         for (std::size_t turn = 0; turn < max_senders && waiting != 0; ++turn) {
             const auto sender = static_cast<std::size_t>(std::countr_zero(waiting));
             waiting &= waiting - 1;
             Mailbox& mailbox = mailboxes_[sender];
-            const std::size_t batch = mailbox.size();
+            const std::size_t batch = mailbox.size(); // inbox.size
             for (std::size_t i = 0; i < batch; ++i) {
                 Message message;
-                if (!mailbox.pop(message)) break;
+                if (!mailbox.pop(message)) break; // inbox.pop
                 visit(static_cast<const Message&>(message));
                 ++served;
             }
-            if (!mailbox.empty()) left |= std::uint64_t{1} << sender;
+            if (!mailbox.empty()) left |= std::uint64_t{1} << sender; // inbox.left
         }
-        if (left != 0) pending_.fetch_or(left, std::memory_order_relaxed);
+        if (left != 0) pending_.fetch_or(left, std::memory_order_relaxed); // inbox.put_back
         return served;
     }
 

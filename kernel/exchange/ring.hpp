@@ -74,20 +74,21 @@ public:
     [[nodiscard]] bool push(const T& value) noexcept TAPPET_REALTIME {
         Producer& my = producer_;
         if (my.place.overflow == Overflow::reject && my.position - my.consumed == my.place.capacity) {
-            my.consumed = head_.load(std::memory_order_acquire);
+            my.consumed = head_.load(std::memory_order_acquire); // ring.push_look
             if (my.position - my.consumed == my.place.capacity) {
-                my.refused.store(my.refused.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+                const std::uint64_t refused = my.refused.load(std::memory_order_relaxed); // ring.push_refuse
+                my.refused.store(refused + 1, std::memory_order_relaxed);                 // ring.push_refuse
                 return false;
             }
         }
         Cell& cell = my.place.cells[my.cell];
-        cell.number.store(0, std::memory_order_relaxed);
+        cell.number.store(0, std::memory_order_relaxed); // ring.push_mark
         cell.value.store(value);
-        cell.number.store(my.position + 1, std::memory_order_release);
+        cell.number.store(my.position + 1, std::memory_order_release); // ring.push_number
         ++my.position;
         my.cell = my.cell + 1 == my.place.count ? 0 : my.cell + 1;
-        tail_.store(my.position, std::memory_order_release);
         raise_mark();
+        tail_.store(my.position, std::memory_order_release); // ring.push_publish
         return true;
     }
 
@@ -101,24 +102,26 @@ public:
     /// Values inside. Exact for either side as far as its own doing goes; any other thread sees a recent
     /// value.
     [[nodiscard]] std::size_t size() const noexcept TAPPET_REALTIME {
-        const std::uint64_t head = head_.load(std::memory_order_acquire);
-        const std::uint64_t tail = tail_.load(std::memory_order_acquire);
+        const std::uint64_t head = head_.load(std::memory_order_acquire); // ring.size_head
+        const std::uint64_t tail = tail_.load(std::memory_order_acquire); // ring.size_tail
         return static_cast<std::size_t>(std::min<std::uint64_t>(tail - head, consumer_.place.capacity));
     }
     [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return size() == 0; }
     [[nodiscard]] std::size_t capacity() const noexcept TAPPET_REALTIME { return consumer_.place.capacity; }
     /// The most that ever were inside; capacity() less this was never needed. Any thread.
     [[nodiscard]] std::size_t high_water() const noexcept TAPPET_REALTIME {
-        return static_cast<std::size_t>(producer_.high_water.load(std::memory_order_relaxed));
+        const std::uint64_t mark = producer_.high_water.load(std::memory_order_relaxed); // ring.mark_read
+        return static_cast<std::size_t>(mark);
     }
-    /// Values pushed that will never be popped, by either policy. Any thread: exact while the other side
-    /// rests, otherwise behind by what it is just doing.
+    /// Values pushed that will never be popped, by either policy. Either side; exact while the other one
+    /// rests, otherwise it may differ by what that one is just doing: nothing counts twice, but of a value
+    /// that is being taken nobody knows yet whether the producer comes first.
     [[nodiscard]] std::uint64_t lost() const noexcept TAPPET_REALTIME {
-        const std::uint64_t refused = producer_.refused.load(std::memory_order_relaxed);
+        const std::uint64_t refused = producer_.refused.load(std::memory_order_relaxed); // ring.lost_refused
         // Skipped before head: the consumer stores them the other way round, so nothing counts twice.
-        const std::uint64_t skipped = consumer_.skipped.load(std::memory_order_acquire);
-        const std::uint64_t head = head_.load(std::memory_order_acquire);
-        const std::uint64_t fill = tail_.load(std::memory_order_acquire) - head;
+        const std::uint64_t skipped = consumer_.skipped.load(std::memory_order_acquire); // ring.lost_skipped
+        const std::uint64_t head = head_.load(std::memory_order_acquire);                // ring.lost_head
+        const std::uint64_t fill = tail_.load(std::memory_order_acquire) - head;         // ring.lost_tail
         const std::uint64_t capacity = consumer_.place.capacity;
         return refused + skipped + (fill > capacity ? fill - capacity : 0);
     }
@@ -146,21 +149,22 @@ private:
         Atomic<std::uint64_t> skipped{};
     };
 
-    // The other side's index is loaded only when the fill could be a new maximum, so the mark is exact and
-    // yet costs nothing once it stands.
+    // Before the value is published: else one that is taken at once would need no room. The other side's
+    // index is loaded only when the fill could be a new maximum, so the mark is exact as far as the
+    // consumer's pace lets it be told, never too small, and costs nothing once it stands.
     void raise_mark() noexcept TAPPET_REALTIME {
         Producer& my = producer_;
-        const std::uint64_t mark = my.high_water.load(std::memory_order_relaxed);
+        const std::uint64_t mark = my.high_water.load(std::memory_order_relaxed); // ring.mark_read
         if (mark == my.place.capacity || my.position - my.consumed <= mark) return;
-        my.consumed = head_.load(std::memory_order_acquire);
+        my.consumed = head_.load(std::memory_order_acquire); // ring.mark_look
         const std::uint64_t fill = std::min(my.position - my.consumed, my.place.capacity);
-        if (fill > mark) my.high_water.store(fill, std::memory_order_relaxed);
+        if (fill > mark) my.high_water.store(fill, std::memory_order_relaxed); // ring.mark_raise
     }
 
     bool pop_next(T& into) noexcept TAPPET_REALTIME {
         Consumer& my = consumer_;
         if (my.position == my.produced) {
-            my.produced = tail_.load(std::memory_order_acquire);
+            my.produced = tail_.load(std::memory_order_acquire); // ring.pop_look
             if (my.position == my.produced) return false;
         }
         my.place.cells[my.cell].value.load(into);
@@ -171,13 +175,13 @@ private:
     bool pop_oldest_left(T& into) noexcept TAPPET_REALTIME {
         Consumer& my = consumer_;
         for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
-            my.produced = tail_.load(std::memory_order_acquire);
+            my.produced = tail_.load(std::memory_order_acquire); // ring.take_look
             if (my.position == my.produced) return false;
             if (my.produced - my.position > my.place.capacity) skip_to(my.produced - my.place.capacity);
             const Cell& cell = my.place.cells[my.cell];
             typename Value::Copy copy;
             cell.value.load(copy);
-            if (cell.number.load(std::memory_order_relaxed) != my.position + 1) continue;
+            if (cell.number.load(std::memory_order_relaxed) != my.position + 1) continue; // ring.take_check
             Value::unpack(copy, into);
             advance();
             return true;
@@ -189,7 +193,7 @@ private:
         Consumer& my = consumer_;
         ++my.position;
         my.cell = my.cell + 1 == my.place.count ? 0 : my.cell + 1;
-        head_.store(my.position, std::memory_order_release);
+        head_.store(my.position, std::memory_order_release); // ring.pop_release
     }
 
     void skip_to(std::uint64_t position) noexcept TAPPET_REALTIME {
@@ -197,8 +201,9 @@ private:
         const std::uint64_t skipped = position - my.position;
         my.position = position;
         my.cell = position % my.place.count;
-        head_.store(position, std::memory_order_release);
-        my.skipped.store(my.skipped.load(std::memory_order_relaxed) + skipped, std::memory_order_release);
+        head_.store(position, std::memory_order_release);                        // ring.skip_release
+        const std::uint64_t before = my.skipped.load(std::memory_order_relaxed); // ring.skip_count
+        my.skipped.store(before + skipped, std::memory_order_release);           // ring.skip_count
     }
 
     Producer producer_{};

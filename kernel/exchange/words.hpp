@@ -45,15 +45,17 @@ public:
                 __builtin_memcpy(&word, bytes + i * sizeof word, sizeof word);
             else
                 __builtin_memcpy(&word, bytes + i * sizeof word, rest);
-            words_[i].store(word, std::memory_order_release);
+            words_[i].store(word, std::memory_order_release); // words.store
         }
     }
     void load(Copy& into) const noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < count; ++i) into[i] = words_[i].load(std::memory_order_acquire);
+        for (std::size_t i = 0; i < count; ++i)
+            into[i] = words_[i].load(std::memory_order_acquire); // words.load
     }
     /// For whoever knows that nobody is writing: without the copy in between that could be thrown away.
     void load(T& into) const noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < count; ++i) put(into, i, words_[i].load(std::memory_order_acquire));
+        for (std::size_t i = 0; i < count; ++i)
+            put(into, i, words_[i].load(std::memory_order_acquire)); // words.take
     }
     static void unpack(const Copy& from, T& into) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < count; ++i) put(into, i, from[i]);

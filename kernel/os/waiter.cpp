@@ -31,7 +31,7 @@ bool Waiter::watch(int descriptor) noexcept {
 }
 
 void Waiter::wake() noexcept TAPPET_REALTIME {
-    if (state_.exchange(woken, std::memory_order_acq_rel) != asleep) return;
+    if (state_.exchange(woken, std::memory_order_acq_rel) != asleep) return; // waiter.wake
     if (wake_descriptor_ >= 0) {
         const std::uint64_t one = 1;
         TAPPET_ESCAPE("waking another activity",
@@ -46,12 +46,12 @@ bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     if (take()) return true;
     if (!devices_.empty()) return wait_on_devices(devices_.size(), until);
     std::uint32_t expected = idle;
-    if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
+    if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) { // waiter.doze
         const timespec end = to_timespec(to_ns(until));
         // Returns on a wake, at the end, on a signal, or at once when a wake came in between: all are looked
         // at below.
         TAPPET_ESCAPE("the activity's own wait",
-                      syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, asleep,
+                      syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, asleep, // waiter.sleep
                               until == never ? nullptr : &end, nullptr, FUTEX_BITSET_MATCH_ANY));
     }
     return take();
@@ -67,7 +67,7 @@ bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REAL
     for (std::size_t i = 0; i < count; ++i) polled[i] = {devices_[i], POLLIN, 0};
     polled[count] = {wake_descriptor_, POLLIN, 0};
     std::uint32_t expected = idle;
-    if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) {
+    if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) { // waiter.doze
         const std::int64_t left = until == never ? 0 : (until - Clock::monotonic()).count();
         const timespec timeout = to_timespec(left > 0 ? left : 0);
         TAPPET_ESCAPE("the activity's own wait",

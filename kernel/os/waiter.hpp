@@ -32,10 +32,10 @@ public:
 
     /// True when woken since the last call; takes the wake. For worlds that do not sleep.
     [[nodiscard]] bool take() noexcept TAPPET_REALTIME {
-        return (state_.exchange(idle, std::memory_order_acquire) & woken) != 0;
+        return (state_.exchange(idle, std::memory_order_acquire) & woken) != 0; // waiter.take
     }
     [[nodiscard]] bool is_woken() const noexcept TAPPET_REALTIME {
-        return (state_.load(std::memory_order_acquire) & woken) != 0;
+        return (state_.load(std::memory_order_acquire) & woken) != 0; // no step: virtual time has one thread
     }
 
     /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
