@@ -32,10 +32,13 @@ enum class ValueKind : std::uint8_t {
     record,      ///< a struct that names its fields
     enumeration, ///< an enum that names its values
     sequence,    ///< Bounded<T, N>
+    arguments,   ///< of an event or an operation: `elements`, packed one behind the other without gaps
 };
 
 struct TypeTag;
 using TypeId = const TypeTag*;
+
+inline constexpr std::size_t max_fields = 64;
 
 /// A named member of a record.
 struct RecordField {
@@ -51,7 +54,7 @@ struct TypeTag {
     std::size_t size = 0;
     std::size_t align = 0;
     bool arithmetic = false;
-    std::span<const TypeId> elements{}; ///< of an argument list, packed one behind the other without gaps
+    std::span<const TypeId> elements{}; ///< of an argument list
     ValueKind kind = ValueKind::opaque;
     bool row_major = false;   ///< of a matrix; otherwise its columns lie one behind the other
     TypeId element = nullptr; ///< of a matrix or a sequence; of an enumeration the integer that it is
@@ -177,12 +180,12 @@ struct TagOf {
 template <class... T>
 struct TagOf<Arguments<T...>> {
     static constexpr std::array<TypeId, sizeof...(T)> elements{&TagOf<T>::tag...};
-    static constexpr TypeTag tag{printed_list<T...>(), (std::size_t{0} + ... + sizeof(T)), 1, false,
-                                 elements};
+    static constexpr TypeTag tag{printed_list<T...>(), (std::size_t{0} + ... + sizeof(T)), 1, false, elements,
+                                 ValueKind::arguments};
 };
 template <>
 struct TagOf<Arguments<>> {
-    static constexpr TypeTag tag{"", 0, 1, false};
+    static constexpr TypeTag tag{"", 0, 1, false, {}, ValueKind::arguments};
 };
 
 template <auto Member>
@@ -209,6 +212,7 @@ constexpr RecordField field(std::string_view name, std::string_view unit = {}) n
 }
 template <class... Fields>
 constexpr std::array<RecordField, sizeof...(Fields)> fields(const Fields&... each) noexcept {
+    static_assert(sizeof...(Fields) <= max_fields, "a record of more fields is made of smaller records");
     return {each...};
 }
 
