@@ -31,7 +31,6 @@ private:
 };
 
 constexpr Shape shape_of(const TypeTag& tag) noexcept {
-    if (tag.align == 1 && (!tag.elements.empty() || tag.size == 0)) return Shape::arguments;
     switch (tag.kind) {
     case ValueKind::opaque: return Shape::opaque;
     case ValueKind::truth: return Shape::truth;
@@ -44,6 +43,7 @@ constexpr Shape shape_of(const TypeTag& tag) noexcept {
     case ValueKind::record: return Shape::record;
     case ValueKind::enumeration: return Shape::enumeration;
     case ValueKind::sequence: return Shape::sequence;
+    case ValueKind::arguments: return Shape::arguments;
     }
     return Shape::opaque;
 }
