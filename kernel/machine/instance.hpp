@@ -172,6 +172,7 @@ private:
     void connect_clocks();
     void connect_data();
     void place_needed_inputs();
+    [[nodiscard]] LifeSign life_sign_of(std::string_view watched) noexcept;
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);
     void connect_events();
