@@ -4,8 +4,6 @@
 #include "apps/browser/shell.hpp"
 #include "apps/browser/value.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <iostream>
 #include <ostream>
 
@@ -16,8 +14,7 @@ namespace {
 int tell(const Surroundings& surroundings, const Failure& failure, bool json) {
     const int code = static_cast<int>(failure.fault);
     if (json)
-        surroundings.errors << "{\"error\": " << in_quotes(failure.sentence) << ", \"exit\": " << code
-                            << "}\n";
+        surroundings.errors << "{\"error\": " << quoted(failure.sentence) << ", \"exit\": " << code << "}\n";
     else
         surroundings.errors << "tappet-browse: " << failure.sentence << "\n";
     surroundings.errors.flush();
@@ -101,7 +98,9 @@ int run_lines(Session& session, const Line& first, Surroundings& surroundings) {
     return lines.code();
 }
 
-int run(std::span<const std::string> words, Surroundings& surroundings) {
+} // namespace
+
+int run_program(std::span<const std::string> words, Surroundings& surroundings) {
     const auto line = parse_line(words);
     if (!line) return tell(surroundings, {Fault::bad_request, line.error()}, false);
     if (line->help || (!line->words.empty() && line->words.front() == "help")) {
@@ -129,21 +128,6 @@ int run(std::span<const std::string> words, Surroundings& surroundings) {
     const auto done = run_command(work);
     surroundings.out.flush();
     return done ? 0 : tell(surroundings, done.error(), line->json);
-}
-
-} // namespace
-
-int run_program(std::span<const std::string> words, Surroundings& surroundings) {
-    try {
-        return run(words, surroundings);
-    } catch (const nlohmann::json::exception& wrong) {
-        return tell(
-            surroundings,
-            {Fault::no_machine,
-             std::string{"an answer is not as the protocol says; is another program at this socket? "} +
-                 wrong.what()},
-            false);
-    }
 }
 
 } // namespace tappet::browser

@@ -4,6 +4,7 @@
 #include "apps/carpet_loom/change.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/operation_interface.hpp"
 
 namespace tappet::carpet {
 
@@ -39,9 +40,10 @@ struct Loom {
     Output<std::int64_t> state;
     Output<std::int64_t> cause;
     Output<std::int64_t> waits_for;
-    Event<> enable_drives, disable_drives, run_shaft, stop_shaft, quick_stop;
+    Event<> enable_drives, disable_drives, run_shaft, quick_stop;
     Event<> set_brake, release_brake;
     Event<> allow_weft, inhibit_weft;
+    CommandCall<double&> stop_shaft;
     Timer look_timer;
     Property<Duration> look_every{5ms};
     Property<double> least_oil_bar{wires::nominal::oil_pressure_least_bar};
@@ -70,6 +72,9 @@ struct Loom {
         return main_fault.get() || let_off_fault.get();
     }
     [[nodiscard]] bool oil_is_lost() noexcept TAPPET_REALTIME { return !oil_good(); }
+    [[nodiscard]] bool stop_is_refused() noexcept TAPPET_REALTIME {
+        return stop_shaft.state() == CommandState::rejected || stop_shaft.state() == CommandState::failed;
+    }
     [[nodiscard]] bool operator_stopped() noexcept TAPPET_REALTIME {
         return cause_ == StopCause::operator_stop;
     }
@@ -93,7 +98,7 @@ struct Loom {
     void enter_weave() noexcept TAPPET_REALTIME { tell(4, true, false, false); }
     void enter_stopping() noexcept TAPPET_REALTIME {
         tell(5, false, false, false);
-        stop_shaft.emit();
+        static_cast<void>(stop_shaft.send()); // of an older stop: then this one was asked for already
     }
     void enter_stopped() noexcept TAPPET_REALTIME { tell(6, false, false, true); }
     void enter_emergency() noexcept TAPPET_REALTIME {
@@ -156,7 +161,7 @@ struct Loom {
             event<&Loom::enable_drives>("enable_drives", "drives on, tension loop closed"),
             event<&Loom::disable_drives>("disable_drives", "drives off"),
             event<&Loom::run_shaft>("run_shaft", "turn at weaving speed"),
-            event<&Loom::stop_shaft>("stop_shaft", "come to stand at the stop angle", heard_by(1)),
+            sends<&Loom::stop_shaft>("stop_shaft", "come to stand at the stop angle"),
             event<&Loom::quick_stop>("quick_stop", "come to stand at once", heard_by(3)),
             event<&Loom::set_brake>("set_brake", "brake on", heard_by(1)),
             event<&Loom::release_brake>("release_brake", "brake off"),

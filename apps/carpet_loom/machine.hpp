@@ -42,7 +42,6 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("console", every(250ms),     runs("record", "console"), not_real_time)),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
-        data("shaft.motion",              "weft.shaft"),
         data("shaft.speed_rpm",           "warp.shaft_speed"),
         data("can.main_drive.statusword", "main.statusword",      stale_after(50ms), hold),
         data("can.main_drive.velocity",   "main.velocity",        stale_after(50ms), hold),
@@ -106,6 +105,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("shaft.window_closes",  call("weft.on_window_closes")),
         when("shaft.beat_up",        call("weft.on_beat_up")),
         when("shaft.offer_pattern",  call("weft.on_offer_pattern")),
+        uses("weft.angle_at",        "shaft.angle_at"),              // a method: in the caller's thread
         when("weft.open_valve",      tell("io.weft_release.set")),   // in the engine of io
         when("weft.close_valve",     tell("io.weft_release.clear")),
         when("io.weft_detector.rises", tell("weft.on_arrival")),
@@ -118,7 +118,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("loom.disable_drives",  tell("main.disable")),
         when("loom.disable_drives",  tell("warp.disable")),
         when("loom.run_shaft",       tell("main.run")),
-        when("loom.stop_shaft",      tell("shaft.stop_at_angle")),
+        uses("loom.stop_shaft",      "shaft.stop"),                  // a command: sent, executing, done
         when("loom.quick_stop",      tell("main.quick_stop")),
         when("loom.quick_stop",      tell("shaft.brake_was_set")),
         when("loom.quick_stop",      tell("can.purge")),             // nothing stale follows an emergency stop

@@ -7,6 +7,7 @@
 #include "kernel/cam/estimator.hpp"
 #include "kernel/cam/schedule.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/operation_interface.hpp"
 
 #include <algorithm>
 
@@ -38,8 +39,24 @@ struct MainShaft {
     Property<Duration> stamp_latency{0us};
 
     /// Brakes so that the shaft comes to stand at the stop angle: in this turn if it is still possible.
-    void stop_at_angle() noexcept TAPPET_REALTIME {
-        if (phase_ == Phase::free) phase_ = Phase::wanted;
+    void stop_at_angle() noexcept TAPPET_REALTIME { want_stop(stop_angle_deg.get()); }
+    /// The same as a goal. Rejected when the brake was set by somebody else, or the angle is not known.
+    bool stop_shaft(double&) noexcept TAPPET_REALTIME { return want_stop(stop_angle_deg.get()); }
+    bool stop_shaft_at(double at_deg, double&) noexcept TAPPET_REALTIME {
+        return at_deg >= 0.0 && at_deg < 360.0 && want_stop(at_deg);
+    }
+    CommandProgress has_stopped(double& error_deg) noexcept TAPPET_REALTIME {
+        if (phase_ == Phase::wanted || phase_ == Phase::braking) return CommandProgress::executing;
+        if (!reached_) return CommandProgress::failed; // the brake was set by somebody else, or released
+        error_deg = stop_error_deg.last();
+        return CommandProgress::done;
+    }
+    CommandProgress has_stopped_at(double, double& error_deg) noexcept TAPPET_REALTIME {
+        return has_stopped(error_deg);
+    }
+    /// The angle, in degrees, at a time near the last sample.
+    double angle_at(const Time& at) noexcept TAPPET_REALTIME {
+        return estimator_.motion().at(at).position.angle().in_degrees();
     }
     /// Forgets a stop, or that the brake holds.
     void release() noexcept TAPPET_REALTIME {
@@ -101,8 +118,7 @@ struct MainShaft {
             output<&MainShaft::speed_rpm>("speed_rpm", "rpm", "speed now"),
             output<&MainShaft::valid>("valid", "", "the encoder can be relied on; written on change"),
             output<&MainShaft::standing>("standing", "", "the shaft stands; written on change"),
-            output<&MainShaft::stop_error_deg>("stop_error_deg", "deg",
-                                               "of the last stop, to the stop angle"),
+            output<&MainShaft::stop_error_deg>("stop_error_deg", "deg", "of the last stop, to its angle"),
             output<&MainShaft::stops>("stops", "", "at the stop angle, since start"),
             output<&MainShaft::brake_distance_deg>(
                 "brake_distance_deg", "deg", "learned, from the brake's edge to standstill at nominal speed"),
@@ -116,6 +132,11 @@ struct MainShaft {
             event<&MainShaft::brake_now>(
                 "brake_now", "the brake must be driven now to stop at the stop angle", heard_by(3)),
             event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
+            command<&MainShaft::stop_shaft, &MainShaft::has_stopped>(
+                "stop", "comes to stand at the stop angle; results in the error in degrees"),
+            command<&MainShaft::stop_shaft_at, &MainShaft::has_stopped_at>(
+                "stop_at", "comes to stand at this angle in degrees; results in the error in degrees"),
+            method<&MainShaft::angle_at>("angle_at", "the angle in degrees at a time near the last sample"),
             operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle",
                                                  required),
             operation<&MainShaft::release>("release", "forgets the stop", required),
@@ -143,6 +164,16 @@ private:
     static constexpr double brake_dead_s = 1e-6 * static_cast<double>(wires::nominal::brake_dead_us);
     // Below this the brake bites at once and the distance says nothing of its torque.
     static constexpr double least_learning_deg_s = 0.5 * wires::nominal::speed_rpm * 6.0;
+
+    /// False: the brake was set by somebody else. A stop that has begun keeps its angle.
+    bool want_stop(double at_deg) noexcept TAPPET_REALTIME {
+        if (phase_ == Phase::foreign) return false;
+        if (phase_ != Phase::free) return true;
+        phase_ = Phase::wanted;
+        wanted_deg_ = at_deg;
+        reached_ = false;
+        return true;
+    }
 
     void follow(Time now) noexcept TAPPET_REALTIME {
         schedule_.update(estimator_, now);
@@ -201,7 +232,7 @@ private:
         return speed_deg_s * brake_dead_s + speed_deg_s * speed_deg_s / (2.0 * deceleration_);
     }
     [[nodiscard]] double error_of(const ShaftState& state) const noexcept TAPPET_REALTIME {
-        return (state.position.angle() - Angle::degrees(stop_angle_deg.get())).in_degrees();
+        return (state.position.angle() - Angle::degrees(wanted_deg_)).in_degrees();
     }
 
     void plan_brake(Time now, const ShaftState& state) noexcept TAPPET_REALTIME {
@@ -210,7 +241,7 @@ private:
             brake(now);
             return;
         }
-        const Angle edge = Angle::degrees(stop_angle_deg.get() - distance_at(speed));
+        const Angle edge = Angle::degrees(wanted_deg_ - distance_at(speed));
         double ahead = forward_way(state.position.angle(), edge).in_degrees();
         if (ahead > 360.0 - late_deg.get()) ahead = 0.0; // just behind: as soon as possible
         const Time when =
@@ -232,6 +263,7 @@ private:
 
     void finish_stop(const ShaftState& state) noexcept TAPPET_REALTIME {
         phase_ = Phase::free;
+        reached_ = true;
         const double distance = (state.position - edge_).in_degrees();
         const double braked = distance - edge_speed_deg_s_ * brake_dead_s;
         if (edge_speed_deg_s_ >= least_learning_deg_s && braked > 1.0) {
@@ -260,6 +292,8 @@ private:
     ShaftEstimator estimator_{ShaftProperties{}};
     CamSchedule<cams.size()> schedule_{cams};
     Phase phase_ = Phase::free;
+    double wanted_deg_ = wires::nominal::stop_deg;
+    bool reached_ = false; // the stop that was wanted last
     ShaftPosition edge_{};
     double edge_speed_deg_s_ = 0.0;
     double deceleration_ = 1.0;

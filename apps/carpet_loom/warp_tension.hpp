@@ -13,6 +13,17 @@ namespace tappet::carpet {
 
 namespace wires = loom::wires;
 
+/// Of the tension's loop.
+struct TensionGains {
+    Property<double> proportional{0.004};
+    Property<double> integral{0.02};
+
+    static constexpr auto interface() {
+        return facets(property<&TensionGains::proportional>("proportional", "rpm/N", "", range(0, 1)),
+                      property<&TensionGains::integral>("integral", "rpm/(N s)", "", range(0, 10)));
+    }
+};
+
 /// All real-time, each cycle of a periodic activity.
 struct WarpTension {
     Input<double> measured;
@@ -25,9 +36,13 @@ struct WarpTension {
     Output<bool> fault;
     Property<double> set_point_n{wires::nominal::tension_n};
     Property<double> band_n{wires::nominal::tension_band_n};
-    Property<double> gain{0.004};
-    Property<double> integral_gain{0.02};
+    TensionGains gains;
     Property<double> beam_radius_mm{wires::nominal::beam_radius_mm};
+
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        if (proposal.of(band_n) < proposal.of(set_point_n)) return {};
+        return Sentence{"band_n reaches down to no tension at all; keep it below set_point_n"};
+    }
 
     void enable() noexcept TAPPET_REALTIME { axis_.enable(); }
     void disable() noexcept TAPPET_REALTIME { axis_.disable(); }
@@ -55,9 +70,7 @@ struct WarpTension {
             output<&WarpTension::fault>("fault", "", "the drive is faulty or silent; written on change"),
             property<&WarpTension::set_point_n>("set_point_n", "N", "warp tension wanted", range(50, 600)),
             property<&WarpTension::band_n>("band_n", "N", "how near counts as in band", range(1, 200)),
-            property<&WarpTension::gain>("gain", "rpm/N", "proportional gain", range(0, 1)),
-            property<&WarpTension::integral_gain>("integral_gain", "rpm/(N s)", "integral gain",
-                                                  range(0, 10)),
+            bag<&WarpTension::gains>("gains", "of the tension's loop, changed together"),
             property<&WarpTension::beam_radius_mm>("beam_radius_mm", "mm", "of the full warp beam",
                                                    range(50, 1000)),
             operation<&WarpTension::enable>("enable", "closes the loop; resets one fault", required),
@@ -78,10 +91,10 @@ private:
             return forward + integral_rpm_;
         }
         const double error = tension_n - set_point_n.get();
-        integral_rpm_ = std::clamp(integral_rpm_ + integral_gain.get() * error * to_seconds(cycle.period),
+        integral_rpm_ = std::clamp(integral_rpm_ + gains.integral.get() * error * to_seconds(cycle.period),
                                    -integral_limit_rpm, integral_limit_rpm);
         in_band_.write(in_band, error < band_n.get() && -error < band_n.get());
-        return forward + gain.get() * error + integral_rpm_;
+        return forward + gains.proportional.get() * error + integral_rpm_;
     }
 
     DriveAxis axis_{};

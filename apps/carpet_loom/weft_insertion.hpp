@@ -3,8 +3,8 @@
 
 #include "apps/carpet_loom/weft_record.hpp"
 #include "apps/carpet_loom/wires.hpp"
-#include "kernel/cam/motion.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/operation_interface.hpp"
 
 #include <array>
 
@@ -16,7 +16,7 @@ namespace wires = loom::wires;
 struct WeftInsertion {
     static constexpr bool slot_required = true; // the pattern's behaviour is loaded while the machine runs
 
-    Input<ShaftMotion> shaft;
+    MethodCall<double(Time)> angle_at;
     Output<std::int64_t> pick;
     Output<std::int64_t> pattern;
     Output<std::int64_t> picks_woven;
@@ -60,7 +60,7 @@ struct WeftInsertion {
     }
     void on_arrival(Time at) noexcept TAPPET_REALTIME {
         if (!released_) return;
-        const double angle_deg = shaft.get().at(at).position.angle().in_degrees();
+        const double angle_deg = angle_at(at);
         arrival_deg.write(angle_deg, at);
         // A second pulse of the same weft is none.
         if (!arrived_) static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg}));
@@ -78,7 +78,7 @@ struct WeftInsertion {
 
     static constexpr auto interface() {
         return facets(
-            input<&WeftInsertion::shaft>("shaft", "", "motion of the main shaft"),
+            calls<&WeftInsertion::angle_at>("angle_at", "the main shaft's angle in degrees at a time"),
             output<&WeftInsertion::pick>("pick", "", "number of the pick whose pattern is offered"),
             output<&WeftInsertion::pattern>("pattern", "", "harnesses to lift, one bit each"),
             output<&WeftInsertion::picks_woven>("picks_woven", "", "picks whose weft arrived, since start"),
