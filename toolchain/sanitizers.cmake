@@ -3,8 +3,8 @@
 # races that are none.
 include_guard(GLOBAL)
 
-set(TAPPET_SANITIZE none CACHE STRING "Sanitizer of this build tree: none, thread, realtime or address")
-set_property(CACHE TAPPET_SANITIZE PROPERTY STRINGS none thread realtime address)
+set(TAPPET_SANITIZE none CACHE STRING "Sanitizer of this build tree: none, thread, realtime, address or fuzz")
+set_property(CACHE TAPPET_SANITIZE PROPERTY STRINGS none thread realtime address fuzz)
 
 if(TAPPET_SANITIZE STREQUAL none)
     set(tappet_sanitizer_flags)
@@ -14,12 +14,14 @@ elseif(TAPPET_SANITIZE STREQUAL realtime)
     set(tappet_sanitizer_flags -fsanitize=realtime)
 elseif(TAPPET_SANITIZE STREQUAL address)
     set(tappet_sanitizer_flags -fsanitize=address,undefined -fno-sanitize-recover=all)
+elseif(TAPPET_SANITIZE STREQUAL fuzz)
+    set(tappet_sanitizer_flags -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all)
 else()
-    message(FATAL_ERROR "TAPPET_SANITIZE is '${TAPPET_SANITIZE}'; choose none, thread, realtime or address")
+    message(FATAL_ERROR "TAPPET_SANITIZE is '${TAPPET_SANITIZE}'; choose none, thread, realtime, address or fuzz")
 endif()
 
-if(TAPPET_SANITIZE STREQUAL realtime AND NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
-    message(FATAL_ERROR "the real-time sanitizer is clang's; configure with toolchain/clang.cmake")
+if(TAPPET_SANITIZE MATCHES "realtime|fuzz" AND NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "the real-time sanitizer and libFuzzer are clang's; configure with toolchain/clang.cmake")
 endif()
 
 if(tappet_sanitizer_flags)

@@ -2,6 +2,7 @@
 # A firmware is one static binary, so what it stands on must be there as archives:
 #   tappet::libgpiod   Debian's own libgpiod.a, version 2
 #   tappet::libedit    Debian's own libedit.a with what it stands on; not for a firmware, but for tappet-browse beside it
+#   tappet::pugixml    Debian's own libpugixml.a
 #   tappet::libmodbus  built here from Debian's source package (with its security patches): no package has the archive
 include_guard(GLOBAL)
 include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
@@ -37,6 +38,16 @@ set_target_properties(
     tappet_libedit PROPERTIES IMPORTED_LOCATION "${TAPPET_EDIT_ARCHIVE}"
     INTERFACE_LINK_LIBRARIES "${TAPPET_TINFO_ARCHIVE};${TAPPET_BSD_ARCHIVE};${TAPPET_MD_ARCHIVE}")
 add_library(tappet::libedit ALIAS tappet_libedit)
+
+# --- pugixml ------------------------------------------------------------------------------------------------------
+find_path(TAPPET_PUGIXML_INCLUDE pugixml.hpp)
+find_library(TAPPET_PUGIXML_ARCHIVE libpugixml.a)
+if(NOT TAPPET_PUGIXML_INCLUDE OR NOT TAPPET_PUGIXML_ARCHIVE)
+    message(FATAL_ERROR "pugixml.hpp and libpugixml.a are not installed; run ci/setup once as root")
+endif()
+add_library(tappet_pugixml STATIC IMPORTED GLOBAL)
+set_target_properties(tappet_pugixml PROPERTIES IMPORTED_LOCATION "${TAPPET_PUGIXML_ARCHIVE}")
+add_library(tappet::pugixml ALIAS tappet_pugixml)
 
 # --- libmodbus ----------------------------------------------------------------------------------------------------
 set(tappet_modbus_source "${TAPPET_CACHE}/libmodbus")

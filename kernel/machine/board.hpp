@@ -42,6 +42,7 @@ struct Board {
     Bounded<std::string_view, 16>
         only_warned{}; ///< arming checks that this development board downgrades to warnings
     std::string_view kernel_command_line{};
+    std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
 };
 
 template <class... Lines>

@@ -1,0 +1,85 @@
+// Between files and their text.
+#include "kernel/services/configuration/property_files.hpp"
+
+#include "kernel/os/file.hpp"
+#include "kernel/os/terminal.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+namespace {
+
+Sentence no_directory(const ComponentRow& row) noexcept {
+    return Sentence{"component \"", row.name, "\": there is no directory for its properties file \"",
+                    row.properties.name,
+                    "\"; name one by --properties, or as the board's properties_directory"};
+}
+
+} // namespace
+
+PropertyStore PropertyFiles::store() noexcept {
+    return {this,
+            [](void* self, const ComponentRow& row, PropertyTransaction& into) {
+                return static_cast<PropertyFiles*>(self)->load(row, into);
+            },
+            [](void* self, const ComponentRow& row, const PropertyTransaction& from) {
+                return static_cast<PropertyFiles*>(self)->save(row, from);
+            }};
+}
+
+bool PropertyFiles::name_path(const ComponentRow& row) noexcept {
+    const std::string_view name = row.properties.name;
+    if (directory_.size() + 1 + name.size() > longest_path) return false;
+    auto end = std::copy(directory_.begin(), directory_.end(), path_.begin());
+    *end++ = '/';
+    end = std::copy(name.begin(), name.end(), end);
+    *end = '\0';
+    return true;
+}
+
+Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into) noexcept {
+    if (!keeps()) return row.properties.may_be_missing ? Sentence{} : no_directory(row);
+    if (!name_path(row))
+        return Sentence{"component \"", row.name, "\": the path of its properties file \"",
+                        row.properties.name, "\" is too long; name a shorter properties directory"};
+    const std::string_view path{path_.data()};
+    const os::FileText read = os::read_file(path_.data(), text_);
+    switch (read.result) {
+    case os::FileRead::good: return read_cpf({text_.data(), read.length}, path, into);
+    case os::FileRead::missing:
+        if (row.properties.may_be_missing) return {};
+        return Sentence{
+            path,
+            ": component \"",
+            row.name,
+            "\": its properties file is missing; put it there, name its directory by --properties, or "
+            "say properties_file(\"",
+            row.properties.name,
+            "\", optional) in its row"};
+    case os::FileRead::too_large:
+        return Sentence{path,          ": component \"",
+                        row.name,      "\": the file has more than ",
+                        max_cpf_bytes, " bytes; it is no properties file, or shorten it"};
+    case os::FileRead::unreadable: break;
+    }
+    return Sentence{path, ": component \"", row.name,
+                    "\": its properties file cannot be read; look at its permissions"};
+}
+
+Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction& from) noexcept {
+    if (!keeps()) return no_directory(row);
+    if (!name_path(row))
+        return Sentence{"component \"", row.name, "\": the path of its properties file \"",
+                        row.properties.name, "\" is too long; name a shorter properties directory"};
+    Sentence fault;
+    const std::size_t length = write_cpf(from, text_, fault);
+    if (!fault.empty()) return fault;
+    if (os::replace_file(path_.data(), {text_.data(), length})) return {};
+    return Sentence{
+        std::string_view{path_.data()}, ": component \"", row.name,
+        "\": its properties cannot be saved and the old file stands; look at the directory's permissions "
+        "and its free space"};
+}
+
+} // namespace tappet

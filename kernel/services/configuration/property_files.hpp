@@ -1,0 +1,37 @@
+// Each component's properties in a file of their own, in one directory (thesis 4.7.1): read while
+// configuring, replaced as a whole when saved.
+#pragma once
+
+#include "kernel/machine/property_store.hpp"
+#include "kernel/services/configuration/cpf.hpp"
+
+#include <array>
+
+namespace tappet {
+
+/// Large: in static memory. One thread at a time, not real-time. Reading takes heap, writing does not.
+class PropertyFiles {
+public:
+    static constexpr std::size_t longest_path = 512;
+
+    /// `directory` outlives it. An empty one keeps nothing: optional files are not there, the others an
+    /// error.
+    explicit PropertyFiles(std::string_view directory) noexcept : directory_{directory} {}
+
+    /// For MachineInstance::read_properties_from.
+    [[nodiscard]] PropertyStore store() noexcept;
+
+    [[nodiscard]] Sentence load(const ComponentRow& row, PropertyTransaction& into) noexcept;
+    [[nodiscard]] Sentence save(const ComponentRow& row, const PropertyTransaction& from) noexcept;
+
+    [[nodiscard]] bool keeps() const noexcept { return !directory_.empty(); }
+
+private:
+    [[nodiscard]] bool name_path(const ComponentRow& row) noexcept;
+
+    std::string_view directory_;
+    std::array<char, longest_path + 1> path_{};
+    std::array<char, max_cpf_bytes> text_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,55 @@
+// One component after the other: asked for, copied by its engine, written.
+#include "kernel/services/configuration/property_saving.hpp"
+
+namespace tappet {
+
+void PropertySaving::begin(MachineInstance& machine, const PropertyStore& store,
+                           std::size_t activity) noexcept {
+    if (busy_) return;
+    machine_ = &machine, store_ = store, activity_ = activity;
+    next_ = saved_ = 0;
+    fault_ = Sentence{};
+    busy_ = true;
+    asked_ = false;
+}
+
+bool PropertySaving::step() noexcept {
+    if (!busy_) return false;
+    const auto components = machine_->machine().table.components;
+    if (asked_) {
+        if (!copy_.finished()) return true;
+        asked_ = false;
+        write();
+        ++next_;
+    }
+    while (next_ < components.size() && !components[next_].has_properties_file) ++next_;
+    if (next_ == components.size())
+        busy_ = false;
+    else
+        ask(next_);
+    return busy_;
+}
+
+void PropertySaving::ask(std::size_t component) noexcept {
+    const AcceptedMachine& machine = machine_->machine();
+    const ComponentRow& row = machine.table.components[component];
+    copy_.begin(row.name, *row.type, machine_->component(component));
+    copy_.change_all();
+    const std::size_t activity = machine.index.activity[component];
+    if (activity == activity_)
+        copy_.capture();
+    else if (!machine_->post_request(activity, copy_.capture_message(machine.plan.part_of[component])))
+        return; // its engine has much to do: again in the next step
+    asked_ = true;
+}
+
+void PropertySaving::write() noexcept {
+    const ComponentRow& row = machine_->machine().table.components[next_];
+    const Sentence fault = store_.save(store_.self, row, copy_);
+    if (fault.empty())
+        ++saved_;
+    else if (fault_.empty())
+        fault_ = fault;
+}
+
+} // namespace tappet

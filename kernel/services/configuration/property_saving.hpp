@@ -1,0 +1,37 @@
+// Saves the properties of a machine that runs: each component is copied in its own engine between two steps,
+// and written by whoever asked.
+#pragma once
+
+#include "kernel/machine/instance.hpp"
+
+namespace tappet {
+
+/// Of a component that sees the machine: begin(), then step() in each of its cycles until it says that
+/// nothing is left. May block on the file; takes no heap. Large: in static memory.
+class PropertySaving {
+public:
+    /// `activity`: the one that calls; components in it stand still meanwhile.
+    void begin(MachineInstance& machine, const PropertyStore& store, std::size_t activity) noexcept;
+    /// False when every file is written or has its fault.
+    bool step() noexcept;
+    [[nodiscard]] bool busy() const noexcept { return busy_; }
+    [[nodiscard]] std::size_t saved() const noexcept { return saved_; }
+    /// The first fault; empty: none.
+    [[nodiscard]] const Sentence& fault() const noexcept { return fault_; }
+
+private:
+    void ask(std::size_t component) noexcept;
+    void write() noexcept;
+
+    MachineInstance* machine_ = nullptr;
+    PropertyStore store_{};
+    std::size_t activity_ = 0;
+    std::size_t next_ = 0; ///< component
+    std::size_t saved_ = 0;
+    bool busy_ = false;
+    bool asked_ = false;
+    Sentence fault_{};
+    PropertyTransaction copy_{};
+};
+
+} // namespace tappet

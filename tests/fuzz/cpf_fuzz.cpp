@@ -1,0 +1,49 @@
+// Any bytes as a properties file (thesis 4.7.1): the reader refuses with a sentence or takes values that it
+// then writes and reads back unchanged; it never reads outside its text and never ends.
+#include "kernel/services/configuration/cpf.hpp"
+#include "tests/kernel/services/configuration/every_property.hpp"
+
+#include <array>
+#include <cstdlib>
+
+namespace {
+
+using namespace tappet;
+
+std::array<char, 2 * max_cpf_bytes> written; // of values that a file gave, which are longer in our spelling
+
+void demand(bool held) {
+    if (!held) std::abort();
+}
+
+std::size_t write(every::Arm& arm, std::span<char> into) {
+    static PropertyTransaction all;
+    all.begin("arm", component_type<every::Arm>, &arm);
+    all.change_all();
+    all.capture();
+    Sentence fault;
+    const std::size_t length = write_cpf(all, into, fault);
+    demand(length != 0 && fault.empty());
+    return length;
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static PropertyTransaction transaction;
+    every::Arm arm;
+    transaction.begin("arm", component_type<every::Arm>, &arm);
+    const Sentence fault = read_cpf({reinterpret_cast<const char*>(data), size}, "fuzz.cpf", transaction);
+    if (!fault.empty()) {
+        demand(fault.view().starts_with("fuzz.cpf:"));
+        return 0;
+    }
+    transaction.commit();
+    const std::size_t length = write(arm, written);
+    every::Arm again;
+    transaction.begin("arm", component_type<every::Arm>, &again);
+    demand(read_cpf({written.data(), length}, "again.cpf", transaction).empty());
+    transaction.commit();
+    demand(every::same_properties(arm, again));
+    return 0;
+}

@@ -1,0 +1,286 @@
+// A machine whose components have their properties in files (thesis 4.7.1): read while it is configured, so
+// that a wrong one keeps it from arming; changed while it runs; saved while it runs and when it has stopped.
+#include "kernel/services/configuration/property_files.hpp"
+
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/virtual_world.hpp"
+#include "kernel/services/configuration/property_saving.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+namespace tappet {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Band {
+    Property<double> low{10.0};
+    Property<double> high{20.0};
+    static constexpr auto interface() {
+        return facets(property<&Band::low>("low", "N", "least", range(0, 1000)),
+                      property<&Band::high>("high", "N", "greatest", range(0, 1000)));
+    }
+};
+
+/// Its band must stay in order; it counts how often it saw one that was not.
+struct Tension {
+    Band band;
+    Property<double> gain{1.0};
+    std::uint64_t steps = 0;
+    std::uint64_t out_of_order = 0;
+    int changes = 0;
+    double gain_when_configured = 0;
+    bool in_step = false;
+    bool changed_in_a_step = false;
+
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        if (proposal.of(band.low) < proposal.of(band.high)) return {};
+        return Sentence{"band.low is not under band.high; spread them"};
+    }
+    void changed() noexcept TAPPET_REALTIME { ++changes, changed_in_a_step |= in_step; }
+    Sentence configure(Setup&) {
+        gain_when_configured = gain.get();
+        return {};
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        in_step = true;
+        ++steps;
+        out_of_order += band.low.get() < band.high.get() ? 0u : 1u;
+        in_step = false;
+    }
+    static constexpr auto interface() {
+        return facets(bag<&Tension::band>("band", "that is wanted"),
+                      property<&Tension::gain>("gain", "", "of the loop", range(0, 10)));
+    }
+};
+
+struct Office {
+    static constexpr bool sees_machine = true;
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+// clang-format off
+constexpr auto table = machine("kept",
+    components(
+        component<Tension>("warp", set("gain", 2.0), properties_file("warp.cpf")),
+        component<Tension>("weft", properties_file("weft.cpf", optional)),
+        component<Tension>("edge", set("band.low", 15.0)),
+        component<Office>("office")),
+    activities(
+        activity("motion", every(1ms), budget(50us), runs("warp")),
+        activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("weft", "edge")),
+        activity("office", every(100ms), not_real_time, runs("office"))),
+    connections(), reactions(), behaviours());
+constexpr auto refused_table = machine("refused",
+    components(component<Tension>("edge", set("band.low", 25.0))),
+    activities(activity("motion", every(1ms), budget(50us), runs("edge"))),
+    connections(), reactions(), behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+constexpr std::size_t motion = 0, logic = 1, office = 2;
+
+std::string cpf(const std::string& members) { return "<properties>\n" + members + "\n</properties>\n"; }
+std::string real(const std::string& name, const std::string& value) {
+    return "<simple name=\"" + name + "\" type=\"double\"><value>" + value + "</value></simple>";
+}
+std::string band(const std::string& members) {
+    return "<struct name=\"band\" type=\"\">" + members + "</struct>";
+}
+
+struct PropertyFilesOfAMachine : testing::Test {
+    std::filesystem::path directory;
+    std::string directory_name;
+    std::unique_ptr<PropertyFiles> files;
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+
+    PropertyFilesOfAMachine() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "tappet-properties-XXXXXX").string();
+        directory_name = mkdtemp(pattern.data());
+        directory = directory_name;
+        files = std::make_unique<PropertyFiles>(directory_name);
+        instance.read_properties_from(files->store());
+    }
+    ~PropertyFilesOfAMachine() override { std::filesystem::remove_all(directory); }
+
+    void put(const std::string& name, const std::string& text) const {
+        std::ofstream{directory / name} << text;
+    }
+    [[nodiscard]] std::string get(const std::string& name) const {
+        std::ifstream file{directory / name};
+        return {std::istreambuf_iterator<char>{file}, {}};
+    }
+    [[nodiscard]] bool there(const std::string& name) const {
+        return std::filesystem::exists(directory / name);
+    }
+    std::string configure() {
+        const auto configured = instance.configure({});
+        return configured ? "" : std::string{configured.error().view()};
+    }
+    Tension& tension(std::string_view name) { return *instance.find<Tension>(name); }
+    std::size_t index_of(std::string_view name) {
+        std::size_t f = 0;
+        while (component_type<Tension>.facets[f].name != name) ++f;
+        return f;
+    }
+    void change(PropertyTransaction& in, std::string_view name, double value) {
+        std::memcpy(in.change(index_of(name)), &value, sizeof value);
+    }
+};
+
+TEST_F(PropertyFilesOfAMachine, are_read_before_configure_and_go_before_the_row) {
+    put("warp.cpf", cpf(real("gain", "3.5") + band(real("low", "100") + real("high", "200"))));
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(tension("warp").gain_when_configured, 3.5);
+    EXPECT_EQ(tension("warp").band.low.get(), 100.0);
+    EXPECT_EQ(tension("warp").band.high.get(), 200.0) << "neither alone would be in order";
+    EXPECT_EQ(tension("warp").changes, 1);
+    EXPECT_EQ(tension("edge").band.low.get(), 15.0);
+}
+
+TEST_F(PropertyFilesOfAMachine, leave_to_the_row_what_they_do_not_say) {
+    put("warp.cpf", cpf(""));
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(tension("warp").gain.get(), 2.0);
+}
+
+TEST_F(PropertyFilesOfAMachine, may_be_missing_only_where_the_row_says_so) {
+    const std::string said = configure();
+    EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
+                            HasSubstr("is missing"), HasSubstr("--properties")));
+}
+
+TEST_F(PropertyFilesOfAMachine, keep_it_from_arming_when_they_are_wrong) {
+    put("warp.cpf", cpf("\n" + real("gian", "3.5")));
+    EXPECT_THAT(configure(), AllOf(StartsWith(directory_name + "/warp.cpf:3: component \"warp\": "),
+                                   HasSubstr("did you mean \"gain\"?")));
+    put("warp.cpf", cpf(real("gain", "11")));
+    EXPECT_THAT(configure(), HasSubstr("over its greatest value 10"));
+    put("warp.cpf", "<properties>");
+    EXPECT_THAT(configure(), HasSubstr("malformed"));
+    put("warp.cpf", cpf(""));
+    put("weft.cpf", cpf(real("gain", "eleven")));
+    EXPECT_THAT(configure(), StartsWith(directory_name + "/weft.cpf:2: component \"weft\": "))
+        << "one that may be missing may not be wrong";
+}
+
+TEST_F(PropertyFilesOfAMachine, that_the_component_refuses_keep_it_from_arming) {
+    put("warp.cpf", cpf(band(real("low", "30"))));
+    EXPECT_THAT(configure(), AllOf(StartsWith("component \"warp\" refuses its properties"),
+                                   HasSubstr("warp.cpf"), HasSubstr("band.low is not under band.high")));
+}
+
+TEST_F(PropertyFilesOfAMachine, are_not_forgotten_by_a_start_up_that_reads_none) {
+    instance.read_properties_from({});
+    EXPECT_THAT(configure(), HasSubstr("this start-up reads none"));
+}
+
+TEST_F(PropertyFilesOfAMachine, need_a_directory_unless_all_are_optional) {
+    PropertyFiles nowhere_to_lie{""};
+    instance.read_properties_from(nowhere_to_lie.store());
+    EXPECT_THAT(configure(),
+                AllOf(StartsWith("component \"warp\": there is no directory"), HasSubstr("--properties")));
+    ComponentRow optional_row{.name = "weft", .type = &component_type<Tension>};
+    optional_row.properties = properties_file("weft.cpf", optional);
+    PropertyTransaction transaction;
+    transaction.begin("weft", component_type<Tension>, &tension("weft"));
+    EXPECT_TRUE(nowhere_to_lie.load(optional_row, transaction).empty());
+    EXPECT_THAT(std::string{nowhere_to_lie.save(optional_row, transaction).view()},
+                HasSubstr("there is no directory"));
+}
+
+TEST(PropertiesOfARow, are_validated_by_their_component_too) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<refused_table, board>::machine(), clock};
+    const auto configured = instance.configure({});
+    ASSERT_FALSE(configured);
+    EXPECT_THAT(std::string{configured.error().view()},
+                HasSubstr("component \"edge\" refuses its properties: band.low"));
+}
+
+TEST_F(PropertyFilesOfAMachine, are_replaced_when_the_machine_stands_still_again) {
+    put("warp.cpf", cpf(real("gain", "3.5")));
+    ASSERT_EQ(configure(), "");
+    tension("warp").gain.set(4.5);
+    ASSERT_TRUE(instance.save_properties().empty());
+    EXPECT_THAT(get("warp.cpf"), HasSubstr("<value>4.5</value>"));
+    EXPECT_TRUE(there("weft.cpf")) << "also the one that was missing";
+    EXPECT_FALSE(there("warp.cpf.new")) << "nothing is left beside it";
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(tension("warp").gain_when_configured, 4.5);
+}
+
+TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced) {
+    put("warp.cpf", cpf(real("gain", "3.5")));
+    ASSERT_EQ(configure(), "");
+    std::filesystem::create_directory(directory / "warp.cpf.new"); // where the new one would be written
+    const std::string said{instance.save_properties().view()};
+    EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
+                            HasSubstr("the old file stands")));
+    EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
+    EXPECT_TRUE(there("weft.cpf")) << "the others are saved all the same";
+}
+
+struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
+    VirtualWorld world{instance};
+    PropertiesOfARunningMachine() {
+        put("warp.cpf", cpf(""));
+        EXPECT_EQ(configure(), "");
+        world.start();
+    }
+};
+
+TEST_F(PropertiesOfARunningMachine, change_together_between_two_steps) {
+    static PropertyTransaction transaction;
+    EXPECT_TRUE(world.run_until(at_ns(0) + 10ms));
+    transaction.begin("warp", component_type<Tension>, &tension("warp"));
+    change(transaction, "band.low", 500.0);
+    change(transaction, "band.high", 600.0);
+    ASSERT_TRUE(instance.post_request(motion, transaction.commit_message(0)));
+    EXPECT_EQ(tension("warp").band.low.get(), 10.0);
+    EXPECT_TRUE(world.run_until(at_ns(0) + 20ms));
+    EXPECT_EQ(transaction.state(), PropertyTransaction::State::done);
+    EXPECT_EQ(tension("warp").band.low.get(), 500.0);
+    EXPECT_EQ(tension("warp").band.high.get(), 600.0);
+    EXPECT_EQ(tension("warp").out_of_order, 0u);
+    EXPECT_FALSE(tension("warp").changed_in_a_step);
+}
+
+TEST_F(PropertiesOfARunningMachine, stay_as_they_are_when_the_component_refuses) {
+    static PropertyTransaction transaction;
+    transaction.begin("edge", component_type<Tension>, &tension("edge"));
+    change(transaction, "gain", 9.0);
+    change(transaction, "band.low", 21.0);
+    ASSERT_TRUE(instance.post_request(logic, transaction.commit_message(1)));
+    EXPECT_TRUE(world.run_until(at_ns(0) + 20ms));
+    EXPECT_EQ(transaction.state(), PropertyTransaction::State::refused);
+    EXPECT_THAT(std::string{transaction.refusal().view()}, HasSubstr("spread them"));
+    EXPECT_EQ(tension("edge").gain.get(), 1.0);
+    EXPECT_EQ(tension("edge").changes, 1) << "that of configuring";
+}
+
+TEST_F(PropertiesOfARunningMachine, are_saved_while_it_runs) {
+    static PropertySaving saving;
+    tension("warp").gain.set(6.25);
+    saving.begin(instance, files->store(), office);
+    int steps = 0;
+    for (Time now = at_ns(0); saving.step() && steps < 100; ++steps) EXPECT_TRUE(world.run_until(now += 1ms));
+    EXPECT_FALSE(saving.busy());
+    EXPECT_EQ(saving.saved(), 2u);
+    EXPECT_TRUE(saving.fault().empty()) << saving.fault().view();
+    EXPECT_THAT(get("warp.cpf"), HasSubstr("<value>6.25</value>"));
+    EXPECT_THAT(get("weft.cpf"), HasSubstr("name=\"band\""));
+}
+
+} // namespace
+} // namespace tappet
