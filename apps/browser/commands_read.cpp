@@ -35,7 +35,7 @@ std::string type_of(const MapReader& map, const map::Facet& facet) {
 }
 
 std::string json_text(std::string_view key, std::string_view text) {
-    return ", " + quoted(key) + ": " + quoted(text);
+    return ", " + in_quotes(key) + ": " + in_quotes(text);
 }
 
 void list_component(Work& work, std::uint32_t index) {
@@ -44,9 +44,10 @@ void list_component(Work& work, std::uint32_t index) {
     for (std::uint32_t i = component.first_facet; i < component.first_facet + component.facet_count; ++i) {
         const map::Facet& facet = map.facets()[i];
         if (work.line.json) {
-            work.out << "{\"name\": " << quoted(map.full_name(i)) << json_text("kind", map.text(facet.kind))
-                     << json_text("type", type_of(map, facet)) << json_text("unit", map.text(facet.unit))
-                     << json_text("doc", map.text(facet.doc)) << "}\n";
+            work.out << "{\"name\": " << in_quotes(map.full_name(i))
+                     << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
+                     << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
+                     << "}\n";
             continue;
         }
         std::string line =
@@ -96,7 +97,7 @@ void tell_figures(Work& work, map::Owner owner, std::uint32_t index, const std::
         const std::string unit{map.text(figure.unit)};
         const bool none_there = reading.busy || reading.value.empty();
         if (work.line.json) {
-            work.out << (indent.empty() ? "" : ", ") << quoted(map.text(figure.name)) << ": "
+            work.out << (indent.empty() ? "" : ", ") << in_quotes(map.text(figure.name)) << ": "
                      << (none_there ? "null" : to_text(map, figure.type, reading.value, Style::json));
             continue;
         }
@@ -110,7 +111,7 @@ void tell_activity(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     const map::Activity& each = map.activities()[index];
     if (work.line.json) {
-        work.out << "{\"activity\": " << quoted(map.text(each.name))
+        work.out << "{\"activity\": " << in_quotes(map.text(each.name))
                  << json_text("trigger", map.text(each.trigger)) << ", \"period_ns\": " << each.period_ns
                  << ", \"deadline_ns\": " << each.deadline_ns << ", \"budget_ns\": " << each.budget_ns
                  << ", \"real_time\": " << (each.real_time != 0 ? "true" : "false")
@@ -136,7 +137,7 @@ void tell_component(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     const map::Component& each = map.components()[index];
     if (work.line.json) {
-        work.out << "{\"component\": " << quoted(map.text(each.name))
+        work.out << "{\"component\": " << in_quotes(map.text(each.name))
                  << json_text("type", map.text(each.type))
                  << json_text("activity", activity_name(map, each.activity))
                  << ", \"facets\": " << each.facet_count;
@@ -157,7 +158,7 @@ void tell_machine(Work& work) {
     std::string_view build{header.build_id.data(), header.build_id.size()};
     build = build.substr(0, build.find('\0'));
     if (work.line.json) {
-        work.out << "{\"machine\": " << quoted(map.text(header.machine))
+        work.out << "{\"machine\": " << in_quotes(map.text(header.machine))
                  << json_text("board", map.text(header.board)) << json_text("world", map.text(header.world))
                  << json_text("build_id", build) << json_text("role", work.session.role())
                  << ", \"process\": " << header.process
@@ -195,7 +196,7 @@ void tell_facet(Work& work, const FoundFacet& found) {
     const map::Facet& facet = found.record;
     const bool has_value = facet.value_at != 0;
     if (work.line.json) {
-        work.out << "{\"name\": " << quoted(map.full_name(found.index))
+        work.out << "{\"name\": " << in_quotes(map.full_name(found.index))
                  << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
                  << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
                  << json_text("activity", activity_name(map, map.activity_of(facet)));

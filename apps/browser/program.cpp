@@ -4,6 +4,8 @@
 #include "apps/browser/shell.hpp"
 #include "apps/browser/value.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <iostream>
 #include <ostream>
 
@@ -14,7 +16,8 @@ namespace {
 int tell(const Surroundings& surroundings, const Failure& failure, bool json) {
     const int code = static_cast<int>(failure.fault);
     if (json)
-        surroundings.errors << "{\"error\": " << quoted(failure.sentence) << ", \"exit\": " << code << "}\n";
+        surroundings.errors << "{\"error\": " << in_quotes(failure.sentence) << ", \"exit\": " << code
+                            << "}\n";
     else
         surroundings.errors << "tappet-browse: " << failure.sentence << "\n";
     surroundings.errors.flush();
@@ -98,9 +101,7 @@ int run_lines(Session& session, const Line& first, Surroundings& surroundings) {
     return lines.code();
 }
 
-} // namespace
-
-int run_program(std::span<const std::string> words, Surroundings& surroundings) {
+int run(std::span<const std::string> words, Surroundings& surroundings) {
     const auto line = parse_line(words);
     if (!line) return tell(surroundings, {Fault::bad_request, line.error()}, false);
     if (line->help || (!line->words.empty() && line->words.front() == "help")) {
@@ -128,6 +129,21 @@ int run_program(std::span<const std::string> words, Surroundings& surroundings) 
     const auto done = run_command(work);
     surroundings.out.flush();
     return done ? 0 : tell(surroundings, done.error(), line->json);
+}
+
+} // namespace
+
+int run_program(std::span<const std::string> words, Surroundings& surroundings) {
+    try {
+        return run(words, surroundings);
+    } catch (const nlohmann::json::exception& wrong) {
+        return tell(
+            surroundings,
+            {Fault::no_machine,
+             std::string{"an answer is not as the protocol says; is another program at this socket? "} +
+                 wrong.what()},
+            false);
+    }
 }
 
 } // namespace tappet::browser

@@ -36,11 +36,11 @@ std::string value_of(const MapReader& map, const Reading& reading, Style style) 
 
 std::string json_of(const MapReader& map, const Reading& reading) {
     const map::Facet& facet = map.facets()[reading.facet];
-    std::string all = "{\"name\": " + quoted(map.full_name(reading.facet));
+    std::string all = "{\"name\": " + in_quotes(map.full_name(reading.facet));
     if (reading.busy) return all + ", \"busy\": true}";
     all += ", \"value\": " + value_of(map, reading, Style::json);
-    all += ", \"unit\": " + quoted(map.text(facet.unit));
-    all += ", \"flow\": " + quoted(flow_of(map, reading));
+    all += ", \"unit\": " + in_quotes(map.text(facet.unit));
+    all += ", \"flow\": " + in_quotes(flow_of(map, reading));
     all += std::string{", \"forced\": "} + (reading.forced ? "true" : "false");
     if (reading.stamp_ns >= 0) all += ", \"time_ns\": " + std::to_string(reading.stamp_ns);
     return all + "}";

@@ -1,6 +1,8 @@
 // Walking a type and its bytes, both from the machine's memory.
 #include "apps/browser/value.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -41,12 +43,12 @@ std::int64_t whole(Bytes bytes, std::uint64_t size) {
 }
 
 template <class Real> std::string real_text(Real value, Style style) {
-    if (style == Style::json && !std::isfinite(value)) return "null";
     std::array<char, 64> text{};
     const auto end = style == Style::brief ? std::to_chars(text.data(), text.data() + text.size(), value,
                                                            std::chars_format::general, 6)
                                            : std::to_chars(text.data(), text.data() + text.size(), value);
-    return {text.data(), end.ptr};
+    const std::string number{text.data(), end.ptr};
+    return style == Style::json && !std::isfinite(value) ? in_quotes(number) : number;
 }
 
 class Writer {
@@ -64,7 +66,7 @@ public:
                                               : real_text(load<double>(bytes), style_);
         case Shape::duration: {
             const auto nanoseconds = load<std::int64_t>(bytes);
-            return style_ == Style::json ? std::to_string(nanoseconds) : duration_text(nanoseconds);
+            return style_ == Style::json ? in_quotes(duration_text(nanoseconds)) : duration_text(nanoseconds);
         }
         case Shape::text: return text(type, bytes);
         case Shape::enumeration: return enumerator(type, bytes);
@@ -75,14 +77,17 @@ public:
         case Shape::opaque: break;
         }
         const std::string what = "<" + std::to_string(type.size) + " bytes>";
-        return style_ == Style::json ? quoted(what) : what;
+        return style_ == Style::json ? in_quotes(what) : what;
     }
 
 private:
     [[nodiscard]] std::string text(const map::Type& type, Bytes bytes) const {
         const std::uint64_t length =
             std::min<std::uint64_t>(natural(bytes.subspan(type.length_at), type.length_bytes), type.columns);
-        return quoted({reinterpret_cast<const char*>(bytes.data()) + type.items_at, length});
+        const std::string_view letters{reinterpret_cast<const char*>(bytes.data()) + type.items_at, length};
+        if (style_ != Style::json) return in_quotes(letters);
+        // Letters that are no UTF-8 become U+FFFD.
+        return nlohmann::json(letters).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     }
 
     [[nodiscard]] std::string enumerator(const map::Type& type, Bytes bytes) const {
@@ -93,7 +98,7 @@ private:
             if (each.value == value ||
                 (type.size < 8 && each.value == static_cast<std::int64_t>(natural(bytes, type.size)))) {
                 const std::string_view name = map_.text(each.name);
-                return style_ == Style::json ? quoted(name) : std::string{name};
+                return style_ == Style::json ? in_quotes(name) : std::string{name};
             }
         }
         return std::to_string(value);
@@ -141,15 +146,20 @@ private:
             const map::Field& each = map_.fields()[type.first_field + i];
             if (i > 0) all += ", ";
             const std::string_view name = map_.text(each.name);
-            all += style_ == Style::json ? quoted(name) : std::string{name};
+            all += style_ == Style::json ? in_quotes(name) : std::string{name};
             all += ": " + field(each, bytes);
         }
         return all + "}";
     }
 
     [[nodiscard]] std::string arguments(const map::Type& type, Bytes bytes) const {
-        return list(type.field_count,
-                    [&](std::uint64_t i) { return field(map_.fields()[type.first_field + i], bytes); });
+        std::string all = list(type.field_count, [&](std::uint64_t i) {
+            return field(map_.fields()[type.first_field + i], bytes);
+        });
+        if (style_ == Style::json) return all;
+        all.front() = '(';
+        all.back() = ')';
+        return all;
     }
 
     const MapReader& map_;
@@ -187,7 +197,7 @@ std::string signature(const MapReader& map, std::uint32_t type) {
     return all + ")";
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::string all = "\"";
     for (const char letter : text) {
         if (letter == '"' || letter == '\\') {
@@ -208,7 +218,7 @@ std::string as_word(std::string_view text) {
     // Brackets keep their blanks together, and so do quotes.
     const bool one = !text.empty() && (text.front() == '[' || text.front() == '{' || text.front() == '"' ||
                                        text.find_first_of(" \t\"\\") == std::string_view::npos);
-    return one ? std::string{text} : quoted(text);
+    return one ? std::string{text} : in_quotes(text);
 }
 
 } // namespace tappet::browser

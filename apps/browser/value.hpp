@@ -8,7 +8,7 @@ namespace tappet::browser {
 enum class Style {
     exact, ///< read back it gives the same value; spelled as `set` takes it
     brief, ///< six significant digits, for a screen
-    json   ///< a JSON value; durations are numbers of nanoseconds, what is no number is null
+    json   ///< a JSON value; times, enumerations and what is no number are strings, as in the machine's replies
 };
 
 /// `bytes` are at least as many as the type is large.
@@ -17,7 +17,7 @@ enum class Style {
 /// "(double, Duration)": how an operation's arguments are to be given.
 [[nodiscard]] std::string signature(const MapReader& map, std::uint32_t type);
 /// In double quotes, with what JSON forbids escaped.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 /// One word of a request: as it is, or in quotes when it would be taken for several.
 [[nodiscard]] std::string as_word(std::string_view text);
 /// "4ms", "1.5s", "250us".

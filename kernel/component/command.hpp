@@ -259,11 +259,26 @@ public:
     [[nodiscard]] CommandProgress progress(R&... results) const noexcept TAPPET_REALTIME {
         static_assert(std::is_same_v<Arguments<R...>, typename Pack::Results>,
                       "one variable for each result");
+        std::array<std::byte, Pack::result_bytes + 1> packed;
+        const CommandProgress now = progress_packed(packed.data());
+        if (now != CommandProgress::done) return now;
+        [[maybe_unused]] const std::byte* from = packed.data();
+        ((std::memcpy(&results, from, sizeof(R)), from += sizeof(R)), ...);
+        return now;
+    }
+
+    /// As send() and progress(), of packed values.
+    [[nodiscard]] bool send_packed(const std::byte* arguments) noexcept TAPPET_REALTIME {
+        if (!slot_.connected() || !slot_.is_mine()) return false;
+        std::memcpy(values_.data(), arguments, Pack::input_bytes);
+        std::memset(values_.data() + Pack::input_bytes, 0, Pack::result_bytes);
+        return slot_.send();
+    }
+    [[nodiscard]] CommandProgress progress_packed(std::byte* results) const noexcept TAPPET_REALTIME {
         const CommandState now = state();
         if (in_flight(now)) return CommandProgress::executing;
         if (now != CommandState::done) return CommandProgress::failed;
-        [[maybe_unused]] const std::byte* from = values_.data() + Pack::input_bytes;
-        ((std::memcpy(&results, from, sizeof(R)), from += sizeof(R)), ...);
+        std::memcpy(results, values_.data() + Pack::input_bytes, Pack::result_bytes);
         return CommandProgress::done;
     }
 

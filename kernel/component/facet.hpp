@@ -48,6 +48,8 @@ struct PortOperations {
     void (*set_waker)(void* output, Waker waker);
     void (*set_policy)(void* input, Duration max_age, WhenStale, double substitute);
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
+    /// How many values a shared data object was given; any thread.
+    std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
     PortPlaces (*places)(const void* port, bool is_input);
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
     void (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
@@ -160,6 +162,8 @@ struct PortAccess {
                 if constexpr (std::is_arithmetic_v<T>) in.substitute_ = static_cast<T>(substitute);
             },
         .flow = [](void* input) noexcept TAPPET_REALTIME { return static_cast<Input<T>*>(input)->flow(); },
+        .written = [](const void* shared) noexcept
+        TAPPET_REALTIME { return static_cast<const DataObject<Sample<T>>*>(shared)->generation(); },
         .places =
             [](const void* port, bool is_input) {
                 if (!is_input) {

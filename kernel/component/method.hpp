@@ -13,6 +13,8 @@
 #include "kernel/base/contract.hpp"
 #include "kernel/component/signature.hpp"
 
+#include <atomic>
+
 namespace tappet {
 
 /// What a facet knows of the method behind it.
@@ -74,6 +76,36 @@ struct MethodFunction {
     // So that saying so stays the only error.
     using Signature = Arguments<>;
     static constexpr MethodOperations operations{};
+};
+
+/// A method that runs once in its component's engine for one that knows no types: there it needs not be
+/// any_thread. Packed arguments first, the result behind them. One at a time.
+class MethodRequest {
+public:
+    /// Between place() and done() the engine has it. Any thread, real-time.
+    [[nodiscard]] bool done() const noexcept TAPPET_REALTIME {
+        return !asked_.load(std::memory_order_acquire);
+    }
+    /// Before it is posted. `values` has room for arguments and result and outlives the request.
+    void place(const MethodOperations& method, void* component, std::byte* values) noexcept TAPPET_REALTIME {
+        method_ = &method, component_ = component, values_ = values;
+        asked_.store(true, std::memory_order_relaxed);
+    }
+    /// It could not be posted.
+    void withdraw() noexcept TAPPET_REALTIME { asked_.store(false, std::memory_order_relaxed); }
+    /// As a message's call, in the engine.
+    static void run(void* self, const std::byte*) noexcept TAPPET_REALTIME {
+        auto& request = *static_cast<MethodRequest*>(self);
+        const MethodOperations& method = *request.method_;
+        method.call_packed(request.component_, request.values_, request.values_ + method.argument_bytes);
+        request.asked_.store(false, std::memory_order_release);
+    }
+
+private:
+    const MethodOperations* method_ = nullptr;
+    void* component_ = nullptr;
+    std::byte* values_ = nullptr;
+    std::atomic<bool> asked_{false};
 };
 
 namespace detail {

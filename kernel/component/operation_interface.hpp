@@ -64,6 +64,47 @@ inline constexpr CommandCallOperations command_call_of{
 
 } // namespace detail
 
+namespace detail {
+
+/// A command that is another one, sent by its component: its arguments go there, its results come back.
+template <auto Member, class Call = typename MemberOf<Member>::Type>
+struct ForwardedCommand;
+template <auto Member, class... P>
+struct ForwardedCommand<Member, CommandCall<P...>> {
+    using Pack = Packing<P...>;
+    static CommandCall<P...>& call(void* component) noexcept TAPPET_REALTIME {
+        return static_cast<typename MemberOf<Member>::Component*>(component)->*Member;
+    }
+    static bool begin(void* component, std::byte* values) noexcept TAPPET_REALTIME {
+        return call(component).send_packed(values);
+    }
+    static CommandProgress progress(void* component, std::byte* values) noexcept TAPPET_REALTIME {
+        return call(component).progress_packed(values + Pack::input_bytes);
+    }
+    static constexpr CommandOperations operations{type_id<typename Pack::Inputs>,
+                                                  type_id<typename Pack::Results>,
+                                                  Pack::input_bytes,
+                                                  Pack::result_bytes,
+                                                  &begin,
+                                                  &progress};
+};
+
+} // namespace detail
+
+/// A command that wraps the one behind a member CommandCall<P...> as it is: rejected while that one is on its
+/// way, done with its results when it is done, failed when it was rejected or failed. For one that changes
+/// arguments, write an action that sends it and a completion that returns its progress(...). The call itself
+/// needs its sends<...>(...) and its row too.
+template <auto Member, class... Options>
+constexpr Facet forwards(std::string_view name, std::string_view doc, Options... options) {
+    return detail::with({.name = name,
+                         .doc = doc,
+                         .kind = FacetKind::command,
+                         .type = type_id<typename detail::MemberOf<Member>::Type::Signature>,
+                         .command = &detail::ForwardedCommand<Member>::operations},
+                        options...);
+}
+
 /// A member CommandCall<P...>; a row uses(...) must connect it unless `optional`.
 template <auto Member, class... Options>
 constexpr Facet sends(std::string_view name, std::string_view doc, Options... options) {

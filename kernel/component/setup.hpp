@@ -4,6 +4,7 @@
 
 #include "kernel/base/text.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/component/life_sign.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/waiter.hpp"
 
@@ -27,6 +28,7 @@ struct Setup {
     std::span<const ProvidedDevice> devices;
     os::Clock* clock = nullptr;
     os::Waiter* waiter = nullptr;
+    LifeSign watched{};                 ///< only for a type that says `watches_life = true`
     MachineInstance* machine = nullptr; ///< only for a type that says `sees_machine = true`
 
     /// The row's device, or null when this world has none of that name and class.

@@ -8,6 +8,7 @@
 #include "kernel/machine/check_operations.hpp"
 #include "kernel/machine/check_reactions.hpp"
 #include "kernel/machine/check_time.hpp"
+#include "kernel/machine/check_watches.hpp"
 
 namespace tappet {
 
@@ -19,6 +20,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_activities(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_observers(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_connections(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_watches(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reactions(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;

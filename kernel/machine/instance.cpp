@@ -28,6 +28,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
                     devices,
                     clock_,
                     &engines()[machine_.index.activity[c]].waiter(),
+                    life_sign_of(row.watched),
                     row.type->sees_machine ? this : nullptr};
         if (const Sentence refusal = row.type->configure(component(c), setup); !refusal.empty())
             return std::unexpected(refusal);

@@ -81,6 +81,11 @@ public:
     /// done. False: the facet is no command, the slot is on its way, or `values` are too small. At most
     /// `requests_waiting` are at work in one engine: one more is rejected. Wait-free.
     [[nodiscard]] bool bind_command(End to, CommandSlot& slot, std::span<std::byte> values) noexcept;
+    /// Runs a method of the table in the engine of its component, for a component that sees the machine:
+    /// packed arguments in `values`, the packed result behind them when the request is done(). False: the
+    /// facet is no method, the request is not done yet, `values` are too small, or too many requests wait.
+    /// Wait-free.
+    [[nodiscard]] bool request_method(End to, MethodRequest& request, std::span<std::byte> values) noexcept;
 
     /// Starts, stops or restarts one component while the rest goes on (thesis 3.1.3): its engine does it
     /// between two steps, and answers. Real-time, any thread.
@@ -167,6 +172,7 @@ private:
     void connect_clocks();
     void connect_data();
     void place_needed_inputs();
+    [[nodiscard]] LifeSign life_sign_of(std::string_view watched) noexcept;
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);
     void connect_events();

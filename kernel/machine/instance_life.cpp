@@ -6,6 +6,26 @@
 
 namespace tappet {
 
+namespace {
+
+std::uint64_t cycles_of(const void* engine) noexcept TAPPET_REALTIME {
+    return static_cast<const Engine*>(engine)->generation();
+}
+
+bool is_part_expected(const void* part) noexcept TAPPET_REALTIME {
+    const ComponentState state = static_cast<const EnginePart*>(part)->state.load(std::memory_order_acquire);
+    return state != ComponentState::stopped && state != ComponentState::inactive;
+}
+
+// One whose thread was given up is not active, but nobody wanted that.
+bool is_engine_expected(const void* self) noexcept TAPPET_REALTIME {
+    const auto& engine = *static_cast<const Engine*>(self);
+    return engine.is_active() ||
+           engine.plan().parts.front().state.load(std::memory_order_acquire) == ComponentState::failed;
+}
+
+} // namespace
+
 void MachineInstance::place_needed_inputs() {
     const MachineView& table = machine_.table;
     std::size_t placed[checks::max_activities] = {};
@@ -23,6 +43,22 @@ void MachineInstance::place_needed_inputs() {
                         .same_activity = machine_.index.activity[link.from.component] == reader,
                         .valid_to_start = input.valid_to_start};
     }
+}
+
+LifeSign MachineInstance::life_sign_of(std::string_view watched) noexcept {
+    if (watched.empty()) return {};
+    if (const std::size_t a = find_activity(machine_.table, watched); a != nowhere)
+        return {&engines()[a], &engines()[a], &cycles_of, &is_engine_expected};
+    End output;
+    static_cast<void>(resolve(machine_.table, machine_.index.by_name, watched, FacetKind::output, output));
+    for (std::size_t x = 0; x < machine_.table.connections.size(); ++x)
+        if (machine_.index.connections[x].from == output && machine_.plan.connections[x].shared) {
+            const std::size_t a = machine_.index.activity[output.component];
+            return {at<void>(machine_.plan.connections[x].memory_at),
+                    &engines()[a].plan().parts[machine_.plan.part_of[output.component]],
+                    facet_at(machine_.table, output).port->written, &is_part_expected};
+        }
+    return {};
 }
 
 LifeTicket MachineInstance::ask_component(std::size_t c, LifeChange change) noexcept TAPPET_REALTIME {

@@ -77,6 +77,21 @@ bool MachineInstance::bind_command(End to, CommandSlot& slot, std::span<std::byt
     return slot.reset();
 }
 
+bool MachineInstance::request_method(End to, MethodRequest& request, std::span<std::byte> values) noexcept {
+    const Facet& facet = facet_at(machine_.table, to);
+    if (facet.kind != FacetKind::method || !request.done() ||
+        values.size() < facet.method->argument_bytes + facet.method->result_bytes)
+        return false;
+    request.place(*facet.method, component(to.component), values.data());
+    Message message;
+    message.run = &MethodRequest::run;
+    message.object = &request;
+    message.id = machine_.plan.part_of[to.component];
+    if (post_request(machine_.index.activity[to.component], message)) return true;
+    request.withdraw();
+    return false;
+}
+
 bool MachineInstance::post_request(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME {
     const MailPlan& mail = machine_.plan.requests[activity];
     // The index of a mailbox that was not planned is another's.

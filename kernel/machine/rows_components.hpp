@@ -62,6 +62,12 @@ constexpr PropertyRow set(std::string_view name) {
     return {name, {.kind = PropertySetting::Kind::list, .list = &detail::list_setting<values>}};
 }
 
+struct Watches {
+    std::string_view name{};
+};
+/// What a watchdog watches: an activity, or an output that a connection leads to another activity.
+constexpr Watches watches(std::string_view name) noexcept { return {name}; }
+
 struct PropertiesFile {
     std::string_view name{};
     bool may_be_missing = false;
@@ -77,6 +83,7 @@ struct ComponentRow {
     std::string_view name{};
     const ComponentType* type = nullptr;
     std::string_view device{};
+    std::string_view watched{};
     Bounded<PropertyRow, max_settings> settings{};
     bool too_many_settings = false;
     bool has_properties_file = false;
@@ -86,6 +93,7 @@ struct ComponentRow {
 namespace detail {
 
 constexpr void apply(ComponentRow& row, DeviceName option) noexcept { row.device = option.name; }
+constexpr void apply(ComponentRow& row, Watches option) noexcept { row.watched = option.name; }
 constexpr void apply(ComponentRow& row, const PropertyRow& option) noexcept {
     row.too_many_settings |= !row.settings.push(option);
 }

@@ -143,6 +143,11 @@ private:
                     table_.components[i].device,
                     [i](Copy& c) -> std::string_view& { return c.components[i].device; },
                     [i](const Copy& c) { return label(c.components[i]); });
+            if (!table_.components[i].watched.empty())
+                misspell(
+                    table_.components[i].watched,
+                    [i](Copy& c) -> std::string_view& { return c.components[i].watched; },
+                    [i](const Copy& c) { return label(c.components[i]); });
             for (std::size_t s = 0; s < table_.components[i].settings.size(); ++s)
                 misspell(
                     table_.components[i].settings[s].name,

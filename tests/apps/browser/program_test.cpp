@@ -175,6 +175,15 @@ TEST_F(Program, a_machine_that_does_not_answer_is_exit_code_5) {
     EXPECT_THAT(outcome.errors, HasSubstr("no answer within 50 ms"));
 }
 
+TEST_F(Program, an_answer_that_is_none_is_told_and_ends_nothing_else) {
+    machine.answer("save", {"no JSON"});
+    EXPECT_EQ(run({"save"}).code, 3);
+    machine.answer("forc", {R"({"id": {}, "ok": true})"});
+    const Outcome outcome = run({"force", "loom.lamp", "true"});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.errors, HasSubstr("is another program at this socket?"));
+}
+
 TEST_F(Program, tells_about_the_machine_and_about_one_name) {
     const Outcome machine_info = run({"info"});
     EXPECT_THAT(machine_info.out, HasSubstr("machine sample on board test"));

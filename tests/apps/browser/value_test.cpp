@@ -36,18 +36,18 @@ TEST_F(Values, numbers_are_shown_as_they_can_be_read_back) {
     EXPECT_EQ(shown(sample.truth, bytes_of(true)), "true");
 }
 
-TEST_F(Values, what_is_no_number_is_null_in_json) {
-    EXPECT_EQ(shown(sample.f64, bytes_of(std::numeric_limits<double>::quiet_NaN()), Style::json), "null");
-    EXPECT_EQ(shown(sample.f64, bytes_of(std::numeric_limits<double>::infinity()), Style::json), "null");
+TEST_F(Values, what_is_no_number_is_a_string_in_json) {
+    EXPECT_EQ(shown(sample.f64, bytes_of(std::numeric_limits<double>::quiet_NaN()), Style::json), "\"nan\"");
+    EXPECT_EQ(shown(sample.f64, bytes_of(std::numeric_limits<double>::infinity()), Style::json), "\"inf\"");
 }
 
-TEST_F(Values, durations_have_a_unit_for_people_and_nanoseconds_in_json) {
+TEST_F(Values, durations_have_the_largest_unit_that_leaves_a_whole_number) {
     EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{4'000'000})), "4ms");
     EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{1'500'000'000})), "1500ms");
     EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{-2'000'000'000})), "-2s");
     EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{7})), "7ns");
     EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{0})), "0s");
-    EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{4'000'000}), Style::json), "4000000");
+    EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{4'000'000}), Style::json), "\"4ms\"");
 }
 
 TEST_F(Values, an_enumeration_is_shown_by_name_and_an_unknown_value_by_number) {
@@ -83,7 +83,7 @@ TEST_F(Values, arguments_are_a_list_and_have_a_signature) {
         sample.record("arguments", {{"", sample.f64}, {"", sample.truth}}, map::Shape::arguments);
     std::vector<std::byte> bytes = bytes_of(2.5);
     bytes.push_back(std::byte{1});
-    EXPECT_EQ(shown(list, bytes), "[2.5, true]");
+    EXPECT_EQ(shown(list, bytes), "(2.5, true)");
     const std::vector<std::byte> block = sample.build();
     EXPECT_EQ(signature(*MapReader::open(block), list), "(double, bool)");
 }

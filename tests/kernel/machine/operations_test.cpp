@@ -99,6 +99,14 @@ struct Carriage {
     }
 };
 
+/// Gives the axis' move on as it is, under a name of its own.
+struct Door {
+    CommandCall<double, int&> axis;
+    static constexpr auto interface() {
+        return facets(forwards<&Door::axis>("go", "in units"), sends<&Door::axis>("axis", "that carries it"));
+    }
+};
+
 /// Prepares a move and hands it on to a runner, which is another's activity.
 struct Planner {
     CommandCall<double, int&> move;
@@ -131,9 +139,9 @@ struct Watcher {
 // clang-format off
 constexpr auto table = machine("track",
     components(component<Axis>("axis"), component<Panel>("panel"), component<Panel>("urgent"), component<Carriage>("carriage"),
-               component<Planner>("planner"), component<Runner>("runner"), component<Watcher>("watcher"), component<Panel>("near")),
+               component<Planner>("planner"), component<Runner>("runner"), component<Watcher>("watcher"), component<Panel>("near"), component<Door>("door")),
     activities(
-        activity("motion", every(1ms),  budget(50us), runs("axis", "near")),
+        activity("motion", every(1ms),  budget(50us), runs("axis", "near", "door")),
         activity("alarm",  every(1ms),  budget(50us), deadline(500us), runs("urgent")),
         activity("panel",  every(10ms), budget(50us), runs("panel", "planner")),
         activity("logic",  on_work(), at_most(4, 1ms), deadline(5ms), budget(50us), runs("carriage", "runner")),
@@ -143,7 +151,7 @@ constexpr auto table = machine("track",
         uses("panel.move", "carriage.go"),
         uses("panel.mark", "axis.mark"), uses("panel.second_mark", "axis.mark"),
         uses("urgent.mark", "axis.mark"), uses("urgent.move", "axis.move_to"),
-        uses("carriage.axis", "axis.move_to"),
+        uses("carriage.axis", "axis.move_to"), uses("door.axis", "axis.move_to"), uses("near.move", "door.go"),
         uses("planner.move", "axis.move_to", sent_by("runner")),
         uses("panel.distance", "axis.distance"), uses("near.spare", "axis.zero"),
         when("urgent.knock", tell("axis.knock")),
@@ -209,6 +217,31 @@ TEST(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
     std::array<std::byte, sizeof(double)> result{};
     facet.method->call_packed(&rig.axis, arguments.data(), result.data());
     EXPECT_EQ(detail::load_packed<double>(result.data()), 15.0);
+}
+
+TEST(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_machine) {
+    Rig rig;
+    rig.axis.position = 40.0;
+    const MachineView& seen = rig.instance.machine().table;
+    const End zero{0, find_facet(seen.components[0], "zero")};
+    const End distance{0, find_facet(seen.components[0], "distance")};
+    MethodRequest request;
+    ASSERT_TRUE(rig.instance.request_method(zero, request, {}));
+    EXPECT_FALSE(request.done());
+    EXPECT_FALSE(rig.instance.request_method(zero, request, {}));
+    EXPECT_EQ(rig.axis.position, 40.0); // never in the caller
+    rig.pass(1ms);
+    EXPECT_TRUE(request.done());
+    EXPECT_EQ(rig.axis.position, 0.0);
+    std::array<std::byte, 17> values{};
+    detail::store_packed(values.data(), -3.0);
+    detail::store_packed(values.data() + 8, true);
+    EXPECT_FALSE(rig.instance.request_method(distance, request, std::span{values}.first(16)));
+    ASSERT_TRUE(rig.instance.request_method(distance, request, values));
+    rig.pass(1ms);
+    EXPECT_EQ(detail::load_packed<double>(values.data() + 9), 3.0);
+    EXPECT_FALSE(
+        rig.instance.request_method({0, find_facet(seen.components[0], "move_to")}, request, values));
 }
 
 // ---- the life of a command
@@ -335,6 +368,20 @@ TEST(Commands, one_that_wraps_another_is_done_when_that_one_is) {
     EXPECT_EQ(rig.axis.position, 4.0);
     EXPECT_EQ(rig.panel.move.state(), CommandState::done); // its engine sleeps but for the inner one's end
     EXPECT_EQ(rig.panel.move.result(), 4);
+}
+
+TEST(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
+    Rig rig;
+    Panel& near = *rig.instance.find<Panel>("near");
+    ASSERT_TRUE(near.move.send(3.0));
+    rig.pass(3ms);
+    EXPECT_EQ(near.move.state(), CommandState::executing);
+    rig.pass(10ms);
+    EXPECT_EQ(near.move.state(), CommandState::done);
+    EXPECT_EQ(near.move.result(), 3);
+    ASSERT_TRUE(near.move.send(-3.0));
+    rig.pass(3ms);
+    EXPECT_EQ(near.move.state(), CommandState::failed);
 }
 
 TEST(Commands, one_that_wraps_a_rejected_one_fails) {

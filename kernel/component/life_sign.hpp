@@ -1,0 +1,19 @@
+// A sign of life: a number that grows while an activity runs or a value is written, for whoever watches it.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+
+#include <cstdint>
+
+namespace tappet {
+
+/// What a watchdog gets at configure, by the row option watches(...). Real-time, any thread.
+struct LifeSign {
+    const void* watched = nullptr;
+    const void* owner = nullptr; ///< whose life decides whether signs are expected
+    std::uint64_t (*count)(const void* watched) noexcept TAPPET_REALTIME = nullptr;
+    /// False while it was stopped on purpose: its silence means nothing.
+    bool (*expected)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
+};
+
+} // namespace tappet

@@ -1,0 +1,73 @@
+// The time service (thesis 3.3): an event at a time, after a while, or again and again.
+#pragma once
+
+#include "kernel/component/component.hpp"
+
+namespace tappet {
+
+/// In the table: component<TimedEvent>("rinse"), when("panel.wash", tell("rinse.arm_after")) and
+/// when("rinse.due", tell("pump.start")). Arming again moves it; a time that is past is due at once; a period
+/// that is not positive arms nothing. It wakes its activity, which is on_work() or not_real_time. A stop of
+/// the component cancels it. Real-time.
+struct TimedEvent {
+    Event<Time> due;              ///< with the time it was armed for
+    Output<std::int64_t> times;   ///< it was due
+    Output<std::int64_t> skipped; ///< periods that passed while its activity was late
+
+    Sentence configure(Setup& setup) {
+        clock_ = setup.clock;
+        return {};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        times.write(times.last());
+        skipped.write(skipped.last());
+    }
+
+    void arm_at(Time when) noexcept TAPPET_REALTIME {
+        period_ = Duration::zero();
+        timer_.arm(when);
+    }
+    void arm_after(Duration after) noexcept TAPPET_REALTIME { arm_at(clock_->now() + after); }
+    /// The first time one period from now; the later ones keep that beat, however late the activity runs.
+    void every(Duration period) noexcept TAPPET_REALTIME {
+        cancel();
+        if (period <= Duration::zero()) return;
+        arm_after(period);
+        period_ = period;
+    }
+    void cancel() noexcept TAPPET_REALTIME { timer_.cancel(); }
+    [[nodiscard]] bool armed() const noexcept TAPPET_REALTIME { return timer_.when() != never; }
+
+    static constexpr auto interface() {
+        return facets(event<&TimedEvent::due>("due", "the time it was armed for has come"),
+                      output<&TimedEvent::times>("times", "", "it was due"),
+                      output<&TimedEvent::skipped>("skipped", "", "periods lost to lateness"),
+                      operation<&TimedEvent::arm_at>("arm_at", "once, at this time"),
+                      operation<&TimedEvent::arm_after>("arm_after", "once, so long from now"),
+                      operation<&TimedEvent::every>("every", "again and again with this period"),
+                      operation<&TimedEvent::cancel>("cancel", "never"),
+                      timer<&TimedEvent::timer_, &TimedEvent::ring>("timer", "wakes the activity"));
+    }
+
+private:
+    void ring(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const Time when = cycle.release;
+        if (period_ > Duration::zero()) {
+            Time next = when + period_;
+            if (next <= cycle.now) { // whole periods are lost: they are counted, not made up for
+                const auto lost = (cycle.now - next) / period_ + 1;
+                skipped.write(skipped.last() + lost);
+                next += lost * period_;
+            }
+            timer_.arm(next);
+        }
+        times.write(times.last() + 1);
+        due(when); // last: what hears it may arm it anew
+    }
+
+    Timer timer_;
+    Duration period_{};
+    const os::Clock* clock_ = nullptr;
+};
+
+} // namespace tappet

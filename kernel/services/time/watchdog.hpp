@@ -1,0 +1,66 @@
+// The time service (thesis 3.3): a watchdog says when an activity, or what is written to a connection, shows
+// no life for too long.
+#pragma once
+
+#include "kernel/component/component.hpp"
+
+namespace tappet {
+
+/// In the table: component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)). `watches` names an
+/// activity, or an output that another activity reads ("can.encoder.position"). It looks once in each cycle
+/// of its own activity, which is a periodic one and not the watched one: silence is told after the limit,
+/// never before it, and at most two of its own periods later. An activity shows life when a cycle begins and
+/// when it ends, so that one that hangs in a cycle falls silent; give the watchdog a shorter deadline than
+/// what it watches, or another processor, so that the hanging one cannot keep it from looking. What was
+/// stopped by a request is not expected to live; the limit counts anew when it starts. Real-time.
+struct Watchdog {
+    static constexpr bool watches_life = true;
+
+    Output<bool> alive;
+    Event<Duration> silent; ///< once in each silence, with how long it has lasted
+    Event<Duration> revived;
+    Property<Duration> limit{100ms};
+
+    Sentence configure(Setup& setup) {
+        sign_ = setup.watched;
+        return {};
+    }
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        count_ = sign_.count(sign_.watched);
+        last_life_ = cycle.now;
+        silent_ = false;
+        alive.write(true);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const std::uint64_t count = sign_.count(sign_.watched);
+        const bool lives = count != count_;
+        const Duration silence = cycle.now - last_life_;
+        count_ = count;
+        if (lives || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
+        if (lives && silent_) {
+            silent_ = false;
+            revived(silence);
+        } else if (!lives && !silent_ && cycle.now - last_life_ >= limit.get()) {
+            silent_ = true;
+            silent(silence);
+        }
+        alive.write(!silent_);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { alive.write(false); }
+
+    static constexpr auto interface() {
+        return facets(
+            output<&Watchdog::alive>("alive", "", "what it watches has shown life within the limit"),
+            event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
+            event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),
+            property<&Watchdog::limit>("limit", "s", "the longest time without life", range(0, 3600)));
+    }
+
+private:
+    LifeSign sign_{};
+    std::uint64_t count_ = 0;
+    Time last_life_{};
+    bool silent_ = false;
+};
+
+} // namespace tappet

@@ -1,0 +1,311 @@
+// The time service (thesis 3.3) under virtual time: events at a time, after a while and again and again;
+// watchdogs that hear the silence of an activity and of what a connection carries.
+#include "kernel/services/time/timed_event.hpp"
+#include "kernel/services/time/watchdog.hpp"
+
+#include "kernel/base/random.hpp"
+#include "kernel/machine/real_world.hpp"
+#include "kernel/machine/virtual_world.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+/// Writes its level unless it is told to be silent, and takes the time that it is told to.
+struct Worker {
+    Output<std::int64_t> level;
+    bool silent = false;
+    Duration load{};
+    std::atomic<Duration> hang_for{Duration::zero()}; ///< from another thread
+    os::Clock* clock = nullptr;
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!silent) level.write(level.last() + 1);
+        if (load > Duration::zero()) clock->consume(load);
+        load = {};
+        if (const Duration hang = hang_for.exchange(Duration::zero()); hang > Duration::zero())
+            clock->consume(hang);
+    }
+    static constexpr auto interface() { return facets(output<&Worker::level>("level", "", "counts")); }
+};
+
+/// Hears everything, and says when timed events shall come.
+struct Office {
+    Input<std::int64_t> level;
+    Event<Time> at;
+    Event<Duration> after;
+    Event<Duration> again;
+    Event<> never_mind;
+    bool rearms = false;
+    std::vector<Time> dues, dues_heard_at;
+    std::vector<Duration> silences, revivals;
+    std::vector<Duration> level_silences;
+    os::Clock* clock = nullptr;
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void on_due(Time when) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", dues.push_back(when); dues_heard_at.push_back(clock->now()));
+        if (rearms) at(when + 7ms);
+    }
+    void on_silent(Duration time) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", silences.push_back(time));
+    }
+    void on_revived(Duration time) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", revivals.push_back(time));
+    }
+    void on_level_silent(Duration time) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", level_silences.push_back(time));
+    }
+    void wake_up() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(input<&Office::level>("level", "", "of the worker"),
+                      event<&Office::at>("at", "wants the event at"),
+                      event<&Office::after>("after", "wants it after"),
+                      event<&Office::again>("again", "wants it every"),
+                      event<&Office::never_mind>("never_mind", "does not want it"),
+                      operation<&Office::on_due>("on_due", "hears"),
+                      operation<&Office::on_silent>("on_silent", "hears"),
+                      operation<&Office::on_revived>("on_revived", "hears"),
+                      operation<&Office::on_level_silent>("on_level_silent", "hears"));
+    }
+};
+
+// clang-format off
+constexpr auto table = machine("timely",
+    components(component<Worker>("worker"), component<Office>("office"), component<TimedEvent>("bell"),
+               component<Watchdog>("cycle_dog", watches("motion"),       set("limit", 20ms)),
+               component<Watchdog>("level_dog", watches("worker.level"), set("limit", 30ms))),
+    activities(
+        activity("motion", every(1ms), budget(50us), runs("worker")),
+        activity("dogs",   every(2ms), deadline(500us), budget(50us), runs("cycle_dog", "level_dog")),
+        activity("logic",  on_work(), at_most(8, 1ms), deadline(1ms), budget(20us), runs("office", "bell"))),
+    connections(data("worker.level", "office.level")),
+    reactions(
+        when("office.at",         call("bell.arm_at")),
+        when("office.after",      call("bell.arm_after")),
+        when("office.again",      call("bell.every")),
+        when("office.never_mind", call("bell.cancel")),
+        when("bell.due",          call("office.on_due")),
+        when("cycle_dog.silent",  tell("office.on_silent")),
+        when("cycle_dog.revived", tell("office.on_revived")),
+        when("level_dog.silent",  tell("office.on_level_silent"))),
+    behaviours());
+constexpr auto real_time_table = table; // in memory of its own
+constexpr Board board{
+    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
+    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
+constexpr std::size_t motion = 0, worker = 0;
+// clang-format on
+
+struct TimeService : testing::Test {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    TimeService() {
+        EXPECT_TRUE(instance.configure({}));
+        EXPECT_EQ(world.start().view(), "");
+        run(10ms);
+    }
+    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
+    /// Emits in the logic's activity, as it were: nothing else runs under virtual time meanwhile.
+    template <class E, class... A> void emit(E& event, A... arguments) {
+        event(arguments...);
+        instance.engines()[2].waiter().wake();
+    }
+    Office& office = *instance.find<Office>("office");
+    TimedEvent& bell = *instance.find<TimedEvent>("bell");
+    Worker& the_worker = *instance.find<Worker>("worker");
+    Watchdog& cycle_dog = *instance.find<Watchdog>("cycle_dog");
+    Watchdog& level_dog = *instance.find<Watchdog>("level_dog");
+};
+
+using ATimedEvent = TimeService;
+using AWatchdog = TimeService;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST_F(ATimedEvent, is_due_once_at_its_time_and_not_before) {
+    emit(office.at, clock.now() + 40ms);
+    const Time when = clock.now() + 40ms;
+    run(40ms - 1ns);
+    EXPECT_THAT(office.dues, IsEmpty());
+    run(100ms);
+    EXPECT_THAT(office.dues, ElementsAre(when));
+    EXPECT_EQ(office.dues_heard_at, office.dues);
+    EXPECT_FALSE(bell.armed());
+}
+
+TEST_F(ATimedEvent, is_due_after_a_while_and_arming_again_moves_it) {
+    emit(office.after, Duration{30ms});
+    run(20ms);
+    const Time when = clock.now() + 50ms;
+    emit(office.after, Duration{50ms});
+    run(200ms);
+    EXPECT_THAT(office.dues, ElementsAre(when));
+}
+
+TEST_F(ATimedEvent, that_is_past_is_due_at_once) {
+    const Time when = clock.now() - 5ms;
+    emit(office.at, when);
+    run(1ns);
+    EXPECT_THAT(office.dues, ElementsAre(when));
+    EXPECT_EQ(office.dues_heard_at[0], clock.now() - 1ns);
+}
+
+TEST_F(ATimedEvent, comes_again_and_again_until_it_is_cancelled) {
+    const Time begin = clock.now();
+    emit(office.again, Duration{15ms});
+    run(50ms);
+    EXPECT_THAT(office.dues, ElementsAre(begin + 15ms, begin + 30ms, begin + 45ms));
+    EXPECT_EQ(bell.times.last(), 3);
+    emit(office.never_mind);
+    run(100ms);
+    EXPECT_EQ(office.dues.size(), 3u);
+    EXPECT_EQ(bell.skipped.last(), 0);
+}
+
+TEST_F(ATimedEvent, keeps_its_beat_and_counts_the_periods_that_were_lost_to_lateness) {
+    const Time begin = clock.now();
+    emit(office.again, Duration{10ms});
+    run(10ms);
+    the_worker.load = 35ms; // everything waits for it under virtual time
+    run(60ms);
+    EXPECT_EQ(bell.skipped.last() + bell.times.last(), 7);
+    EXPECT_GT(bell.skipped.last(), 0);
+    for (const Time due : office.dues) EXPECT_EQ((due - begin) % 10ms, Duration::zero());
+}
+
+TEST_F(ATimedEvent, with_a_period_that_is_not_positive_is_not_armed) {
+    emit(office.again, Duration{10ms});
+    emit(office.again, Duration{0});
+    EXPECT_FALSE(bell.armed());
+    emit(office.again, Duration{-1});
+    run(100ms);
+    EXPECT_THAT(office.dues, IsEmpty());
+}
+
+TEST_F(ATimedEvent, may_be_armed_anew_by_what_hears_it) {
+    office.rearms = true;
+    const Time begin = clock.now();
+    emit(office.after, Duration{10ms});
+    run(25ms);
+    EXPECT_THAT(office.dues, ElementsAre(begin + 10ms, begin + 17ms, begin + 24ms));
+}
+
+TEST_F(ATimedEvent, is_forgotten_when_its_component_stops) {
+    emit(office.after, Duration{10ms});
+    static_cast<void>(instance.ask_component(2, LifeChange::restart));
+    run(100ms);
+    EXPECT_THAT(office.dues, IsEmpty());
+}
+
+TEST_F(AWatchdog, is_content_while_there_is_life) {
+    run(10s);
+    EXPECT_TRUE(cycle_dog.alive.last());
+    EXPECT_TRUE(level_dog.alive.last());
+    EXPECT_THAT(office.silences, IsEmpty());
+    EXPECT_THAT(office.level_silences, IsEmpty());
+}
+
+TEST_F(AWatchdog, tells_the_silence_of_a_connection_once_and_two_of_its_periods_after_the_limit_at_most) {
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+        Random random{seed};
+        office.level_silences.clear();
+        run(random.between(1, 40'000) * 1us);
+        the_worker.silent = true;
+        const Time from = clock.now();
+        while (office.level_silences.empty() && clock.now() < from + 1s) run(100us);
+        EXPECT_GT(clock.now(), from + 29ms); // its last value is up to a millisecond older
+        EXPECT_LE(clock.now(), from + 30ms + 2 * 2ms + 100us);
+        run(500ms);
+        ASSERT_EQ(office.level_silences.size(), 1u) << "seed " << seed;
+        EXPECT_GE(office.level_silences[0], 30ms);
+        EXPECT_LT(office.level_silences[0], 32ms);
+        EXPECT_FALSE(level_dog.alive.last());
+        EXPECT_TRUE(cycle_dog.alive.last()) << "its activity runs";
+        the_worker.silent = false;
+        run(5ms);
+        EXPECT_TRUE(level_dog.alive.last());
+    }
+}
+
+TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew_when_it_starts) {
+    EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
+    run(200ms);
+    EXPECT_THAT(office.silences, IsEmpty());
+    EXPECT_THAT(office.level_silences, IsEmpty());
+    EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
+    static_cast<void>(instance.ask_component(worker, LifeChange::stop)); // its activity goes on
+    run(200ms);
+    EXPECT_THAT(office.silences, IsEmpty());
+    EXPECT_THAT(office.level_silences, IsEmpty());
+    static_cast<void>(instance.ask_component(worker, LifeChange::start));
+    the_worker.silent = true;
+    run(29ms);
+    EXPECT_THAT(office.level_silences, IsEmpty());
+    run(10ms);
+    EXPECT_EQ(office.level_silences.size(), 1u);
+}
+
+TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
+    Engine& engine = instance.engines()[motion];
+    engine.stop(clock.now()); // as the supervisor does in the place of a hung thread
+    engine.mark_failed();
+    run(100ms);
+    EXPECT_EQ(office.silences.size(), 1u);
+    EXPECT_FALSE(cycle_dog.alive.last());
+}
+
+TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
+    const auto digest = [](std::uint64_t seed) {
+        Random random{seed};
+        os::Clock its_clock{os::Clock::Kind::virtual_time};
+        MachineInstance again{Firmware<table, board>::machine(), its_clock};
+        VirtualWorld its_world{again};
+        EXPECT_TRUE(again.configure({}));
+        EXPECT_EQ(its_world.start().view(), "");
+        for (int n = 0; n < 50; ++n) {
+            again.find<Worker>("worker")->silent = random.below(2) == 0;
+            EXPECT_TRUE(its_world.run_until(its_clock.now() + random.between(1, 60) * 1ms));
+        }
+        return again.event_log_digest();
+    };
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(digest(seed), digest(seed));
+    EXPECT_NE(digest(1), digest(2));
+}
+
+TEST(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle_and_its_revival) {
+    if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{Firmware<real_time_table, board>::machine(), clock};
+    RealWorld world{instance};
+    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
+    const int nowhere_to_print = open("/dev/null", O_WRONLY);
+    ASSERT_TRUE(instance.configure({}).has_value() && world.arm(report, nowhere_to_print) && world.start());
+    close(nowhere_to_print);
+    EXPECT_TRUE(world.supervise(100ms));
+    instance.find<Worker>("worker")->hang_for = 200ms; // ten times the limit
+    EXPECT_TRUE(world.supervise(500ms));
+    EXPECT_EQ(world.stop(), 0);
+    const Office& office = *instance.find<Office>("office");
+    ASSERT_FALSE(office.silences.empty());
+    EXPECT_GE(office.silences[0], 20ms);
+    EXPECT_EQ(office.revivals.size(), office.silences.size());
+    EXPECT_GE(office.revivals[0], 150ms);
+}
+
+} // namespace
+} // namespace tappet
