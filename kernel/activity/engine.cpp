@@ -26,6 +26,7 @@ Time Engine::next_wake() const noexcept TAPPET_REALTIME {
 }
 
 void Engine::run(bool woken) noexcept TAPPET_REALTIME {
+    const RunsActivity here{plan_.activity};
     const Time now = clock_->now();
     Time release = now;
     const bool due = plan_.periodic ? now >= next_release_ : woken;

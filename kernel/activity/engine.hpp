@@ -82,6 +82,7 @@ enum class StopReason : std::uint8_t {
 
 struct EnginePlan {
     std::string_view name{};
+    std::uint32_t activity = 0; ///< its number in the table
     bool periodic = false;
     bool real_time = true;
     Duration period{};

@@ -11,6 +11,7 @@ constexpr std::uint64_t life_note = 0x6c696665u; // "life": no transition of a s
 } // namespace
 
 Sentence Engine::initialise() {
+    const RunsActivity here{plan_.activity}; // it does not run: its share of every event is free
     for (std::size_t i = 0; i < plan_.parts.size(); ++i) {
         EnginePart& part = plan_.parts[i];
         if (part.type->initialise != nullptr)
@@ -28,11 +29,13 @@ Sentence Engine::initialise() {
 }
 
 void Engine::finalise() {
+    const RunsActivity here{plan_.activity};
     for (std::size_t i = plan_.parts.size(); i-- > 0;)
         if (plan_.parts[i].type->finalise != nullptr) plan_.parts[i].type->finalise(plan_.parts[i].component);
 }
 
 void Engine::start(Time now) noexcept TAPPET_REALTIME {
+    const RunsActivity here{plan_.activity};
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     next_release_ = plan_.periodic ? now + plan_.period : never;
     if (was_stopped_) {
@@ -56,6 +59,7 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
 }
 
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
+    const RunsActivity here{plan_.activity};
     cycle_.now = cycle_.release = now;
     for (const Behaviour& each : plan_.behaviours)
         if (is_running(plan_.parts[each.part].state)) each.stop(each.self, now);

@@ -7,6 +7,8 @@
 #include "kernel/component/command.hpp"
 #include "kernel/component/cycle.hpp"
 #include "kernel/component/event.hpp"
+#include "kernel/component/event_handle.hpp"
+#include "kernel/component/event_wait.hpp"
 #include "kernel/component/method.hpp"
 #include "kernel/component/operation.hpp"
 #include "kernel/component/port.hpp"
@@ -34,7 +36,9 @@ enum class FacetKind : std::uint8_t {
     command_call,
     property,
     bag,
-    timer
+    timer,
+    handle,
+    wait
 };
 
 /// What start-up does with data and buffer ports of one value type.
@@ -67,9 +71,10 @@ struct BufferOperations {
 struct EventOperations {
     std::size_t subscriber_bytes; ///< of one subscriber
     void (*give_storage)(void* event, void* subscribers);
-    void (*subscribe)(void* event, const void* call,
-                      void* context); ///< `call` points at a typed function pointer
-    const void* post;                 ///< of the asynchronous reaction, likewise
+    /// The next row; `call` points at a typed function pointer. Answers the word of the event's connections,
+    /// in which the row has the bit of its turn.
+    std::atomic<std::uint64_t>& (*subscribe)(void* event, const void* call, void* context);
+    const void* post; ///< of the asynchronous reaction, likewise
 };
 
 struct OperationOperations {
@@ -124,6 +129,8 @@ constexpr std::string_view to_text(FacetKind kind) noexcept {
     case FacetKind::property: return "a property";
     case FacetKind::bag: return "a bag of properties";
     case FacetKind::timer: return "a timer";
+    case FacetKind::handle: return "a handle of a reaction";
+    case FacetKind::wait: return "a wait for an event";
     }
     return "a facet";
 }
@@ -218,12 +225,12 @@ struct PortAccess {
             [](void* event, void* memory) {
                 static_cast<Event<A...>*>(event)->subscribers_ = static_cast<Subscriber<A...>*>(memory);
             },
-        .subscribe =
-            [](void* event, const void* call, void* context) {
-                auto& target = *static_cast<Event<A...>*>(event);
-                target.subscribers_[target.count_++] = {
-                    *static_cast<void (*const*)(void*, A...) noexcept TAPPET_REALTIME>(call), context};
-            },
+        .subscribe = [](void* event, const void* call, void* context) -> std::atomic<std::uint64_t>& {
+            auto& target = *static_cast<Event<A...>*>(event);
+            target.subscribers_[target.count_++] = {
+                *static_cast<void (*const*)(void*, A...) noexcept TAPPET_REALTIME>(call), context};
+            return target.connected_;
+        },
         .post = &post<A...>,
     };
 };

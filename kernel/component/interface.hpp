@@ -48,6 +48,19 @@ struct EventArguments<Event<A...>> {
     static constexpr const EventOperations* operations = &PortAccess::event<A...>;
 };
 
+template <class>
+struct WaitArguments;
+template <class... A>
+struct WaitArguments<EventWait<A...>> {
+    using Signature = Arguments<A...>;
+    /// Answers the EventWaitState.
+    template <auto Member>
+    static void* at(void* component, std::size_t index) noexcept {
+        return static_cast<EventWaitState*>(
+            static_cast<EventWait<A...>*>(MemberOf<Member>::at(component, index)));
+    }
+};
+
 template <auto Method>
 inline constexpr OperationOperations operation_of = {&operation_call<Method>, &OperationCall<Method>::run};
 
@@ -148,6 +161,33 @@ constexpr Facet operation(std::string_view name, std::string_view doc, Options..
                          .kind = FacetKind::operation,
                          .type = type_id<typename OperationCall<Method>::Signature>,
                          .operation = &detail::operation_of<Method>},
+                        options...);
+}
+
+/// A member EventHandle; a row must name it by handled_by(...) unless `optional`.
+template <auto Member, class... Options>
+constexpr Facet handle(std::string_view name, std::string_view doc, Options... options) {
+    using M = detail::MemberOf<Member>;
+    static_assert(std::same_as<typename M::Type, EventHandle>, "a handle is a member of type EventHandle");
+    return detail::with({.name = name,
+                         .doc = doc,
+                         .kind = FacetKind::handle,
+                         .type = type_id<EventHandle>,
+                         .required = true,
+                         .at = &M::at},
+                        options...);
+}
+
+/// A member EventWait<A...>; a row must tell it of an event unless `optional`.
+template <auto Member, class... Options>
+constexpr Facet awaits(std::string_view name, std::string_view doc, Options... options) {
+    using M = detail::MemberOf<Member>;
+    return detail::with({.name = name,
+                         .doc = doc,
+                         .kind = FacetKind::wait,
+                         .type = type_id<typename detail::WaitArguments<typename M::Type>::Signature>,
+                         .required = true,
+                         .at = &detail::WaitArguments<typename M::Type>::template at<Member>},
                         options...);
 }
 

@@ -4,7 +4,7 @@
 
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/type_tag.hpp"
-#include "kernel/component/event.hpp"
+#include "kernel/component/subscription.hpp"
 
 #include <cstddef>
 

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 namespace tappet {
 
@@ -21,11 +22,18 @@ struct Message {
 
     Run run = nullptr;
     void* object = nullptr;
-    std::uint32_t id = 0; ///< the receiver's: a row, an epoch, a command slot
+    std::uint32_t id = 0;    ///< the receiver's: a row, a command slot
+    std::uint32_t epoch = 0; ///< of the subscription it was posted through: an older one is dropped
     alignas(8) std::array<std::byte, 48> arguments{};
 };
+static_assert(std::is_standard_layout_v<Message>);
 static_assert(sizeof(Message) == 72,
               "with its number in the ring a message takes 80 bytes, two lines and no third");
+
+/// The message that a Message::Run is called out of: it gets the arguments where they lie.
+inline const Message& message_of(const std::byte* arguments) noexcept TAPPET_REALTIME {
+    return *reinterpret_cast<const Message*>(arguments - offsetof(Message, arguments));
+}
 
 using Mailbox = Ring<Message>;
 
@@ -85,6 +93,15 @@ public:
         }
         if (left != 0) pending_.fetch_or(left, std::memory_order_relaxed); // inbox.put_back
         return served;
+    }
+
+    /// The receiver's thread only, real-time: takes one message, of the first sender that has any. For a
+    /// receiver that uses nothing else of the inbox. False: there is none.
+    [[nodiscard]] bool take(Message& into) noexcept TAPPET_REALTIME {
+        const std::size_t senders = mailboxes_.size();
+        for (std::size_t sender = 0; sender < senders; ++sender)
+            if (mailboxes_[sender].pop(into)) return true;
+        return false;
     }
 
     /// serve(), each message making its call.

@@ -6,6 +6,7 @@
 #include "kernel/machine/check_components.hpp"
 #include "kernel/machine/check_flow.hpp"
 #include "kernel/machine/check_operations.hpp"
+#include "kernel/machine/check_reach.hpp"
 #include "kernel/machine/check_reactions.hpp"
 #include "kernel/machine/check_time.hpp"
 #include "kernel/machine/check_watches.hpp"
@@ -24,6 +25,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reactions(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_reach(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_behaviours(m); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
         return checks::check_schedulability(m, board, r);

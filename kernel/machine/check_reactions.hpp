@@ -3,33 +3,13 @@
 // events that exist.
 #pragma once
 
-#include "kernel/machine/check_components.hpp"
+#include "kernel/machine/check_events.hpp"
 #include "kernel/statechart/check.hpp"
 
 namespace tappet::checks {
 
-template <class... Pieces> constexpr Sentence of_reaction(const ReactionRow& row, const Pieces&... fault) {
-    return Sentence{"reaction \"", row.event, "\" -> \"", row.target.operation, "\"", fault...};
-}
 template <class... Pieces> constexpr Sentence of_behaviour(const BehaviourRow& row, const Pieces&... fault) {
     return Sentence{row.is_slot() ? "slot of \"" : "behaviour of \"", row.component, "\"", fault...};
-}
-
-/// Events that must be heard, are.
-constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView& r) {
-    for (std::size_t c = 0; c < m.components.size(); ++c)
-        for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
-            const Facet& facet = m.components[c].type->facets[f];
-            if (facet.least_reactions == 0) continue;
-            std::size_t heard = 0;
-            for (const Link& link : r.reactions) heard += link.from == End{c, f} ? 1u : 0u;
-            if (heard < facet.least_reactions)
-                return of_component(m.components[c].name, ": its event \"", facet.name, "\" is heard by ",
-                                    heard, " of at least ", std::size_t{facet.least_reactions},
-                                    " reactions; add when(\"", m.components[c].name, ".", facet.name,
-                                    "\", ...) to reactions(...)");
-        }
-    return {};
 }
 
 /// Fills the ends of each reaction.
@@ -46,17 +26,20 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
             return of_reaction(row, ": ", fault);
         const Facet& event = facet_at(m, link.from);
         const Facet& operation = facet_at(m, link.to);
+        const bool waits = operation.kind == FacetKind::wait;
         if (event.kind == FacetKind::operation && operation.kind == FacetKind::event)
             return of_reaction(row, " runs from an operation to an event; exchange the two");
         if (event.kind != FacetKind::event)
             return of_reaction(row, ": \"", row.event, "\" is ", to_text(event.kind),
                                ", not an event; name an event first");
-        if (operation.kind != FacetKind::operation)
+        if (operation.kind != FacetKind::operation && !waits)
             return of_reaction(row, ": \"", row.target.operation, "\" is ", to_text(operation.kind),
                                ", not an operation; name an operation second");
         if (event.type != operation.type)
             return of_reaction(row, ": the event carries (", event.type->name, ") but the operation takes (",
                                operation.type->name, "); give both the same arguments");
+        if (Sentence fault = waits ? check_wait(m, r, i) : Sentence{}; !fault.empty()) return fault;
+        if (Sentence fault = check_handle(m, r, i); !fault.empty()) return fault;
         const std::size_t emitter = r.activity[link.from.component];
         const std::size_t receiver = r.activity[link.to.component];
         if (row.target.synchronous && emitter != receiver && !operation.any_thread)
@@ -93,7 +76,8 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                     facet.name, "\"; add when(\"...\", tell(\"", m.components[c].name, ".",
                                     facet.name, "\"))");
         }
-    return check_heard_events(m, r);
+    if (Sentence fault = check_heard_events(m, r); !fault.empty()) return fault;
+    return check_handles_and_waits(m, r);
 }
 
 /// "component.event", or "event" of the behaviour's own component.

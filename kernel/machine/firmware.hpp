@@ -111,7 +111,9 @@ struct Planned<table, board, true> {
     using Map = Mapped<table, board, is_observed(table.view())>;
     static constexpr auto plan =
         plan_for<count_subscriptions(table.view())>(table, board, verdict.index, Map::bytes);
-    static constexpr Sentence refusal = over_budget(table.view(), board, plan.bytes, plan.stack_bytes);
+    static constexpr Sentence listeners = over_subscribed(table.view(), plan.subscriptions);
+    static constexpr Sentence refusal =
+        listeners.empty() ? over_budget(table.view(), board, plan.bytes, plan.stack_bytes) : listeners;
 };
 
 template <const auto& table, const Board& board, bool good>

@@ -81,6 +81,7 @@ void MachineInstance::place_engines() {
         }
         EnginePlan engine;
         engine.name = row.name;
+        engine.activity = static_cast<std::uint32_t>(a);
         engine.periodic = row.periodic();
         engine.real_time = row.real_time;
         engine.period = row.period;
@@ -170,14 +171,6 @@ std::uint64_t MachineInstance::event_log_digest() const noexcept {
     Digest digest;
     for (const Engine& engine : engines()) digest.add(engine.digest().value());
     return digest.value();
-}
-
-std::uint64_t MachineInstance::lost_emissions() const noexcept {
-    std::uint64_t lost = 0;
-    for (const SubscriptionPlan& place : machine_.plan.subscription_at)
-        if (place.async_at != nowhere)
-            lost += reinterpret_cast<const AsyncReaction*>(machine_.memory.data() + place.async_at)->lost;
-    return lost;
 }
 
 } // namespace tappet

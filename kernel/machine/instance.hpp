@@ -128,6 +128,18 @@ public:
         return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
     }
 
+    /// Who is called, in the activity of what sees the machine, with each emission that observe_event()
+    /// connected. Before the machine runs.
+    void show_events_to(const EventObserver& observer) noexcept { event_observer_ = observer; }
+    /// Connects and disconnects the observer and one event; the event's number there is observed_index(). Not
+    /// valid when nothing sees the machine, or the event's arguments exceed a message. The handle is
+    /// real-time, finding it is not.
+    [[nodiscard]] EventHandle observe_event(std::size_t component, std::size_t facet) noexcept;
+    /// In plan().subscriptions; nowhere: it cannot be observed.
+    [[nodiscard]] std::size_t observed_index(End event) const noexcept;
+    /// Of one of the plan's subscriptions; nothing for a synchronous one. Real-time, any thread.
+    [[nodiscard]] SubscriptionCounts counts_of(std::size_t subscription) const noexcept TAPPET_REALTIME;
+
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
@@ -176,6 +188,8 @@ private:
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);
     void connect_events();
+    void place_lanes(std::size_t subscription, AsyncReaction& reaction);
+    void bind_receiver(std::size_t subscription, AsyncReaction& reaction);
     void place_mailboxes();
     void connect_operations();
     void place_command_processors();
@@ -186,6 +200,7 @@ private:
     os::Clock* clock_;
     PropertyStore store_{};
     os::SharedMemory shared_{};
+    EventObserver event_observer_{};
     os::Waiter supervisor_{};
     std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
     StopRequest stop_{};

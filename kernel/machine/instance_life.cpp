@@ -174,10 +174,7 @@ Sentence MachineInstance::change_activity(std::size_t a, LifeChange change, cons
 
 std::uint64_t MachineInstance::dropped_messages() const noexcept {
     std::uint64_t dropped = 0;
-    for (const SubscriptionPlan& place : machine_.plan.subscription_at)
-        if (place.async_at != nowhere)
-            dropped +=
-                reinterpret_cast<const AsyncReaction*>(machine_.memory.data() + place.async_at)->dropped;
+    for (std::size_t s = 0; s < machine_.plan.subscriptions.size(); ++s) dropped += counts_of(s).dropped;
     return dropped;
 }
 

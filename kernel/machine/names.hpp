@@ -26,6 +26,12 @@ constexpr std::size_t find_component(const MachineView& m, std::string_view name
     return nowhere;
 }
 
+/// Whether a path is "component.facet".
+constexpr bool is_named(std::string_view path, std::string_view component, std::string_view facet) noexcept {
+    return path.size() == component.size() + 1 + facet.size() && path.starts_with(component) &&
+           path[component.size()] == '.' && path.ends_with(facet);
+}
+
 /// Lists the components in the order of their names, rows of one name in the order of the table.
 constexpr void sort_by_name(const MachineView& m, std::span<std::size_t> by_name) noexcept {
     for (std::size_t i = 0; i < by_name.size(); ++i) by_name[i] = i;

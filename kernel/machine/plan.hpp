@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 
 namespace tappet {
@@ -48,7 +49,13 @@ struct ConnectionPlan {
 struct SubscriptionPlan {
     std::size_t subscribers_at = nowhere; ///< of the event's first subscription: the place of the whole array
     std::size_t async_at = nowhere;
-    std::size_t binding_at = nowhere; ///< of a trigger
+    std::size_t binding_at = nowhere; ///< of a trigger or an observer
+    std::size_t lanes_at = nowhere;   ///< one for each emitting activity, in their order
+    std::size_t lane_count = 0;
+    std::size_t lane_of_at = nowhere;   ///< of each activity; shared by the events of a component
+    std::size_t latest_at = nowhere;    ///< of each lane, if it keeps the latest only
+    std::size_t mailboxes_at = nowhere; ///< of a wait: one for each lane
+    std::size_t mail_at = nowhere;      ///< of a wait: what the mailboxes hold
 };
 
 struct BehaviourPlan {
@@ -95,6 +102,20 @@ struct TriggerBinding {
     StateMachineExecution* execution;
     Engine* engine;
     std::size_t trigger;
+};
+
+/// What is called with each emission that an observer is connected to.
+struct EventObserver {
+    void (*observe)(void* observer, std::size_t event_index, const std::byte* packed_arguments,
+                    Time now) noexcept TAPPET_REALTIME = nullptr;
+    void* observer = nullptr;
+};
+
+/// Shows one event to the observer out of a message.
+struct ObserverBinding {
+    const EventObserver* to;
+    const Engine* engine;
+    std::size_t event_index;
 };
 
 /// One waker in the chain of an output that wakes several activities.
@@ -180,22 +201,36 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
 constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p,
                                   Ground& ground) {
     list_subscriptions(m, r, p.subscriptions);
+    const std::size_t activities = m.activities.size();
+    std::size_t lane_of_at = nowhere;
     for (std::size_t s = 0; s < p.subscriptions.size(); ++s) {
         const Subscription& row = p.subscriptions[s];
-        bool first = true;
-        std::size_t listeners = 0;
-        for (std::size_t j = 0; j < p.subscriptions.size(); ++j) {
-            if (!(p.subscriptions[j].event == row.event)) continue;
-            ++listeners;
-            if (j < s) first = false;
+        SubscriptionPlan& plan = p.subscription_at[s];
+        if (row.turn == 0) {
+            std::size_t listeners = 1;
+            while (s + listeners < p.subscriptions.size() && p.subscriptions[s + listeners].turn != 0)
+                ++listeners;
+            plan.subscribers_at = ground.take(listeners * facet_at(m, row.event).event->subscriber_bytes,
+                                              alignof(std::max_align_t));
         }
-        if (first)
-            p.subscription_at[s].subscribers_at = ground.take(
-                listeners * facet_at(m, row.event).event->subscriber_bytes, alignof(std::max_align_t));
+        if (s == 0 || p.subscriptions[s - 1].event.component != row.event.component) lane_of_at = nowhere;
         if (row.synchronous) continue;
-        p.subscription_at[s].async_at = ground.take<AsyncReaction>();
-        if (row.behaviour != nowhere) p.subscription_at[s].binding_at = ground.take<TriggerBinding>();
-        p.mail[row.sender * m.activities.size() + row.receiver].capacity += row.quota;
+        if (lane_of_at == nowhere) lane_of_at = ground.take<std::uint8_t>(activities);
+        plan.lane_of_at = lane_of_at;
+        plan.async_at = ground.take<AsyncReaction>();
+        plan.lane_count = static_cast<std::size_t>(std::popcount(row.emitters));
+        plan.lanes_at = ground.take<EventLane>(plan.lane_count);
+        if (row.keeps_latest) plan.latest_at = ground.take<LatestMessage>(plan.lane_count);
+        if (row.kind == SubscriberKind::trigger) plan.binding_at = ground.take<TriggerBinding>();
+        if (row.kind == SubscriberKind::observer) plan.binding_at = ground.take<ObserverBinding>();
+        if (row.kind == SubscriberKind::wait) {
+            plan.mailboxes_at = ground.take<Mailbox>(plan.lane_count);
+            plan.mail_at = ground.take(plan.lane_count * Mailbox::bytes_for(row.quota), Mailbox::alignment);
+            continue;
+        }
+        for (std::size_t sender = 0; sender < activities; ++sender)
+            if ((row.emitters >> sender & 1) != 0)
+                p.mail[sender * activities + row.receiver].capacity += row.quota;
     }
     // At each receiver the senders stand in order of their urgency.
     const std::size_t n = m.activities.size();

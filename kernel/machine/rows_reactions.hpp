@@ -10,19 +10,24 @@ struct ReactionTarget {
     std::string_view operation{};
     bool synchronous = false;
     std::uint32_t quota = 8;
+    bool keeps_latest = false;
 };
 struct Queue {
     std::uint32_t n;
+    bool latest = false;
 };
 /// How many unserved emissions of this row may wait; one more is lost and counted. Eight unless stated.
 constexpr Queue queue(std::uint32_t n) noexcept { return {n}; }
+/// Of unserved emissions of this row only the latest waits; the ones it replaced are counted as lost.
+inline constexpr Queue keep_latest{1, true};
 
-/// Asynchronous: in the receiver's engine, with the arguments of the emission.
+/// Asynchronous: in the receiver's engine, with the arguments of the emission; to an operation or an
+/// EventWait.
 constexpr ReactionTarget tell(std::string_view operation, Queue waiting = {8}) noexcept {
-    return {operation, false, waiting.n};
+    return {operation, false, waiting.n, waiting.latest};
 }
 /// Synchronous: in the emitter, here and now.
-constexpr ReactionTarget call(std::string_view operation) noexcept { return {operation, true, 0}; }
+constexpr ReactionTarget call(std::string_view operation) noexcept { return {operation, true, 0, false}; }
 
 /// What a row of the section reactions says.
 enum class ReactionKind : std::uint8_t {
@@ -34,10 +39,9 @@ struct ReactionRow {
     ReactionTarget target;    ///< of a uses row: its operation is the method or command
     ReactionKind kind = ReactionKind::when;
     std::string_view sent_by{}; ///< of a uses row: the component that sends the command; empty: the requester
+    std::string_view handle{};  ///< of a when row: the EventHandle that connects and disconnects it
+    bool is_connected = true;   ///< of a when row: from the start
 };
-constexpr ReactionRow when(std::string_view event, ReactionTarget target) noexcept {
-    return {event, target, ReactionKind::when, {}};
-}
 
 struct SentBy {
     std::string_view component{};
@@ -47,7 +51,38 @@ constexpr SentBy sent_by(std::string_view component) noexcept { return {componen
 
 /// A requester (a MethodCall or a CommandCall) of one component reaches a method or a command of another.
 constexpr ReactionRow uses(std::string_view requester, std::string_view operation, SentBy by = {}) noexcept {
-    return {requester, {operation, false, 0}, ReactionKind::uses, by.component};
+    ReactionRow row;
+    row.event = requester;
+    row.kind = ReactionKind::uses;
+    row.sent_by = by.component;
+    row.target.operation = operation;
+    row.target.quota = 0;
+    return row;
+}
+
+struct HandledBy {
+    std::string_view handle{};
+};
+/// The EventHandle, as component.handle, that connects and disconnects the row while the machine runs.
+constexpr HandledBy handled_by(std::string_view handle) noexcept { return {handle}; }
+struct Disconnected {};
+/// The row is not connected until its handle says so.
+inline constexpr Disconnected disconnected{};
+
+namespace detail {
+
+constexpr void apply(ReactionRow& row, HandledBy option) noexcept { row.handle = option.handle; }
+constexpr void apply(ReactionRow& row, Disconnected) noexcept { row.is_connected = false; }
+
+} // namespace detail
+
+template <class... Options>
+constexpr ReactionRow when(std::string_view event, ReactionTarget target, Options... options) noexcept {
+    ReactionRow row;
+    row.event = event;
+    row.target = target;
+    (detail::apply(row, options), ...);
+    return row;
 }
 
 } // namespace tappet

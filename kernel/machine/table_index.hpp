@@ -36,9 +36,10 @@ struct TableIndexView {
     std::span<std::size_t> position; ///< of each component in its activity's data-flow order
     std::span<Link> connections;
     std::span<Link> reactions;
-    RowsByReceiver connections_into;           ///< whose reader is a component
-    RowsByReceiver reactions_into;             ///< whose operation is a component's
-    std::span<std::size_t> rank;               ///< of each activity: 0 is the most urgent
+    RowsByReceiver connections_into; ///< whose reader is a component
+    RowsByReceiver reactions_into;   ///< whose operation is a component's
+    std::span<std::uint64_t> reach;  ///< of each component: a bit for each activity that runs functions of it
+    std::span<std::size_t> rank;     ///< of each activity: 0 is the most urgent
     std::span<std::int64_t> worst_response_ns; ///< of each activity; 0 for not_real_time
 };
 
@@ -52,6 +53,7 @@ template <std::size_t C, std::size_t A, std::size_t X, std::size_t R> struct Tab
     std::array<std::size_t, X> next_connection{};
     std::array<std::size_t, C> first_reaction{};
     std::array<std::size_t, R> next_reaction{};
+    std::array<std::uint64_t, C> reach{};
     std::array<std::size_t, A> rank{};
     std::array<std::int64_t, A> worst_response_ns{};
 
@@ -63,6 +65,7 @@ template <std::size_t C, std::size_t A, std::size_t X, std::size_t R> struct Tab
                 reactions,
                 {first_connection, next_connection},
                 {first_reaction, next_reaction},
+                reach,
                 rank,
                 worst_response_ns};
     }

@@ -43,6 +43,7 @@ inline std::string refusal_of(const MachineView& m, const Board& board) {
     std::vector<Link> connections(m.connections.size()), reactions(m.reactions.size());
     std::vector<std::size_t> first_connection(m.components.size()), next_connection(m.connections.size());
     std::vector<std::size_t> first_reaction(m.components.size()), next_reaction(m.reactions.size());
+    std::vector<std::uint64_t> reach(m.components.size());
     std::vector<std::size_t> rank(m.activities.size());
     std::vector<std::int64_t> worst(m.activities.size());
     const TableIndexView index{by_name,
@@ -52,6 +53,7 @@ inline std::string refusal_of(const MachineView& m, const Board& board) {
                                reactions,
                                {first_connection, next_connection},
                                {first_reaction, next_reaction},
+                               reach,
                                rank,
                                worst};
     return std::string{check(m, board, index).view()};
@@ -186,6 +188,10 @@ private:
                 misspell(
                     table_.reactions[i].sent_by,
                     [i](Copy& c) -> std::string_view& { return c.reactions[i].sent_by; }, named);
+            if (!table_.reactions[i].handle.empty())
+                misspell(
+                    table_.reactions[i].handle,
+                    [i](Copy& c) -> std::string_view& { return c.reactions[i].handle; }, named);
         }
         for (std::size_t i = 0; i < table_.behaviours.size(); ++i) misspell_behaviour(i);
     }
@@ -345,6 +351,10 @@ private:
             retype(
                 table_.reactions[i].target.operation,
                 [i](Copy& c) -> std::string_view& { return c.reactions[i].target.operation; }, named);
+            if (!table_.reactions[i].handle.empty())
+                misspell(
+                    table_.reactions[i].handle,
+                    [i](Copy& c) -> std::string_view& { return c.reactions[i].handle; }, named);
         }
         for (std::size_t i = 0; i < table_.components.size(); ++i) change_component(i);
     }

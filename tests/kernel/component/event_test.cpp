@@ -1,119 +1,301 @@
-// Events: reactions here and now, and reactions posted to another engine within their quota.
-#include "kernel/component/component.hpp"
+// Events (thesis 4.6): reactions here and now, reactions posted to another engine within their quota, and
+// connecting and disconnecting them, out of reactions too.
+#include "tests/kernel/component/event_rig.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <memory>
+#include <functional>
 #include <vector>
 
 namespace {
 
 using namespace tappet;
 
-/// Records what it was told, in order.
+/// Records what it was told, in order, and does what a test wants then.
 struct Listener {
     std::vector<double> heard;
+    std::function<void()> then;
     void hear(double value) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", heard.push_back(value));
+        TAPPET_ESCAPE("a test remembers", heard.push_back(value); if (then) then());
     }
 };
 inline constexpr const OperationOperations& hear = detail::operation_of<&Listener::hear>;
 
-/// An event with its subscribers in place, as start-up gives them.
-struct Emitter {
-    static constexpr const EventOperations& operations = PortAccess::event<double>;
-    Event<double> event;
-    std::array<Subscriber<double>, 4> subscribers{};
-    Emitter() { operations.give_storage(&event, subscribers.data()); }
-    void call(Listener& listener) { operations.subscribe(&event, hear.call, &listener); }
-    void tell(AsyncReaction& row) { operations.subscribe(&event, operations.post, &row); }
+/// The tests run as activity 0.
+struct AnEvent : testing::Test {
+    RunsActivity here{0};
+    Emitter emitter;
+    Listener first, second, third;
 };
 
-/// The receiving end: an inbox with room for `capacity` messages of one sender.
-struct Receiver {
-    explicit Receiver(std::size_t capacity) : storage(Mailbox::bytes_for(capacity) + Mailbox::alignment) {
-        void* at = storage.data();
-        std::size_t room = storage.size();
-        std::align(Mailbox::alignment, Mailbox::bytes_for(capacity), at, room);
-        mailboxes[0].place(static_cast<std::byte*>(at), capacity, Overflow::reject);
-        inbox.place(mailboxes);
-    }
-    AsyncReaction& row(AsyncReaction& row, Listener& listener, std::uint32_t quota) {
-        row.inbox = &inbox;
-        row.run = hear.run;
-        row.object = &listener;
-        row.quota = quota;
-        return row;
-    }
-    std::vector<std::byte> storage;
-    std::array<Mailbox, 1> mailboxes;
-    Inbox inbox;
-};
-
-TEST(Event, without_subscribers_is_emitted_into_nothing) {
+TEST_F(AnEvent, without_subscribers_is_emitted_into_nothing) {
     Event<double> event;
     event.emit(1.0);
     event(2.0);
 }
 
-TEST(Event, calls_its_synchronous_reactions_at_once_in_the_order_of_their_rows) {
-    Emitter emitter;
-    Listener first, second;
-    emitter.call(first);
-    emitter.call(second);
+TEST_F(AnEvent, calls_its_synchronous_reactions_at_once_in_the_order_of_their_rows) {
+    std::vector<int> order;
+    first.then = [&] { order.push_back(1); };
+    second.then = [&] { order.push_back(2); };
+    emitter.call(hear, &first);
+    emitter.call(hear, &second);
     emitter.event(1.5);
     EXPECT_EQ(first.heard, (std::vector{1.5}));
     EXPECT_EQ(second.heard, (std::vector{1.5}));
+    EXPECT_EQ(order, (std::vector{1, 2}));
 }
 
-TEST(Event, posts_its_asynchronous_reactions_and_wakes_the_receiver) {
-    Emitter emitter;
-    Listener listener;
+TEST_F(AnEvent, posts_its_asynchronous_reactions_and_wakes_the_receiver) {
     Receiver receiver{4};
-    AsyncReaction row;
+    Row row{receiver, hear, &first, 4};
     int wakes = 0;
-    row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
-    emitter.tell(receiver.row(row, listener, 4));
+    row.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
+    emitter.tell(row.row);
     emitter.event(1.0);
     emitter.event(2.0);
-    EXPECT_EQ(listener.heard, std::vector<double>{}) << "not before the receiver serves";
+    EXPECT_EQ(first.heard, std::vector<double>{}) << "not before the receiver serves";
     EXPECT_EQ(wakes, 2);
     EXPECT_EQ(receiver.inbox.run_all(), 2u);
-    EXPECT_EQ(listener.heard, (std::vector{1.0, 2.0}));
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
 }
 
-TEST(Event, loses_and_counts_what_exceeds_the_quota_of_the_row) {
-    Emitter emitter;
-    Listener listener;
+TEST_F(AnEvent, loses_and_counts_what_exceeds_the_quota_of_the_row) {
     Receiver receiver{8};
-    AsyncReaction row;
-    emitter.tell(receiver.row(row, listener, 2));
+    Row row{receiver, hear, &first, 2};
+    emitter.tell(row.row);
     for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
-    EXPECT_EQ(row.lost, 1u);
-    EXPECT_EQ(row.high_water, 2u);
+    EXPECT_EQ(row.row.counts().lost, 1u);
+    EXPECT_EQ(row.row.counts().high_water, 2u);
     receiver.inbox.run_all();
-    EXPECT_EQ(listener.heard, (std::vector{1.0, 2.0}));
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
     emitter.event(4.0); // served messages give their place back
     receiver.inbox.run_all();
-    EXPECT_EQ(listener.heard, (std::vector{1.0, 2.0, 4.0}));
-    EXPECT_EQ(row.lost, 1u);
-    EXPECT_EQ(row.posted, 3u);
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0, 4.0}));
+    EXPECT_EQ(row.row.counts().lost, 1u);
+    EXPECT_EQ(row.row.counts().posted, 3u);
+    EXPECT_EQ(row.row.counts().served, 3u);
 }
 
-TEST(Event, lets_one_rows_flood_not_take_another_rows_place) {
-    Emitter flood, other;
-    Listener flooded, heard;
+TEST_F(AnEvent, lets_one_rows_flood_not_take_another_rows_place) {
+    Emitter other;
     Receiver receiver{3}; // two for the one row, one for the other, as the planner sizes it
-    AsyncReaction many, one;
-    flood.tell(receiver.row(many, flooded, 2));
-    other.tell(receiver.row(one, heard, 1));
-    for (int i = 0; i < 10; ++i) flood.event(i);
+    Row many{receiver, hear, &first, 2}, one{receiver, hear, &second, 1};
+    emitter.tell(many.row);
+    other.tell(one.row);
+    for (int i = 0; i < 10; ++i) emitter.event(i);
     other.event(99);
     receiver.inbox.run_all();
-    EXPECT_EQ(heard.heard, (std::vector{99.0}));
-    EXPECT_EQ(many.lost, 8u);
-    EXPECT_EQ(one.lost, 0u);
+    EXPECT_EQ(second.heard, (std::vector{99.0}));
+    EXPECT_EQ(many.row.counts().lost, 8u);
+    EXPECT_EQ(one.row.counts().lost, 0u);
+}
+
+TEST_F(AnEvent, of_which_the_latest_is_kept_delivers_that_and_counts_the_ones_it_replaced) {
+    Receiver receiver{1};
+    Row row{receiver, hear, &first, 1, true};
+    int wakes = 0;
+    row.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
+    emitter.tell(row.row);
+    for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
+    EXPECT_EQ(wakes, 1) << "who is told already is not told again";
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, (std::vector{3.0}));
+    EXPECT_EQ(row.row.counts().lost, 2u);
+    emitter.event(4.0);
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, (std::vector{3.0, 4.0}));
+    EXPECT_EQ(row.row.counts().lost, 2u);
+}
+
+TEST_F(AnEvent, reaches_no_reaction_that_was_disconnected_and_each_that_was_connected_again) {
+    const EventHandle handle = emitter.call(hear, &first);
+    EXPECT_TRUE(handle.connected());
+    handle.disconnect();
+    EXPECT_FALSE(handle.connected());
+    emitter.event(1.0);
+    handle.connect();
+    handle.connect(); // once is as good as twice
+    emitter.event(2.0);
+    EXPECT_EQ(first.heard, (std::vector{2.0}));
+}
+
+TEST_F(AnEvent, has_handles_whose_copies_stand_for_the_same_row) {
+    const EventHandle handle = emitter.call(hear, &first);
+    const EventHandle copy = handle;
+    copy.disconnect();
+    EXPECT_FALSE(handle.connected());
+}
+
+TEST_F(AnEvent, leaves_the_other_rows_alone_when_one_is_disconnected) {
+    const EventHandle handle = emitter.call(hear, &first);
+    const EventHandle other = emitter.call(hear, &second);
+    handle.disconnect();
+    emitter.event(1.0);
+    EXPECT_TRUE(other.connected());
+    EXPECT_EQ(first.heard, std::vector<double>{});
+    EXPECT_EQ(second.heard, (std::vector{1.0}));
+}
+
+TEST_F(AnEvent, drops_and_counts_what_was_caught_before_the_row_was_disconnected) {
+    Receiver receiver{4};
+    Row row{receiver, hear, &first, 4};
+    const EventHandle handle = emitter.tell(row.row);
+    emitter.event(1.0);
+    emitter.event(2.0);
+    handle.disconnect();
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, std::vector<double>{});
+    EXPECT_EQ(row.row.counts().outdated, 2u);
+    EXPECT_EQ(row.row.counts().served, 2u) << "their places are free again";
+}
+
+TEST_F(AnEvent, drops_what_was_caught_before_even_when_the_row_is_connected_again) {
+    for (const bool keeps_latest : {false, true}) {
+        Emitter emits;
+        Listener listener;
+        Receiver receiver{4};
+        Row row{receiver, hear, &listener, keeps_latest ? 1u : 4u, keeps_latest};
+        const EventHandle handle = emits.tell(row.row);
+        emits.event(1.0);
+        handle.disconnect();
+        handle.connect();
+        if (!keeps_latest) emits.event(2.0);
+        receiver.inbox.run_all();
+        EXPECT_EQ(listener.heard, keeps_latest ? std::vector<double>{} : (std::vector{2.0}));
+        EXPECT_EQ(row.row.counts().outdated, 1u);
+    }
+}
+
+TEST_F(AnEvent, may_be_disconnected_by_the_reaction_that_it_runs) {
+    const EventHandle handle = emitter.call(hear, &first);
+    emitter.call(hear, &second);
+    first.then = [&] { handle.disconnect(); };
+    emitter.event(1.0);
+    emitter.event(2.0);
+    EXPECT_EQ(first.heard, (std::vector{1.0}));
+    EXPECT_EQ(second.heard, (std::vector{1.0, 2.0})) << "what stands behind it is not skipped";
+}
+
+TEST_F(AnEvent, does_not_run_in_the_same_emission_what_an_earlier_reaction_disconnects) {
+    emitter.call(hear, &first);
+    const EventHandle handle = emitter.call(hear, &second);
+    first.then = [&] { handle.disconnect(); };
+    emitter.event(1.0);
+    EXPECT_EQ(second.heard, std::vector<double>{});
+}
+
+TEST_F(AnEvent, may_have_its_reactions_connect_and_disconnect_each_other_and_those_of_other_events) {
+    Emitter other;
+    const EventHandle elsewhere = other.call(hear, &third);
+    const EventHandle one = emitter.call(hear, &first);
+    const EventHandle two = emitter.call(hear, &second);
+    two.disconnect();
+    first.then = [&] { one.disconnect(), two.connect(), elsewhere.disconnect(); };
+    second.then = [&] { two.disconnect(), one.connect(), elsewhere.connect(); };
+    for (double value : {1.0, 2.0}) {
+        emitter.event(value); // the first hands over to the second, which is run in the same emission
+        other.event(value);
+    }
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
+    EXPECT_EQ(second.heard, (std::vector{1.0, 2.0}));
+    EXPECT_EQ(third.heard, (std::vector{1.0, 2.0}));
+}
+
+TEST_F(AnEvent, may_be_disconnected_in_the_receivers_engine_with_all_that_waits_there) {
+    Receiver receiver{4};
+    Row row{receiver, hear, &first, 4};
+    const EventHandle handle = emitter.tell(row.row);
+    first.then = [&] { handle.disconnect(); };
+    for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, (std::vector{1.0}));
+    EXPECT_EQ(row.row.counts().outdated, 2u);
+}
+
+TEST_F(AnEvent, may_be_emitted_again_out_of_its_own_reaction) {
+    emitter.call(hear, &first);
+    first.then = [&] {
+        if (first.heard.size() < 3) emitter.event(first.heard.back() + 1);
+    };
+    emitter.event(1.0);
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0, 3.0}));
+}
+
+TEST_F(AnEvent, gives_each_emitting_activity_a_quota_of_its_own_and_keeps_its_order) {
+    Receiver receiver{2, 2};
+    Row row{receiver, hear, &first, 2};
+    emitter.tell(row.row);
+    for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
+    {
+        const RunsActivity there{1};
+        for (double value : {10.0, 20.0}) emitter.event(value);
+    }
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0, 10.0, 20.0}));
+    EXPECT_EQ(row.row.counts().lost, 1u);
+    EXPECT_EQ(row.row.counts().posted, 4u);
+}
+
+TEST_F(AnEvent, counts_as_stray_what_an_activity_emits_to_which_no_row_leads) {
+    Receiver receiver{2};
+    Row row{receiver, hear, &first, 2};
+    emitter.tell(row.row);
+    emitter.call(hear, &second);
+    for (const std::uint32_t activity : {1u, no_activity}) {
+        const RunsActivity there{activity};
+        emitter.event(1.0);
+    }
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, std::vector<double>{});
+    EXPECT_EQ(row.row.counts().stray, 2u);
+    EXPECT_EQ(row.row.counts().lost, 2u);
+    EXPECT_EQ(second.heard, (std::vector{1.0, 1.0})) << "what runs in the emitter needs no lane";
+}
+
+TEST_F(AnEvent, reaches_no_component_that_does_not_run) {
+    Receiver receiver{2};
+    Row row{receiver, hear, &first, 2};
+    AtomicComponentState state{ComponentState::stopped};
+    row.row.receiver = &state;
+    emitter.tell(row.row);
+    emitter.event(1.0);
+    receiver.inbox.run_all();
+    EXPECT_EQ(row.row.counts().dropped, 1u);
+    state.store(ComponentState::running);
+    emitter.event(2.0);
+    receiver.inbox.run_all();
+    EXPECT_EQ(first.heard, (std::vector{2.0}));
+}
+
+TEST_F(AnEvent, is_connected_as_long_as_a_scoped_handle_lives) {
+    const EventHandle handle = emitter.call(hear, &first);
+    handle.disconnect();
+    {
+        ScopedEventHandle scope{handle};
+        EXPECT_TRUE(scope.connected());
+        emitter.event(1.0);
+        ScopedEventHandle moved{std::move(scope)};
+        emitter.event(2.0);
+        EXPECT_TRUE(handle.connected());
+        ScopedEventHandle none;
+        none = std::move(moved);
+        EXPECT_TRUE(handle.connected());
+        none = ScopedEventHandle{};
+        EXPECT_FALSE(handle.connected()) << "it was given up for another";
+        none = ScopedEventHandle{handle};
+    }
+    emitter.event(3.0);
+    EXPECT_FALSE(handle.connected());
+    EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
+}
+
+TEST_F(AnEvent, has_handles_that_do_nothing_while_they_stand_for_no_row) {
+    const EventHandle handle;
+    handle.connect();
+    handle.disconnect();
+    EXPECT_FALSE(handle.connected());
+    EXPECT_FALSE(handle.valid());
 }
 
 } // namespace

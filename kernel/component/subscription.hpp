@@ -1,0 +1,197 @@
+// An asynchronous subscription (thesis 4.6.2): it catches the arguments of an emission for another engine. It
+// is connected by one bit, and its epoch tells what was caught before it was last disconnected.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/component/current.hpp"
+#include "kernel/component/life.hpp"
+#include "kernel/component/port.hpp"
+#include "kernel/exchange/latest_message.hpp"
+#include "kernel/exchange/mailbox.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace tappet {
+
+/// One thread counts, any may read.
+class Counter {
+public:
+    void add() noexcept TAPPET_REALTIME { set(value() + 1); }
+    void set(std::uint32_t value) noexcept TAPPET_REALTIME { value_.store(value, std::memory_order_relaxed); }
+    [[nodiscard]] std::uint32_t value() const noexcept TAPPET_REALTIME {
+        return value_.load(std::memory_order_relaxed);
+    }
+
+private:
+    std::atomic<std::uint32_t> value_{0};
+};
+
+struct AsyncReaction;
+
+/// The share of one emitting activity in an asynchronous subscription: emitters of one event never meet.
+struct EventLane {
+    AsyncReaction* row = nullptr;
+    std::size_t sender = 0;          ///< the activity's number at the receiving inbox
+    LatestMessage* latest = nullptr; ///< of a row that keeps the latest only
+    // Counted by the emitter.
+    Counter posted{};
+    Counter lost{}; ///< no room, or replaced by a later one
+    Counter high_water{};
+    // Counted by the receiver.
+    alignas(64) std::atomic<std::uint32_t> served{0};
+    Counter outdated{}; ///< dropped: caught before the row was disconnected
+    Counter dropped{};  ///< they reached a component that does not run
+};
+
+/// What the lanes of a subscription counted, added up.
+struct SubscriptionCounts {
+    std::uint64_t posted = 0;
+    std::uint64_t served = 0; ///< those below included
+    std::uint64_t lost = 0;
+    std::uint64_t outdated = 0;
+    std::uint64_t dropped = 0;
+    std::uint64_t stray = 0;      ///< lost too: emitted by an activity from which no row leads to the event
+    std::uint32_t high_water = 0; ///< of the lane that was filled most
+};
+
+/// An asynchronous reaction row. Each of its lanes holds at most `quota` unserved emissions, or the latest
+/// alone; one more is counted as lost and named in the report.
+struct AsyncReaction {
+    static constexpr std::uint8_t no_lane = 0xff;
+
+    Inbox* inbox = nullptr;
+    Waker waker{};
+    Message::Run run = nullptr; ///< in the receiver: the operation, or the trigger of a behaviour
+    void* object = nullptr;
+    const AtomicComponentState* receiver = nullptr;  ///< of the component that the operation belongs to
+    std::atomic<std::uint64_t>* connected = nullptr; ///< of the event: one bit for each of its rows
+    std::uint64_t bit = 0;
+    EventLane* lanes = nullptr;
+    const std::uint8_t* lane_of = nullptr; ///< of each activity
+    std::uint8_t outside = no_lane; ///< of who runs no activity: none but in virtual time, in its one thread
+    std::uint32_t activities = 0;
+    std::uint32_t lane_count = 0;
+    std::uint32_t part = 0; ///< the receiver's number for the component it is timed as
+    std::uint32_t quota = 0;
+    std::atomic<std::uint32_t> stray{0}; ///< any thread counts
+    alignas(64) std::atomic<std::uint32_t> epoch{0};
+
+    /// In the emitter. The epoch is read before the bit: what is posted with an epoch found the row connected
+    /// in it, and disconnect() clears the bit before it moves on. Real-time.
+    void post(Message& message) noexcept TAPPET_REALTIME {
+        message.epoch = epoch.load(std::memory_order_acquire);               // emit.epoch
+        if ((connected->load(std::memory_order_acquire) & bit) == 0) return; // emit.bit
+        const std::uint32_t activity = running_activity();
+        const std::uint8_t index = activity < activities ? lane_of[activity] : outside;
+        if (index == no_lane) {
+            stray.fetch_add(1, std::memory_order_relaxed);
+            return;
+        }
+        message.run = &serve;
+        message.object = &lanes[index];
+        message.id = part;
+        post_to(lanes[index], message);
+    }
+    [[nodiscard]] SubscriptionCounts counts() const noexcept TAPPET_REALTIME {
+        SubscriptionCounts sum;
+        sum.stray = stray.load(std::memory_order_relaxed);
+        sum.lost = sum.stray;
+        for (std::uint32_t i = 0; i < lane_count; ++i) {
+            const EventLane& lane = lanes[i];
+            sum.posted += lane.posted.value();
+            sum.served += lane.served.load(std::memory_order_acquire);
+            sum.lost += lane.lost.value();
+            sum.outdated += lane.outdated.value();
+            sum.dropped += lane.dropped.value();
+            if (lane.high_water.value() > sum.high_water) sum.high_water = lane.high_water.value();
+        }
+        return sum;
+    }
+
+private:
+    void post_to(EventLane& lane, const Message& message) noexcept TAPPET_REALTIME {
+        if (lane.latest != nullptr) {
+            post_latest(lane, message);
+            return;
+        }
+        const std::uint32_t posted = lane.posted.value();
+        const std::uint32_t waiting = posted - lane.served.load(std::memory_order_acquire);
+        if (waiting >= quota || !inbox->post(lane.sender, message)) {
+            lane.lost.add();
+            return;
+        }
+        lane.posted.set(posted + 1);
+        if (waiting + 1 > lane.high_water.value()) lane.high_water.set(waiting + 1);
+        waker();
+    }
+    void post_latest(EventLane& lane, const Message& message) noexcept TAPPET_REALTIME {
+        if (!lane.latest->put(message)) { // the one it replaced was announced: nobody needs to be told again
+            lane.lost.add();
+            return;
+        }
+        Message notice;
+        notice.run = message.run;
+        notice.object = message.object;
+        notice.id = message.id;
+        lane.posted.add();
+        lane.high_water.set(1);
+        if (inbox->post(lane.sender, notice)) waker(); // there is room: one notice is on its way at most
+    }
+
+    static void serve(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
+        auto& lane = *static_cast<EventLane*>(self);
+        AsyncReaction& row = *lane.row;
+        // Its place in the mailbox is free again, so one more may be posted while this one runs.
+        lane.served.store(lane.served.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+        const Message* caught = lane.latest != nullptr ? lane.latest->take() : &message_of(arguments);
+        if (caught == nullptr) return;
+        if (caught->epoch != row.epoch.load(std::memory_order_acquire)) // serve.epoch
+            lane.outdated.add();
+        else if (row.receiver != nullptr && !is_running(*row.receiver))
+            lane.dropped.add();
+        else
+            row.run(row.object, caught->arguments.data());
+    }
+};
+
+namespace detail {
+
+template <class... A>
+inline constexpr std::size_t packed_bytes = (std::size_t{0} + ... + sizeof(A));
+
+/// Puts the arguments one behind the other into a message.
+template <class... A>
+void pack(std::byte* into, const A&... arguments) noexcept TAPPET_REALTIME {
+    std::size_t at = 0;
+    ((std::memcpy(into + at, &arguments, sizeof(A)), at += sizeof(A)), ...);
+}
+
+template <class T>
+T unpack_one(const std::byte*& from) noexcept TAPPET_REALTIME {
+    T value;
+    std::memcpy(&value, from, sizeof(T));
+    from += sizeof(T);
+    return value;
+}
+
+template <class... A>
+inline constexpr bool fits_one_message = packed_bytes<A...> <= sizeof(Message::arguments);
+
+/// The check of the table refuses an asynchronous reaction to an event whose arguments do not fit; that
+/// event's synchronous reactions are good.
+template <class... A>
+void post(void* reaction, A... arguments) noexcept TAPPET_REALTIME {
+    if constexpr (fits_one_message<A...>) {
+        auto& row = *static_cast<AsyncReaction*>(reaction);
+        Message message;
+        pack(message.arguments.data(), arguments...);
+        row.post(message);
+    }
+}
+
+} // namespace detail
+
+} // namespace tappet

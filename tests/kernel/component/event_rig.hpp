@@ -1,0 +1,83 @@
+// An event with its subscribers, lanes and a receiving end in place, as start-up gives them.
+#pragma once
+
+#include "kernel/component/component.hpp"
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace tappet {
+
+/// An event of one number, with room for four rows.
+struct Emitter {
+    static constexpr const EventOperations& operations = PortAccess::event<double>;
+    Event<double> event;
+    std::array<Subscriber<double>, 4> subscribers{};
+    std::size_t rows = 0;
+    Emitter() { operations.give_storage(&event, subscribers.data()); }
+
+    EventHandle subscribe(const void* call, void* context, std::atomic<std::uint32_t>* epoch) {
+        std::atomic<std::uint64_t>& connected = operations.subscribe(&event, call, context);
+        const EventHandle handle{connected, std::uint64_t{1} << rows++, epoch};
+        handle.connect();
+        return handle;
+    }
+    EventHandle call(const OperationOperations& operation, void* component) {
+        return subscribe(operation.call, component, nullptr);
+    }
+    EventHandle tell(AsyncReaction& row) {
+        row.bit = std::uint64_t{1} << rows;
+        row.connected = &operations.subscribe(&event, operations.post, &row);
+        const EventHandle handle{*row.connected, std::uint64_t{1} << rows++, &row.epoch};
+        handle.connect();
+        return handle;
+    }
+};
+
+/// The receiving end: an inbox with room for `capacity` messages of each of so many sending activities.
+struct Receiver {
+    explicit Receiver(std::size_t capacity, std::size_t senders = 1)
+        : storage(senders * Mailbox::bytes_for(capacity) + Mailbox::alignment), mailboxes(senders) {
+        void* at = storage.data();
+        std::size_t room = storage.size();
+        std::align(Mailbox::alignment, senders * Mailbox::bytes_for(capacity), at, room);
+        for (std::size_t i = 0; i < senders; ++i)
+            mailboxes[i].place(static_cast<std::byte*>(at) + i * Mailbox::bytes_for(capacity), capacity,
+                               Overflow::reject);
+        inbox.place(mailboxes);
+    }
+    std::vector<std::byte> storage;
+    std::vector<Mailbox> mailboxes;
+    Inbox inbox;
+};
+
+/// An asynchronous row into a receiver with a lane for each of its senders; activity 0 is the first of them.
+struct Row {
+    Row(Receiver& receiver, const OperationOperations& operation, void* component, std::uint32_t quota,
+        bool keeps_latest = false)
+        : lanes(receiver.mailboxes.size()), latest(receiver.mailboxes.size()), lane_of(lanes.size()) {
+        for (std::size_t i = 0; i < lanes.size(); ++i) {
+            lanes[i].row = &row;
+            lanes[i].sender = i;
+            if (keeps_latest) lanes[i].latest = &latest[i];
+            lane_of[i] = static_cast<std::uint8_t>(i);
+        }
+        row.inbox = &receiver.inbox;
+        row.run = operation.run;
+        row.object = component;
+        row.lanes = lanes.data();
+        row.lane_of = lane_of.data();
+        row.activities = row.lane_count = static_cast<std::uint32_t>(lanes.size());
+        row.quota = quota;
+    }
+    Row(const Row&) = delete;
+    Row& operator=(const Row&) = delete;
+    std::vector<EventLane> lanes;
+    std::vector<LatestMessage> latest;
+    std::vector<std::uint8_t> lane_of;
+    AsyncReaction row;
+};
+
+} // namespace tappet
