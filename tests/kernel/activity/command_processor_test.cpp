@@ -1,0 +1,340 @@
+// The command processor (thesis 4.5.2) without a machine: who may touch a slot when, commands that end while
+// others begin, receivers that stop under them, and senders that wait.
+#include "kernel/activity/command_processor.hpp"
+
+#include "tests/kernel/exchange/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace tappet {
+namespace {
+
+using Value = Sealed<64>;
+
+/// Triples numbers, some only after a while: rejects every seventh, fails every eleventh.
+struct Tripler {
+    Random random{1};
+    std::array<std::uint64_t, 4> newest{}; ///< of each sender, its number is in the lowest bits
+    std::uint64_t torn = 0, out_of_order = 0, taken_up = 0;
+
+    bool begin(Value in, Value&) noexcept TAPPET_REALTIME {
+        ++taken_up;
+        TAPPET_ESCAPE("a test's check", torn += in.whole() ? 0u : 1u);
+        const std::uint64_t count = in.number() >> 2;
+        std::uint64_t& last = newest[in.number() & 3];
+        if (count <= last) ++out_of_order;
+        last = count;
+        return count % 7 != 0;
+    }
+    CommandProgress follow(Value in, Value& out) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's check", torn += in.whole() ? 0u : 1u);
+        if (!random.one_in(3)) return CommandProgress::executing;
+        if ((in.number() >> 2) % 11 == 0) return CommandProgress::failed;
+        TAPPET_ESCAPE("a test's value", out = Value::of(in.number() * 3));
+        return CommandProgress::done;
+    }
+    static constexpr auto& command = detail::CommandOf<&Tripler::begin, &Tripler::follow>::operations;
+};
+
+/// A processor with room for `senders` of `slots` commands each, and the component behind it.
+class Receiver {
+public:
+    Receiver(std::size_t senders, std::size_t slots)
+        : box_bytes_(Mailbox::bytes_for(slots)),
+          storage_(senders * box_bytes_ / sizeof(Line) + 1),
+          boxes_(senders),
+          followed_(senders * slots) {
+        for (std::size_t i = 0; i < senders; ++i)
+            boxes_[i].place(storage_[i * box_bytes_ / sizeof(Line)].bytes, slots, Overflow::reject);
+        processor.place(boxes_, followed_, 0);
+    }
+    [[nodiscard]] CommandSlot::Route route(std::size_t sender, const os::Clock& clock) {
+        return {.command = &Tripler::command,
+                .component = &tripler,
+                .part = 0,
+                .receiver_state = &state,
+                .inbox = &processor.inbox(),
+                .sender = sender,
+                .clock = &clock};
+    }
+    /// One cycle of an engine.
+    void cycle() noexcept TAPPET_REALTIME {
+        processor.serve([this](std::uint32_t, CommandSlot& slot) noexcept
+                        TAPPET_REALTIME { static_cast<void>(processor.take_up(slot, is_running(state))); });
+        static_cast<void>(processor.follow([](std::uint32_t, CommandSlot& slot) noexcept
+                                           TAPPET_REALTIME { return !in_flight(slot.follow()); }));
+    }
+    void stop() noexcept {
+        state.store(ComponentState::stopping);
+        processor.fail(0);
+        state.store(ComponentState::stopped);
+        processor.reject_sent();
+    }
+    void start() noexcept {
+        processor.reject_sent();
+        state.store(ComponentState::running);
+    }
+
+    Tripler tripler;
+    AtomicComponentState state{ComponentState::running};
+    CommandProcessor processor;
+
+private:
+    struct alignas(64) Line {
+        std::byte bytes[64];
+    };
+    std::size_t box_bytes_;
+    std::vector<Line> storage_;
+    std::vector<Mailbox> boxes_;
+    std::vector<CommandSlot*> followed_;
+};
+
+using Call = CommandCall<Value, Value&>;
+
+/// What a sender saw of one command; a state that cannot follow the one before is counted.
+struct Watched {
+    Call call;
+    std::uint64_t number = 0;
+    CommandState last = CommandState::ready;
+
+    [[nodiscard]] static int rank(CommandState state) {
+        switch (state) {
+        case CommandState::ready: return 0;
+        case CommandState::sent: return 1;
+        case CommandState::accepted: return 2;
+        case CommandState::executing: return 3;
+        default: return 4;
+        }
+    }
+    [[nodiscard]] bool look() {
+        const CommandState now = call.state();
+        const bool follows = rank(now) >= rank(last) && !(now == CommandState::rejected && rank(last) > 1);
+        last = now;
+        return follows;
+    }
+};
+
+struct Seen {
+    std::uint64_t done = 0, rejected = 0, failed = 0, wrong_results = 0, wrong_states = 0, not_sent = 0;
+};
+
+/// Sends whatever has ended, `rounds` times, to receivers that stop now and then.
+Seen send_many(std::size_t sender, std::span<const std::unique_ptr<Watched>> calls, std::uint64_t rounds,
+               std::uint64_t seed) {
+    Seen seen;
+    Random random{seed};
+    std::uint64_t count = 0;
+    const auto settle = [&](Watched& each) {
+        switch (each.last) {
+        case CommandState::done: {
+            ++seen.done;
+            const Value out = each.call.result();
+            if (!out.whole() || out.number() != each.number * 3) ++seen.wrong_results;
+            break;
+        }
+        case CommandState::rejected: ++seen.rejected; break;
+        case CommandState::failed: ++seen.failed; break;
+        default: break;
+        }
+    };
+    for (std::uint64_t round = 0; round < rounds; ++round) {
+        Watched& each = *calls[random.below(calls.size())];
+        if (!each.look()) ++seen.wrong_states;
+        if (!in_flight(each.last)) {
+            settle(each);
+            each.number = ++count << 2 | sender;
+            each.last = CommandState::ready;
+            if (!each.call.send(Value::of(each.number))) ++seen.not_sent;
+        }
+        dither(random);
+    }
+    for (const auto& each : calls) {
+        while (in_flight(each->call.state())) std::this_thread::yield();
+        if (!each->look()) ++seen.wrong_states;
+        settle(*each);
+    }
+    return seen;
+}
+
+TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_results_in_its_senders_order) {
+    constexpr std::size_t senders = 3, slots = 4;
+    const os::Clock clock{os::Clock::Kind::real};
+    for (std::uint64_t seed = stress_seed(); seed < stress_seed() + 4; ++seed) {
+        std::array<Receiver, 2> receivers{Receiver{senders, slots}, Receiver{senders, slots}};
+        std::array<std::vector<std::unique_ptr<Watched>>, senders> calls;
+        for (std::size_t s = 0; s < senders; ++s)
+            for (std::size_t i = 0; i < 2 * slots; ++i) {
+                calls[s].push_back(std::make_unique<Watched>());
+                Call& call = calls[s].back()->call;
+                call.slot().place(receivers[i % 2].route(s, clock), call.values());
+            }
+        std::atomic<bool> over{false};
+        std::vector<std::thread> threads;
+        for (std::size_t r = 0; r < receivers.size(); ++r)
+            threads.emplace_back([&, r, seed] {
+                Random random{seed * 7 + r};
+                while (!over.load(std::memory_order_acquire)) {
+                    receivers[r].cycle();
+                    if (random.one_in(200)) {
+                        receivers[r].stop();
+                        dither(random);
+                        receivers[r].start();
+                    }
+                    dither(random);
+                }
+            });
+        std::array<Seen, senders> seen{};
+        std::vector<std::thread> sending;
+        for (std::size_t s = 0; s < senders; ++s)
+            sending.emplace_back([&, s, seed] { seen[s] = send_many(s, calls[s], 60'000, seed * 31 + s); });
+        for (std::thread& each : sending) each.join();
+        over.store(true, std::memory_order_release);
+        for (std::thread& each : threads) each.join();
+        for (const Seen& each : seen) {
+            EXPECT_EQ(each.wrong_results, 0u) << "seed " << seed;
+            EXPECT_EQ(each.wrong_states, 0u) << "seed " << seed;
+            EXPECT_EQ(each.not_sent, 0u) << "seed " << seed;
+            EXPECT_GT(each.done, 0u) << "seed " << seed;
+            EXPECT_GT(each.rejected, 0u) << "seed " << seed;
+            EXPECT_GT(each.failed, 0u) << "seed " << seed;
+        }
+        for (const Receiver& each : receivers) {
+            EXPECT_EQ(each.tripler.torn, 0u) << "seed " << seed;
+            EXPECT_EQ(each.tripler.out_of_order, 0u) << "seed " << seed;
+            EXPECT_EQ(each.processor.at_work(), 0u) << "seed " << seed;
+        }
+    }
+}
+
+TEST(CommandProcessor, a_waiting_sender_is_woken_by_every_end) {
+    const os::Clock clock{os::Clock::Kind::real};
+    Receiver receiver{1, 1};
+    Call call;
+    call.slot().place(receiver.route(0, clock), call.values());
+    std::atomic<bool> over{false};
+    std::thread serving([&] {
+        Random random{stress_seed()};
+        while (!over.load(std::memory_order_acquire)) {
+            receiver.cycle();
+            dither(random);
+        }
+    });
+    Random random{stress_seed() + 1};
+    std::uint64_t missed = 0;
+    for (std::uint64_t i = 1; i <= 3000; ++i) {
+        ASSERT_TRUE(call.send(Value::of(i << 2)));
+        dither(random);
+        if (!call.wait(10s)) ++missed;
+        const CommandState expected = i % 7 == 0    ? CommandState::rejected
+                                      : i % 11 == 0 ? CommandState::failed
+                                                    : CommandState::done;
+        ASSERT_EQ(call.state(), expected);
+    }
+    over.store(true, std::memory_order_release);
+    serving.join();
+    EXPECT_EQ(missed, 0u);
+}
+
+TEST(CommandProcessor, a_wait_ends_with_its_time) {
+    const os::Clock clock{os::Clock::Kind::real};
+    Receiver receiver{1, 1};
+    Call call;
+    call.slot().place(receiver.route(0, clock), call.values());
+    EXPECT_TRUE(call.wait(10s)); // nothing was sent
+    ASSERT_TRUE(call.send(Value::of(4)));
+    const Time before = clock.now();
+    EXPECT_FALSE(call.wait(20ms)); // nobody serves
+    EXPECT_GE(clock.now() - before, 20ms);
+    EXPECT_EQ(call.state(), CommandState::sent);
+    receiver.cycle();
+    while (in_flight(call.state())) receiver.cycle();
+    EXPECT_TRUE(call.wait(0ms));
+}
+
+TEST(CommandProcessor, an_end_wakes_the_senders_activity) {
+    const os::Clock clock{os::Clock::Kind::real};
+    Receiver receiver{1, 1};
+    Call call;
+    int wakes = 0;
+    CommandSlot::Route route = receiver.route(0, clock);
+    route.wake_sender = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
+    call.slot().place(route, call.values());
+    ASSERT_TRUE(call.send(Value::of(4)));
+    EXPECT_EQ(wakes, 0);
+    while (in_flight(call.state())) receiver.cycle();
+    EXPECT_EQ(wakes, 1); // not for each state on the way
+}
+
+TEST(CommandProcessor, a_failed_or_stopped_receiver_rejects_at_once_one_that_never_ran_takes_it_up_later) {
+    const os::Clock clock{os::Clock::Kind::real};
+    Receiver receiver{1, 1};
+    Call call;
+    call.slot().place(receiver.route(0, clock), call.values());
+    for (const ComponentState state : {ComponentState::stopped, ComponentState::failed}) {
+        receiver.state.store(state);
+        ASSERT_TRUE(call.send(Value::of(4)));
+        EXPECT_EQ(call.state(), CommandState::rejected);
+    }
+    receiver.state.store(ComponentState::inactive);
+    ASSERT_TRUE(call.send(Value::of(8)));
+    EXPECT_EQ(call.state(), CommandState::sent);
+    receiver.state.store(ComponentState::running);
+    receiver.cycle();
+    EXPECT_NE(call.state(), CommandState::rejected);
+}
+
+// ---- figures: as thesis 4.5.4, what sending and processing take
+
+struct Instant {
+    bool act(std::uint64_t) noexcept TAPPET_REALTIME { return true; }
+    static constexpr auto& command = detail::CommandOf<&Instant::act, nullptr>::operations;
+};
+
+void print(const char* what, std::vector<std::int64_t>& ns) {
+    std::sort(ns.begin(), ns.end());
+    std::printf("[ figures  ] %s: median %lld ns, p99.9 %lld ns\n", what,
+                static_cast<long long>(ns[ns.size() / 2]),
+                static_cast<long long>(ns[ns.size() - ns.size() / 1000 - 1]));
+}
+
+TEST(CommandProcessor, figures_of_sending_and_processing) {
+    const os::Clock clock{os::Clock::Kind::real};
+    Receiver receiver{1, 1};
+    Instant instant;
+    CommandCall<std::uint64_t> call;
+    CommandSlot::Route route = receiver.route(0, clock);
+    route.command = &Instant::command;
+    route.component = &instant;
+    call.slot().place(route, call.values());
+    std::vector<std::int64_t> send, process, nothing, both_clocks;
+    for (std::uint64_t i = 0; i < 50'000; ++i) {
+        const Time t0 = clock.now();
+        const Time t1 = clock.now();
+        const bool sent = call.send(i);
+        const Time t2 = clock.now();
+        receiver.cycle();
+        const Time t3 = clock.now();
+        receiver.cycle();
+        const Time t4 = clock.now();
+        ASSERT_TRUE(sent);
+        ASSERT_EQ(call.state(), CommandState::done);
+        both_clocks.push_back((t1 - t0).count());
+        send.push_back((t2 - t1).count());
+        process.push_back((t3 - t2).count());
+        nothing.push_back((t4 - t3).count());
+    }
+    print("reading the clock, in each of the others", both_clocks);
+    print("send a command", send);
+    print("take it up, run it to done", process);
+    print("look at an empty processor", nothing);
+}
+
+} // namespace
+} // namespace tappet
