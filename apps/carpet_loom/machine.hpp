@@ -23,8 +23,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<gpio::LinePort<io_lines>>("io", device("loom-io")),
         component<MainShaft>("shaft"),                       // angle, angle events, brake angle
         component<WeftInsertion>("weft"),                    // release, arrival, pattern
-        component<MainDrive>("main", set("speed_rpm", 600.0)),
-        component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0)),
+        component<MainDrive>("main", set("speed_rpm", 600.0), properties_file("main.cpf", optional)),
+        component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0), properties_file("warp.cpf", optional)),
         component<Network>("network"),                       // CANopen: starts and watches the nodes
         component<Loom>("loom"),                             // the states of the whole
         component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times

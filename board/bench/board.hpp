@@ -24,6 +24,7 @@ inline constexpr Board bench{
     // The emulator has neither a frequency governor nor a clock that Linux trusts.
     .only_warned = warn_only("clock-source", "cpu-governor"),
     .kernel_command_line = "console=ttyS0 quiet panic=-1",
+    .properties_directory = "/run",
 };
 
 } // namespace tappet::board

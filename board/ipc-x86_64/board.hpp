@@ -34,6 +34,7 @@ inline constexpr Board ipc_x86_64{
         "isolcpus=managed_irq,domain,2,3 nohz_full=2,3 rcu_nocbs=2,3 irqaffinity=0,1 processor.max_cstate=1 "
         "intel_idle.max_cstate=0 idle=poll tsc=reliable nosoftlockup nowatchdog mitigations=auto "
         "sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
+    .properties_directory = "/var/lib/tappet",
 };
 
 } // namespace tappet::board

@@ -39,6 +39,7 @@ public:
 
     /// Where rows with a properties file have their values from; before configure().
     void read_properties_from(const PropertyStore& store) noexcept { store_ = store; }
+    [[nodiscard]] const PropertyStore& property_store() const noexcept { return store_; }
     /// Writes every properties file anew. While the machine stands still, before or after it ran; of a
     /// machine that runs see PropertySaving in kernel/services/configuration. The first file that cannot be
     /// written is the error, the others are written all the same.

@@ -7,6 +7,7 @@
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/terminal.hpp"
+#include "kernel/services/configuration/property_files.hpp"
 
 #include TAPPET_BOARD_HEADER
 
@@ -34,22 +35,27 @@ int fail(Ending ending, const Sentence& why) {
     return ending;
 }
 
-/// `--summary FILE` is the only option: everything else is in the table and in the board.
+/// `--summary FILE`, `--properties DIRECTORY` instead of the board's: everything else is in the table and in
+/// the board.
 struct Options {
     const char* summary = nullptr;
+    const char* properties = nullptr;
     Sentence error{};
 };
 
 Options parse(int count, char** words) {
     Options options;
     for (int i = 1; i < count; ++i) {
-        if (std::strcmp(words[i], "--summary") != 0)
+        const char** place = std::strcmp(words[i], "--summary") == 0      ? &options.summary
+                             : std::strcmp(words[i], "--properties") == 0 ? &options.properties
+                                                                          : nullptr;
+        if (place == nullptr)
             options.error = Sentence{"option ", std::string_view{words[i]},
-                                     " is unknown; the only one is --summary FILE"};
+                                     " is unknown; there are --summary FILE and --properties DIRECTORY"};
         else if (i + 1 == count)
-            options.error = Sentence{"option --summary needs a file behind it"};
+            options.error = Sentence{"option ", std::string_view{words[i]}, " needs a name behind it"};
         else
-            options.summary = words[++i];
+            *place = words[++i];
     }
     return options;
 }
@@ -136,6 +142,9 @@ int main(int count, char** words) {
     static carpet::Devices devices;
     if (const auto opened = devices.open(board_here); !opened) return fail(wrong_set_up, opened.error());
     static MachineInstance instance{LoomFirmware::machine(), machine_clock};
+    static PropertyFiles properties{options.properties != nullptr ? std::string_view{options.properties}
+                                                                  : board_here.properties_directory};
+    instance.read_properties_from(properties.store());
     if (const auto configured = instance.configure(devices.provided()); !configured)
         return fail(wrong_set_up, configured.error());
 
@@ -160,6 +169,9 @@ int main(int count, char** words) {
         world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
     os::print(Sentence{"carpet-loom: stopped: ", reason, "\n"}.view());
     list_misses(instance);
+    if (properties.keeps())
+        if (const Sentence fault = instance.save_properties(); !fault.empty())
+            os::print(Sentence{"carpet-loom: ", fault, "\n"}.view());
     if (options.summary != nullptr)
         if (const int written = write_summary(instance, world, devices, reason, options.summary);
             written != ended_well)

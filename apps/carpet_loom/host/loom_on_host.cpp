@@ -3,9 +3,15 @@
 
 #include "apps/carpet_loom/machine.hpp"
 #include "board/host/board.hpp"
+#include "kernel/services/configuration/property_files.hpp"
 
 namespace tappet::carpet {
 
 AcceptedMachine loom_on_host() { return Firmware<carpet_loom, board::host>::machine(); }
+
+PropertyStore properties_on_host() {
+    static PropertyFiles files{board::host.properties_directory};
+    return files.store();
+}
 
 } // namespace tappet::carpet

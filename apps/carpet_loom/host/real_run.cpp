@@ -14,6 +14,7 @@ RealRun::~RealRun() { static_cast<void>(stop()); }
 
 std::expected<void, Sentence> RealRun::start(int file) {
     if (auto opened = loom_.open(); !opened) return opened;
+    instance_.read_properties_from(properties_on_host());
     if (auto configured = instance_.configure(loom_.devices()); !configured) return configured;
     instance_.find<Console>("console")->quiet.set(quiet_);
     const Board& board = *instance_.machine().board;

@@ -11,6 +11,7 @@ VirtualRun::VirtualRun(const loom::Settings& settings, std::uint64_t seed, bool 
 
 std::expected<void, Sentence> VirtualRun::start() {
     if (auto opened = loom_.open(); !opened) return opened;
+    instance_.read_properties_from(properties_on_host());
     if (auto configured = instance_.configure(loom_.devices()); !configured) return configured;
     instance_.find<Console>("console")->quiet.set(quiet_);
     world_.add({this,

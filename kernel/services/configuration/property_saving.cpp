@@ -3,10 +3,9 @@
 
 namespace tappet {
 
-void PropertySaving::begin(MachineInstance& machine, const PropertyStore& store,
-                           std::size_t activity) noexcept {
+void PropertySaving::begin(MachineInstance& machine, std::size_t activity) noexcept {
     if (busy_) return;
-    machine_ = &machine, store_ = store, activity_ = activity;
+    machine_ = &machine, activity_ = activity;
     next_ = saved_ = 0;
     fault_ = Sentence{};
     busy_ = true;
@@ -45,7 +44,12 @@ void PropertySaving::ask(std::size_t component) noexcept {
 
 void PropertySaving::write() noexcept {
     const ComponentRow& row = machine_->machine().table.components[next_];
-    const Sentence fault = store_.save(store_.self, row, copy_);
+    const PropertyStore& store = machine_->property_store();
+    const Sentence fault =
+        store.save == nullptr
+            ? Sentence{"component \"", row.name,
+                       "\": this firmware keeps no properties; give its start-up read_properties_from(...)"}
+            : store.save(store.self, row, copy_);
     if (fault.empty())
         ++saved_;
     else if (fault_.empty())

@@ -11,7 +11,7 @@ namespace tappet {
 class PropertySaving {
 public:
     /// `activity`: the one that calls; components in it stand still meanwhile.
-    void begin(MachineInstance& machine, const PropertyStore& store, std::size_t activity) noexcept;
+    void begin(MachineInstance& machine, std::size_t activity) noexcept;
     /// False when every file is written or has its fault.
     bool step() noexcept;
     [[nodiscard]] bool busy() const noexcept { return busy_; }
@@ -24,7 +24,6 @@ private:
     void write() noexcept;
 
     MachineInstance* machine_ = nullptr;
-    PropertyStore store_{};
     std::size_t activity_ = 0;
     std::size_t next_ = 0; ///< component
     std::size_t saved_ = 0;

@@ -272,7 +272,7 @@ TEST_F(PropertiesOfARunningMachine, stay_as_they_are_when_the_component_refuses)
 TEST_F(PropertiesOfARunningMachine, are_saved_while_it_runs) {
     static PropertySaving saving;
     tension("warp").gain.set(6.25);
-    saving.begin(instance, files->store(), office);
+    saving.begin(instance, office);
     int steps = 0;
     for (Time now = at_ns(0); saving.step() && steps < 100; ++steps) EXPECT_TRUE(world.run_until(now += 1ms));
     EXPECT_FALSE(saving.busy());
