@@ -54,7 +54,7 @@ struct PortOperations {
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
     /// How many values a shared data object was given; any thread.
     std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
-    PortPlaces (*places)(const void* port, bool is_input);
+    PortPlaces (*places)(const void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
     void (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
@@ -172,7 +172,7 @@ struct PortAccess {
         .written = [](const void* shared) noexcept
         TAPPET_REALTIME { return static_cast<const DataObject<Sample<T>>*>(shared)->generation(); },
         .places =
-            [](const void* port, bool is_input) {
+            [](const void* port, bool is_input) noexcept TAPPET_REALTIME {
                 if (!is_input) {
                     const auto& out = *static_cast<const Output<T>*>(port);
                     return PortPlaces{&out.last_.value, &out.last_.stamp, &out.generation_, &out.forced_,

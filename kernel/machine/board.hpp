@@ -6,6 +6,7 @@
 #include "kernel/base/time.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace tappet {
@@ -29,6 +30,34 @@ struct BoardPlacement {
     int processor = 0;
 };
 
+/// What a peer of the machine's socket may do; each role may do all that the ones before it may.
+enum class Role : std::uint8_t { observer, machine_operator, engineer };
+
+constexpr std::string_view to_text(Role role) noexcept {
+    switch (role) {
+    case Role::observer: return "observer";
+    case Role::machine_operator: return "operator";
+    case Role::engineer: return "engineer";
+    }
+    return "nobody";
+}
+
+/// Whoever is this user, or in this group, has this role at least.
+struct BoardRole {
+    bool is_group = false;
+    std::uint32_t number = 0;
+    Role role = Role::observer;
+};
+
+/// The local socket for browsers: where it stands and who may use it. Root and the user that runs the machine
+/// are engineers; whoever else may open the socket's file and is not listed is an observer.
+struct BoardBrowsing {
+    std::string_view directory{}; ///< empty: no socket unless the program's options name one
+    unsigned mode = 0660;         ///< of the socket's file
+    std::int64_t group = -1;      ///< of the socket's file; -1: that of the process
+    Bounded<BoardRole, 16> roles{};
+};
+
 struct Board {
     std::string_view name{};
     std::string_view world{};            ///< "host", "bench" or "box"
@@ -43,6 +72,7 @@ struct Board {
         only_warned{}; ///< arming checks that this development board downgrades to warnings
     std::string_view kernel_command_line{};
     std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
+    BoardBrowsing browsing{};
 };
 
 template <class... Lines>
@@ -79,6 +109,12 @@ constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
 template <class... Places>
 constexpr Bounded<BoardPlacement, 32> placements(const Places&... places) {
     return detail::list_of<BoardPlacement, 32>(places...);
+}
+constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {false, number, role}; }
+constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {true, number, role}; }
+template <class... Rows>
+constexpr Bounded<BoardRole, 16> roles(const Rows&... rows) {
+    return detail::list_of<BoardRole, 16>(rows...);
 }
 /// Arming checks, by name, that this development board downgrades to warnings.
 template <class... Names>

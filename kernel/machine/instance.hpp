@@ -112,6 +112,14 @@ public:
     }
     void serve_activity_requests(const ActivityControl& control);
 
+    /// The directory of the socket for browsers, instead of the board's; before configure(). It outlives the
+    /// instance.
+    void browse_in(std::string_view directory) noexcept { browsing_directory_ = directory; }
+    /// Empty: there is to be none.
+    [[nodiscard]] std::string_view browsing_directory() const noexcept {
+        return browsing_directory_.empty() ? machine_.board->browsing.directory : browsing_directory_;
+    }
+
     /// What others may map, read-only, of a machine that a component sees: its map and its values, see
     /// map_layout.hpp; empty otherwise. The stacks lie outside.
     [[nodiscard]] std::span<const std::byte> shared_memory() const noexcept {
@@ -202,6 +210,7 @@ private:
     PropertyStore store_{};
     os::SharedMemory shared_{};
     EventObserver event_observer_{};
+    std::string_view browsing_directory_{};
     os::Waiter supervisor_{};
     std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
     StopRequest stop_{};

@@ -156,7 +156,11 @@ constexpr void Cartographer::draw_facet(End end) {
     const std::string_view kind = to_text(facet.kind); // "an input"
     record.kind = text(kind.substr(kind.find(' ') + 1));
     record.component = static_cast<std::uint32_t>(end.component);
-    record.type = type(facet.type);
+    record.type = type(facet.command != nullptr ? facet.command->arguments : facet.type);
+    if (facet.method != nullptr && facet.method->result_bytes != 0)
+        record.result = type(facet.method->result);
+    if (facet.command != nullptr && facet.command->result_bytes != 0)
+        record.result = type(facet.command->results);
     record.low = facet.range.low;
     record.high = facet.range.high;
     const bool ranged = record.low > -std::numeric_limits<double>::infinity() ||

@@ -93,7 +93,8 @@ struct Facet {
     Text kind; ///< "input", "output", "property", "event", "operation", "method", "command", ...
     std::uint32_t component = none;
     std::uint32_t type = none;   ///< of the value, or of the argument list
-    std::uint32_t result = none; ///< type of what a method returns
+    /// Type of what a method returns; of a command the list of its results.
+    std::uint32_t result = none;
     std::uint32_t flags = 0;
     double low = 0; ///< of a property, both ends included
     double high = 0;

@@ -63,6 +63,12 @@ public:
     JsonText& field(std::string_view name, const T& content) noexcept {
         return key(name).value(content);
     }
+    /// A whole JSON value, already text, with the comma that stands before it.
+    JsonText& fragment(std::string_view text) noexcept {
+        separate();
+        put(text);
+        return *this;
+    }
     JsonText& raw(std::string_view text) noexcept {
         put(text);
         return *this;

@@ -5,6 +5,7 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/machine/board.hpp"
 
 #include <array>
 #include <charconv>
@@ -42,17 +43,8 @@ inline constexpr std::size_t max_words = 64;
 inline constexpr std::string_view default_directory = "/run/tappet";
 inline constexpr std::string_view socket_suffix = ".socket";
 
-/// What a peer may do; each role may do all that the ones before it may.
-enum class Role : std::uint8_t { observer, machine_operator, engineer };
-
-constexpr std::string_view to_text(Role role) noexcept {
-    switch (role) {
-    case Role::observer: return "observer";
-    case Role::machine_operator: return "operator";
-    case Role::engineer: return "engineer";
-    }
-    return "nobody";
-}
+using tappet::Role;
+using tappet::to_text;
 
 enum class Verb : std::uint8_t {
     hello,
@@ -98,10 +90,10 @@ inline constexpr auto verbs = std::to_array<VerbRow>({
     {Verb::set,         "set",         Role::engineer,         "set NAME VALUE [NAME VALUE...]",   2, max_words, R"("set": n: all of one component and in one transaction, or none)"},
     {Verb::force,       "force",       Role::engineer,         "force PORT VALUE",                 2, 2, ""},
     {Verb::release,     "release",     Role::engineer,         "release PORT",                     1, 1, ""},
-    {Verb::save,        "save",        Role::engineer,         "save [COMPONENT]",                 0, 1, R"("files": n)"},
-    {Verb::start,       "start",       Role::engineer,         "start COMPONENT|ACTIVITY",         1, 1, ""},
-    {Verb::stop,        "stop",        Role::engineer,         "stop COMPONENT|ACTIVITY",          1, 1, ""},
-    {Verb::restart,     "restart",     Role::engineer,         "restart COMPONENT|ACTIVITY",       1, 1, ""},
+    {Verb::save,        "save",        Role::engineer,         "save",                             0, 0, R"("files": n)"},
+    {Verb::start,       "start",       Role::engineer,         "start COMPONENT|activity:NAME",         1, 1, ""},
+    {Verb::stop,        "stop",        Role::engineer,         "stop COMPONENT|activity:NAME",          1, 1, ""},
+    {Verb::restart,     "restart",     Role::engineer,         "restart COMPONENT|activity:NAME",       1, 1, ""},
 });
 // clang-format on
 

@@ -1,0 +1,136 @@
+// One cycle of the service: let in, hear, answer, follow what is under way.
+#include "kernel/services/browsing/browser_service.hpp"
+
+#include "kernel/machine/instance.hpp"
+#include "kernel/os/terminal.hpp"
+
+namespace tappet {
+
+using browsing::Verb;
+
+Sentence BrowserService::configure(Setup& setup) {
+    machine_ = setup.machine;
+    own_activity_ = activity_of(machine_->machine().table, setup.component);
+    return initialise();
+}
+
+Sentence BrowserService::initialise() {
+    const std::string_view directory = machine_->browsing_directory();
+    if (directory.empty() || door_.is_open()) return {};
+    const AcceptedMachine& machine = machine_->machine();
+    const auto opened = door_.open(directory, machine.table.name, machine.board->browsing);
+    return opened ? Sentence{} : opened.error();
+}
+
+void BrowserService::finalise() { door_.close(); }
+
+void BrowserService::work(const Cycle& cycle) {
+    if (!door_.is_open()) return;
+    now_ = cycle.now;
+    welcome();
+    for (Client& each : door_.clients()) hear(each);
+    follow_errands();
+    follow_changes();
+    follow_commands();
+    follow_lives();
+    std::int64_t connected = 0;
+    for (const Client& each : door_.clients()) connected += each.serial != 0;
+    clients.write(connected);
+    requests.write(static_cast<std::int64_t>(accepted_));
+    refused.write(static_cast<std::int64_t>(refused_));
+}
+
+void BrowserService::welcome() {
+    while (Client* client = door_.welcome()) note(*client, "connected", {}, {});
+    if (turned_away_ == door_.turned_away()) return;
+    turned_away_ = door_.turned_away();
+    if (log) os::print("browser: a client was turned away: all places are taken\n");
+}
+
+void BrowserService::hear(Client& client) {
+    for (std::size_t i = 0; i < browsing::Door::packets_each_cycle && client.serial != 0; ++i) {
+        bool cut = false;
+        const Client before{{}, client.peer, client.role, client.serial};
+        const auto packet = door_.receive(client, packet_, cut);
+        if (packet)
+            handle(client, *packet, cut);
+        else if (client.serial == 0)
+            note(before, "left", {}, {});
+        if (!packet) return;
+    }
+}
+
+void BrowserService::handle(Client& client, std::string_view packet, bool cut) {
+    Request request;
+    Verdict verdict;
+    if (cut)
+        verdict.why = Sentence{"a request has at most ", browsing::max_packet_bytes, " bytes; send several"};
+    if (verdict.good()) verdict.why = browsing::parse_request(packet, request);
+    if (verdict.good() && client.role < request.verb->role)
+        verdict = {Refusal::denied,
+                   Sentence{"\"", request.verb->name, "\" needs the role of an ", to_text(request.verb->role),
+                            ", you are an ", to_text(client.role),
+                            "; ask for it in the board's list of roles"}};
+    if (verdict.good()) verdict = answer(client, request);
+    ++(verdict.good() ? accepted_ : refused_);
+    note(client, verdict.good() ? "accepted" : "refused", packet, verdict);
+    if (verdict.good()) return;
+    Reply reply{request.number, verdict.code, verdict.why};
+    finish(client, reply);
+}
+
+BrowserService::Verdict BrowserService::answer(Client& client, const Request& request) {
+    switch (request.verb->verb) {
+    case Verb::hello: return hello(client, request);
+    case Verb::map: return map(client, request);
+    case Verb::get: return get(client, request);
+    case Verb::forced: return forced(client, request);
+    case Verb::set: return set(client, request);
+    case Verb::force: return force(client, request);
+    case Verb::release: return release(client, request);
+    case Verb::call: return call(client, request);
+    case Verb::send: return send(client, request);
+    case Verb::start: return change_life(client, request, LifeChange::start);
+    case Verb::stop: return change_life(client, request, LifeChange::stop);
+    case Verb::restart: return change_life(client, request, LifeChange::restart);
+    case Verb::subscribe:
+    case Verb::unsubscribe:
+    case Verb::save: break;
+    }
+    return {Refusal::unsupported,
+            Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};
+}
+
+/// One line: what, when, who, and what was asked, without letters that a terminal would obey.
+void BrowserService::note(const Client& client, std::string_view what, std::string_view packet,
+                          const Verdict& verdict) {
+    if (!log) return;
+    Sentence line{"browser: ", what};
+    if (!verdict.good()) line.add(" (").add(to_text(verdict.code)).add(")");
+    line.add(" at ").add(to_ns(now_) / 1000).add(" us, uid ").add(client.peer.user).add(", pid ");
+    line.add(static_cast<int>(client.peer.process)).add(", ").add(to_text(client.role));
+    if (!packet.empty()) line.add(": ");
+    for (const char letter : packet.substr(0, 240)) {
+        const bool shown =
+            static_cast<unsigned char>(letter) >= 0x20 && static_cast<unsigned char>(letter) < 0x7f;
+        line.add(shown ? std::string_view{&letter, 1} : std::string_view{letter == '\n' ? "" : "?"});
+    }
+    os::print(line.view());
+    os::print("\n");
+}
+
+void BrowserService::reply_good(const browsing::Asker& asker) noexcept {
+    Client* client = door_.find(asker.client);
+    if (client == nullptr) return;
+    Reply reply{asker.number, true};
+    finish(*client, reply);
+}
+
+void BrowserService::reply_bad(const browsing::Asker& asker, Refusal code, const Sentence& why) noexcept {
+    Client* client = door_.find(asker.client);
+    if (client == nullptr) return;
+    Reply reply{asker.number, code, why};
+    finish(*client, reply);
+}
+
+} // namespace tappet

@@ -1,0 +1,131 @@
+// The machine's side of browsing (thesis 4.8): a component that answers browsers over a local socket, from a
+// background activity. What it changes, it has done by the engine that owns it.
+#pragma once
+
+#include "kernel/component/component.hpp"
+#include "kernel/machine/map_view.hpp"
+#include "kernel/services/browsing/door.hpp"
+#include "kernel/services/browsing/errand.hpp"
+#include "kernel/services/browsing/reply.hpp"
+
+namespace tappet {
+
+/// In an activity of its own that is not_real_time: it makes system calls, and may wait for the terminal its
+/// log goes to. Nothing of the machine waits for it. A client that floods it gets its share of each cycle and
+/// fills its own socket.
+///     component<BrowserService>("browser") ... activity("browser", every(20ms), not_real_time,
+///     runs("browser"))
+class BrowserService {
+public:
+    static constexpr bool sees_machine = true;
+    /// An engine that did not run what it was asked to is not waited for any longer.
+    static constexpr Duration patience = 2s;
+    static constexpr std::size_t max_errands = 16;
+    static constexpr std::size_t max_commands = 8;
+    static constexpr std::size_t max_transactions = 4;
+    static constexpr std::size_t max_life_requests = 4;
+
+    Output<std::int64_t> clients, requests, refused;
+    Property<bool> log{true};
+
+    Sentence configure(Setup& setup);
+    Sentence initialise();
+    void work(const Cycle& cycle);
+    void finalise();
+
+    static constexpr auto interface() {
+        return facets(output<&BrowserService::clients>("clients", "", "browsers that are connected"),
+                      output<&BrowserService::requests>("requests", "", "accepted so far"),
+                      output<&BrowserService::refused>("refused", "", "requests refused so far"),
+                      property<&BrowserService::log>("log", "", "each request is printed, with who asked"));
+    }
+
+private:
+    using Client = browsing::Client;
+    using Request = browsing::Request;
+    using Reply = browsing::Reply;
+    using Refusal = browsing::Refusal;
+
+    /// Why a request is not done; an empty sentence: it is, or will be.
+    struct Verdict {
+        Refusal code = Refusal::bad_request;
+        Sentence why{};
+        Verdict() = default;
+        Verdict(Refusal c, const Sentence& w) noexcept : code{c}, why{w} {}
+        [[nodiscard]] bool good() const noexcept { return why.empty(); }
+    };
+    struct CommandInFlight {
+        browsing::Asker asker{};
+        bool taken = false;
+        End command{};
+        CommandState told = CommandState::ready;
+        CommandSlot slot{};
+        alignas(16) std::array<std::byte, 256> values{};
+    };
+    struct Change {
+        browsing::Asker asker{};
+        bool taken = false;
+        bool given_up = false;
+        PropertyTransaction transaction{};
+    };
+    struct LifeRequest {
+        browsing::Asker asker{};
+        bool taken = false;
+        std::size_t component = nowhere;
+        std::size_t activity = nowhere;
+        LifeTicket ticket{};
+    };
+
+    void welcome();
+    void hear(Client& client);
+    void handle(Client& client, std::string_view packet, bool cut);
+    Verdict answer(Client& client, const Request& request);
+    void note(const Client& client, std::string_view what, std::string_view packet, const Verdict& verdict);
+    void finish(Client& client, Reply& reply) noexcept { door_.send(client, reply.finish()); }
+    [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
+        return {client.serial, request.number, now_};
+    }
+    void reply_good(const browsing::Asker& asker) noexcept;
+    void reply_bad(const browsing::Asker& asker, Refusal code, const Sentence& why) noexcept;
+
+    // What is read; requests_read.cpp
+    Verdict hello(Client& client, const Request& request);
+    Verdict map(Client& client, const Request& request);
+    Verdict get(Client& client, const Request& request);
+    Verdict forced(Client& client, const Request& request);
+    void put_value(Reply& reply, End end, std::string_view name);
+
+    // What is changed; requests_change.cpp
+    Verdict set(Client& client, const Request& request);
+    Verdict force(Client& client, const Request& request);
+    Verdict release(Client& client, const Request& request);
+    Verdict call(Client& client, const Request& request);
+    [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
+                                         std::span<std::byte> into);
+    Verdict run_errand(Client& client, const Request& request, browsing::Errand& errand, End end);
+    [[nodiscard]] browsing::Errand* free_errand() noexcept;
+    [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
+    void follow_errands();
+    void follow_changes();
+
+    // Commands and lives; requests_follow.cpp
+    Verdict send(Client& client, const Request& request);
+    void follow_commands();
+    Verdict change_life(Client& client, const Request& request, LifeChange change);
+    void follow_lives();
+
+    MachineInstance* machine_ = nullptr;
+    std::size_t own_activity_ = nowhere;
+    Time now_{};
+    browsing::Door door_{};
+    std::uint64_t accepted_ = 0;
+    std::uint64_t refused_ = 0;
+    std::uint64_t turned_away_ = 0;
+    std::array<browsing::Errand, max_errands> errands_{};
+    std::array<CommandInFlight, max_commands> commands_{};
+    std::array<Change, max_transactions> changes_{};
+    std::array<LifeRequest, max_life_requests> lives_{};
+    std::array<char, browsing::max_packet_bytes + 1> packet_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,118 @@
+// Requests that only look: they are answered at once.
+#include "kernel/services/browsing/browser_service.hpp"
+
+#include "kernel/machine/instance.hpp"
+#include "kernel/services/browsing/names.hpp"
+
+namespace tappet {
+
+namespace {
+
+constexpr int reading_attempts = 1000;
+
+} // namespace
+
+BrowserService::Verdict BrowserService::hello(Client& client, const Request& request) {
+    const auto& header = *reinterpret_cast<const map::Header*>(machine_->shared_memory().data());
+    const AcceptedMachine& machine = machine_->machine();
+    Reply reply{request.number, true};
+    reply.json()
+        .field("protocol", browsing::protocol_version)
+        .field("machine", machine.table.name)
+        .field("board", machine.board->name)
+        .field("world", machine.board->world)
+        .field("role", to_text(client.role))
+        .field("build_id", std::string_view{header.build_id.data()})
+        .field("time_ns", to_ns(now_));
+    finish(client, reply);
+    return {};
+}
+
+BrowserService::Verdict BrowserService::map(Client& client, const Request& request) {
+    Reply reply{request.number, true};
+    reply.json().field("bytes", machine_->shared_memory().size());
+    door_.send(client, reply.finish(), machine_->shared_descriptor());
+    return {};
+}
+
+BrowserService::Verdict BrowserService::get(Client& client, const Request& request) {
+    Reply reply{request.number, true};
+    reply.json().key("values").open('[');
+    for (const std::string_view name : request.arguments) {
+        End end;
+        const Sentence fault = browsing::find_facet(
+            machine_->machine().table, name, {FacetKind::input, FacetKind::output, FacetKind::property}, end);
+        if (!fault.empty()) return {Refusal::unknown, fault};
+        put_value(reply, end, name);
+    }
+    reply.json().close(']');
+    finish(client, reply);
+    return {};
+}
+
+void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
+    const auto view = map::View::open(machine_->shared_memory());
+    const Facet& facet = facet_at(machine_->machine().table, end);
+    JsonText& json = reply.json();
+    json.open('{').field("name", name);
+    alignas(16) std::array<std::byte, 2048> value;
+    if (!view || facet.type->size > value.size()) {
+        json.field("error", "it is too large; read it from the map").close('}');
+        return;
+    }
+    const map::Component& component = view->components()[end.component];
+    const map::Facet& record = view->facets()[component.first_facet + end.facet];
+    bool is_forced = false;
+    std::uint64_t writes = 0;
+    std::int64_t stamp = 0;
+    bool there = true;
+    const auto copy = [&] {
+        is_forced = record.forced_at != 0 && view->word<std::uint8_t>(record.forced_at) != 0;
+        const bool hidden = is_forced && record.forced_value_at != 0;
+        there = view->copy(hidden ? record.forced_value_at : record.value_at,
+                           std::span{value}.first(facet.type->size));
+        writes = view->word<std::uint64_t>(record.writes_at);
+        stamp = view->word<std::int64_t>(record.stamp_at);
+    };
+    // Its own activity is in the middle of a cycle, this one, and writes nothing meanwhile.
+    bool whole = true;
+    if (component.activity == own_activity_)
+        copy();
+    else
+        whole = view->consistent(component.activity, reading_attempts, copy);
+    if (!whole || !there) {
+        json.field("error", whole ? "it has no value" : "its activity is busy; ask again").close('}');
+        return;
+    }
+    json.key("value");
+    reply.value(*facet.type, value.data());
+    if (facet.port != nullptr) {
+        Duration max_age{};
+        for (const map::Connection& row : view->connections())
+            if (&view->facets()[row.to] == &record) max_age = Duration{row.max_age_ns};
+        const auto age =
+            Duration{view->word<std::int64_t>(view->activities()[component.activity].now_at) - stamp};
+        const bool stale = max_age > Duration::zero() && age > max_age;
+        json.field("flow", is_forced ? "fresh" : writes == 0 ? "never_written" : stale ? "stale" : "fresh");
+        json.field("forced", is_forced).field("time_ns", stamp);
+    }
+    json.close('}');
+}
+
+BrowserService::Verdict BrowserService::forced(Client& client, const Request& request) {
+    Reply reply{request.number, true};
+    reply.json().key("forced").open('[');
+    const auto view = map::View::open(machine_->shared_memory());
+    if (view)
+        for (const map::Facet& each : view->facets()) {
+            if (each.forced_at == 0 || view->word<std::uint8_t>(each.forced_at) == 0) continue;
+            const Sentence name{view->text(view->components()[each.component].name), ".",
+                                view->text(each.name)};
+            reply.json().value(name.view());
+        }
+    reply.json().close(']');
+    finish(client, reply);
+    return {};
+}
+
+} // namespace tappet

@@ -1,0 +1,141 @@
+// Who may do what, and what a client can take of the machine (thesis 4.8): roles by the board's list, a share
+// of each cycle for everybody, and nothing that one client does reaches another.
+#include "tests/kernel/services/browsing/press_machine.hpp"
+
+#include "kernel/services/browsing/access.hpp"
+
+#include <memory>
+
+namespace tappet::press {
+namespace {
+
+os::Peer peer(std::uint32_t user, std::uint32_t main_group,
+              std::initializer_list<std::uint32_t> groups = {}) {
+    os::Peer made{1, user, main_group, {}};
+    for (const std::uint32_t each : groups) static_cast<void>(made.groups.push(each));
+    return made;
+}
+
+constexpr BoardBrowsing listed{.directory = "/run/tappet",
+                               .roles = roles(user(1001, Role::machine_operator), group(50, Role::engineer),
+                                              group(60, Role::machine_operator))};
+
+TEST(Access, root_and_the_machines_own_user_are_engineers) {
+    EXPECT_EQ(browsing::role_of(peer(0, 0), {}), Role::engineer);
+    EXPECT_EQ(browsing::role_of(peer(os::own_user(), 77), {}), Role::engineer);
+}
+
+TEST(Access, whoever_is_not_listed_observes) {
+    EXPECT_EQ(browsing::role_of(peer(4242, 4242), listed), Role::observer);
+}
+
+TEST(Access, the_board_lists_users_and_groups_and_the_highest_role_counts) {
+    EXPECT_EQ(browsing::role_of(peer(1001, 4242), listed), Role::machine_operator);
+    EXPECT_EQ(browsing::role_of(peer(4242, 60), listed), Role::machine_operator);
+    EXPECT_EQ(browsing::role_of(peer(4242, 4242, {60, 50}), listed), Role::engineer);
+    EXPECT_EQ(browsing::role_of(peer(1001, 4242, {50}), listed), Role::engineer);
+    EXPECT_EQ(browsing::role_of(peer(50, 1001), listed), Role::observer) << "a user is no group";
+}
+
+TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
+    for (const browsing::VerbRow& row : browsing::verbs) {
+        const bool looks = row.name == "hello" || row.name == "map" || row.name == "get" ||
+                           row.name == "forced" || row.name == "subscribe" || row.name == "unsubscribe";
+        const bool acts = row.name == "call" || row.name == "send";
+        EXPECT_EQ(row.role, looks  ? Role::observer
+                            : acts ? Role::machine_operator
+                                   : Role::engineer)
+            << row.name;
+    }
+}
+
+TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    // Who the peer is, is held fast when it connects.
+    ASSERT_EQ(seteuid(65534), 0);
+    Talker talker{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    EXPECT_TRUE(has(ask(talker, "1 hello"), R"("role": "observer")"));
+    const std::string answer = ask(talker, "2 set ram.speed 3");
+    EXPECT_TRUE(has(answer, R"("code": "denied")")) << answer;
+    EXPECT_TRUE(has(answer, R"(\"set\" needs the role of an engineer, you are an observer)")) << answer;
+    EXPECT_EQ(ram().speed.get(), 1.0);
+    EXPECT_TRUE(has(ask(talker, "3 send ram.move_to 3"), R"("code": "denied")"));
+    EXPECT_TRUE(has(ask(talker, "4 stop ram"), R"("code": "denied")"));
+    EXPECT_TRUE(has(ask(talker, "5 get ram.speed"), R"("ok": true)"));
+}
+
+TEST_F(Press, a_client_that_floods_is_served_its_share_and_no_more) {
+    Talker flood{path()};
+    Talker quiet{path()};
+    run(40ms);
+    auto& service = *instance.find<BrowserService>("browser");
+    std::size_t sent = 0;
+    while (flood.send("1 get ram.speed") && sent < 100'000) ++sent;
+    EXPECT_LT(sent, 100'000u) << "its own socket fills";
+    const std::int64_t before = service.requests.last();
+    run(100ms);
+    EXPECT_LE(service.requests.last() - before,
+              static_cast<std::int64_t>(6 * browsing::Door::packets_each_cycle));
+    EXPECT_TRUE(has(ask(quiet, "2 hello", 40ms), R"("ok": true)")) << "the other one does not wait for it";
+}
+
+TEST_F(Press, a_client_that_does_not_read_loses_its_own_packets_and_is_told) {
+    Talker deaf{path()};
+    for (int i = 0; i < 3000; ++i) {
+        static_cast<void>(deaf.send("1 get ram.place ram.limit ram.speed table.height"));
+        if (i % 4 == 3) run(20ms);
+    }
+    run(100ms);
+    std::string last;
+    for (std::string each = deaf.receive(); !each.empty(); each = deaf.receive()) last = each;
+    const std::string answer = ask(deaf, "2 hello");
+    EXPECT_TRUE(has(answer, R"("dropped": )")) << answer;
+    EXPECT_FALSE(has(ask(deaf, "3 hello"), R"("dropped")")) << "told once";
+}
+
+TEST_F(Press, one_client_too_many_is_told_so_and_those_that_are_in_stay) {
+    std::vector<std::unique_ptr<Talker>> talkers;
+    for (std::size_t i = 0; i < browsing::max_clients; ++i)
+        talkers.push_back(std::make_unique<Talker>(path()));
+    run(40ms);
+    Talker late{path()};
+    run(40ms);
+    EXPECT_TRUE(has(late.receive(), "places are taken"));
+    EXPECT_TRUE(late.gone());
+    EXPECT_TRUE(has(ask(*talkers.back(), "1 hello"), R"("ok": true)"));
+    talkers.front()->close();
+    run(40ms);
+    Talker next{path()};
+    EXPECT_TRUE(has(ask(next, "1 hello"), R"("ok": true)")) << "a place that was left is given again";
+}
+
+TEST_F(Press, a_client_that_dies_in_the_middle_leaves_nothing_behind) {
+    for (int i = 0; i < 40; ++i) {
+        Talker talker{path()};
+        for (const char* request : {"1 send ram.move_to 40", "2 set ram.speed 1", "3 call ram.distance 1"})
+            EXPECT_TRUE(talker.send(request));
+        run(20ms);
+        talker.close();
+        run(20ms);
+    }
+    run(200ms);
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 send ram.move_to 10"), R"("state": "sent")"));
+    Talker other{path()};
+    EXPECT_TRUE(has(ask(other, "2 set ram.speed 2"), R"("set": 1)"));
+}
+
+TEST(Access, without_a_directory_the_machine_runs_and_has_no_door) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    ASSERT_TRUE(instance.browsing_directory().empty()) << "the board names none";
+    ASSERT_TRUE(instance.configure({}));
+    VirtualWorld world{instance};
+    world.start();
+    EXPECT_TRUE(world.run_until(at_ns(0) + 1s));
+    EXPECT_EQ(instance.find<BrowserService>("browser")->requests.last(), 0);
+}
+
+} // namespace
+} // namespace tappet::press

@@ -1,0 +1,154 @@
+// A small machine with a browser service, and a client that talks to it under virtual time.
+#pragma once
+
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/virtual_world.hpp"
+#include "kernel/services/browsing/browser_service.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <unistd.h>
+
+namespace tappet::press {
+
+/// Moves to where it is told; what it may do, it says.
+struct Ram {
+    Output<double> place;
+    Input<double> limit;
+    Event<double> arrived;
+    Property<double> speed{1.0};
+    Property<double> force{10.0};
+    double target = 0;
+    std::int64_t strokes = 0;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        const double now = place.last();
+        const double far = target - now;
+        static_cast<void>(limit.get());
+        place.write(far > speed ? now + speed : far < -speed ? now - speed : target);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { place.write(0); }
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        if (proposal.of(speed) * proposal.of(force) <= 100) return {};
+        return Sentence{"speed times force is over 100; lower one of them"};
+    }
+    bool move_to(double to, std::int64_t&) noexcept TAPPET_REALTIME {
+        if (to < 0 || to > limit.get()) return false;
+        target = to;
+        return true;
+    }
+    CommandProgress moved_to(double to, std::int64_t& stroke) noexcept TAPPET_REALTIME {
+        if (place.last() != to) return CommandProgress::executing;
+        stroke = ++strokes;
+        arrived.emit(to);
+        return CommandProgress::done;
+    }
+    double distance(double to) noexcept TAPPET_REALTIME { return to - place.last(); }
+    void halt() noexcept TAPPET_REALTIME { target = place.last(); }
+
+    static constexpr auto interface() {
+        return facets(output<&Ram::place>("place", "mm", "of the ram"),
+                      input<&Ram::limit>("limit", "mm", "as far as it may go"),
+                      event<&Ram::arrived>("arrived", "it is where it was told to be"),
+                      property<&Ram::speed>("speed", "mm/ms", "", range(0.1, 20)),
+                      property<&Ram::force>("force", "kN", "", range(0, 100)),
+                      command<&Ram::move_to, &Ram::moved_to>("move_to", "goes there"),
+                      method<&Ram::distance>("distance", "from here"),
+                      operation<&Ram::halt>("halt", "stays"));
+    }
+};
+
+struct Table {
+    Output<double> height;
+    BufferOutput<std::int64_t> parts;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { height.write(50); }
+    static constexpr auto interface() {
+        return facets(output<&Table::height>("height", "mm", "of the table"),
+                      output<&Table::parts>("parts", "", "that lie on it"));
+    }
+};
+
+// clang-format off
+inline constexpr auto table = machine("press",
+    components(component<Ram>("ram"), component<Table>("table"), component<BrowserService>("browser", set("log", false))),
+    activities(
+        activity("motion",  every(1ms), budget(50us), runs("ram")),
+        activity("slow",    every(10ms), budget(50us), runs("table")),
+        activity("browser", every(20ms), not_real_time, runs("browser"))),
+    connections(data("table.height", "ram.limit", stale_after(1s), hold)),
+    reactions(), behaviours());
+inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,
+                             .browsing = {.mode = 0666}};
+// clang-format on
+
+/// One client.
+class Talker {
+public:
+    explicit Talker(const std::string& path) : connection_{os::LocalConnection::connect(path.c_str())} {
+        EXPECT_TRUE(connection_) << "cannot connect";
+    }
+    bool send(std::string_view request) {
+        return connection_->send(request) == os::LocalConnection::Sent::sent;
+    }
+    /// The next packet; empty when none waits.
+    std::string receive(int* descriptor = nullptr) {
+        std::string room(browsing::max_packet_bytes + 1, '\0');
+        const auto received = connection_->receive(room);
+        if (received.what != os::LocalConnection::Received::What::packet) return {};
+        if (descriptor != nullptr) *descriptor = received.passed;
+        room.resize(received.bytes);
+        return room;
+    }
+    void close() { connection_->close(); }
+    [[nodiscard]] bool gone() {
+        char byte = 0;
+        return connection_->receive({&byte, 1}).what == os::LocalConnection::Received::What::closed;
+    }
+
+private:
+    std::expected<os::LocalConnection, Sentence> connection_;
+};
+
+class Press : public testing::Test {
+protected:
+    std::string directory = "/tmp/tappet-browsing-" + std::to_string(getpid());
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    void SetUp() override {
+        instance.browse_in(directory);
+        const auto configured = instance.configure({});
+        ASSERT_TRUE(configured) << configured.error().view();
+        world.start();
+        run(50ms);
+    }
+    ~Press() override {
+        instance.find<BrowserService>("browser")->finalise();
+        std::filesystem::remove_all(directory);
+    }
+    std::string path() const { return directory + "/press.socket"; }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    /// What comes first after a request, within the time of a few cycles.
+    std::string ask(Talker& talker, std::string_view request, Duration time = 100ms) {
+        EXPECT_TRUE(talker.send(request));
+        std::string answer;
+        const Time end = clock.now() + time;
+        while (answer.empty() && clock.now() < end) {
+            run(10ms);
+            answer = talker.receive();
+        }
+        return answer;
+    }
+    Ram& ram() { return *instance.find<Ram>("ram"); }
+    static bool has(const std::string& text, std::string_view part) {
+        return text.find(part) != std::string::npos;
+    }
+};
+
+} // namespace tappet::press

@@ -1,0 +1,184 @@
+// The requests of a browser (thesis 4.8): whatever a component's interface offers can be reached from
+// outside, is done by the component's own engine, and what is wrong is refused with the cure.
+#include "tests/kernel/services/browsing/press_machine.hpp"
+
+#include "kernel/machine/map_view.hpp"
+
+namespace tappet::press {
+namespace {
+
+TEST_F(Press, hello_tells_the_machine_and_who_the_client_is_to_it) {
+    Talker talker{path()};
+    const std::string answer = ask(talker, "7 hello");
+    for (const char* part : {R"("id": 7)", R"("ok": true)", R"("machine": "press")", R"("role": "engineer")",
+                             R"("protocol": 1)", R"("board": "test")"})
+        EXPECT_TRUE(has(answer, part)) << answer;
+}
+
+TEST_F(Press, map_hands_out_the_memory_read_only) {
+    Talker talker{path()};
+    ASSERT_TRUE(talker.send("1 map"));
+    run(40ms);
+    int descriptor = -1;
+    EXPECT_TRUE(has(talker.receive(&descriptor), R"("ok": true)"));
+    ASSERT_GE(descriptor, 0);
+    const auto block = os::map_to_read(descriptor);
+    close(descriptor);
+    const auto view = map::View::open(block);
+    ASSERT_TRUE(view) << view.error().view();
+    EXPECT_EQ(view->text(view->header().machine), "press");
+    os::unmap(block);
+}
+
+TEST_F(Press, get_reads_ports_and_properties_with_what_is_known_of_them) {
+    Talker talker{path()};
+    EXPECT_EQ(ask(talker, "1 get ram.speed"),
+              "{\"id\": 1, \"ok\": true, \"values\": [{\"name\": \"ram.speed\", \"value\": 1}]}\n");
+    const std::string answer = ask(talker, "2 get ram.limit table.height");
+    EXPECT_TRUE(has(answer, R"("name": "ram.limit", "value": 50, "flow": "fresh", "forced": false)"))
+        << answer;
+    EXPECT_TRUE(has(answer, R"("name": "table.height", "value": 50)")) << answer;
+    EXPECT_TRUE(has(ask(talker, "3 get browser.clients"), R"("value": 1)"));
+}
+
+TEST_F(Press, set_changes_several_properties_as_one) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 set ram.speed 2.5 ram.force 40"), R"("set": 2)"));
+    EXPECT_EQ(ram().speed.get(), 2.5);
+    EXPECT_EQ(ram().force.get(), 40);
+}
+
+TEST_F(Press, set_changes_nothing_when_one_value_is_wrong) {
+    Talker talker{path()};
+    for (const char* request : {"1 set ram.speed 2 ram.force 101", "2 set ram.speed 2 ram.force plenty",
+                                "3 set ram.speed 20 ram.force 100", "4 set ram.speed 2 ram.force",
+                                "5 set ram.speed 2 browser.log false", "6 set ram.speed nan"}) {
+        const std::string answer = ask(talker, request);
+        EXPECT_TRUE(has(answer, R"("ok": false)")) << request << answer;
+        EXPECT_EQ(ram().speed.get(), 1.0) << request;
+        EXPECT_EQ(ram().force.get(), 10.0) << request;
+    }
+    EXPECT_TRUE(has(ask(talker, "7 set ram.speed 20 ram.force 100"), "speed times force is over 100"))
+        << "the component's own words";
+}
+
+TEST_F(Press, a_forced_output_shows_everywhere_and_is_released_again) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force table.height 30"), R"("ok": true)"));
+    run(50ms);
+    EXPECT_EQ(ram().limit.get(), 30.0);
+    EXPECT_EQ(instance.observed().forced.load(), 1u);
+    EXPECT_TRUE(has(ask(talker, "2 get table.height"), R"("value": 30, "flow": "fresh", "forced": true)"));
+    EXPECT_TRUE(has(ask(talker, "3 forced"), R"("forced": ["table.height"])"));
+    EXPECT_TRUE(has(ask(talker, "4 force table.height 31"), R"("ok": true)"));
+    EXPECT_EQ(instance.observed().forced.load(), 1u) << "forced twice is forced";
+    EXPECT_TRUE(has(ask(talker, "5 release table.height"), R"("ok": true)"));
+    run(50ms);
+    EXPECT_EQ(ram().limit.get(), 50.0);
+    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_TRUE(has(ask(talker, "6 forced"), R"("forced": [])"));
+}
+
+TEST_F(Press, a_forced_input_is_what_its_component_reads) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_EQ(ram().limit.get(), 5.0);
+    EXPECT_EQ(instance.find<Table>("table")->height.last(), 50.0);
+    EXPECT_TRUE(has(ask(talker, "2 get ram.limit"), R"("value": 5, "flow": "fresh", "forced": true)"));
+    EXPECT_TRUE(has(ask(talker, "3 release ram.limit"), R"("ok": true)"));
+    EXPECT_EQ(ram().limit.get(), 50.0);
+}
+
+TEST_F(Press, what_cannot_be_forced_is_refused_with_the_reason) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force table.parts 3"), "is a buffered port"));
+    EXPECT_TRUE(has(ask(talker, "2 force ram.speed 3"), "is a property, not an input or an output"));
+    EXPECT_TRUE(has(ask(talker, "3 force ram.limit far"), R"("code": "bad_value")"));
+    EXPECT_EQ(instance.observed().forced.load(), 0u);
+}
+
+TEST_F(Press, a_method_is_called_in_its_components_engine_and_gives_its_result) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 call ram.distance 8"), R"("result": 8)"));
+    EXPECT_TRUE(has(ask(talker, "2 call ram.halt"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "3 call ram.distance"), "takes 1 arguments"));
+    EXPECT_TRUE(has(ask(talker, "4 call ram.distance far"), R"("code": "bad_value")"));
+    EXPECT_TRUE(has(ask(talker, "5 call ram.move_to 3"), "is a command"));
+}
+
+TEST_F(Press, a_command_is_followed_to_its_end) {
+    Talker talker{path()};
+    const std::string answer = ask(talker, "1 send ram.move_to 40");
+    EXPECT_TRUE(has(answer, R"("ok": true, "state": "sent")")) << answer;
+    std::vector<std::string> packets;
+    for (int i = 0; i < 20; ++i) {
+        run(10ms);
+        for (std::string each = talker.receive(); !each.empty(); each = talker.receive())
+            packets.push_back(each);
+    }
+    ASSERT_FALSE(packets.empty());
+    EXPECT_TRUE(has(packets.front(), R"("command": "ram.move_to")")) << packets.front();
+    EXPECT_TRUE(has(packets.back(), R"("state": "done")")) << packets.back();
+    EXPECT_TRUE(has(packets.back(), R"("final": true, "results": [1])")) << packets.back();
+    EXPECT_EQ(ram().place.last(), 40.0);
+}
+
+TEST_F(Press, a_command_that_is_rejected_says_so) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 send ram.move_to 51"), R"("state": "sent")"));
+    run(50ms);
+    const std::string packet = talker.receive();
+    EXPECT_TRUE(has(packet, R"("state": "rejected")")) << packet;
+    EXPECT_TRUE(has(packet, R"("final": true)")) << packet;
+}
+
+TEST_F(Press, a_component_is_stopped_and_started_while_the_rest_runs) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 stop ram"), R"("ok": true)"));
+    EXPECT_EQ(instance.state_of(0), ComponentState::stopped);
+    EXPECT_EQ(instance.state_of(1), ComponentState::running);
+    EXPECT_TRUE(has(ask(talker, "2 call ram.distance 8"), "does not run; start it first"));
+    EXPECT_TRUE(has(ask(talker, "3 start ram"), R"("ok": true)"));
+    EXPECT_EQ(instance.state_of(0), ComponentState::running);
+    EXPECT_TRUE(has(ask(talker, "4 restart ram"), R"("ok": true)"));
+}
+
+TEST_F(Press, the_browser_does_not_stop_itself) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 stop browser"), R"("code": "unsupported")"));
+    EXPECT_TRUE(has(ask(talker, "2 stop activity:browser"), R"("code": "unsupported")"));
+}
+
+TEST_F(Press, an_activity_is_stopped_and_started_and_meanwhile_nothing_of_it_is_changed) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 stop slow"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "2 force table.height 3"), "is stopped"));
+    EXPECT_TRUE(has(ask(talker, "3 start activity:slow"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "4 force table.height 3"), R"("ok": true)"));
+}
+
+TEST_F(Press, names_that_are_wrong_lead_to_the_right_ones) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 get ram.sped"), R"(did you mean \"speed\"?)"));
+    EXPECT_TRUE(has(ask(talker, "2 get rum.speed"), R"(did you mean \"ram\"?)"));
+    EXPECT_TRUE(has(ask(talker, "3 get speed"), R"(write \"component.facet\")"));
+    EXPECT_TRUE(has(ask(talker, "4 hallo"), R"(did you mean \"hello\"?)"));
+    EXPECT_TRUE(has(ask(talker, "5 stop motoin"), R"(did you mean \"motion\"?)"));
+}
+
+TEST_F(Press, what_is_no_request_is_refused_and_the_next_is_served) {
+    Talker talker{path()};
+    for (const std::string& packet :
+         {std::string{"hello"}, std::string{"1"}, std::string{"-1 hello"}, std::string{"99999999999 hello"},
+          std::string{"1 get \"ram"}, std::string{"1 get [1, 2"}, std::string{"1 hello\x01"},
+          std::string(5000, 'x'), std::string{"1 get"}, std::string{"1 hello you"}, std::string(4000, '1')}) {
+        const std::string answer = ask(talker, packet);
+        EXPECT_TRUE(has(answer, R"("code": "bad_request")")) << packet.substr(0, 40) << answer;
+        EXPECT_TRUE(has(answer, R"("error": ")"));
+    }
+    EXPECT_TRUE(has(ask(talker, "8 hello"), R"("id": 8, "ok": true)"));
+    EXPECT_EQ(instance.find<BrowserService>("browser")->refused.last(), 11);
+}
+
+} // namespace
+} // namespace tappet::press
