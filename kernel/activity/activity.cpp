@@ -4,6 +4,8 @@
 #include "kernel/os/memory.hpp"
 #include "kernel/os/sleep.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
 namespace {
@@ -41,6 +43,8 @@ bool Activity::start(int milliseconds) noexcept {
 bool Activity::stop(int milliseconds) noexcept {
     if (state() == State::inactive || state() == State::stopped) return true;
     stop_asked_.store(true, std::memory_order_release);
+    if (const EnginePart* part = engine_->looping(); part != nullptr && part->type->break_loop != nullptr)
+        part->type->break_loop(part->component);
     engine_->waiter().wake();
     return wait_for(State::stopped, milliseconds) && state() == State::stopped;
 }
@@ -88,16 +92,43 @@ void Activity::run_once() noexcept {
     state_.store(State::stopped, std::memory_order_release);
 }
 
+bool Activity::sleep_until(Time time) noexcept TAPPET_REALTIME {
+    return engine_->heeds_devices() ? engine_->waiter().wait(time)
+                                    : engine_->waiter().wait_without_devices(time);
+}
+
 void Activity::cycles() noexcept TAPPET_REALTIME {
+    const EnginePart* const looping = engine_->looping();
     while (true) {
-        const Time next = engine_->next_wake();
-        const bool woken = engine_->heeds_devices() ? engine_->waiter().wait(next)
-                                                    : engine_->waiter().wait_without_devices(next);
-        if (stop_asked_.load(std::memory_order_acquire)) return;
+        if (looping != nullptr && is_running(looping->state) && goes_on()) {
+            state_.store(State::running, std::memory_order_relaxed);
+            TAPPET_ESCAPE("this activity is not real-time", loop(*looping));
+            state_.store(State::waiting, std::memory_order_relaxed);
+        }
+        const bool woken = goes_on() && sleep_until(engine_->next_wake());
+        if (!goes_on()) return;
         state_.store(State::running, std::memory_order_relaxed);
         engine_->run(woken);
         state_.store(State::waiting, std::memory_order_relaxed);
     }
+}
+
+void Activity::loop(const EnginePart& part) {
+    LoopControl control{{this,
+                         [](void* self, Duration time) noexcept {
+                             auto& at = *static_cast<Activity*>(self);
+                             const Time until = std::min(at.clock_->now() + time, at.engine_->next_wake());
+                             const bool woken = at.goes_on() && at.sleep_until(until);
+                             if (at.goes_on()) at.engine_->run(woken);
+                             return at.goes_on();
+                         },
+                         [](void* self) noexcept {
+                             auto& at = *static_cast<Activity*>(self);
+                             if (at.goes_on()) at.engine_->run(false);
+                             return at.goes_on();
+                         },
+                         engine_->now_address()}};
+    part.type->loop(part.component, control);
 }
 
 void Activity::park() noexcept TAPPET_REALTIME {

@@ -64,6 +64,11 @@ private:
     void live() noexcept;
     void cycles() noexcept TAPPET_REALTIME;
     void run_once() noexcept;
+    void loop(const EnginePart& part);
+    [[nodiscard]] bool goes_on() const noexcept TAPPET_REALTIME {
+        return !stop_asked_.load(std::memory_order_acquire);
+    }
+    bool sleep_until(Time time) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool wait_for(State wanted, int milliseconds) const noexcept;
 
     Engine* engine_ = nullptr;

@@ -156,6 +156,11 @@ public:
     [[nodiscard]] LifeAnswer readiness(Time now) noexcept TAPPET_REALTIME;
     /// Its thread hangs or broke a contract, and its stop was run in its place: its components are failed.
     void mark_failed() noexcept TAPPET_REALTIME;
+    /// The component that decides itself when it runs, which is then the only one; null: none does.
+    [[nodiscard]] const EnginePart* looping() const noexcept TAPPET_REALTIME {
+        return plan_.parts.size() == 1 && plan_.parts.front().type->loop != nullptr ? &plan_.parts.front()
+                                                                                    : nullptr;
+    }
     /// All drivers among its components run: whoever waits for it listens to its devices.
     [[nodiscard]] bool heeds_devices() const noexcept TAPPET_REALTIME;
 

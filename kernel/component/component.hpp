@@ -5,6 +5,7 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/interface.hpp"
+#include "kernel/component/loop.hpp"
 #include "kernel/component/operation_interface.hpp"
 #include "kernel/component/proposal.hpp"
 #include "kernel/component/setup.hpp"
@@ -24,6 +25,8 @@ namespace tappet {
 ///     void work(const Cycle&)                             instead of step: may block; for activities that are not_real_time
 ///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME   before properties change, together; an empty sentence is consent
 ///     void changed() noexcept TAPPET_REALTIME             after they did, between two steps
+///     void loop(LoopControl&)                             instead of step: decides itself when it runs; alone in its activity
+///     void break_loop()                                   lets loop() return although it blocks; on the stopper's thread
 ///     void stop(const Cycle&) noexcept TAPPET_REALTIME    leaves safe values behind; also when an input kept it from its start
 ///     void finalise()                                     after its activity stopped, on the stopper's thread; not real-time
 // clang-format on
@@ -46,6 +49,8 @@ struct ComponentType {
     void (*start)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     void (*step)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     void (*work)(void* component, const Cycle&) = nullptr;
+    void (*loop)(void* component, LoopControl&) = nullptr;
+    void (*break_loop)(void* component) = nullptr;
     void (*stop)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     Sentence (*accepts)(const void* component, const Proposal&) noexcept TAPPET_REALTIME = nullptr;
     void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
@@ -85,6 +90,10 @@ constexpr ComponentType describe() {
             TAPPET_REALTIME { static_cast<T*>(c)->step(cycle); };
     if constexpr (requires(T& t, const Cycle& c) { t.work(c); })
         type.work = [](void* c, const Cycle& cycle) { static_cast<T*>(c)->work(cycle); };
+    if constexpr (requires(T& t, LoopControl& c) { t.loop(c); })
+        type.loop = [](void* c, LoopControl& control) { static_cast<T*>(c)->loop(control); };
+    if constexpr (requires(T& t) { t.break_loop(); })
+        type.break_loop = [](void* c) { static_cast<T*>(c)->break_loop(); };
     if constexpr (requires(T& t, const Cycle& c) { t.stop(c); })
         type.stop = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };

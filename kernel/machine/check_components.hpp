@@ -121,6 +121,23 @@ constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
     return {};
 }
 
+constexpr Sentence check_loop(const ActivityRow& row, std::string_view name, const ComponentType& type) {
+    if (type.loop == nullptr) return {};
+    if (type.step != nullptr || type.work != nullptr)
+        return of_component(name, " has loop() and also ", type.step != nullptr ? "step()" : "work()",
+                            "; keep one of them");
+    if (row.real_time)
+        return of_activity(row.name, " is real-time but component \"", name,
+                           "\" may block (it has loop()); run it in an activity that is not_real_time");
+    if (row.periodic())
+        return of_activity(row.name, " is periodic but component \"", name,
+                           "\" decides itself when it runs (it has loop()); run it on_work()");
+    if (row.runs.size() != 1)
+        return of_activity(row.name, " runs others beside component \"", name,
+                           "\", which keeps the thread (it has loop()); run it in an activity of its own");
+    return {};
+}
+
 /// Fills the activity of each component.
 constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
     for (auto& each : r.activity) each = nowhere;
@@ -146,6 +163,7 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
                                        facet.name,
                                        "\", which runs between periods; run it on_work() with at_most(n, "
                                        "per), so that the analysis counts it");
+            if (Sentence fault = check_loop(row, name, *m.components[c].type); !fault.empty()) return fault;
             if (m.components[c].type->work != nullptr && row.real_time)
                 return of_activity(
                     row.name, " is real-time but component \"", name,

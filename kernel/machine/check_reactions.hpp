@@ -48,7 +48,8 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                m.activities[emitter].name,
                                "\"; use tell(...), or declare the operation any_thread if it is safe there");
         if (row.target.synchronous && m.activities[emitter].real_time &&
-            m.components[link.to.component].type->work != nullptr)
+            (m.components[link.to.component].type->work != nullptr ||
+             m.components[link.to.component].type->loop != nullptr))
             return of_reaction(row, ": component \"", m.components[link.to.component].name,
                                "\" may block; use tell(...)");
         if (!row.target.synchronous && row.target.quota == 0)

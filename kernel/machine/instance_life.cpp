@@ -62,11 +62,16 @@ LifeSign MachineInstance::life_sign_of(std::string_view watched) noexcept {
 }
 
 LifeTicket MachineInstance::ask_component(std::size_t c, LifeChange change) noexcept TAPPET_REALTIME {
-    return engines()[machine_.index.activity[c]].ask(machine_.plan.part_of[c], change);
+    const std::size_t a = machine_.index.activity[c];
+    // A loop that blocks is broken off by the supervisor only: it is alone in its activity.
+    if (machine_.table.components[c].type->loop != nullptr) return ask_activity(a, change);
+    return engines()[a].ask(machine_.plan.part_of[c], change);
 }
 
 LifeAnswer MachineInstance::answer_of_component(std::size_t c, LifeTicket ticket) noexcept TAPPET_REALTIME {
-    return engines()[machine_.index.activity[c]].answer_to(machine_.plan.part_of[c], ticket);
+    const std::size_t a = machine_.index.activity[c];
+    if (machine_.table.components[c].type->loop != nullptr) return answer_of_activity(a, ticket);
+    return engines()[a].answer_to(machine_.plan.part_of[c], ticket);
 }
 
 ComponentState MachineInstance::state_of(std::size_t c) noexcept TAPPET_REALTIME {

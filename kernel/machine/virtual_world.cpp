@@ -20,11 +20,13 @@ ActivityControl VirtualWorld::control() noexcept {
                 auto& world = *static_cast<VirtualWorld*>(self);
                 Engine& engine = world.instance_.engines()[a];
                 engine.start(world.instance_.clock().now());
-                world.wake_at_[a] = engine.next_wake();
+                world.wake_at_[a] =
+                    engine.looping() == nullptr ? engine.next_wake() : world.instance_.clock().now();
                 return true;
             },
             [](void* self, std::size_t a) {
                 auto& world = *static_cast<VirtualWorld*>(self);
+                if (world.loops_[a]) world.loops_[a]->break_off();
                 world.instance_.engines()[a].stop(world.instance_.clock().now());
                 return true;
             }};
@@ -52,6 +54,19 @@ Time VirtualWorld::next_time() const {
     return next;
 }
 
+void VirtualWorld::run_engine(std::size_t a, bool woken) {
+    Engine& engine = instance_.engines()[a];
+    if (engine.looping() == nullptr) {
+        engine.run(woken);
+        wake_at_[a] = engine.next_wake();
+        return;
+    }
+    if (!loops_[a])
+        loops_[a] = std::make_unique<VirtualLoop>(engine, instance_.clock(), instance_.stack_of(a));
+    loops_[a]->run(woken);
+    wake_at_[a] = loops_[a]->next_wake();
+}
+
 void VirtualWorld::run_engines(Time now) {
     const auto engines = instance_.engines();
     for (int round = 0; round < max_rounds_per_instant; ++round) {
@@ -61,8 +76,7 @@ void VirtualWorld::run_engines(Time now) {
             if (!engine.is_active()) continue;
             const bool woken = engine.waiter().is_woken() && engine.waiter().take();
             if (!woken && wake_at_[a] > now) continue;
-            engine.run(woken);
-            wake_at_[a] = engine.next_wake();
+            run_engine(a, woken);
             ++steps_;
             ran = true;
             break; // the most urgent of those that are ready now runs next

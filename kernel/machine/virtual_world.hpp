@@ -4,8 +4,10 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/machine/instance.hpp"
+#include "kernel/machine/virtual_loop.hpp"
 
 #include <array>
+#include <memory>
 
 namespace tappet {
 
@@ -40,6 +42,7 @@ private:
     static constexpr int max_rounds_per_instant = 1000;
 
     [[nodiscard]] ActivityControl control() noexcept;
+    void run_engine(std::size_t activity, bool woken);
     [[nodiscard]] Time next_time() const;
     void run_engines(Time now);
 
@@ -49,6 +52,7 @@ private:
     // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
     // all its timers.
     std::array<Time, checks::max_activities> wake_at_{};
+    std::array<std::unique_ptr<VirtualLoop>, checks::max_activities> loops_{};
     std::uint64_t steps_ = 0;
 };
 
