@@ -9,9 +9,17 @@ namespace tappet::carpet {
 
 AcceptedMachine loom_on_host() { return Firmware<carpet_loom, board::host>::machine(); }
 
-PropertyStore properties_on_host() {
-    static PropertyFiles files{board::host.properties_directory};
-    return files.store();
+namespace {
+
+PropertyFiles& files() {
+    static PropertyFiles on_host{board::host.properties_directory};
+    return on_host;
 }
+
+} // namespace
+
+void keep_properties_in(std::string_view directory) { files().keep_in(directory); }
+
+PropertyStore properties_on_host() { return files().store(); }
 
 } // namespace tappet::carpet

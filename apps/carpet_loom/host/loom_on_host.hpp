@@ -7,7 +7,9 @@
 namespace tappet::carpet {
 
 AcceptedMachine loom_on_host();
-/// Where its properties are kept: nowhere, so that a run depends on its seed alone.
+/// Where its properties are kept: nowhere unless named, so that a run depends on its seed alone. Before the
+/// run starts; the letters outlive it.
+void keep_properties_in(std::string_view directory);
 PropertyStore properties_on_host();
 
 } // namespace tappet::carpet

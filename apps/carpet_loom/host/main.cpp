@@ -1,4 +1,5 @@
 // The carpet loom on the host: machine and plant in one process.
+#include "apps/carpet_loom/host/loom_on_host.hpp"
 #include "apps/carpet_loom/host/options.hpp"
 #include "apps/carpet_loom/host/real_run.hpp"
 #include "apps/carpet_loom/host/virtual_run.hpp"
@@ -72,6 +73,8 @@ int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet:
            const Outcome& outcome) {
     if (!outcome.broken_contract.empty())
         os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
+    if (!options.properties.empty())
+        if (const Sentence fault = instance.save_properties(); !fault.empty()) return fail(fault);
     if (!options.summary.empty()) {
         const std::size_t length = write_summary(instance, loom, options, outcome);
         if (length == 0) return fail(Sentence{"the summary does not fit its buffer"});
@@ -116,5 +119,6 @@ int main(int count, char** words) {
         os::print(carpet::usage);
         return 0;
     }
+    if (!options->properties.empty()) carpet::keep_properties_in(options->properties);
     return options->virtual_time ? run_virtual(*options) : run_real(*options);
 }

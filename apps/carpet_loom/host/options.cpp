@@ -26,7 +26,7 @@ std::expected<Options, Sentence> parse_options(int count, const char* const* wor
     options.plant.warp_break_one_in = 150;
     constexpr std::string_view known[] = {"--world",   "--virtual",     "--real",        "--seed",
                                           "--picks",   "--weft-breaks", "--warp-breaks", "--emergency-stops",
-                                          "--summary", "--quiet",       "--help"};
+                                          "--summary", "--properties",  "--quiet",       "--help"};
     for (int i = 1; i < count; ++i) {
         const std::string_view option = words[i];
         if (option == "--virtual" || option == "--real") {
@@ -52,8 +52,8 @@ std::expected<Options, Sentence> parse_options(int count, const char* const* wor
         if (i + 1 == count)
             return std::unexpected(Sentence{"option ", option, " needs a value behind it; see --help"});
         const std::string_view word = words[++i];
-        if (option == "--summary") {
-            options.summary = word;
+        if (option == "--summary" || option == "--properties") {
+            (option == "--summary" ? options.summary : options.properties) = word;
             continue;
         }
         if (option == "--world") {

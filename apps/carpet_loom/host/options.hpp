@@ -14,7 +14,8 @@ struct Options {
     bool virtual_time = true;
     std::uint64_t seed = 1;
     std::uint64_t picks = 200;
-    std::string_view summary; ///< a file; empty: none
+    std::string_view summary;    ///< a file; empty: none
+    std::string_view properties; ///< a directory; empty: they are not kept
     bool quiet = false;
     bool help = false;
     loom::Settings plant{};
@@ -30,6 +31,7 @@ inline constexpr std::string_view usage =
     "  --warp-breaks N     one pick in N breaks a warp end, 0: none (default 150)\n"
     "  --emergency-stops N one pick in N ends in an emergency stop, 0: none (default 0)\n"
     "  --summary FILE      writes the summary as JSON\n"
+    "  --properties DIR    reads the components' properties from there and saves them at the end\n"
     "  --quiet             no status lines\n";
 
 /// An error names the option and the cure.

@@ -18,6 +18,8 @@ public:
     /// error.
     explicit PropertyFiles(std::string_view directory) noexcept : directory_{directory} {}
 
+    /// Another directory; it outlives this too.
+    void keep_in(std::string_view directory) noexcept { directory_ = directory; }
     /// For MachineInstance::read_properties_from.
     [[nodiscard]] PropertyStore store() noexcept;
 
