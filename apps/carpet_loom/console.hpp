@@ -2,6 +2,7 @@
 // is the record that the summary reads.
 #pragma once
 
+#include "apps/carpet_loom/loom_state.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/os/terminal.hpp"
 
@@ -10,26 +11,19 @@ namespace tappet::carpet {
 /// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another
 /// program can pick them out of a serial console.
 struct Console {
-    Input<std::int64_t> state, cause, waits_for, stops, picks, frames_lost, bus_state, bus_restarts,
-        edges_lost, outages;
+    Input<LoomState> state;
+    Input<StopCause> cause;
+    Input<WaitsFor> waits_for;
+    Input<std::int64_t> stops, picks, frames_lost, bus_state, bus_restarts, edges_lost, outages;
     Input<double> speed_rpm, angle_deg, stop_error_deg, tension_n, oil_bar;
     Property<bool> quiet{false};
-
-    static constexpr std::array<std::string_view, 10> states{
-        "off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
-    static constexpr std::array<std::string_view, 6> causes{"none",     "weft",      "warp",
-                                                            "operator", "emergency", "fault"};
-
-    static constexpr std::array<std::string_view, 9> waits{"nothing",      "emergency-stop", "can-nodes",
-                                                           "encoder",      "main-drive",     "let-off-drive",
-                                                           "oil-pressure", "warp-tension",   "drop-wire"};
 
     void work(const Cycle& cycle) {
         if (quiet.get()) return;
         Sentence line{"loom t=",
                       to_ns(cycle.now) / 1'000'000,
                       "ms state=",
-                      name(states, state.get()),
+                      name(state.get()),
                       " speed=",
                       whole(speed_rpm.get()),
                       "rpm angle=",
@@ -43,7 +37,7 @@ struct Console {
                       "cbar stops=",
                       stops.get(),
                       " cause=",
-                      name(causes, cause.get()),
+                      name(cause.get()),
                       " stop_error=",
                       whole(stop_error_deg.get() * 10.0),
                       "ddeg bus=",
@@ -57,39 +51,39 @@ struct Console {
                       " restarts=",
                       bus_restarts.get(),
                       " waits_for=",
-                      name(waits, waits_for.get()),
+                      name(waits_for.get()),
                       "\n"};
         os::print(line.view());
     }
 
     static constexpr auto interface() {
-        return facets(input<&Console::state>("state", "", "number of the loom's state"),
-                      input<&Console::cause>("cause", "", "of the last stop"),
-                      input<&Console::waits_for>("waits_for", "",
-                                                 "number of what is missing before the loom may start"),
-                      input<&Console::stops>("stops", "", "at the stop angle"),
-                      input<&Console::picks>("picks", "", "woven"),
-                      input<&Console::frames_lost>("frames_lost", "", "on the CAN bus"),
-                      input<&Console::bus_state>("bus_state", "", "of the CAN bus"),
-                      input<&Console::bus_restarts>("bus_restarts", "", "of the CAN bus, since start"),
-                      input<&Console::edges_lost>("edges_lost", "", "on the GPIO lines"),
-                      input<&Console::outages>("outages", "", "of the utility unit"),
-                      input<&Console::speed_rpm>("speed_rpm", "rpm", "of the main shaft"),
-                      input<&Console::angle_deg>("angle_deg", "deg", "of the main shaft"),
-                      input<&Console::stop_error_deg>("stop_error_deg", "deg", "of the last stop"),
-                      input<&Console::tension_n>("tension_n", "N", "of the warp"),
-                      input<&Console::oil_bar>("oil_bar", "bar", "oil pressure"),
-                      property<&Console::quiet>("quiet", "", "print nothing"));
+        return facets(
+            input<&Console::state>("state", "", "of the loom"),
+            input<&Console::cause>("cause", "", "of the last stop"),
+            input<&Console::waits_for>("waits_for", "", "what is missing before the loom may start"),
+            input<&Console::stops>("stops", "", "at the stop angle"),
+            input<&Console::picks>("picks", "", "woven"),
+            input<&Console::frames_lost>("frames_lost", "", "on the CAN bus"),
+            input<&Console::bus_state>("bus_state", "", "of the CAN bus"),
+            input<&Console::bus_restarts>("bus_restarts", "", "of the CAN bus, since start"),
+            input<&Console::edges_lost>("edges_lost", "", "on the GPIO lines"),
+            input<&Console::outages>("outages", "", "of the utility unit"),
+            input<&Console::speed_rpm>("speed_rpm", "rpm", "of the main shaft"),
+            input<&Console::angle_deg>("angle_deg", "deg", "of the main shaft"),
+            input<&Console::stop_error_deg>("stop_error_deg", "deg", "of the last stop"),
+            input<&Console::tension_n>("tension_n", "N", "of the warp"),
+            input<&Console::oil_bar>("oil_bar", "bar", "oil pressure"),
+            property<&Console::quiet>("quiet", "", "print nothing"));
     }
 
 private:
     static std::int64_t whole(double value) {
         return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5));
     }
-    template <std::size_t N>
-    static std::string_view name(const std::array<std::string_view, N>& names, std::int64_t index) {
-        return index >= 0 && index < static_cast<std::int64_t>(N) ? names[static_cast<std::size_t>(index)]
-                                                                  : "?";
+    template <class E>
+    static std::string_view name(E value) {
+        const auto index = static_cast<std::size_t>(value);
+        return index < names_of<E>.size() ? names_of<E>[index] : "?";
     }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/carpet_loom/change.hpp"
+#include "apps/carpet_loom/loom_state.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/operation_interface.hpp"
@@ -9,20 +10,6 @@
 namespace tappet::carpet {
 
 namespace wires = loom::wires;
-
-enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
-/// What the loom waits for before it may start; the first that is missing.
-enum class WaitsFor : std::int64_t {
-    nothing,
-    emergency_stop,
-    can_nodes,
-    encoder,
-    main_drive,
-    let_off_drive,
-    oil_pressure,
-    warp_tension,
-    drop_wire
-};
 
 /// Its states are in loom_cycle.hpp. All real-time.
 struct Loom {
@@ -37,9 +24,9 @@ struct Loom {
     Output<bool> lamp_run, lamp_stop, lamp_fault;
     Output<double> pump;
     Output<std::int64_t> feeder_colour, feeder_speed;
-    Output<std::int64_t> state;
-    Output<std::int64_t> cause;
-    Output<std::int64_t> waits_for;
+    Output<LoomState> state;
+    Output<StopCause> cause;
+    Output<WaitsFor> waits_for;
     Event<> enable_drives, disable_drives, run_shaft, quick_stop;
     Event<> set_brake, release_brake;
     Event<> allow_weft, inhibit_weft;
@@ -81,36 +68,36 @@ struct Loom {
 
     // Programs of the state machine.
     void enter_preparing() noexcept TAPPET_REALTIME {
-        tell(1, false, false, false);
+        tell(LoomState::preparing, false, false, false);
         set_cause(StopCause::none);
         pump.write(1.0);
         release_brake.emit();
         enable_drives.emit();
     }
-    void enter_ready() noexcept TAPPET_REALTIME { tell(2, false, true, false); }
+    void enter_ready() noexcept TAPPET_REALTIME { tell(LoomState::ready, false, true, false); }
     void enter_run_up() noexcept TAPPET_REALTIME {
-        tell(3, true, false, false);
+        tell(LoomState::run_up, true, false, false);
         set_cause(StopCause::none);
         release_brake.emit();
         allow_weft.emit();
         run_shaft.emit();
     }
-    void enter_weave() noexcept TAPPET_REALTIME { tell(4, true, false, false); }
+    void enter_weave() noexcept TAPPET_REALTIME { tell(LoomState::weave, true, false, false); }
     void enter_stopping() noexcept TAPPET_REALTIME {
-        tell(5, false, false, false);
+        tell(LoomState::stopping, false, false, false);
         static_cast<void>(stop_shaft.send()); // of an older stop: then this one was asked for already
     }
-    void enter_stopped() noexcept TAPPET_REALTIME { tell(6, false, false, true); }
+    void enter_stopped() noexcept TAPPET_REALTIME { tell(LoomState::stopped, false, false, true); }
     void enter_emergency() noexcept TAPPET_REALTIME {
         set_cause(StopCause::emergency);
-        make_safe(7);
+        make_safe(LoomState::emergency);
     }
     void enter_fault() noexcept TAPPET_REALTIME {
         set_cause(StopCause::fault);
-        make_safe(8);
+        make_safe(LoomState::fault);
     }
     void enter_safe() noexcept TAPPET_REALTIME {
-        make_safe(9);
+        make_safe(LoomState::safe);
         lamp_fault.write(false);
         pump.write(0.0);
         disable_drives.emit();
@@ -122,7 +109,7 @@ struct Loom {
     /// What grows stale makes no noise: the state machine looks at its conditions this often at least.
     void look(const Cycle& cycle) noexcept TAPPET_REALTIME {
         look_timer.arm(cycle.now + look_every.get());
-        waits_for_.write(waits_for, static_cast<std::int64_t>(first_missing()));
+        waits_for_.write(waits_for, first_missing());
     }
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -155,9 +142,9 @@ struct Loom {
             output<&Loom::pump>("pump", "", "lubrication pump on"),
             output<&Loom::feeder_colour>("feeder_colour", "", "yarn of the feeder"),
             output<&Loom::feeder_speed>("feeder_speed", "1/min", "windings of the feeder"),
-            output<&Loom::state>("state", "", "number of the state"),
-            output<&Loom::waits_for>("waits_for", "", "what is missing before it may start: WaitsFor; written on change"),
-            output<&Loom::cause>("cause", "", "of the last stop: 1 weft, 2 warp, 3 operator, 4 emergency, 5 fault"),
+            output<&Loom::state>("state", "", "where the state machine is"),
+            output<&Loom::waits_for>("waits_for", "", "what is missing before it may start; written on change"),
+            output<&Loom::cause>("cause", "", "of the last stop"),
             event<&Loom::enable_drives>("enable_drives", "drives on, tension loop closed"),
             event<&Loom::disable_drives>("disable_drives", "drives off"),
             event<&Loom::run_shaft>("run_shaft", "turn at weaving speed"),
@@ -194,23 +181,23 @@ private:
     }
     void set_cause(StopCause why) noexcept TAPPET_REALTIME {
         cause_ = why;
-        cause.write(static_cast<std::int64_t>(why));
+        cause.write(why);
     }
-    void make_safe(std::int64_t number) noexcept TAPPET_REALTIME {
+    void make_safe(LoomState now) noexcept TAPPET_REALTIME {
         inhibit_weft.emit();
         quick_stop.emit();
         set_brake.emit();
-        tell(number, false, false, true);
+        tell(now, false, false, true);
     }
-    void tell(std::int64_t number, bool run, bool stop, bool fault) noexcept TAPPET_REALTIME {
-        state.write(number);
+    void tell(LoomState now, bool run, bool stop, bool fault) noexcept TAPPET_REALTIME {
+        state.write(now);
         lamp_run.write(run);
         lamp_stop.write(stop);
         lamp_fault.write(fault);
     }
 
     StopCause cause_ = StopCause::none;
-    Change<std::int64_t> waits_for_;
+    Change<WaitsFor> waits_for_;
 };
 
 } // namespace tappet::carpet

@@ -13,6 +13,8 @@
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "drivers/can/keeper.hpp"
 #include "kernel/machine/machine.hpp"
+#include "kernel/services/time/timed_event.hpp"
+#include "kernel/services/time/watchdog.hpp"
 
 namespace tappet::carpet {
 
@@ -21,7 +23,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
     components(
         component<can::Bus<can_signals>>("can", device("loom-can")),
         component<gpio::LinePort<io_lines>>("io", device("loom-io")),
-        component<MainShaft>("shaft"),                       // angle, angle events, brake angle
+        component<MainShaft>("shaft", properties_file("shaft.cpf", optional)), // angle, angle events, brake angle
         component<WeftInsertion>("weft"),                    // release, arrival, pattern
         component<MainDrive>("main", set("speed_rpm", 600.0), properties_file("main.cpf", optional)),
         component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0), properties_file("warp.cpf", optional)),
@@ -29,7 +31,9 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<Loom>("loom"),                             // the states of the whole
         component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
-        component<WeftRecord>("record"),                     // when the wefts arrived
+        component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // barks when that activity hangs
+        component<TimedEvent>("new_shift"),
+        component<WeftRecord>("record"),                     // when the wefts arrived in this shift
         component<Console>("console")),
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
         activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
@@ -37,9 +41,10 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
+        activity("watch",   every(5ms),                        runs("motion_dog"), deadline(250us), budget(5us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
-        activity("console", every(250ms),     runs("record", "console"), not_real_time)),
+        activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time)),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
         data("shaft.speed_rpm",           "warp.shaft_speed"),
@@ -113,6 +118,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("shaft.brake_now",      tell("io.brake.set")),
         when("shaft.brake_now",      tell("main.halt")),
         when("shaft.brake_now",      call("weft.hold")),
+        when("record.begun",         call("new_shift.every")),
+        when("new_shift.due",        call("record.forget")),
         when("loom.enable_drives",   tell("main.enable")),
         when("loom.enable_drives",   tell("warp.enable")),
         when("loom.disable_drives",  tell("main.disable")),

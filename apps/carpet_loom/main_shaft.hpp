@@ -271,6 +271,7 @@ private:
             deceleration_ += learning_rate.get() * (seen - deceleration_);
         }
         brake_distance_deg.write(distance_at(wires::nominal::speed_rpm * 6.0));
+        first_brake_distance_deg.set(brake_distance_deg.last()); // saved at halt, the next start knows it
         stop_error_deg.write(error_of(state));
         stops.write(stops.last() + 1);
         stopped.emit(error_of(state));

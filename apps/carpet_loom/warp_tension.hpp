@@ -19,8 +19,9 @@ struct TensionGains {
     Property<double> integral{0.02};
 
     static constexpr auto interface() {
-        return facets(property<&TensionGains::proportional>("proportional", "rpm/N", "", range(0, 1)),
-                      property<&TensionGains::integral>("integral", "rpm/(N s)", "", range(0, 10)));
+        return facets(
+            property<&TensionGains::proportional>("proportional", "rpm/N", "proportional gain", range(0, 1)),
+            property<&TensionGains::integral>("integral", "rpm/(N s)", "integral gain", range(0, 10)));
     }
 };
 

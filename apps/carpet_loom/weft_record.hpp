@@ -17,12 +17,17 @@ struct Arrival {
 /// Runs in a background activity: every arrival reaches it through a buffer, however late it comes to look.
 struct WeftRecord {
     BufferInput<Arrival> arrivals;
+    Event<Duration> begun;
+    Property<Duration> shift{8h};
     Output<std::int64_t> count;
     Output<double> earliest_deg;
     Output<double> mean_deg;
     Output<double> latest_deg;
 
-    void start(const Cycle&) noexcept TAPPET_REALTIME { forget(); }
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        forget(cycle.now);
+        begun.emit(shift.get());
+    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < most_each_cycle; ++i) {
             Arrival arrival;
@@ -30,8 +35,8 @@ struct WeftRecord {
             add(arrival.angle_deg);
         }
     }
-    /// Begins anew: with another yarn, say.
-    void forget() noexcept TAPPET_REALTIME {
+    /// Begins anew: with another shift, say.
+    void forget(Time) noexcept TAPPET_REALTIME {
         count.write(0);
         earliest_deg.write(0.0);
         mean_deg.write(0.0);
@@ -39,12 +44,15 @@ struct WeftRecord {
     }
 
     static constexpr auto interface() {
-        return facets(input<&WeftRecord::arrivals>("arrivals", "", "every weft that arrived"),
-                      output<&WeftRecord::count>("count", "", "wefts in the record"),
-                      output<&WeftRecord::earliest_deg>("earliest_deg", "deg", "earliest arrival"),
-                      output<&WeftRecord::mean_deg>("mean_deg", "deg", "mean of the arrivals"),
-                      output<&WeftRecord::latest_deg>("latest_deg", "deg", "latest arrival"),
-                      operation<&WeftRecord::forget>("forget", "begins the record anew"));
+        return facets(
+            input<&WeftRecord::arrivals>("arrivals", "", "every weft that arrived"),
+            output<&WeftRecord::count>("count", "", "wefts in the record"),
+            output<&WeftRecord::earliest_deg>("earliest_deg", "deg", "earliest arrival"),
+            output<&WeftRecord::mean_deg>("mean_deg", "deg", "mean of the arrivals"),
+            output<&WeftRecord::latest_deg>("latest_deg", "deg", "latest arrival"),
+            event<&WeftRecord::begun>("begun", "the first shift begins; so long it lasts", heard_by(1)),
+            operation<&WeftRecord::forget>("forget", "begins the record anew", required),
+            property<&WeftRecord::shift>("shift", "s", "length of a shift", range(60, 86400)));
     }
 
 private:

@@ -65,8 +65,8 @@ public:
         last_.stamp = stamp;
         publish();
     }
-    /// What readers get: the forced value while the port is forced, else what was written last.
-    [[nodiscard]] const T& last() const noexcept TAPPET_REALTIME { return last_.value; }
+    /// What the component wrote last, also while readers get a forced value instead.
+    [[nodiscard]] const T& last() const noexcept TAPPET_REALTIME { return forced_ ? hidden_ : last_.value; }
 
 private:
     template <class>

@@ -60,7 +60,7 @@ public:
     [[nodiscard]] T& component(std::string_view name) {
         return *run_->instance().find<T>(name);
     }
-    [[nodiscard]] StopCause cause() { return static_cast<StopCause>(component<Loom>("loom").cause.last()); }
+    [[nodiscard]] StopCause cause() { return component<Loom>("loom").cause.last(); }
     [[nodiscard]] VirtualRun& run() { return *run_; }
     [[nodiscard]] InProcessLoom& wires() { return run_->loom(); }
     [[nodiscard]] loom::Plant& plant() { return run_->loom().plant(); }

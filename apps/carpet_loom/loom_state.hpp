@@ -1,0 +1,51 @@
+// What the loom says of itself: its state, why it stopped last, and what it waits for, each with its names.
+#pragma once
+
+#include "kernel/base/type_tag.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace tappet::carpet {
+
+/// As the state machine in loom_cycle.hpp names them.
+enum class LoomState : std::int64_t {
+    off,
+    preparing,
+    ready,
+    run_up,
+    weave,
+    stopping,
+    stopped,
+    emergency,
+    fault,
+    safe
+};
+enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
+/// What the loom waits for before it may start; the first that is missing.
+enum class WaitsFor : std::int64_t {
+    nothing,
+    emergency_stop,
+    can_nodes,
+    encoder,
+    main_drive,
+    let_off_drive,
+    oil_pressure,
+    warp_tension,
+    drop_wire
+};
+
+} // namespace tappet::carpet
+
+template <>
+inline constexpr auto tappet::names_of<tappet::carpet::LoomState> = std::array<std::string_view, 10>{
+    "off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
+template <>
+inline constexpr auto tappet::names_of<tappet::carpet::StopCause> =
+    std::array<std::string_view, 6>{"none", "weft", "warp", "operator", "emergency", "fault"};
+template <>
+inline constexpr auto tappet::names_of<tappet::carpet::WaitsFor> =
+    std::array<std::string_view, 9>{"nothing",      "emergency-stop", "can-nodes",
+                                    "encoder",      "main-drive",     "let-off-drive",
+                                    "oil-pressure", "warp-tension",   "drop-wire"};
