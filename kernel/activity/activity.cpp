@@ -72,10 +72,12 @@ void Activity::enter(void* self) noexcept { static_cast<Activity*>(self)->live()
 void Activity::live() noexcept {
     current_activity = this;
     while (!ended_.load(std::memory_order_acquire)) {
-        if (released_.load(std::memory_order_acquire))
+        if (released_.load(std::memory_order_acquire)) {
             run_once();
-        else
+        } else {
             engine_->waiter().wait_for_wake();
+            if (stopped_its_engine_) engine_->reject_late();
+        }
     }
 }
 
@@ -87,7 +89,8 @@ void Activity::run_once() noexcept {
     const os::PageFaults here = os::page_faults_of_this_thread() - before;
     faults_.minor += here.minor;
     faults_.major += here.major;
-    if (claim_engine_stop()) engine_->stop(clock_->now());
+    stopped_its_engine_ = claim_engine_stop();
+    if (stopped_its_engine_) engine_->stop(clock_->now());
     released_.store(false, std::memory_order_relaxed);
     state_.store(State::stopped, std::memory_order_release);
 }

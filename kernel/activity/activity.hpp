@@ -80,6 +80,7 @@ private:
     std::atomic<bool> stop_asked_{false};
     std::atomic<bool> ended_{false};
     std::atomic<bool> engine_stop_claimed_{false};
+    bool stopped_its_engine_ = false; // its own thread's
     os::PageFaults faults_{};
 };
 

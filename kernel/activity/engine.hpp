@@ -142,6 +142,9 @@ public:
     /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values,
     /// in data-flow order, so that what a source writes last reaches the driver behind it.
     void stop(Time now) noexcept TAPPET_REALTIME;
+    /// In the thread that stopped it, when it is woken before the next start: the sender of a command that
+    /// looked before the stop and posted after it gets its answer.
+    void reject_late() noexcept TAPPET_REALTIME;
 
     /// Asks for a change in the life of one component; served between two steps (thesis 3.1.3). A component
     /// starts only when each of its required inputs has a valid value. Real-time, any thread.

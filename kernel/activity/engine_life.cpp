@@ -70,6 +70,10 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     active_.store(false, std::memory_order_release);
 }
 
+void Engine::reject_late() noexcept TAPPET_REALTIME {
+    if (!is_active()) commands_.reject_sent();
+}
+
 void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     part.state.store(ComponentState::starting, std::memory_order_release);

@@ -95,7 +95,7 @@ public:
     // ---- the sender's side: one thread, real-time but for wait()
 
     [[nodiscard]] CommandState state() const noexcept TAPPET_REALTIME {
-        return state_.load(std::memory_order_acquire);
+        return state_.load(std::memory_order_acquire); // command.state
     }
     /// Whether values() are the sender's now.
     [[nodiscard]] bool is_mine() const noexcept TAPPET_REALTIME { return !in_flight(state()); }
@@ -104,18 +104,19 @@ public:
     [[nodiscard]] bool send() noexcept TAPPET_REALTIME {
         if (!connected() || !is_mine()) return false;
         // An engine that was stopped serves nobody: its answer is given here.
-        const ComponentState receiver = route_.receiver_state->load(std::memory_order_acquire);
+        const ComponentState receiver =
+            route_.receiver_state->load(std::memory_order_acquire); // command.look
         if (receiver == ComponentState::stopped || receiver == ComponentState::failed) {
-            state_.store(CommandState::rejected, std::memory_order_relaxed);
+            state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
             return true;
         }
         // Before the message: from then on the receiver writes it.
-        state_.store(CommandState::sent, std::memory_order_relaxed);
+        state_.store(CommandState::sent, std::memory_order_relaxed); // command.send
         Message message;
         message.object = this;
         message.id = route_.part;
         if (!route_.inbox->post(route_.sender, message)) { // the mailbox has a place for each of its slots
-            state_.store(CommandState::rejected, std::memory_order_relaxed);
+            state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
             return true;
         }
         route_.wake_receiver();
@@ -124,7 +125,7 @@ public:
     /// Forgets how it ended. False while the receiver has it.
     bool reset() noexcept TAPPET_REALTIME {
         if (!is_mine()) return false;
-        state_.store(CommandState::ready, std::memory_order_relaxed);
+        state_.store(CommandState::ready, std::memory_order_relaxed); // command.reset
         return true;
     }
     /// Sleeps until it has ended, at most so long; for activities that are not_real_time. True: it has ended,
@@ -147,7 +148,7 @@ public:
     [[nodiscard]] bool begin(bool receiver_runs) noexcept TAPPET_REALTIME {
         const bool accepted = receiver_runs && route_.command->begin(route_.component, values_);
         if (accepted)
-            state_.store(CommandState::accepted, std::memory_order_release);
+            state_.store(CommandState::accepted, std::memory_order_release); // command.accept
         else
             reject();
         return accepted;
@@ -156,7 +157,7 @@ public:
     [[nodiscard]] CommandState follow() noexcept TAPPET_REALTIME {
         switch (route_.command->progress(route_.component, values_)) {
         case CommandProgress::executing:
-            state_.store(CommandState::executing, std::memory_order_release);
+            state_.store(CommandState::executing, std::memory_order_release); // command.execute
             return CommandState::executing;
         case CommandProgress::done: return end(CommandState::done);
         case CommandProgress::failed: break;
@@ -171,7 +172,7 @@ private:
     // anew.
     CommandState end(CommandState how) noexcept TAPPET_REALTIME {
         const Waker wake_sender = route_.wake_sender;
-        state_.store(how, std::memory_order_release);
+        state_.store(how, std::memory_order_release); // command.end
         ended_.wake();
         wake_sender();
         return how;

@@ -35,11 +35,11 @@ public:
     /// Synchronous reactions first, then asynchronous ones, the most urgent receiver's first (4.6.2). A row
     /// is asked for just before it is run: what a reaction disconnects does not run in this emission either.
     void emit(A... arguments) noexcept TAPPET_REALTIME {
-        if (connected_.load(std::memory_order_acquire) == 0) return;
+        if (connected_.load(std::memory_order_acquire) == 0) return; // emit.row
         const std::size_t count = count_; // a bound that no handler can move: a counted loop
         const Subscriber<A...>* const subscribers = subscribers_;
         for (std::size_t i = 0; i < count; ++i)
-            if (((connected_.load(std::memory_order_acquire) >> i) & 1) != 0)
+            if (((connected_.load(std::memory_order_acquire) >> i) & 1) != 0) // emit.row
                 subscribers[i].react(subscribers[i].context, arguments...);
     }
     void operator()(A... arguments) noexcept TAPPET_REALTIME { emit(arguments...); }

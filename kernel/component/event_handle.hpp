@@ -38,7 +38,10 @@ public:
         if (epoch_ != nullptr) epoch_->fetch_add(1, std::memory_order_release); // disconnect.epoch
     }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
-        return connected_ != nullptr && (connected_->load(std::memory_order_acquire) & bit_) != 0;
+        if (connected_ == nullptr) return false;
+        const std::uint64_t rows =
+            connected_->load(std::memory_order_acquire); // no step: nobody acts upon it
+        return (rows & bit_) != 0;
     }
     /// Whether it stands for a row.
     [[nodiscard]] bool valid() const noexcept TAPPET_REALTIME { return connected_ != nullptr; }

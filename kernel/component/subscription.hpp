@@ -20,9 +20,11 @@ namespace tappet {
 class Counter {
 public:
     void add() noexcept TAPPET_REALTIME { set(value() + 1); }
-    void set(std::uint32_t value) noexcept TAPPET_REALTIME { value_.store(value, std::memory_order_relaxed); }
+    void set(std::uint32_t value) noexcept TAPPET_REALTIME {
+        value_.store(value, std::memory_order_relaxed); // no step: counted for the report
+    }
     [[nodiscard]] std::uint32_t value() const noexcept TAPPET_REALTIME {
-        return value_.load(std::memory_order_relaxed);
+        return value_.load(std::memory_order_relaxed); // no step: counted for the report
     }
 
 private:
@@ -87,7 +89,7 @@ struct AsyncReaction {
         const std::uint32_t activity = running_activity();
         const std::uint8_t index = activity < activities ? lane_of[activity] : outside;
         if (index == no_lane) {
-            stray.fetch_add(1, std::memory_order_relaxed);
+            stray.fetch_add(1, std::memory_order_relaxed); // no step: counted for the report
             return;
         }
         message.run = &serve;
@@ -97,12 +99,12 @@ struct AsyncReaction {
     }
     [[nodiscard]] SubscriptionCounts counts() const noexcept TAPPET_REALTIME {
         SubscriptionCounts sum;
-        sum.stray = stray.load(std::memory_order_relaxed);
+        sum.stray = stray.load(std::memory_order_relaxed); // no step: for the report
         sum.lost = sum.stray;
         for (std::uint32_t i = 0; i < lane_count; ++i) {
             const EventLane& lane = lanes[i];
             sum.posted += lane.posted.value();
-            sum.served += lane.served.load(std::memory_order_acquire);
+            sum.served += lane.served.load(std::memory_order_acquire); // no step: for the report
             sum.lost += lane.lost.value();
             sum.outdated += lane.outdated.value();
             sum.dropped += lane.dropped.value();
@@ -118,7 +120,7 @@ private:
             return;
         }
         const std::uint32_t posted = lane.posted.value();
-        const std::uint32_t waiting = posted - lane.served.load(std::memory_order_acquire);
+        const std::uint32_t waiting = posted - lane.served.load(std::memory_order_acquire); // emit.quota
         if (waiting >= quota || !inbox->post(lane.sender, message)) {
             lane.lost.add();
             return;
@@ -145,7 +147,8 @@ private:
         auto& lane = *static_cast<EventLane*>(self);
         AsyncReaction& row = *lane.row;
         // Its place in the mailbox is free again, so one more may be posted while this one runs.
-        lane.served.store(lane.served.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+        const std::uint32_t served = lane.served.load(std::memory_order_relaxed); // serve.count
+        lane.served.store(served + 1, std::memory_order_release);                 // serve.count
         const Message* caught = lane.latest != nullptr ? lane.latest->take() : &message_of(arguments);
         if (caught == nullptr) return;
         if (caught->epoch != row.epoch.load(std::memory_order_acquire)) // serve.epoch

@@ -21,14 +21,14 @@ public:
     /// on its way.
     [[nodiscard]] bool put(const Message& message) noexcept TAPPET_REALTIME {
         places_[back_].message = message;
-        const std::uint32_t was = middle_.exchange(back_ | fresh, std::memory_order_acq_rel);
+        const std::uint32_t was = middle_.exchange(back_ | fresh, std::memory_order_acq_rel); // latest.put
         back_ = was & ~fresh;
         return (was & fresh) == 0;
     }
     /// The receiver's thread only, real-time: one exchange. Null: nothing is new. What it points at stays as
     /// it is until the next call.
     [[nodiscard]] const Message* take() noexcept TAPPET_REALTIME {
-        const std::uint32_t was = middle_.exchange(front_, std::memory_order_acq_rel);
+        const std::uint32_t was = middle_.exchange(front_, std::memory_order_acq_rel); // latest.take
         front_ = was & ~fresh;
         return (was & fresh) != 0 ? &places_[front_].message : nullptr;
     }

@@ -74,7 +74,7 @@ active proctype emitter() {
 emit_row:
         atomic { connected = linked; found = cleared; steps++ }
         if
-        :: !connected -> goto not_connected
+        :: !connected -> goto unheard
         :: else
         fi;
 #ifdef TWIN_BIT_FIRST
@@ -87,7 +87,7 @@ emit_bit:
         atomic { connected = linked; found = cleared; steps++ }
 #endif
         if
-        :: !connected -> goto not_connected
+        :: !connected -> goto unheard
         :: else
         fi;
         assert(!was_firm || known != connects);
@@ -111,7 +111,7 @@ emit_quota:
             }
         fi;
         goto counted;
-not_connected:
+unheard:
         assert(!was_sure || begun != at_begin)
 counted:
         atomic { assert(steps <= EMIT_BOUND); steps = 0; caught = 0; waiting = 0; found = 0; known = 0; at_begin = 0 }
