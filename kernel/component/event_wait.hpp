@@ -18,20 +18,25 @@ namespace tappet {
 /// mailboxes of its own, as many as the row's queue says.
 class EventWaitState {
 public:
-    /// Start-up's.
-    void place(os::Waiter& waiter, const os::Clock& clock, std::span<Mailbox> mailboxes,
+    /// Start-up's. `activity`: wakes it for an emission, also while nobody waits.
+    void place(Waker activity, const os::Clock& clock, std::span<Mailbox> mailboxes,
                std::size_t capacity) noexcept {
-        waiter_ = &waiter;
+        activity_ = activity;
         clock_ = &clock;
         capacity_ = capacity;
         inbox_.place(mailboxes);
     }
     [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
-    /// Wakes the activity that waits. Real-time, any thread.
+    /// An emission is in the inbox. Real-time, any thread.
     static void wake(void* self) noexcept TAPPET_REALTIME {
         auto& state = *static_cast<EventWaitState*>(self);
-        state.told_.store(true, std::memory_order_release);
-        if (state.waiter_ != nullptr) state.waiter_->wake();
+        state.waiter_.wake();
+        state.activity_();
+    }
+    /// Ends the wait that is under way, or the next one: for break_loop(). Real-time, any thread.
+    void interrupt() noexcept TAPPET_REALTIME {
+        interrupted_.store(true, std::memory_order_release);
+        waiter_.wake();
     }
     /// Message::Run of its row.
     static void receive(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
@@ -52,23 +57,17 @@ protected:
         }
         return nullptr;
     }
-    /// Sleeps until next() finds something, the time is over, or something else wants the activity.
+    /// Sleeps until next() finds something, the time is over, or interrupt().
     [[nodiscard]] const std::byte* wait_for_next(Duration at_most) noexcept {
-        if (const std::byte* came = next()) return came;
-        if (clock_ == nullptr || clock_->is_virtual()) return nullptr;
+        const std::byte* came = next();
+        if (clock_ == nullptr || clock_->is_virtual()) return came;
         const Time end = clock_->now() + at_most;
-        const std::byte* came = nullptr;
-        bool woken = false;
-        bool wanted = false;
-        while (came == nullptr && !wanted && clock_->now() < end) {
-            if (waiter_->wait_without_devices(end)) {
-                woken = true;
-                wanted = !told_.exchange(false, std::memory_order_acq_rel); // not by an emission
-            }
+        // A wake for what was taken already may be left over: it costs one more look.
+        while (came == nullptr && !interrupted_.exchange(false, std::memory_order_acq_rel) &&
+               clock_->now() < end) {
+            static_cast<void>(waiter_.wait(end));
             came = next();
         }
-        // The wake may have meant the activity too: it looks again when this component has returned.
-        if (woken) waiter_->wake();
         return came;
     }
 
@@ -76,10 +75,11 @@ private:
     Inbox inbox_{};
     Message message_{};
     const std::byte* arrived_ = nullptr;
-    os::Waiter* waiter_ = nullptr;
+    os::Waiter waiter_{};
+    Waker activity_{};
     const os::Clock* clock_ = nullptr;
     std::size_t capacity_ = 0;
-    std::atomic<bool> told_{false};
+    std::atomic<bool> interrupted_{false};
 };
 
 /// A member of a component, told by a row of its own: when("shaft.beat_up", tell("console.beat")). Used in
@@ -90,9 +90,10 @@ public:
     /// Takes the oldest emission that waits. False: there is none. Real-time.
     [[nodiscard]] bool take(A&... into) noexcept TAPPET_REALTIME { return unpack(next(), into...); }
 
-    /// As take(), but waits up to `at_most` for one. False: the time is over, or the activity is wanted for
-    /// something else (a message, a connection's wake, its stop): then return from work(). Not real-time.
-    /// Under virtual time it never blocks: while work() runs, time stands still.
+    /// As take(), but waits up to `at_most` for one. False: the time is over, or interrupt() was called. Not
+    /// real-time. Meanwhile its activity serves nothing else: a time below the patience of a stop keeps it
+    /// willing, a loop() has its break_loop() interrupt. Under virtual time it never blocks: while a
+    /// component runs, time stands still.
     [[nodiscard]] bool wait(Duration at_most, A&... into) noexcept {
         return unpack(wait_for_next(at_most), into...);
     }

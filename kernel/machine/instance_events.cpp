@@ -94,7 +94,7 @@ void MachineInstance::bind_receiver(std::size_t s, AsyncReaction& reaction) {
             (new (mailboxes + i) Mailbox)
                 ->place(at<std::byte>(place.mail_at + i * Mailbox::bytes_for(row.quota)), row.quota,
                         Overflow::reject);
-        wait->place(receiver.waiter(), *clock_, {mailboxes, place.lane_count}, place.lane_count * row.quota);
+        wait->place(reaction.waker, *clock_, {mailboxes, place.lane_count}, place.lane_count * row.quota);
         reaction.inbox = &wait->inbox();
         reaction.waker = {&EventWaitState::wake, wait};
         reaction.run = &EventWaitState::receive;
