@@ -113,11 +113,12 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         uses("weft.angle_at",        "shaft.angle_at"),              // a method: in the caller's thread
         when("weft.open_valve",      tell("io.weft_release.set")),   // in the engine of io
         when("weft.close_valve",     tell("io.weft_release.clear")),
-        when("io.weft_detector.rises", tell("weft.on_arrival")),
+        when("io.weft_detector.rises", tell("weft.on_arrival"), handled_by("weft.detector"), disconnected),
         when("weft.missed",          call("shaft.stop_at_angle")),   // no detour: the brake's angle is near
         when("shaft.brake_now",      tell("io.brake.set")),
         when("shaft.brake_now",      tell("main.halt")),
         when("shaft.brake_now",      call("weft.hold")),
+        when("shaft.stopped",        tell("record.on_stop", keep_latest)),
         when("record.begun",         call("new_shift.every")),
         when("new_shift.due",        call("record.forget")),
         when("loom.enable_drives",   tell("main.enable")),

@@ -24,6 +24,7 @@ struct WeftInsertion {
     BufferOutput<Arrival> arrivals;
     Output<bool> cutter;
     Event<> open_valve, close_valve, missed;
+    EventHandle detector;
 
     void allow() noexcept TAPPET_REALTIME { allowed_ = true; }
     /// No weft in the turns to come; the one that flies is let fly.
@@ -37,7 +38,8 @@ struct WeftInsertion {
     void on_beat_up() noexcept TAPPET_REALTIME {
         if (arrived_) picks_woven.write(picks_woven.last() + 1);
         released_ = arrived_ = false;
-        ready_ = allowed_; // only a turn that began with permission gets a weft
+        detector.disconnect(); // a pulse without a weft on its way is none
+        ready_ = allowed_;     // only a turn that began with permission gets a weft
         cutter.write(false);
     }
     void on_offer_pattern() noexcept TAPPET_REALTIME {
@@ -48,6 +50,7 @@ struct WeftInsertion {
     void on_release_angle() noexcept TAPPET_REALTIME {
         if (!ready_ || released_) return;
         released_ = true;
+        detector.connect();
         open_valve.emit();
     }
     void on_close_angle() noexcept TAPPET_REALTIME {
@@ -59,7 +62,6 @@ struct WeftInsertion {
         if (released_ && (!arrived_ || early_)) missed.emit();
     }
     void on_arrival(Time at) noexcept TAPPET_REALTIME {
-        if (!released_) return;
         const double angle_deg = angle_at(at);
         arrival_deg.write(angle_deg, at);
         // A second pulse of the same weft is none.
@@ -74,7 +76,10 @@ struct WeftInsertion {
         picks_woven.write(0);
         cutter.write(false);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { cutter.write(false); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        detector.disconnect();
+        cutter.write(false);
+    }
 
     static constexpr auto interface() {
         return facets(
@@ -88,6 +93,7 @@ struct WeftInsertion {
             event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
             event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
             event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive", heard_by(1)),
+            handle<&WeftInsertion::detector>("detector", "of the detector, while a weft is on its way"),
             operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
             operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
             operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),

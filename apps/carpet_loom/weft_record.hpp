@@ -1,4 +1,4 @@
-// The record of the wefts: when each arrived, for the weaver who sets the nozzles.
+// The record of a shift: when the wefts arrived and how the loom stopped, for the weaver who sets it up.
 #pragma once
 
 #include "apps/carpet_loom/wires.hpp"
@@ -23,6 +23,7 @@ struct WeftRecord {
     Output<double> earliest_deg;
     Output<double> mean_deg;
     Output<double> latest_deg;
+    Output<double> stop_error_deg;
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         forget(cycle.now);
@@ -41,7 +42,9 @@ struct WeftRecord {
         earliest_deg.write(0.0);
         mean_deg.write(0.0);
         latest_deg.write(0.0);
+        stop_error_deg.write(0.0);
     }
+    void on_stop(double error_deg) noexcept TAPPET_REALTIME { stop_error_deg.write(error_deg); }
 
     static constexpr auto interface() {
         return facets(
@@ -50,6 +53,8 @@ struct WeftRecord {
             output<&WeftRecord::earliest_deg>("earliest_deg", "deg", "earliest arrival"),
             output<&WeftRecord::mean_deg>("mean_deg", "deg", "mean of the arrivals"),
             output<&WeftRecord::latest_deg>("latest_deg", "deg", "latest arrival"),
+            output<&WeftRecord::stop_error_deg>("stop_error_deg", "deg", "of the last stop"),
+            operation<&WeftRecord::on_stop>("on_stop", "the shaft stands; error in degrees", required),
             event<&WeftRecord::begun>("begun", "the first shift begins; so long it lasts", heard_by(1)),
             operation<&WeftRecord::forget>("forget", "begins the record anew", required),
             property<&WeftRecord::shift>("shift", "s", "length of a shift", range(60, 86400)));
