@@ -13,6 +13,7 @@
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "drivers/can/keeper.hpp"
 #include "kernel/machine/machine.hpp"
+#include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/time/timed_event.hpp"
 #include "kernel/services/time/watchdog.hpp"
 
@@ -34,7 +35,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // barks when that activity hangs
         component<TimedEvent>("new_shift"),
         component<WeftRecord>("record"),                     // when the wefts arrived in this shift
-        component<Console>("console")),
+        component<Console>("console"),
+        component<BrowserService>("browser")),               // who looks in from outside: see tappet-browse
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
         activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
         activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(12us)),
@@ -44,7 +46,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("watch",   every(5ms),                        runs("motion_dog"), deadline(250us), budget(5us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
-        activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time)),
+        activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
+        activity("browser", every(20ms),      runs("browser"), not_real_time)),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
         data("shaft.speed_rpm",           "warp.shaft_speed"),

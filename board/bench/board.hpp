@@ -25,6 +25,10 @@ inline constexpr Board bench{
     .only_warned = warn_only("clock-source", "cpu-governor"),
     .kernel_command_line = "console=ttyS0 quiet panic=-1",
     .properties_directory = "/run",
+    // Everybody in the guest may look; two users of its tests may do more.
+    .browsing = {.directory = "/run/tappet",
+                 .mode = 0666,
+                 .roles = roles(user(1001, Role::machine_operator), user(1002, Role::engineer))},
 };
 
 } // namespace tappet::board

@@ -17,7 +17,8 @@ inline constexpr Board ipc_x86_64{
     // Processors 2 and 3 are isolated (see the command line): the machine on one, its device activities on
     // the other, so that neither an interrupt nor a background thread takes their caches.
     .default_processor = 2,
-    .placement = placements(place("can", 3), place("io", 3), place("utility", 0), place("console", 0)),
+    .placement = placements(place("can", 3), place("io", 3), place("utility", 0), place("console", 0),
+                            place("browser", 0)),
     .devices = board_devices(
         board_device("loom-can", "can", "can0"),
         // By the chip's label, as gpiodetect shows it: numbers follow the order in which drivers load.
@@ -35,6 +36,8 @@ inline constexpr Board ipc_x86_64{
         "intel_idle.max_cstate=0 idle=poll tsc=reliable nosoftlockup nowatchdog mitigations=auto "
         "sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
     .properties_directory = "/var/lib/tappet",
+    // Root, and nobody else, until the box's image has groups for its people: name them here.
+    .browsing = {.directory = "/run/tappet", .mode = 0660},
 };
 
 } // namespace tappet::board

@@ -35,11 +35,12 @@ int fail(Ending ending, const Sentence& why) {
     return ending;
 }
 
-/// `--summary FILE`, `--properties DIRECTORY` instead of the board's: everything else is in the table and in
-/// the board.
+/// `--summary FILE`, `--properties DIRECTORY` and `--browse DIRECTORY` (of the browsers' socket) instead of
+/// the board's: everything else is in the table and in the board.
 struct Options {
     const char* summary = nullptr;
     const char* properties = nullptr;
+    const char* browse = nullptr;
     Sentence error{};
 };
 
@@ -48,10 +49,12 @@ Options parse(int count, char** words) {
     for (int i = 1; i < count; ++i) {
         const char** place = std::strcmp(words[i], "--summary") == 0      ? &options.summary
                              : std::strcmp(words[i], "--properties") == 0 ? &options.properties
+                             : std::strcmp(words[i], "--browse") == 0     ? &options.browse
                                                                           : nullptr;
         if (place == nullptr)
-            options.error = Sentence{"option ", std::string_view{words[i]},
-                                     " is unknown; there are --summary FILE and --properties DIRECTORY"};
+            options.error = Sentence{
+                "option ", std::string_view{words[i]},
+                " is unknown; there are --summary FILE, --properties DIRECTORY and --browse DIRECTORY"};
         else if (i + 1 == count)
             options.error = Sentence{"option ", std::string_view{words[i]}, " needs a name behind it"};
         else
@@ -145,6 +148,7 @@ int main(int count, char** words) {
     static PropertyFiles properties{options.properties != nullptr ? std::string_view{options.properties}
                                                                   : board_here.properties_directory};
     instance.read_properties_from(properties.store());
+    if (options.browse != nullptr) instance.browse_in(options.browse);
     if (const auto configured = instance.configure(devices.provided()); !configured)
         return fail(wrong_set_up, configured.error());
 

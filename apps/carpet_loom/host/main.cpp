@@ -90,6 +90,7 @@ Duration time_for(std::uint64_t picks) { return 30s + picks * 2s; }
 
 int run_virtual(const carpet::Options& options) {
     static carpet::VirtualRun run{options.plant, options.seed, options.quiet};
+    run.instance().browse_in(options.browse);
     if (const auto started = run.start(); !started) return fail(started.error());
     Outcome outcome;
     outcome.woven = run.weave(options.picks, time_for(options.picks));
@@ -100,6 +101,7 @@ int run_virtual(const carpet::Options& options) {
 
 int run_real(const carpet::Options& options) {
     static carpet::RealRun run{options.plant, options.seed, options.quiet};
+    run.instance().browse_in(options.browse);
     if (const auto started = run.start(2); !started) return fail(started.error());
     Outcome outcome;
     outcome.woven = run.weave(options.picks, time_for(options.picks));

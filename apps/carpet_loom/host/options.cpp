@@ -26,7 +26,8 @@ std::expected<Options, Sentence> parse_options(int count, const char* const* wor
     options.plant.warp_break_one_in = 150;
     constexpr std::string_view known[] = {"--world",   "--virtual",     "--real",        "--seed",
                                           "--picks",   "--weft-breaks", "--warp-breaks", "--emergency-stops",
-                                          "--summary", "--properties",  "--quiet",       "--help"};
+                                          "--summary", "--properties",  "--browse",      "--quiet",
+                                          "--help"};
     for (int i = 1; i < count; ++i) {
         const std::string_view option = words[i];
         if (option == "--virtual" || option == "--real") {
@@ -54,6 +55,10 @@ std::expected<Options, Sentence> parse_options(int count, const char* const* wor
         const std::string_view word = words[++i];
         if (option == "--summary" || option == "--properties") {
             (option == "--summary" ? options.summary : options.properties) = word;
+            continue;
+        }
+        if (option == "--browse") {
+            options.browse = word;
             continue;
         }
         if (option == "--world") {

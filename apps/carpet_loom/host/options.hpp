@@ -16,6 +16,7 @@ struct Options {
     std::uint64_t picks = 200;
     std::string_view summary;    ///< a file; empty: none
     std::string_view properties; ///< a directory; empty: they are not kept
+    std::string_view browse;     ///< the directory of the browsers' socket; empty: none
     bool quiet = false;
     bool help = false;
     loom::Settings plant{};
@@ -32,6 +33,8 @@ inline constexpr std::string_view usage =
     "  --emergency-stops N one pick in N ends in an emergency stop, 0: none (default 0)\n"
     "  --summary FILE      writes the summary as JSON\n"
     "  --properties DIR    reads the components' properties from there and saves them at the end\n"
+    "  --browse DIR        opens a socket for tappet-browse there (with --real: virtual time does not wait "
+    "for it)\n"
     "  --quiet             no status lines\n";
 
 /// An error names the option and the cure.
