@@ -40,7 +40,8 @@ public:
     template <class Visit>
     bool follow(Visit&& visit) noexcept TAPPET_REALTIME {
         std::size_t kept = 0;
-        for (std::size_t i = 0; i < count_; ++i) {
+        const std::size_t count = count_; // a bound that no completion can move: a counted loop
+        for (std::size_t i = 0; i < count; ++i) {
             CommandSlot* const slot = followed_[i];
             // Once it has ended its sender may send it elsewhere.
             const std::uint32_t part = slot->route().part;
@@ -50,7 +51,7 @@ public:
             else if (!planned)
                 --requests_at_work_;
         }
-        const bool ended = kept != count_;
+        const bool ended = kept != count;
         count_ = kept;
         return ended;
     }

@@ -15,14 +15,15 @@ namespace {
 using Nodes = std::set<std::size_t>;
 
 /// What can be reached from `from` by at least one step within `within`, not passing through `avoided`.
-Nodes reach(const Function& function, const Nodes& within, std::size_t from, std::size_t avoided = none) {
+Nodes reach(const Function& function, const Nodes& within, std::size_t from, const Nodes& avoided = {}) {
     Nodes found;
     std::vector<std::size_t> open;
     const auto step = [&](std::size_t at) {
         for (const std::size_t next : function.successors(at))
-            if (next != avoided && within.contains(next) && found.insert(next).second) open.push_back(next);
+            if (!avoided.contains(next) && within.contains(next) && found.insert(next).second)
+                open.push_back(next);
     };
-    if (from != avoided) step(from);
+    if (!avoided.contains(from)) step(from);
     while (!open.empty()) {
         const std::size_t at = open.back();
         open.pop_back();
@@ -88,6 +89,14 @@ std::string_view negated(std::string_view condition) {
     return {};
 }
 
+/// What a conditional jump compares when it counts a cycle.
+struct Test {
+    Value counter;
+    Value bound;
+    std::optional<std::uint64_t> passes;
+    bool operator==(const Test&) const = default;
+};
+
 /// The examination of one cycle.
 class Examination {
 public:
@@ -106,7 +115,7 @@ public:
     }
 
     /// By this conditional jump; false: it does not count the cycle.
-    bool counted_by(std::size_t jump, Loop& loop) const {
+    bool counted_by(std::size_t jump, Test& test) const {
         const Instruction& exit = function_.code[jump];
         const bool taken_leaves = exit.target == none || !cycle_.contains(exit.target);
         if (taken_leaves != (jump + 1 < function_.code.size() && cycle_.contains(jump + 1))) return false;
@@ -133,8 +142,8 @@ public:
             left = value_of(state, compare.operands[0]);
         }
         const std::string condition{taken_leaves ? std::string_view{exit.mnemonic} : negated(exit.mnemonic)};
-        return pairs(left, right, side(condition), loop) ||
-               pairs(right, left, mirrored(side(condition)), loop);
+        return pairs(left, right, side(condition), test) ||
+               pairs(right, left, mirrored(side(condition)), test);
     }
 
 private:
@@ -169,13 +178,14 @@ private:
                });
     }
 
-    bool pairs(const Value& counter, const Value& bound, Leaves leaves, Loop& loop) const {
+    bool pairs(const Value& counter, const Value& bound, Leaves leaves, Test& test) const {
         if (counter.kind != Value::Kind::at_header || !unchanged(bound)) return false;
         const std::int64_t step = step_of(counter.of);
         if (step == 0 || leaves == Leaves::never) return false;
         if (leaves == Leaves::upwards && step < 0) return false;
         if (leaves == Leaves::downwards && step > 0) return false;
-        loop.counter = to_string(counter.of);
+        test.counter = counter;
+        test.bound = bound;
         const Value first = before(counter.of).plus(counter.offset);
         const Value last = bound.kind == Value::Kind::at_header ? before(bound.of).plus(bound.offset) : bound;
         if (!first.same_base(last)) return true;
@@ -183,7 +193,7 @@ private:
         const std::int64_t stride = std::abs(step);
         // An end that is stepped over would be met after the counter wrapped, if ever.
         if (leaves == Leaves::when_equal && (distance < 0 || distance % stride != 0)) return false;
-        loop.passes =
+        test.passes =
             distance < 0
                 ? 1
                 : static_cast<std::uint64_t>(distance / stride + 1 + (leaves == Leaves::when_equal ? 0 : 1));
@@ -229,10 +239,24 @@ void examine(const Function& function, const States& in_function, const Nodes& w
         } else {
             const Examination examination{function, in_function, cycle, header};
             loop.fault = "has no exit that every pass meets, by a counter against a bound that stays";
+            // Compilers copy the end of a loop to where paths part: the same test at each of them counts as
+            // one.
+            std::vector<std::pair<Test, Nodes>> tests;
             for (const std::size_t at : cycle) {
-                if (!function.code[at].is_conditional()) continue;
-                if (at != header && reach(function, cycle, header, at).contains(header)) continue;
-                if (!examination.counted_by(at, loop)) continue;
+                Test test;
+                if (!function.code[at].is_conditional() || !examination.counted_by(at, test)) continue;
+                const auto same = std::ranges::find(tests, test, &std::pair<Test, Nodes>::first);
+                if (same != tests.end())
+                    same->second.insert(at);
+                else
+                    tests.push_back({test, {at}});
+            }
+            for (const auto& [test, places] : tests) {
+                const bool on_every_pass =
+                    places.contains(header) || !reach(function, cycle, header, places).contains(header);
+                if (!on_every_pass) continue;
+                loop.counter = to_string(test.counter.of);
+                loop.passes = test.passes;
                 loop.fault.clear();
                 break;
             }

@@ -2,7 +2,9 @@
 //
 // A cycle is a set of instructions each of which reaches every other. It is counted when
 //   1. it is entered at one instruction only, its header;
-//   2. one of its conditional jumps leaves it and lies on every path from the header back to the header;
+//   2. one of its conditional jumps leaves it and lies on every path from the header back to the header; or
+//   several do
+//      that compare the same, one of them on each such path;
 //   3. that jump compares a counter with a bound: the counter is a register or a slot of the frame that, on
 //   every
 //      path from the header back to it, grows (or shrinks) by a constant that is not zero, whatever else

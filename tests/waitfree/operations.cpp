@@ -1,8 +1,13 @@
 // Each operation that is claimed to be wait-free as a function of its own, so that its object code can be
 // looked at: the containers (thesis 4.4), emission, posting and waking (thesis 4.6, 4.2.3).
+#include "kernel/activity/command_processor.hpp"
 #include "kernel/component/buffer_port.hpp"
+#include "kernel/component/command.hpp"
 #include "kernel/component/event.hpp"
+#include "kernel/component/event_handle.hpp"
+#include "kernel/component/life.hpp"
 #include "kernel/exchange/data_object.hpp"
+#include "kernel/exchange/latest_message.hpp"
 #include "kernel/exchange/mailbox.hpp"
 #include "kernel/exchange/ring.hpp"
 #include "kernel/os/waiter.hpp"
@@ -62,5 +67,29 @@ void event_emit(Event<int, double>& event, int first, double second) noexcept { 
 void event_post(void* reaction, int first, double second) noexcept {
     detail::post<int, double>(reaction, first, second);
 }
+
+void event_connect(const EventHandle& handle) noexcept { handle.connect(); }
+void event_disconnect(const EventHandle& handle) noexcept { handle.disconnect(); }
+bool latest_put(LatestMessage& latest, const Message& message) noexcept { return latest.put(message); }
+const Message* latest_take(LatestMessage& latest) noexcept { return latest.take(); }
+
+bool command_send(CommandCall<double, int&>& command, const double& goal) noexcept {
+    return command.send(goal);
+}
+CommandState command_state(const CommandCall<double, int&>& command) noexcept { return command.state(); }
+bool command_reset(CommandCall<double, int&>& command) noexcept { return command.reset(); }
+bool command_begin(CommandSlot& slot) noexcept { return slot.begin(true); }
+CommandState command_follow(CommandSlot& slot) noexcept { return slot.follow(); }
+CommandState command_take_up(CommandProcessor& processor, CommandSlot& slot) noexcept {
+    return processor.take_up(slot, true);
+}
+void command_fail_all(CommandProcessor& processor) noexcept { processor.fail(0); }
+void command_reject_all(CommandProcessor& processor) noexcept { processor.reject_sent(); }
+
+std::uint32_t life_ask(LifeRequests& requests) noexcept { return requests.ask(LifeChange::stop).number; }
+bool life_take(LifeRequests& requests, LifeTicket& ticket, LifeChange& change) noexcept {
+    return requests.take(ticket, change);
+}
+void life_answer(LifeRequests& requests, LifeTicket ticket) noexcept { requests.answer(ticket, {}); }
 
 } // extern "C"

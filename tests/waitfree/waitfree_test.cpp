@@ -25,6 +25,8 @@ const Program& program() {
 const Permission plain{{"memcpy", "memset", "memmove"}, false};
 const Permission calling{plain.outside, true};
 const Permission waking{{"syscall", "write"}, false};
+/// The end of a command wakes the one who waits for it, besides what the component does.
+const Permission ending{{"memcpy", "memset", "memmove", "syscall", "write"}, true};
 
 struct Claim {
     std::string operation;
@@ -39,7 +41,8 @@ TEST_P(Operation, has_no_loop_but_counted_ones) {
     ASSERT_FALSE(program().empty()) << "objdump shows nothing; ci/setup installs it with the compiler";
     const Verdict verdict = check(program(), operation, permission);
     for (const std::string& fault : verdict.faults) ADD_FAILURE() << fault;
-    std::cout << operation << ": " << verdict.functions.size() << " functions";
+    std::cout << operation << ": " << verdict.functions.size()
+              << (verdict.functions.size() == 1 ? " function" : " functions");
     for (const Loop& loop : verdict.loops)
         std::cout << ", a loop counted by " << loop.counter << " to "
                   << (loop.passes ? std::to_string(*loop.passes) : "a bound that stays");
@@ -48,17 +51,28 @@ TEST_P(Operation, has_no_loop_but_counted_ones) {
     std::cout << "\n";
 }
 
+// clang-format off
 INSTANTIATE_TEST_SUITE_P(
     BetweenActivities, Operation,
-    testing::Values(Claim{"data_object_write_number", plain}, Claim{"data_object_read_number", plain},
-                    Claim{"data_object_write_frame", plain}, Claim{"data_object_read_frame", plain},
-                    Claim{"ring_push_number", plain}, Claim{"ring_pop_number", plain},
-                    Claim{"ring_push_frame", plain}, Claim{"ring_pop_frame", plain},
-                    Claim{"ring_lost", plain}, Claim{"inbox_post", plain}, Claim{"inbox_pending", plain},
-                    Claim{"inbox_serve", calling}, Claim{"waiter_wake", waking}, Claim{"waiter_take", plain},
-                    Claim{"output_write", calling}, Claim{"input_read", plain}, Claim{"buffer_push", calling},
-                    Claim{"buffer_pop", plain}, Claim{"event_emit", calling}, Claim{"event_post", calling}),
+    testing::Values(
+        Claim{"data_object_write_number", plain}, Claim{"data_object_read_number", plain},
+        Claim{"data_object_write_frame", plain},  Claim{"data_object_read_frame", plain},
+        Claim{"ring_push_number", plain},         Claim{"ring_pop_number", plain},
+        Claim{"ring_push_frame", plain},          Claim{"ring_pop_frame", plain},
+        Claim{"ring_lost", plain},
+        Claim{"inbox_post", plain},               Claim{"inbox_pending", plain},         Claim{"inbox_serve", calling},
+        Claim{"latest_put", plain},               Claim{"latest_take", plain},
+        Claim{"waiter_wake", waking},             Claim{"waiter_take", plain},
+        Claim{"output_write", calling},           Claim{"input_read", plain},
+        Claim{"buffer_push", calling},            Claim{"buffer_pop", plain},
+        Claim{"event_emit", calling},             Claim{"event_post", calling},
+        Claim{"event_connect", plain},            Claim{"event_disconnect", plain},
+        Claim{"command_send", calling},           Claim{"command_state", plain},         Claim{"command_reset", plain},
+        Claim{"command_begin", ending},           Claim{"command_follow", ending},       Claim{"command_take_up", ending},
+        Claim{"command_fail_all", ending},        Claim{"command_reject_all", ending},
+        Claim{"life_ask", plain},                 Claim{"life_take", plain},             Claim{"life_answer", plain}),
     [](const auto& one) { return one.param.operation; });
+// clang-format on
 
 class Retry : public testing::TestWithParam<std::string> {};
 
@@ -110,6 +124,15 @@ TEST(Check, follows_a_counter_that_is_kept_in_the_frame_meanwhile) {
     EXPECT_EQ(verdict.loops[0].passes.value_or(0) / 2, 32u) << "sixty-four, or one more";
 }
 
+TEST(Check, takes_the_same_test_on_each_path_for_one) {
+    const Verdict verdict =
+        of(" 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 4:\ttest   BYTE PTR [rdi],0x1\n 6:\tje     e <f+0xe>\n"
+           " 8:\tcmp    rax,0x10\n a:\tjne    2 <f+0x2>\n c:\tret\n e:\tcmp    rax,0x10\n"
+           " 10:\tjne    2 <f+0x2>\n 12:\tret\n");
+    ASSERT_TRUE(verdict.faults.empty());
+    EXPECT_EQ(verdict.loops.at(0).passes.value_or(0), 16u);
+}
+
 struct Shape {
     std::string name;
     std::string lines;
@@ -132,6 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
         Shape{"exit_not_on_every_pass",    " 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 4:\ttest   BYTE PTR [rdi],0x1\n 6:\tje     2 <f+0x2>\n 8:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
         Shape{"counter_kept_on_one_path",  " 0:\txor    eax,eax\n 2:\ttest   BYTE PTR [rdi],0x1\n 4:\tje     8 <f+0x8>\n 6:\tadd    rax,0x1\n 8:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
         Shape{"entered_twice",             " 0:\tje     6 <f+0x6>\n 2:\tadd    rax,0x1\n 6:\tcmp    rax,0x10\n a:\tjb     2 <f+0x2>\n c:\tret\n"},
+        Shape{"two_exits_of_two_bounds",   " 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 4:\ttest   BYTE PTR [rdi],0x1\n 6:\tje     e <f+0xe>\n 8:\tcmp    rax,0x10\n a:\tjne    2 <f+0x2>\n c:\tret\n e:\tcmp    rax,0x12\n 10:\tjne    2 <f+0x2>\n 12:\tret\n"},
         Shape{"no_exit",                   " 0:\tjmp    0 <f>\n"}),
     [](const auto& one) { return one.param.name; });
 // clang-format on
