@@ -1,6 +1,8 @@
 // What a fixed-size matrix of Eigen is, known by its shape: the kernel names no header of Eigen for it.
 #pragma once
 
+#include "kernel/base/realtime.hpp"
+
 #include <concepts>
 #include <type_traits>
 
@@ -12,5 +14,14 @@ namespace tappet {
 template <class T>
 concept FixedSizeEigen = std::is_trivially_destructible_v<T> && (T::SizeAtCompileTime > 0) &&
                          std::same_as<typename T::PlainObject, T>;
+
+/// What nobody has written yet: T{}, and zero where that would leave the numbers as they are. Real-time.
+template <class T>
+constexpr T default_value() noexcept TAPPET_REALTIME {
+    if constexpr (FixedSizeEigen<T>)
+        return T::Zero();
+    else
+        return T{};
+}
 
 } // namespace tappet

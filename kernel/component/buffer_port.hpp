@@ -5,12 +5,26 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/component/port.hpp"
+#include "kernel/exchange/local_ring.hpp"
 #include "kernel/exchange/ring.hpp"
 
 namespace tappet {
 
 /// How many rows one buffered port may stand in; the table's check says so by name.
 inline constexpr std::size_t max_buffer_rows = 8;
+
+/// One row's ring: wait-free between two activities, plain inside one.
+template <class T>
+struct BufferLane {
+    Ring<T>* across = nullptr;
+    LocalRing<T>* inside = nullptr;
+    [[nodiscard]] bool push(const T& value) const noexcept TAPPET_REALTIME {
+        return inside != nullptr ? inside->push(value) : across->push(value);
+    }
+    [[nodiscard]] bool pop(T& into) const noexcept TAPPET_REALTIME {
+        return inside != nullptr ? inside->pop(into) : across->pop(into);
+    }
+};
 
 template <class T>
 class BufferOutput {
@@ -21,15 +35,15 @@ public:
     /// lost).
     bool push(const T& value) noexcept TAPPET_REALTIME {
         bool all = true;
-        const std::size_t count = rings_.size(); // a bound that no push can move: a counted loop
-        for (std::size_t i = 0; i < count; ++i) all &= rings_[i]->push(value);
+        const std::size_t count = lanes_.size(); // a bound that no push can move: a counted loop
+        for (std::size_t i = 0; i < count; ++i) all &= lanes_[i].push(value);
         waker_();
         return all;
     }
 
 private:
     friend struct PortAccess;
-    Bounded<Ring<T>*, max_buffer_rows> rings_{};
+    Bounded<BufferLane<T>, max_buffer_rows> lanes_{};
     Waker waker_{};
 };
 
@@ -40,15 +54,15 @@ public:
 
     /// The oldest value of the first row that has one. False when all are empty.
     bool pop(T& into) noexcept TAPPET_REALTIME {
-        const std::size_t count = rings_.size();
+        const std::size_t count = lanes_.size();
         for (std::size_t i = 0; i < count; ++i)
-            if (rings_[i]->pop(into)) return true;
+            if (lanes_[i].pop(into)) return true;
         return false;
     }
 
 private:
     friend struct PortAccess;
-    Bounded<Ring<T>*, max_buffer_rows> rings_{};
+    Bounded<BufferLane<T>, max_buffer_rows> lanes_{};
 };
 
 } // namespace tappet

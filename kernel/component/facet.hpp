@@ -15,6 +15,7 @@
 #include "kernel/component/property.hpp"
 #include "kernel/component/timer.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -50,7 +51,7 @@ struct PortOperations {
     void (*link_shared)(void* input, const void* output);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
-    void (*set_policy)(void* input, Duration max_age, WhenStale, double substitute);
+    void (*set_policy)(void* input, const InputPolicy&);
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
     /// How many values a shared data object was given; any thread.
     std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
@@ -61,11 +62,12 @@ struct PortOperations {
 };
 
 struct BufferOperations {
-    std::size_t (*ring_bytes)(std::size_t capacity);
+    // `across`: the two ends are in two activities.
+    std::size_t (*ring_bytes)(std::size_t capacity, bool across);
     std::size_t ring_align;
-    void (*link)(void* output, void* input, std::byte* memory, std::size_t capacity, Overflow);
+    void (*link)(void* output, void* input, std::byte* memory, std::size_t capacity, Overflow, bool across);
     void (*set_waker)(void* output, Waker waker);
-    std::size_t (*lost)(const void* memory);
+    std::size_t (*lost)(const void* memory, bool across);
 };
 
 struct EventOperations {
@@ -137,6 +139,16 @@ constexpr std::string_view to_text(FacetKind kind) noexcept {
 
 /// What only the start-up may do with a port.
 struct PortAccess {
+    /// A checked row's value; the default where it gives none.
+    template <class T>
+    static T value_in(const RowValue& row) {
+        if (row.constant != nullptr) return *static_cast<const T*>(row.constant);
+        if constexpr (std::is_arithmetic_v<T>)
+            return static_cast<T>(row.number);
+        else
+            return default_value<T>();
+    }
+
     template <class T>
     static constexpr PortOperations data{
         .shared_bytes = sizeof(DataObject<Sample<T>>),
@@ -162,11 +174,13 @@ struct PortAccess {
             },
         .set_waker = [](void* output, Waker waker) { static_cast<Output<T>*>(output)->waker_ = waker; },
         .set_policy =
-            [](void* input, Duration max_age, WhenStale when_stale, double substitute) {
+            [](void* input, const InputPolicy& policy) {
                 auto& in = *static_cast<Input<T>*>(input);
-                in.max_age_ = max_age;
-                in.when_stale_ = when_stale;
-                if constexpr (std::is_arithmetic_v<T>) in.substitute_ = static_cast<T>(substitute);
+                in.max_age_ = policy.max_age;
+                in.when_stale_ = policy.when_stale;
+                in.substitute_ = value_in<T>(policy.substitute);
+                in.before_first_ =
+                    value_in<T>(policy.before_first.given ? policy.before_first : policy.substitute);
             },
         .flow = [](void* input) noexcept TAPPET_REALTIME { return static_cast<Input<T>*>(input)->flow(); },
         .written = [](const void* shared) noexcept
@@ -187,7 +201,7 @@ struct PortAccess {
             },
         .force =
             [](void* port, bool is_input, const std::byte* bytes) noexcept TAPPET_REALTIME {
-                T value{};
+                T value = default_value<T>();
                 std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
                 is_input ? static_cast<Input<T>*>(port)->force(value)
                          : static_cast<Output<T>*>(port)->force(value);
@@ -198,20 +212,36 @@ struct PortAccess {
             },
     };
 
+    /// Where a ring's storage begins behind the ring itself.
+    template <class AnyRing>
+    static constexpr std::size_t storage_at =
+        (sizeof(AnyRing) + AnyRing::alignment - 1) / AnyRing::alignment * AnyRing::alignment;
+
     template <class T>
     static constexpr BufferOperations buffer{
-        .ring_bytes = [](std::size_t capacity) { return sizeof(Ring<T>) + Ring<T>::bytes_for(capacity); },
-        .ring_align = alignof(Ring<T>),
+        .ring_bytes =
+            [](std::size_t capacity, bool across) {
+                return across ? storage_at<Ring<T>> + Ring<T>::bytes_for(capacity)
+                              : storage_at<LocalRing<T>> + LocalRing<T>::bytes_for(capacity);
+            },
+        .ring_align = std::max({alignof(Ring<T>), Ring<T>::alignment, alignof(LocalRing<T>), alignof(T)}),
         .link =
-            [](void* output, void* input, std::byte* memory, std::size_t capacity, Overflow overflow) {
-                auto* ring = new (memory) Ring<T>(memory + sizeof(Ring<T>), capacity, overflow);
-                static_cast<void>(static_cast<BufferOutput<T>*>(output)->rings_.push(ring));
-                static_cast<void>(static_cast<BufferInput<T>*>(input)->rings_.push(ring));
+            [](void* output, void* input, std::byte* memory, std::size_t capacity, Overflow overflow,
+               bool across) {
+                BufferLane<T> lane;
+                if (across)
+                    lane.across = new (memory) Ring<T>(memory + storage_at<Ring<T>>, capacity, overflow);
+                else
+                    lane.inside =
+                        new (memory) LocalRing<T>(memory + storage_at<LocalRing<T>>, capacity, overflow);
+                static_cast<void>(static_cast<BufferOutput<T>*>(output)->lanes_.push(lane));
+                static_cast<void>(static_cast<BufferInput<T>*>(input)->lanes_.push(lane));
             },
         .set_waker = [](void* output, Waker waker) { static_cast<BufferOutput<T>*>(output)->waker_ = waker; },
         .lost =
-            [](const void* memory) {
-                return static_cast<std::size_t>(static_cast<const Ring<T>*>(memory)->lost());
+            [](const void* memory, bool across) {
+                return static_cast<std::size_t>(across ? static_cast<const Ring<T>*>(memory)->lost()
+                                                       : static_cast<const LocalRing<T>*>(memory)->lost());
             },
     };
 

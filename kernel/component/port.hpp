@@ -4,6 +4,7 @@
 
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/base/type_tag.hpp"
 #include "kernel/exchange/data_object.hpp"
 
 #include <cstdint>
@@ -17,10 +18,26 @@ enum class Flow : std::uint8_t { never_written, old, fresh, stale };
 /// What a stale value means for the reader: keep it, use the row's substitute, or stop the machine.
 enum class WhenStale : std::uint8_t { hold, substitute, stop };
 
+/// A value that a table's row gives: a number, or a constant with static storage.
+struct RowValue {
+    bool given = false;
+    double number = 0;
+    const void* constant = nullptr;
+    TypeId type = nullptr; ///< of the constant
+};
+
+/// What a connection's row says to the input.
+struct InputPolicy {
+    Duration max_age{}; ///< 0: no value is ever stale
+    WhenStale when_stale = WhenStale::hold;
+    RowValue substitute{};
+    RowValue before_first{};
+};
+
 /// A value and the time it was true.
 template <class T>
 struct Sample {
-    T value{};
+    T value = default_value<T>();
     Time stamp{};
 };
 
@@ -94,7 +111,7 @@ private:
     }
 
     Sample<T> last_{};
-    T hidden_{}; ///< of a forced port: what its component wrote
+    T hidden_ = default_value<T>(); ///< of a forced port: what its component wrote
     bool forced_ = false;
     std::uint64_t generation_ = 0;
     DataObject<Sample<T>>* shared_ = nullptr;
@@ -110,7 +127,8 @@ class Input {
 public:
     using Value = T;
 
-    /// Copies the value into `into` and tells what it is. Never written: the row's initial value, or T{}.
+    /// Copies the value into `into` and tells what it is. Never written: what the
+    /// row gives before the first value, or its substitute, or T{}.
     Flow read(T& into) noexcept TAPPET_REALTIME {
         const Flow flow = refresh();
         into = value_of(flow);
@@ -158,8 +176,8 @@ private:
         return Flow::fresh;
     }
     [[nodiscard]] const T& value_of(Flow flow) const noexcept TAPPET_REALTIME {
-        if (flow == Flow::never_written || (flow == Flow::stale && when_stale_ == WhenStale::substitute))
-            return substitute_;
+        if (flow == Flow::never_written) return before_first_;
+        if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes: fresh
@@ -187,7 +205,8 @@ private:
     std::uint64_t seen_ = 0;
     std::uint64_t cached_generation_ = 0;
     Sample<T> cache_{};
-    T substitute_{};
+    T substitute_ = default_value<T>();
+    T before_first_ = default_value<T>();
 };
 
 } // namespace tappet

@@ -35,18 +35,52 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
     return {};
 }
 
+/// A number must be one that the port's type can hold exactly, but for the rounding of a float.
+constexpr bool holds(const TypeTag& type, double number) noexcept {
+    if (type.kind == ValueKind::real) return true;
+    if (type.kind == ValueKind::truth) return number == 0 || number == 1;
+    if (!type.arithmetic || type.size > 8) return false;
+    double past = type.kind == ValueKind::whole ? 128 : 256; // the first number beyond one byte
+    for (std::size_t bytes = 1; bytes < type.size; ++bytes) past *= 256;
+    const double least = type.kind == ValueKind::whole ? -past : 0;
+    if (!(number >= least && number < past)) return false;
+    return number >= 0 ? number == static_cast<double>(static_cast<std::uint64_t>(number))
+                       : number == static_cast<double>(static_cast<std::int64_t>(number));
+}
+
+constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view option, const RowValue& value,
+                                   const Facet& to) {
+    if (!value.given) return {};
+    if (value.constant != nullptr)
+        return value.type == to.type ? Sentence{}
+                                     : of_connection(row, ": ", option, " gives a value of type ",
+                                                     value.type->name, ", but \"", row.to, "\" is of type ",
+                                                     to.type->name, "; name a constant of the port's type");
+    if (!to.type->arithmetic)
+        return of_connection(row, ": a value of type ", to.type->name, " is no number; write ", option,
+                             "<constant>() with a constant of that type");
+    if (!holds(*to.type, value.number))
+        return of_connection(row, ": the number in ", option, " does not fit \"", row.to, "\" of type ",
+                             to.type->name, "; write one that it can hold");
+    return {};
+}
+
 constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row, const Facet& to,
                                   std::size_t writer, std::size_t reader) {
     if (row.buffered && row.capacity == 0)
         return of_connection(row, " holds no value; write buffer<n> with n of at least 1");
-    if (row.has_substitute && !to.type->arithmetic)
-        return of_connection(row, ": a value of type ", to.type->name,
-                             " has no substitute number; use hold or stop_machine");
-    if (row.when_stale != WhenStale::hold && row.max_age == Duration::zero() && !row.has_substitute)
+    if (row.buffered && (row.max_age != Duration::zero() || row.stale_answers != 0 || row.before_first.given))
+        return of_connection(
+            row, ": values in a buffer have no age and no initial value; remove what says so from the row");
+    if (Sentence fault = check_row_value(row, "substitute", row.substitute, to); !fault.empty()) return fault;
+    if (Sentence fault = check_row_value(row, "initially", row.before_first, to); !fault.empty())
+        return fault;
+    if (row.stale_answers > 1)
+        return of_connection(row, " says more than once what a stale value means; keep one of hold, "
+                                  "substitute and stop_machine");
+    if (row.when_stale == WhenStale::stop && row.max_age == Duration::zero())
         return of_connection(row,
                              " says what a stale value means but not when it is stale; add stale_after(...)");
-    if (row.buffered && (row.max_age != Duration::zero() || row.has_substitute))
-        return of_connection(row, ": values in a buffer have no age; remove stale_after and substitute");
     if (row.wakes_reader && m.activities[reader].periodic())
         return of_connection(row, " wakes activity \"", m.activities[reader].name,
                              "\", which is periodic; remove wakes");
@@ -178,8 +212,7 @@ private:
     [[nodiscard]] constexpr Edge edge_from(std::size_t reader, std::size_t row) const noexcept {
         while (true) {
             for (; row != nowhere; row = r_.connections_into.next[row]) {
-                const std::size_t writer =
-                    m_.connections[row].buffered ? nowhere : place_of(r_.connections[row].from.component);
+                const std::size_t writer = place_of(r_.connections[row].from.component);
                 if (writer == nowhere || writer == reader) continue;
                 return m_.connections[row].delayed_step ? Edge{row, reader, writer, reader}
                                                         : Edge{row, writer, reader, reader};

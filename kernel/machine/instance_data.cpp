@@ -37,7 +37,7 @@ void MachineInstance::connect_row(std::size_t x) {
     const Facet& from = facet_at(machine_.table, link.from);
     if (row.buffered) {
         from.buffer->link(facet(link.from), facet(link.to), at<std::byte>(plan.memory_at), row.capacity,
-                          row.overflow);
+                          row.overflow, plan.shared);
         return;
     }
     if (plan.shared && plan.first_of_output)
@@ -46,7 +46,7 @@ void MachineInstance::connect_row(std::size_t x) {
         from.port->link_shared(facet(link.to), facet(link.from));
     else
         from.port->link_local(facet(link.to), facet(link.from));
-    from.port->set_policy(facet(link.to), row.max_age, row.when_stale, row.substitute_value);
+    from.port->set_policy(facet(link.to), {row.max_age, row.when_stale, row.substitute, row.before_first});
 }
 
 void MachineInstance::add_waker(std::size_t x) {

@@ -34,14 +34,14 @@ void MachineInstance::place_needed_inputs() {
         if (!is_needed_input(table, table.connections[x], link)) continue;
         const Facet& input = facet_at(table, link.to);
         const std::size_t reader = machine_.index.activity[link.to.component];
-        new (at<NeededInput>(machine_.plan.activities[reader].inputs_at) + placed[reader]++)
-            NeededInput{.input = facet(link.to),
-                        .flow = input.port->flow,
-                        .part = machine_.plan.part_of[link.to.component],
-                        .facet = static_cast<std::uint16_t>(link.to.facet),
-                        .has_initial = table.connections[x].has_substitute,
-                        .same_activity = machine_.index.activity[link.from.component] == reader,
-                        .valid_to_start = input.valid_to_start};
+        new (at<NeededInput>(machine_.plan.activities[reader].inputs_at) + placed[reader]++) NeededInput{
+            .input = facet(link.to),
+            .flow = input.port->flow,
+            .part = machine_.plan.part_of[link.to.component],
+            .facet = static_cast<std::uint16_t>(link.to.facet),
+            .has_initial = table.connections[x].substitute.given || table.connections[x].before_first.given,
+            .same_activity = machine_.index.activity[link.from.component] == reader,
+            .valid_to_start = input.valid_to_start};
     }
 }
 

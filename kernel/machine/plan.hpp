@@ -180,7 +180,7 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
         const Facet& from = facet_at(m, link.from);
         if (row.buffered) {
             const auto& buffer = *from.buffer;
-            plan.memory_at = ground.take(buffer.ring_bytes(row.capacity), buffer.ring_align);
+            plan.memory_at = ground.take(buffer.ring_bytes(row.capacity, plan.shared), buffer.ring_align);
         } else if (plan.shared) {
             for (std::size_t j = 0; j < x; ++j)
                 if (r.connections[j].from == link.from && p.connections[j].shared)

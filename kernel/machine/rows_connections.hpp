@@ -6,7 +6,10 @@
 #include "kernel/exchange/ring.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string_view>
+#include <type_traits>
 
 namespace tappet {
 
@@ -18,24 +21,54 @@ struct ConnectionRow {
     Overflow overflow = Overflow::reject;
     Duration max_age{};
     WhenStale when_stale = WhenStale::hold;
-    double substitute_value = 0;
-    bool has_substitute = false;
+    RowValue substitute{};
+    RowValue before_first{};
+    std::uint8_t stale_answers = 0; ///< options that say what a stale value means: one at most
     bool wakes_reader = false;
     bool delayed_step = false;
 };
 
+namespace detail {
+
+template <const auto& Constant>
+constexpr RowValue row_constant() noexcept {
+    return {.given = true,
+            .constant = std::addressof(Constant),
+            .type = type_id<std::remove_cvref_t<decltype(Constant)>>};
+}
+
+} // namespace detail
+
 struct StaleAfter {
     Duration age;
 };
-/// A value older than this is stale; hold, substitute(x) or stop_machine say what the reader then gets.
+/// A value older than this is stale; hold, substitute(x) or stop_machine say what the reader then gets: hold,
+/// if nothing says so.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 inline constexpr WhenStale hold = WhenStale::hold;
 inline constexpr WhenStale stop_machine = WhenStale::stop;
 struct Substitute {
-    double value;
+    RowValue value;
 };
-/// What the reader gets instead of a stale or never written value (arithmetic types).
-constexpr Substitute substitute(double value) noexcept { return {value}; }
+/// What the reader gets instead of a stale or never written value: a number, or a constant of the port's
+/// type, which has static storage:
+///     const Eigen::Vector3d parked{0, 0, 120};
+///     data("arm.pose", "tool.pose", stale_after(4ms), substitute<parked>())
+constexpr Substitute substitute(double value) noexcept { return {{.given = true, .number = value}}; }
+template <const auto& Constant>
+constexpr Substitute substitute() noexcept {
+    return {detail::row_constant<Constant>()};
+}
+struct Initially {
+    RowValue value;
+};
+/// What the reader gets before the first value; spelled as substitute. Without it that is the row's
+/// substitute, or the type's own default.
+constexpr Initially initially(double value) noexcept { return {{.given = true, .number = value}}; }
+template <const auto& Constant>
+constexpr Initially initially() noexcept {
+    return {detail::row_constant<Constant>()};
+}
 struct Wakes {};
 /// Each write wakes the reader's activity.
 inline constexpr Wakes wakes{};
@@ -48,12 +81,16 @@ inline constexpr Overflow drop_oldest = Overflow::drop_oldest;
 namespace detail {
 
 constexpr void apply(ConnectionRow& row, StaleAfter option) noexcept { row.max_age = option.age; }
-constexpr void apply(ConnectionRow& row, WhenStale option) noexcept { row.when_stale = option; }
+constexpr void apply(ConnectionRow& row, WhenStale option) noexcept {
+    row.when_stale = option;
+    ++row.stale_answers;
+}
 constexpr void apply(ConnectionRow& row, Substitute option) noexcept {
     row.when_stale = WhenStale::substitute;
-    row.substitute_value = option.value;
-    row.has_substitute = true;
+    row.substitute = option.value;
+    ++row.stale_answers;
 }
+constexpr void apply(ConnectionRow& row, Initially option) noexcept { row.before_first = option.value; }
 constexpr void apply(ConnectionRow& row, Wakes) noexcept { row.wakes_reader = true; }
 constexpr void apply(ConnectionRow& row, Delayed) noexcept { row.delayed_step = true; }
 constexpr void apply(ConnectionRow& row, Overflow option) noexcept { row.overflow = option; }

@@ -1,5 +1,5 @@
 // A buffer's values have no age.
-// refused: loom: connection "encoder.samples" -> "shaft.samples": values in a buffer have no age; remove stale_after and substitute
+// refused: loom: connection "encoder.samples" -> "shaft.samples": values in a buffer have no age and no initial value; remove what says so from the row
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

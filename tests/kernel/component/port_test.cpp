@@ -89,7 +89,7 @@ TEST_P(Ports, do_not_spend_freshness_when_only_asked_about_it) {
 }
 
 TEST_P(Ports, hold_a_stale_value_and_say_so) {
-    link.port.set_policy(&link.input, 4ms, WhenStale::hold, 0);
+    link.port.set_policy(&link.input, {.max_age = 4ms});
     link.output.write(7.0);
     link.at(at_ns(0) + 4ms);
     EXPECT_EQ(link.input.read(value), Flow::fresh) << "as old as it may be";
@@ -98,8 +98,11 @@ TEST_P(Ports, hold_a_stale_value_and_say_so) {
     EXPECT_EQ(value, 7.0);
 }
 
+RowValue number(double value) { return {.given = true, .number = value}; }
+
 TEST_P(Ports, give_the_substitute_for_a_stale_or_a_never_written_value) {
-    link.port.set_policy(&link.input, 4ms, WhenStale::substitute, -5);
+    link.port.set_policy(&link.input,
+                         {.max_age = 4ms, .when_stale = WhenStale::substitute, .substitute = number(-5)});
     EXPECT_EQ(link.input.read(value), Flow::never_written);
     EXPECT_EQ(value, -5.0);
     link.output.write(7.0);
@@ -110,6 +113,21 @@ TEST_P(Ports, give_the_substitute_for_a_stale_or_a_never_written_value) {
     link.output.write(8.0);
     EXPECT_EQ(link.input.read(value), Flow::fresh);
     EXPECT_EQ(value, 8.0);
+}
+
+TEST_P(Ports, give_what_the_row_gives_before_the_first_value_and_the_substitute_only_when_it_is_stale) {
+    static const double constant = 11;
+    link.port.set_policy(&link.input,
+                         {.max_age = 4ms,
+                          .when_stale = WhenStale::substitute,
+                          .substitute = number(-5),
+                          .before_first = {.given = true, .constant = &constant, .type = type_id<double>}});
+    EXPECT_EQ(link.input.read(value), Flow::never_written);
+    EXPECT_EQ(value, 11.0);
+    link.output.write(7.0);
+    link.at(at_ns(0) + 5ms);
+    EXPECT_EQ(link.input.read(value), Flow::stale);
+    EXPECT_EQ(value, -5.0);
 }
 
 TEST_P(Ports, never_call_a_value_stale_whose_row_states_no_age) {
@@ -147,13 +165,16 @@ TEST(Port, of_one_output_feeds_readers_in_its_own_activity_and_in_others) {
 
 /// A ring between two ports, as start-up places it.
 struct BufferRow {
-    BufferRow(BufferOutput<int>& from, BufferInput<int>& to, std::size_t capacity, Overflow overflow) {
+    BufferRow(bool crosses, BufferOutput<int>& from, BufferInput<int>& to, std::size_t capacity,
+              Overflow overflow)
+        : across{crosses} {
         const BufferOperations& operations = PortAccess::buffer<int>;
-        const std::size_t bytes = operations.ring_bytes(capacity);
+        const std::size_t bytes = operations.ring_bytes(capacity, across);
         memory.reset(static_cast<std::byte*>(::operator new(bytes, std::align_val_t{operations.ring_align})));
-        operations.link(&from, &to, memory.get(), capacity, overflow);
+        operations.link(&from, &to, memory.get(), capacity, overflow, across);
     }
-    [[nodiscard]] std::size_t lost() const { return PortAccess::buffer<int>.lost(memory.get()); }
+    [[nodiscard]] std::size_t lost() const { return PortAccess::buffer<int>.lost(memory.get(), across); }
+    bool across;
     struct Free {
         void operator()(std::byte* p) const {
             ::operator delete(p, std::align_val_t{PortAccess::buffer<int>.ring_align});
@@ -168,19 +189,25 @@ std::vector<int> drain(BufferInput<int>& input) {
     return all;
 }
 
-TEST(BufferPort, gives_every_value_in_order) {
+class BufferPort : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(, BufferPort, testing::Bool(), [](const auto& each) {
+    return each.param ? "across_activities" : "inside_one_activity";
+});
+
+TEST_P(BufferPort, gives_every_value_in_order) {
     BufferOutput<int> output;
     BufferInput<int> input;
-    const BufferRow row{output, input, 4, Overflow::reject};
+    const BufferRow row{GetParam(), output, input, 4, Overflow::reject};
     for (int value : {1, 2, 3}) EXPECT_TRUE(output.push(value));
     EXPECT_EQ(drain(input), (std::vector{1, 2, 3}));
     EXPECT_EQ(drain(input), std::vector<int>{});
 }
 
-TEST(BufferPort, rejects_and_counts_what_has_no_room) {
+TEST_P(BufferPort, rejects_and_counts_what_has_no_room) {
     BufferOutput<int> output;
     BufferInput<int> input;
-    const BufferRow row{output, input, 2, Overflow::reject};
+    const BufferRow row{GetParam(), output, input, 2, Overflow::reject};
     EXPECT_TRUE(output.push(1));
     EXPECT_TRUE(output.push(2));
     EXPECT_FALSE(output.push(3));
@@ -188,11 +215,11 @@ TEST(BufferPort, rejects_and_counts_what_has_no_room) {
     EXPECT_EQ(drain(input), (std::vector{1, 2}));
 }
 
-TEST(BufferPort, keeps_the_writers_of_one_input_apart) {
+TEST_P(BufferPort, keeps_the_writers_of_one_input_apart) {
     BufferOutput<int> one, other;
     BufferInput<int> input;
-    const BufferRow first{one, input, 2, Overflow::reject};
-    const BufferRow second{other, input, 2, Overflow::reject};
+    const BufferRow first{GetParam(), one, input, 2, Overflow::reject};
+    const BufferRow second{GetParam(), other, input, 2, Overflow::reject};
     EXPECT_TRUE(other.push(20));
     EXPECT_TRUE(one.push(10));
     EXPECT_TRUE(one.push(11));
@@ -201,11 +228,11 @@ TEST(BufferPort, keeps_the_writers_of_one_input_apart) {
     EXPECT_EQ(drain(input), (std::vector{10, 11, 20, 21}));
 }
 
-TEST(BufferPort, gives_every_reader_of_one_output_every_value) {
+TEST_P(BufferPort, gives_every_reader_of_one_output_every_value) {
     BufferOutput<int> output;
     BufferInput<int> fast, slow;
-    const BufferRow first{output, fast, 4, Overflow::reject};
-    const BufferRow second{output, slow, 1, Overflow::reject};
+    const BufferRow first{GetParam(), output, fast, 4, Overflow::reject};
+    const BufferRow second{GetParam(), output, slow, 1, Overflow::reject};
     EXPECT_TRUE(output.push(1));
     EXPECT_FALSE(output.push(2)) << "the slow reader's row is full";
     EXPECT_EQ(drain(fast), (std::vector{1, 2}));
@@ -214,7 +241,7 @@ TEST(BufferPort, gives_every_reader_of_one_output_every_value) {
     EXPECT_EQ(second.lost(), 1u);
 }
 
-TEST(BufferPort, without_a_row_takes_values_and_gives_none) {
+TEST(UnconnectedBufferPort, without_a_row_takes_values_and_gives_none) {
     BufferOutput<int> output;
     BufferInput<int> input;
     EXPECT_TRUE(output.push(1));
