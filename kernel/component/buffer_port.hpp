@@ -13,17 +13,12 @@ namespace tappet {
 /// How many rows one buffered port may stand in; the table's check says so by name.
 inline constexpr std::size_t max_buffer_rows = 8;
 
-/// One row's ring: wait-free between two activities, plain inside one.
+/// The rings of a port's rows: plain ones inside its activity, wait-free ones to or from others. Two lists,
+/// so that each is gone through by a loop that does nothing but count.
 template <class T>
-struct BufferLane {
-    Ring<T>* across = nullptr;
-    LocalRing<T>* inside = nullptr;
-    [[nodiscard]] bool push(const T& value) const noexcept TAPPET_REALTIME {
-        return inside != nullptr ? inside->push(value) : across->push(value);
-    }
-    [[nodiscard]] bool pop(T& into) const noexcept TAPPET_REALTIME {
-        return inside != nullptr ? inside->pop(into) : across->pop(into);
-    }
+struct BufferRings {
+    Bounded<LocalRing<T>*, max_buffer_rows> inside{};
+    Bounded<Ring<T>*, max_buffer_rows> across{};
 };
 
 template <class T>
@@ -35,15 +30,17 @@ public:
     /// lost).
     bool push(const T& value) noexcept TAPPET_REALTIME {
         bool all = true;
-        const std::size_t count = lanes_.size(); // a bound that no push can move: a counted loop
-        for (std::size_t i = 0; i < count; ++i) all &= lanes_[i].push(value);
+        // Bounds that no push can move: counted loops.
+        const std::size_t inside = rings_.inside.size(), across = rings_.across.size();
+        for (std::size_t i = 0; i < inside; ++i) all &= rings_.inside[i]->push(value);
+        for (std::size_t i = 0; i < across; ++i) all &= rings_.across[i]->push(value);
         waker_();
         return all;
     }
 
 private:
     friend struct PortAccess;
-    Bounded<BufferLane<T>, max_buffer_rows> lanes_{};
+    BufferRings<T> rings_{};
     Waker waker_{};
 };
 
@@ -52,17 +49,20 @@ class BufferInput {
 public:
     using Value = T;
 
-    /// The oldest value of the first row that has one. False when all are empty.
+    /// The oldest value of the first row that has one, those inside the activity before others. False when
+    /// all are empty.
     bool pop(T& into) noexcept TAPPET_REALTIME {
-        const std::size_t count = lanes_.size();
-        for (std::size_t i = 0; i < count; ++i)
-            if (lanes_[i].pop(into)) return true;
+        const std::size_t inside = rings_.inside.size(), across = rings_.across.size();
+        for (std::size_t i = 0; i < inside; ++i)
+            if (rings_.inside[i]->pop(into)) return true;
+        for (std::size_t i = 0; i < across; ++i)
+            if (rings_.across[i]->pop(into)) return true;
         return false;
     }
 
 private:
     friend struct PortAccess;
-    Bounded<BufferLane<T>, max_buffer_rows> lanes_{};
+    BufferRings<T> rings_{};
 };
 
 } // namespace tappet

@@ -228,14 +228,18 @@ struct PortAccess {
         .link =
             [](void* output, void* input, std::byte* memory, std::size_t capacity, Overflow overflow,
                bool across) {
-                BufferLane<T> lane;
-                if (across)
-                    lane.across = new (memory) Ring<T>(memory + storage_at<Ring<T>>, capacity, overflow);
-                else
-                    lane.inside =
+                auto& from = static_cast<BufferOutput<T>*>(output)->rings_;
+                auto& to = static_cast<BufferInput<T>*>(input)->rings_;
+                if (across) {
+                    auto* ring = new (memory) Ring<T>(memory + storage_at<Ring<T>>, capacity, overflow);
+                    static_cast<void>(from.across.push(ring));
+                    static_cast<void>(to.across.push(ring));
+                } else {
+                    auto* ring =
                         new (memory) LocalRing<T>(memory + storage_at<LocalRing<T>>, capacity, overflow);
-                static_cast<void>(static_cast<BufferOutput<T>*>(output)->lanes_.push(lane));
-                static_cast<void>(static_cast<BufferInput<T>*>(input)->lanes_.push(lane));
+                    static_cast<void>(from.inside.push(ring));
+                    static_cast<void>(to.inside.push(ring));
+                }
             },
         .set_waker = [](void* output, Waker waker) { static_cast<BufferOutput<T>*>(output)->waker_ = waker; },
         .lost =

@@ -1,5 +1,5 @@
 // A connection names a component alone.
-// refused: loom: connection "shaft" -> "tension.speed": "shaft" is not of the form "component.port"; name both
+// refused: loom: connection "shaft" -> "tension.speed": "shaft" is not of the form "component.output"; name both
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

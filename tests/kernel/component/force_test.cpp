@@ -67,7 +67,9 @@ TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
 }
 
 TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
-    port.set_policy(&input, 4ms, WhenStale::substitute, -5);
+    port.set_policy(
+        &input,
+        {.max_age = 4ms, .when_stale = WhenStale::substitute, .substitute = {.given = true, .number = -5}});
     output.write(1.0);
     EXPECT_EQ(input.get(), 1.0);
     force_input(9.0);
