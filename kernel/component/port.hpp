@@ -127,8 +127,8 @@ class Input {
 public:
     using Value = T;
 
-    /// Copies the value into `into` and tells what it is. Never written: what the
-    /// row gives before the first value, or its substitute, or T{}.
+    /// Copies the value into `into` and tells what it is. Never written: what the row gives before the first
+    /// value, or its substitute, or zero.
     Flow read(T& into) noexcept TAPPET_REALTIME {
         const Flow flow = refresh();
         into = value_of(flow);

@@ -48,7 +48,7 @@ TEST_P(Forcing, an_output_publishes_the_forced_value_at_once_and_whatever_its_co
     output.write(2.0);
     EXPECT_EQ(input.read(value), Flow::fresh) << "each write stays a sign of life";
     EXPECT_EQ(value, 9.0);
-    EXPECT_EQ(output.last(), 9.0);
+    EXPECT_EQ(output.last(), 2.0) << "what the component knows of its own is what it wrote";
 }
 
 TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
