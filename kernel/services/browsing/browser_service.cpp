@@ -33,6 +33,7 @@ void BrowserService::work(const Cycle& cycle) {
     follow_changes();
     follow_commands();
     follow_lives();
+    follow_saving();
     std::int64_t connected = 0;
     for (const Client& each : door_.clients()) connected += each.serial != 0;
     clients.write(connected);
@@ -93,9 +94,9 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::start: return change_life(client, request, LifeChange::start);
     case Verb::stop: return change_life(client, request, LifeChange::stop);
     case Verb::restart: return change_life(client, request, LifeChange::restart);
+    case Verb::save: return save(client, request);
     case Verb::subscribe:
-    case Verb::unsubscribe:
-    case Verb::save: break;
+    case Verb::unsubscribe: break;
     }
     return {Refusal::unsupported,
             Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};

@@ -7,6 +7,7 @@
 #include "kernel/services/browsing/door.hpp"
 #include "kernel/services/browsing/errand.hpp"
 #include "kernel/services/browsing/reply.hpp"
+#include "kernel/services/configuration/property_saving.hpp"
 
 namespace tappet {
 
@@ -76,6 +77,12 @@ private:
         LifeTicket ticket{};
     };
 
+    struct Save {
+        browsing::Asker asker{};
+        bool given_up = false;
+        PropertySaving saving{};
+    };
+
     void welcome();
     void hear(Client& client);
     void handle(Client& client, std::string_view packet, bool cut);
@@ -114,6 +121,10 @@ private:
     Verdict change_life(Client& client, const Request& request, LifeChange change);
     void follow_lives();
 
+    // Properties to their files; requests_save.cpp
+    Verdict save(Client& client, const Request& request);
+    void follow_saving();
+
     MachineInstance* machine_ = nullptr;
     std::size_t own_activity_ = nowhere;
     Time now_{};
@@ -125,6 +136,7 @@ private:
     std::array<CommandInFlight, max_commands> commands_{};
     std::array<Change, max_transactions> changes_{};
     std::array<LifeRequest, max_life_requests> lives_{};
+    Save save_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
 };
 

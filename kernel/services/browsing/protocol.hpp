@@ -90,7 +90,7 @@ inline constexpr auto verbs = std::to_array<VerbRow>({
     {Verb::set,         "set",         Role::engineer,         "set NAME VALUE [NAME VALUE...]",   2, max_words, R"("set": n: all of one component and in one transaction, or none)"},
     {Verb::force,       "force",       Role::engineer,         "force PORT VALUE",                 2, 2, ""},
     {Verb::release,     "release",     Role::engineer,         "release PORT",                     1, 1, ""},
-    {Verb::save,        "save",        Role::engineer,         "save",                             0, 0, R"("files": n)"},
+    {Verb::save,        "save",        Role::engineer,         "save [COMPONENT]",                 0, 1, R"("files": n, of so many components)"},
     {Verb::start,       "start",       Role::engineer,         "start COMPONENT|activity:NAME",         1, 1, ""},
     {Verb::stop,        "stop",        Role::engineer,         "stop COMPONENT|activity:NAME",          1, 1, ""},
     {Verb::restart,     "restart",     Role::engineer,         "restart COMPONENT|activity:NAME",       1, 1, ""},

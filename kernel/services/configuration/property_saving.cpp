@@ -3,10 +3,12 @@
 
 namespace tappet {
 
-void PropertySaving::begin(MachineInstance& machine, std::size_t activity) noexcept {
+void PropertySaving::begin(MachineInstance& machine, std::size_t activity, std::size_t component) noexcept {
     if (busy_) return;
     machine_ = &machine, activity_ = activity;
-    next_ = saved_ = 0;
+    next_ = component == nowhere ? 0 : component;
+    end_ = component == nowhere ? machine.machine().table.components.size() : component + 1;
+    saved_ = 0;
     fault_ = Sentence{};
     busy_ = true;
     asked_ = false;
@@ -21,8 +23,8 @@ bool PropertySaving::step() noexcept {
         write();
         ++next_;
     }
-    while (next_ < components.size() && !components[next_].has_properties_file) ++next_;
-    if (next_ == components.size())
+    while (next_ < end_ && !components[next_].has_properties_file) ++next_;
+    if (next_ == end_)
         busy_ = false;
     else
         ask(next_);

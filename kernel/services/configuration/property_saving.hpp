@@ -10,8 +10,8 @@ namespace tappet {
 /// nothing is left. May block on the file; takes no heap. Large: in static memory.
 class PropertySaving {
 public:
-    /// `activity`: the one that calls; components in it stand still meanwhile.
-    void begin(MachineInstance& machine, std::size_t activity) noexcept;
+    /// `activity`: the one that calls; components in it stand still meanwhile. Of one component, or of all.
+    void begin(MachineInstance& machine, std::size_t activity, std::size_t component = nowhere) noexcept;
     /// False when every file is written or has its fault.
     bool step() noexcept;
     [[nodiscard]] bool busy() const noexcept { return busy_; }
@@ -26,6 +26,7 @@ private:
     MachineInstance* machine_ = nullptr;
     std::size_t activity_ = 0;
     std::size_t next_ = 0; ///< component
+    std::size_t end_ = 0;
     std::size_t saved_ = 0;
     bool busy_ = false;
     bool asked_ = false;

@@ -4,6 +4,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/virtual_world.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/configuration/property_files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -75,7 +76,7 @@ struct Table {
 
 // clang-format off
 inline constexpr auto table = machine("press",
-    components(component<Ram>("ram"), component<Table>("table"), component<BrowserService>("browser", set("log", false))),
+    components(component<Ram>("ram", properties_file("ram.cpf", optional)), component<Table>("table"), component<BrowserService>("browser", set("log", false))),
     activities(
         activity("motion",  every(1ms), budget(50us), runs("ram")),
         activity("slow",    every(10ms), budget(50us), runs("table")),
@@ -121,8 +122,11 @@ protected:
     MachineInstance instance{Firmware<table, board>::machine(), clock};
     VirtualWorld world{instance};
 
+    PropertyFiles files{directory};
+
     void SetUp() override {
         instance.browse_in(directory);
+        instance.read_properties_from(files.store());
         const auto configured = instance.configure({});
         ASSERT_TRUE(configured) << configured.error().view();
         world.start();
