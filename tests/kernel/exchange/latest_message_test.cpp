@@ -1,0 +1,98 @@
+// LatestMessage: the newest of what one thread posts to one other (thesis 4.6.2: save only the last event
+// data).
+#include "kernel/exchange/latest_message.hpp"
+
+#include "tests/kernel/exchange/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <thread>
+
+namespace {
+
+using namespace tappet;
+
+/// Every byte of it follows from the number.
+Message numbered(std::uint32_t number) {
+    Message message;
+    message.id = number;
+    message.arguments.fill(static_cast<std::byte>(number * 37));
+    return message;
+}
+bool whole(const Message& message) { return message.arguments == numbered(message.id).arguments; }
+
+TEST(LatestMessage, gives_nothing_before_the_first_and_each_one_once) {
+    LatestMessage latest;
+    EXPECT_EQ(latest.take(), nullptr);
+    EXPECT_TRUE(latest.put(numbered(1)));
+    const Message* const taken = latest.take();
+    ASSERT_NE(taken, nullptr);
+    EXPECT_EQ(taken->id, 1u);
+    EXPECT_EQ(latest.take(), nullptr);
+}
+
+TEST(LatestMessage, replaces_what_nobody_took_and_says_so) {
+    LatestMessage latest;
+    EXPECT_TRUE(latest.put(numbered(1))) << "the receiver is to be told";
+    EXPECT_FALSE(latest.put(numbered(2))) << "it is told already";
+    EXPECT_FALSE(latest.put(numbered(3)));
+    const Message* const taken = latest.take();
+    ASSERT_NE(taken, nullptr);
+    EXPECT_EQ(taken->id, 3u);
+    EXPECT_TRUE(latest.put(numbered(4))) << "it took the one before";
+}
+
+TEST(LatestMessage, leaves_what_was_taken_as_it_is_until_the_next_take) {
+    LatestMessage latest;
+    EXPECT_TRUE(latest.put(numbered(1)));
+    const Message* const taken = latest.take();
+    ASSERT_NE(taken, nullptr);
+    for (std::uint32_t number = 2; number < 9; ++number) static_cast<void>(latest.put(numbered(number)));
+    EXPECT_EQ(taken->id, 1u);
+    EXPECT_TRUE(whole(*taken));
+}
+
+// The receiver takes only when it is told; the sender tells it when put() says so.
+TEST(LatestMessage, tears_nothing_and_forgets_no_newest_across_threads) {
+    constexpr std::uint32_t last = 200'000;
+    for (std::uint64_t seed = stress_seed(); seed < stress_seed() + 3; ++seed) {
+        LatestMessage latest;
+        std::atomic<std::uint32_t> told{0};
+        std::uint32_t replaced = 0;
+        std::thread sender([&] {
+            Random random{seed};
+            for (std::uint32_t number = 1; number <= last; ++number) {
+                if (latest.put(numbered(number)))
+                    told.fetch_add(1);
+                else
+                    ++replaced;
+                dither(random);
+            }
+        });
+        Random random{seed + 100};
+        std::uint32_t taken = 0;
+        std::uint32_t before = 0;
+        bool good = true;
+        while (before != last) {
+            if (told.load() == taken) {
+                std::this_thread::yield();
+                continue;
+            }
+            ASSERT_EQ(told.load(), taken + 1) << "one notice is on its way at most; seed " << seed;
+            const Message* const message = latest.take();
+            ASSERT_NE(message, nullptr) << "a notice without a message; seed " << seed;
+            dither(random);
+            good = good && whole(*message) && message->id > before;
+            before = message->id;
+            ++taken;
+        }
+        sender.join();
+        EXPECT_TRUE(good) << "seed " << seed;
+        EXPECT_EQ(taken + replaced, last) << "seed " << seed;
+    }
+}
+
+} // namespace
