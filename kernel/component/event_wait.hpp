@@ -44,7 +44,7 @@ public:
     }
 
 protected:
-    ~EventWaitState() = default;
+    EventWaitState() = default;
 
     /// The packed arguments of the next emission, or null; they stay where they are until the next call.
     [[nodiscard]] const std::byte* next() noexcept TAPPET_REALTIME {
@@ -87,6 +87,8 @@ private:
 template <class... A>
 class EventWait : public EventWaitState {
 public:
+    EventWait() = default;
+
     /// Takes the oldest emission that waits. False: there is none. Real-time.
     [[nodiscard]] bool take(A&... into) noexcept TAPPET_REALTIME { return unpack(next(), into...); }
 

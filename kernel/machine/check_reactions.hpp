@@ -36,8 +36,9 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
             return of_reaction(row, ": \"", row.target.operation, "\" is ", to_text(operation.kind),
                                ", not an operation; name an operation second");
         if (event.type != operation.type)
-            return of_reaction(row, ": the event carries (", event.type->name, ") but the operation takes (",
-                               operation.type->name, "); give both the same arguments");
+            return of_reaction(row, ": the event carries (", event.type->name, ") but the ",
+                               waits ? "wait" : "operation", " takes (", operation.type->name,
+                               "); give both the same arguments");
         if (Sentence fault = waits ? check_wait(m, r, i) : Sentence{}; !fault.empty()) return fault;
         if (Sentence fault = check_handle(m, r, i); !fault.empty()) return fault;
         const std::size_t emitter = r.activity[link.from.component];

@@ -10,13 +10,14 @@
 
 namespace tappet {
 
-/// An event of one number, with room for four rows.
-struct Emitter {
-    static constexpr const EventOperations& operations = PortAccess::event<double>;
-    Event<double> event;
-    std::array<Subscriber<double>, 4> subscribers{};
+/// An event with room for eight rows.
+template <class... A>
+struct EmitterOf {
+    static constexpr const EventOperations& operations = PortAccess::event<A...>;
+    Event<A...> event;
+    std::array<Subscriber<A...>, 8> subscribers{};
     std::size_t rows = 0;
-    Emitter() { operations.give_storage(&event, subscribers.data()); }
+    EmitterOf() { operations.give_storage(&event, subscribers.data()); }
 
     EventHandle subscribe(const void* call, void* context, std::atomic<std::uint32_t>* epoch) {
         std::atomic<std::uint64_t>& connected = operations.subscribe(&event, call, context);
@@ -35,6 +36,8 @@ struct Emitter {
         return handle;
     }
 };
+
+using Emitter = EmitterOf<double>;
 
 /// The receiving end: an inbox with room for `capacity` messages of each of so many sending activities.
 struct Receiver {

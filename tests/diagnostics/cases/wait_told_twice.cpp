@@ -1,0 +1,28 @@
+// Two events end one wait.
+// refused: loom: reaction "panel.opened" -> "panel.next_index": reaction "encoder.index" tells "panel.next_index" too; give each row a wait of its own
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+struct Panel {
+    EventHandle indexes;
+    EventWait<double> next_index;
+    Event<double> opened;
+    void show(double) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(event<&Panel::opened>("opened", "by hand"),
+                      handle<&Panel::indexes>("indexes", "of the encoder", optional),
+                      awaits<&Panel::next_index>("next_index", "of the encoder", optional),
+                      operation<&Panel::show>("show", "the angle", any_thread));
+    }
+};
+constexpr auto table = machine(
+    "loom", components(component<Encoder>("encoder", device("main_encoder")), component<Panel>("panel")),
+    activities(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("encoder")),
+               activity("all", every(1ms), budget(1us), runs("panel"))),
+    connections(),
+    reactions(when("encoder.index", tell("panel.next_index")),
+              when("panel.opened", tell("panel.next_index"))),
+    behaviours());
+template struct tappet::Firmware<table, good_board>;

@@ -1,0 +1,256 @@
+// Storms of connect and disconnect, by threads of their own and out of reactions, while two activities emit
+// and a third serves (thesis 4.6.1: self and cross unsubscription from any concurrent activity). Schedules
+// follow from TAPPET_SEED.
+#include "tests/kernel/component/event_rig.hpp"
+#include "tests/kernel/exchange/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+using Argument = Sealed<48>; // as large as a message carries
+constexpr std::size_t emitters = 2;
+constexpr std::uint64_t emissions = 20'000; // of each
+
+/// One controller connects and disconnects some rows, and says where it is: 0 disconnected, 1 connecting,
+/// 2 connected, 3 disconnecting, and on from 4. An emission that began and ended in one phase lay in it.
+using Phase = std::uint32_t;
+constexpr Phase never_served = ~Phase{0};
+
+/// What happened to the emissions of one emitter.
+struct Emissions {
+    std::vector<Phase> begun = std::vector<Phase>(emissions), ended = std::vector<Phase>(emissions);
+};
+
+/// A reaction that remembers in which phase each emission reached it.
+struct Witness {
+    std::array<std::vector<Phase>, emitters> heard{std::vector<Phase>(emissions, never_served),
+                                                   std::vector<Phase>(emissions, never_served)};
+    std::array<std::uint64_t, emitters> last{};
+    std::atomic<std::uint64_t> torn{0}, disordered{0}; // a synchronous one is run by both emitters
+    const Phase* serving = nullptr; ///< of an asynchronous one: the phase before it was served
+    void hear(Argument argument) noexcept TAPPET_REALTIME {
+        if (!argument.whole()) {
+            ++torn;
+            return;
+        }
+        const std::uint64_t emitter = argument.number() >> 32, number = argument.number() & 0xffffffffu;
+        if (last[emitter] > number) ++disordered;
+        last[emitter] = number;
+        heard[emitter][number] = serving != nullptr ? *serving : 0;
+    }
+};
+inline constexpr const OperationOperations& witness = detail::operation_of<&Witness::hear>;
+
+/// A reaction that disconnects itself and connects or disconnects others.
+struct Rebel {
+    std::array<EventHandle, 4> handles{};
+    std::size_t own = 0;
+    std::uint64_t salt = 0;
+    std::atomic<std::uint64_t> torn{0}, calls{0};
+    void hear(Argument argument) noexcept TAPPET_REALTIME {
+        if (!argument.whole()) ++torn;
+        ++calls;
+        const std::uint64_t dice = (argument.number() * 0x9e3779b97f4a7c15u + salt) >> 40;
+        const EventHandle& other = handles[dice % handles.size()];
+        switch ((dice >> 8) % 4) {
+        case 0: handles[own].disconnect(); break;
+        case 1: other.disconnect(); break;
+        default: other.connect(); break;
+        }
+    }
+};
+inline constexpr const OperationOperations& rebel = detail::operation_of<&Rebel::hear>;
+
+struct Storm : testing::Test {
+    EmitterOf<Argument> emitter;
+    Receiver receiver{32, emitters};
+    Witness queued, latest, called;
+    std::array<Rebel, 4> rebels;
+    Row queued_row{receiver, witness, &queued, 8}, latest_row{receiver, witness, &latest, 1, true};
+    Row rebel_row{receiver, rebel, &rebels[2], 8}, other_rebel_row{receiver, rebel, &rebels[3], 1, true};
+    std::vector<EventHandle> watched;
+    std::atomic<Phase> phase{0};
+    Phase serving = 0;
+    std::atomic<std::size_t> emitting{emitters};
+    std::array<Emissions, emitters> log;
+    const std::uint64_t seed = stress_seed();
+
+    Storm() {
+        queued.serving = latest.serving = &serving;
+        watched = {emitter.call(witness, &called), emitter.tell(queued_row.row),
+                   emitter.tell(latest_row.row)};
+        for (const EventHandle& handle : watched) handle.disconnect();
+        const std::array<EventHandle, 4> all{emitter.call(rebel, &rebels[0]), emitter.call(rebel, &rebels[1]),
+                                             emitter.tell(rebel_row.row), emitter.tell(other_rebel_row.row)};
+        for (std::size_t i = 0; i < rebels.size(); ++i) {
+            rebels[i].handles = all;
+            rebels[i].own = i;
+            rebels[i].salt = seed + i;
+        }
+    }
+    void emit(std::uint32_t own) {
+        const RunsActivity here{own};
+        Random random{seed * 7 + own};
+        for (std::uint64_t n = 0; n < emissions; ++n) {
+            log[own].begun[n] = phase.load();
+            emitter.event(Argument::of((std::uint64_t{own} << 32) | n));
+            log[own].ended[n] = phase.load();
+            dither(random);
+        }
+        --emitting;
+    }
+    void serve() {
+        Random random{seed * 11};
+        for (bool last = false; !last;) {
+            last = emitting.load() == 0; // and once more behind the last emission
+            serving = phase.load();
+            receiver.inbox.run_all();
+            dither(random);
+        }
+    }
+    void control() {
+        Random random{seed * 13};
+        while (emitting.load() != 0) {
+            ++phase;
+            for (const EventHandle& handle : watched) handle.connect();
+            ++phase;
+            dither(random);
+            ++phase;
+            for (const EventHandle& handle : watched) handle.disconnect();
+            ++phase;
+            dither(random);
+        }
+    }
+    void storm(std::uint64_t number) {
+        Random random{seed * 17 + number};
+        while (emitting.load() != 0) {
+            const EventHandle& handle = rebels[0].handles[random.below(rebels.size())];
+            if (random.one_in(3)) {
+                const ScopedEventHandle scope{handle};
+                dither(random);
+            } else if (random.one_in(2)) {
+                handle.connect();
+            } else {
+                handle.disconnect();
+            }
+            dither(random);
+        }
+    }
+};
+
+TEST_F(Storm, reaches_nobody_after_disconnect_tears_nothing_and_loses_nothing_uncounted) {
+    std::vector<std::thread> threads;
+    for (std::uint32_t own = 0; own < emitters; ++own) threads.emplace_back([this, own] { emit(own); });
+    threads.emplace_back([this] { serve(); });
+    threads.emplace_back([this] { control(); });
+    threads.emplace_back([this] { storm(1); });
+    threads.emplace_back([this] { storm(2); });
+    for (std::thread& thread : threads) thread.join();
+
+    std::uint64_t inside = 0, late = 0, heard = 0;
+    const auto judge = [&](const Witness& one, bool synchronous) {
+        for (std::size_t e = 0; e < emitters; ++e)
+            for (std::uint64_t n = 0; n < emissions; ++n) {
+                if (one.heard[e][n] == never_served) continue;
+                ++heard;
+                const Phase begun = log[e].begun[n];
+                if (begun != log[e].ended[n]) continue;
+                if (begun % 4 == 0) ++inside; // wholly while disconnected
+                if (!synchronous && begun % 4 == 2 && one.heard[e][n] >= begun + 2)
+                    ++late; // queued before it was
+            }
+        EXPECT_EQ(one.torn, 0u);
+        EXPECT_EQ(one.disordered, 0u) << "an emitter's own order is kept";
+    };
+    judge(called, true);
+    judge(queued, false);
+    judge(latest, false);
+    EXPECT_EQ(inside, 0u) << "emissions begun after disconnect returned";
+    EXPECT_EQ(late, 0u) << "emissions served after disconnect returned";
+    EXPECT_GT(heard, 0u);
+
+    std::uint64_t outdated = 0;
+    for (const Row* row : {&queued_row, &latest_row, &rebel_row, &other_rebel_row}) {
+        const SubscriptionCounts counts = row->row.counts();
+        EXPECT_EQ(counts.posted, counts.served);
+        EXPECT_EQ(counts.stray, 0u);
+        outdated += counts.outdated;
+    }
+    for (const Rebel& each : rebels) EXPECT_EQ(each.torn, 0u);
+    EXPECT_EQ(rebels[2].calls + rebels[3].calls + rebel_row.row.counts().outdated +
+                  other_rebel_row.row.counts().outdated,
+              rebel_row.row.counts().served + other_rebel_row.row.counts().served)
+        << "what was served was run or is counted";
+    std::cout << heard << " heard, " << outdated << " outdated and dropped, " << queued_row.row.counts().lost
+              << " lost, " << rebels[0].calls + rebels[1].calls + rebels[2].calls + rebels[3].calls
+              << " rebellions\n";
+}
+
+TEST_F(Storm, leaves_rows_that_work_as_before) {
+    std::vector<std::thread> threads;
+    std::atomic<bool> over{false};
+    for (std::uint64_t number : {1u, 2u, 3u})
+        threads.emplace_back([&, number] {
+            Random random{seed * 19 + number};
+            while (!over.load()) {
+                const EventHandle& handle = watched[random.below(watched.size())];
+                random.one_in(2) ? handle.connect() : handle.disconnect();
+                dither(random);
+            }
+        });
+    std::this_thread::sleep_for(20ms);
+    over.store(true);
+    for (std::thread& thread : threads) thread.join();
+    for (const EventHandle& handle : watched) handle.connect();
+    const RunsActivity here{0};
+    emitter.event(Argument::of(7));
+    receiver.inbox.run_all();
+    for (const Witness* one : {&called, &queued, &latest}) EXPECT_NE(one->heard[0][7], never_served);
+}
+
+/// The newest of a stream, between two threads.
+TEST(LatestMessage, is_never_torn_never_older_than_the_one_before_and_every_other_is_counted) {
+    LatestMessage cell;
+    Random random{stress_seed()};
+    constexpr std::uint64_t all = 50'000;
+    std::uint64_t announced = 0, replaced = 0, taken = 0, wrong = 0, before = 0;
+    std::atomic<bool> over{false};
+    std::thread sender{[&] {
+        Random dice{stress_seed() * 3};
+        for (std::uint64_t n = 1; n <= all; ++n) {
+            Message message;
+            const auto value = Argument::of(n);
+            std::memcpy(message.arguments.data(), &value, sizeof value);
+            message.epoch = static_cast<std::uint32_t>(n);
+            (cell.put(message) ? announced : replaced) += 1;
+            dither(dice);
+        }
+        over.store(true);
+    }};
+    for (bool last = false; !last;) {
+        last = over.load();
+        if (const Message* message = cell.take()) {
+            Argument value;
+            std::memcpy(&value, message->arguments.data(), sizeof value);
+            wrong += value.whole() && value.number() > before && message->epoch == value.number() ? 0u : 1u;
+            before = value.number();
+            ++taken;
+        }
+        dither(random);
+    }
+    sender.join();
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_EQ(before, all) << "the last one arrives";
+    EXPECT_EQ(taken, announced) << "each that was announced, itself or a later one, was there to be taken";
+    EXPECT_EQ(announced + replaced, all);
+}
+
+} // namespace
