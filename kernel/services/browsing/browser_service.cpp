@@ -11,6 +11,7 @@ using browsing::Verb;
 Sentence BrowserService::configure(Setup& setup) {
     machine_ = setup.machine;
     own_activity_ = activity_of(machine_->machine().table, setup.component);
+    machine_->show_events_to({&observe, this});
     return initialise();
 }
 
@@ -22,7 +23,11 @@ Sentence BrowserService::initialise() {
     return opened ? Sentence{} : opened.error();
 }
 
-void BrowserService::finalise() { door_.close(); }
+void BrowserService::finalise() {
+    for (Subscribed& each : subscribed_)
+        if (each.taken) drop(each);
+    door_.close();
+}
 
 void BrowserService::work(const Cycle& cycle) {
     if (!door_.is_open()) return;
@@ -33,6 +38,7 @@ void BrowserService::work(const Cycle& cycle) {
     follow_changes();
     follow_commands();
     follow_lives();
+    tell_events();
     follow_saving();
     std::int64_t connected = 0;
     for (const Client& each : door_.clients()) connected += each.serial != 0;
@@ -94,9 +100,9 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::start: return change_life(client, request, LifeChange::start);
     case Verb::stop: return change_life(client, request, LifeChange::stop);
     case Verb::restart: return change_life(client, request, LifeChange::restart);
+    case Verb::subscribe: return subscribe(client, request);
+    case Verb::unsubscribe: return unsubscribe(client, request);
     case Verb::save: return save(client, request);
-    case Verb::subscribe:
-    case Verb::unsubscribe: break;
     }
     return {Refusal::unsupported,
             Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};

@@ -25,6 +25,8 @@ public:
     static constexpr std::size_t max_commands = 8;
     static constexpr std::size_t max_transactions = 4;
     static constexpr std::size_t max_life_requests = 4;
+    static constexpr std::size_t max_subscriptions = 32;
+    static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
     Output<std::int64_t> clients, requests, refused;
     Property<bool> log{true};
@@ -76,6 +78,19 @@ private:
         std::size_t activity = nowhere;
         LifeTicket ticket{};
     };
+    struct Subscribed {
+        browsing::Asker asker{};
+        bool taken = false;
+        End event{};
+        std::size_t index = nowhere; ///< in the plan's subscriptions
+        EventHandle handle{};
+    };
+    /// An emission, caught between two cycles.
+    struct Seen {
+        std::size_t index = nowhere;
+        Time at{};
+        alignas(16) std::array<std::byte, sizeof(Message::arguments)> arguments{};
+    };
 
     struct Save {
         browsing::Asker asker{};
@@ -121,6 +136,14 @@ private:
     Verdict change_life(Client& client, const Request& request, LifeChange change);
     void follow_lives();
 
+    // Events; requests_stream.cpp
+    Verdict subscribe(Client& client, const Request& request);
+    Verdict unsubscribe(Client& client, const Request& request);
+    static void observe(void* self, std::size_t index, const std::byte* arguments, Time now) noexcept
+        TAPPET_REALTIME;
+    void tell_events();
+    void drop(Subscribed& subscribed) noexcept;
+
     // Properties to their files; requests_save.cpp
     Verdict save(Client& client, const Request& request);
     void follow_saving();
@@ -136,6 +159,10 @@ private:
     std::array<CommandInFlight, max_commands> commands_{};
     std::array<Change, max_transactions> changes_{};
     std::array<LifeRequest, max_life_requests> lives_{};
+    std::array<Subscribed, max_subscriptions> subscribed_{};
+    std::array<Seen, max_events> seen_{};
+    std::size_t seen_count_ = 0;
+    std::uint64_t unseen_ = 0; ///< emissions beyond max_events
     Save save_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
 };

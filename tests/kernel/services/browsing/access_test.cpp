@@ -1,6 +1,6 @@
 // Who may do what, and what a client can take of the machine (thesis 4.8): roles by the board's list, a share
 // of each cycle for everybody, and nothing that one client does reaches another.
-#include "tests/kernel/services/browsing/press_machine.hpp"
+#include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include "kernel/services/browsing/access.hpp"
 

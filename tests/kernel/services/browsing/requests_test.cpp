@@ -1,6 +1,6 @@
 // The requests of a browser (thesis 4.8): whatever a component's interface offers can be reached from
 // outside, is done by the component's own engine, and what is wrong is refused with the cure.
-#include "tests/kernel/services/browsing/press_machine.hpp"
+#include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include "kernel/machine/map_view.hpp"
 
@@ -141,6 +141,40 @@ TEST_F(Press, a_component_is_stopped_and_started_while_the_rest_runs) {
     EXPECT_TRUE(has(ask(talker, "3 start ram"), R"("ok": true)"));
     EXPECT_EQ(instance.state_of(0), ComponentState::running);
     EXPECT_TRUE(has(ask(talker, "4 restart ram"), R"("ok": true)"));
+}
+
+TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
+    Talker talker{path()};
+    Talker other{path()};
+    EXPECT_TRUE(has(ask(talker, "5 subscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "6 subscribe ram.arrived"), "subscribed to already"));
+    EXPECT_TRUE(has(ask(other, "1 send ram.move_to 20"), R"("state": "sent")"));
+    run(200ms);
+    const std::string event = talker.receive();
+    EXPECT_TRUE(has(event, R"({"id": 5, "event": "ram.arrived", "time_ns": )")) << event;
+    EXPECT_TRUE(has(event, R"("arguments": [20], "lost": 0})")) << event;
+    EXPECT_EQ(talker.receive(), "") << "once";
+    EXPECT_TRUE(has(ask(talker, "7 unsubscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "8 unsubscribe ram.arrived"), "is not subscribed to"));
+    EXPECT_TRUE(other.send("2 send ram.move_to 10"));
+    run(200ms);
+    EXPECT_EQ(talker.receive(), "");
+}
+
+TEST_F(Press, an_event_stays_subscribed_while_anybody_wants_it) {
+    Talker stays{path()};
+    Talker leaves{path()};
+    EXPECT_TRUE(has(ask(stays, "1 subscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(leaves, "1 subscribe ram.arrived"), R"("ok": true)"));
+    leaves.close();
+    run(50ms);
+    Talker other{path()};
+    EXPECT_TRUE(other.send("2 send ram.move_to 10"));
+    run(200ms);
+    EXPECT_TRUE(has(stays.receive(), R"("event": "ram.arrived")"));
+    stays.close();
+    run(50ms);
+    EXPECT_FALSE(instance.observe_event(0, 2).connected()) << "nobody is left";
 }
 
 TEST_F(Press, the_browser_does_not_stop_itself) {

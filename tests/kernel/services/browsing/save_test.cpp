@@ -1,5 +1,5 @@
 // Saving properties from outside (thesis 4.7.1, 4.8): what a browser changed outlives the machine.
-#include "tests/kernel/services/browsing/press_machine.hpp"
+#include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include <fstream>
 #include <iterator>
