@@ -57,7 +57,10 @@ Time VirtualWorld::next_time() const {
 void VirtualWorld::run_engine(std::size_t a, bool woken) {
     Engine& engine = instance_.engines()[a];
     if (engine.looping() == nullptr) {
-        engine.run(woken);
+        if (runner_.run != nullptr)
+            runner_.run(runner_.self, engine, woken);
+        else
+            engine.run(woken);
         wake_at_[a] = engine.next_wake();
         return;
     }

@@ -18,6 +18,12 @@ struct VirtualProcess {
     void (*run)(void* self, Time now) = nullptr; ///< moves it to now; afterwards next() is later than now
 };
 
+/// Runs an engine's cycles in the world's place: for who measures them. `run` calls engine.run(woken) once.
+struct CycleRunner {
+    void* self = nullptr;
+    void (*run)(void* self, Engine& engine, bool woken) = nullptr;
+};
+
 class VirtualWorld {
 public:
     /// The instance is configured and its clock is virtual.
@@ -25,6 +31,9 @@ public:
 
     /// Before start. Processes of one instant run in the order they were added, before the engines.
     void add(const VirtualProcess& process) noexcept { static_cast<void>(processes_.push(process)); }
+
+    /// Before start. Without one, the world itself calls Engine::run.
+    void run_cycles_by(const CycleRunner& runner) noexcept { runner_ = runner; }
 
     /// Activities start in the table's order. Empty: all did; else the first refusal, and all are stopped.
     Sentence start();
@@ -48,6 +57,7 @@ private:
 
     MachineInstance& instance_;
     Bounded<VirtualProcess, 8> processes_{};
+    CycleRunner runner_{};
     Bounded<std::size_t, checks::max_activities> by_urgency_{};
     // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
     // all its timers.

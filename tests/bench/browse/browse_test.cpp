@@ -1,0 +1,187 @@
+// tappet-browse beside the running loom on the bench: it lists, watches, sets, sends and forces, each for
+// whom it is allowed, and whatever it does the machine keeps its times (thesis 4.8).
+#include "tests/bench/loom/loom_rig.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <grp.h>
+
+namespace tappet::bench {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::Not;
+
+struct Outcome {
+    int code = -1;
+    std::string text{}; ///< standard output, and errors behind it
+};
+
+constexpr uid_t root = 0;
+constexpr uid_t an_observer = 1000; ///< whom the bench's board does not list
+constexpr uid_t an_operator = 1001;
+
+/// Runs the browser to its end, as that user.
+Outcome browse(std::vector<std::string> words, uid_t user = root) {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {};
+    words.insert(words.begin(), "tappet-browse");
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    const pid_t process = ::fork();
+    if (process == 0) {
+        ::dup2(ends[1], STDOUT_FILENO);
+        ::dup2(ends[1], STDERR_FILENO);
+        if (user != root && (::setgroups(0, nullptr) != 0 || ::setgid(user) != 0 || ::setuid(user) != 0))
+            ::_exit(126);
+        ::execvp(arguments[0], arguments.data());
+        ::_exit(127);
+    }
+    ::close(ends[1]);
+    Outcome outcome;
+    std::array<char, 4096> piece{};
+    for (ssize_t count = 0; (count = ::read(ends[0], piece.data(), piece.size())) > 0;)
+        outcome.text.append(piece.data(), static_cast<std::size_t>(count));
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return outcome;
+}
+
+/// The number behind "NAME = ".
+double value_of(const std::string& name) {
+    const Outcome outcome = browse({"get", name});
+    const std::size_t at = outcome.text.find(" = ");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    return at == std::string::npos ? -1.0 : std::strtod(outcome.text.c_str() + at + 3, nullptr);
+}
+
+/// One loom for all that a browser asks of it; the last test ends it.
+class LoomBrowser : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        loom = new Loom;
+        weaves = loom->weaves();
+    }
+    static void TearDownTestSuite() { delete loom; }
+    void SetUp() override { ASSERT_TRUE(weaves) << loom->machine->output(); }
+
+    static inline Loom* loom = nullptr;
+    static inline bool weaves = false;
+};
+
+TEST_F(LoomBrowser, lists_the_loom) {
+    const Outcome all = browse({"list"});
+    EXPECT_EQ(all.code, 0) << all.text;
+    for (const char* component : {"can ", "shaft ", "weft ", "warp ", "loom ", "console "})
+        EXPECT_THAT(all.text, HasSubstr(component));
+    EXPECT_THAT(browse({"list", "shaft"}).text, HasSubstr("shaft.angle_deg"));
+    EXPECT_THAT(browse({"list", "shaft", "--json"}).text,
+                HasSubstr(R"("name": "shaft.angle_deg", "kind": "output", "type": "double", "unit": "deg")"));
+    EXPECT_THAT(browse({"info"}).text, HasSubstr("machine carpet-loom on board bench"));
+}
+
+TEST_F(LoomBrowser, watches_the_angle) {
+    const Outcome seen = browse({"watch", "shaft.angle_deg", "--every", "20ms", "--count", "10"});
+    EXPECT_EQ(seen.code, 0) << seen.text;
+    std::set<std::string> values;
+    std::istringstream lines{seen.text};
+    for (std::string line; std::getline(lines, line);) {
+        EXPECT_THAT(line, MatchesRegex("shaft.angle_deg = [0-9.e-]+ deg"));
+        values.insert(line);
+    }
+    EXPECT_GT(values.size(), 5u) << "the shaft turns, but it is seen to stand:\n" << seen.text;
+}
+
+TEST_F(LoomBrowser, sets_the_tensions_gains_in_one_transaction_while_the_loom_weaves) {
+    const double before = value_of("weft.picks_woven");
+    const Outcome set = browse({"set", "warp.gains.proportional", "0.02", "warp.gains.integral", "0.05"});
+    EXPECT_EQ(set.code, 0) << set.text;
+    EXPECT_EQ(value_of("warp.gains.proportional"), 0.02);
+    EXPECT_EQ(value_of("warp.gains.integral"), 0.05);
+    const Outcome half = browse({"set", "warp.gains.proportional", "0.03", "warp.gains.integral", "1000"});
+    EXPECT_EQ(half.code, 1) << half.text;
+    EXPECT_EQ(value_of("warp.gains.proportional"), 0.02) << "all or nothing";
+    EXPECT_TRUE(soon([&] { return value_of("weft.picks_woven") > before; })) << "it weaves on";
+}
+
+TEST_F(LoomBrowser, tells_each_beat_up) {
+    const Outcome events = browse({"events", "shaft.beat_up", "--count", "3"});
+    EXPECT_EQ(events.code, 0) << events.text;
+    EXPECT_THAT(events.text, HasSubstr("shaft.beat_up"));
+    EXPECT_EQ(std::ranges::count(events.text, '\n'), 3) << events.text;
+}
+
+TEST_F(LoomBrowser, forces_a_lamp_and_shows_that_it_is_forced) {
+    ASSERT_TRUE(level(wires::line::lamp_run));
+    EXPECT_EQ(browse({"force", "loom.lamp_run", "false"}).code, 0);
+    EXPECT_TRUE(soon([] { return !level(wires::line::lamp_run); })) << "the lamp burns on";
+    EXPECT_THAT(browse({"get", "loom.lamp_run"}).text, HasSubstr("loom.lamp_run = false   FORCED"));
+    EXPECT_THAT(browse({"forced"}).text, HasSubstr("loom.lamp_run"));
+    EXPECT_EQ(browse({"release", "loom.lamp_run"}).code, 0);
+    EXPECT_THAT(browse({"get", "loom.lamp_run"}).text, Not(HasSubstr("FORCED")));
+    EXPECT_EQ(browse({"forced"}).text, "");
+}
+
+TEST_F(LoomBrowser, lets_an_observer_look_and_refuses_clearly_what_is_not_his) {
+    EXPECT_EQ(browse({"get", "shaft.angle_deg"}, an_observer).code, 0);
+    EXPECT_THAT(browse({"info"}, an_observer).text, HasSubstr("you are its observer"));
+    const double before = value_of("warp.set_point_n");
+    const Outcome refused = browse({"set", "warp.set_point_n", "250"}, an_observer);
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_THAT(refused.text, HasSubstr("observer"));
+    EXPECT_THAT(refused.text, HasSubstr("engineer"));
+    EXPECT_EQ(value_of("warp.set_point_n"), before);
+    EXPECT_EQ(browse({"force", "loom.lamp_run", "false"}, an_operator).code, 1);
+    EXPECT_THAT(browse({"info"}, an_operator).text, HasSubstr("you are its operator"));
+}
+
+TEST_F(LoomBrowser, tells_the_nearest_name_for_a_misspelt_one) {
+    const Outcome outcome = browse({"get", "shaft.angle_dge"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.text, HasSubstr("did you mean \"shaft.angle_deg\"?"));
+}
+
+/// An observer reads everything without a pause, another is stopped in the middle, a third is killed, a
+/// fourth asks without listening.
+TEST_F(LoomBrowser, may_flood_hang_and_die_and_the_loom_keeps_its_times) {
+    const double before = value_of("weft.picks_woven");
+    Foreign reader{"tappet-browse watch can io shaft weft main warp loom --every 1ms"};
+    Foreign stopped{"tappet-browse watch shaft --every 1ms"};
+    Foreign deaf{"tappet-browse events shaft.beat_up shaft.weft_opens shaft.window_opens"};
+    EXPECT_TRUE(reader.says("shaft.angle_deg"));
+    EXPECT_TRUE(stopped.says("shaft.angle_deg"));
+    stopped.signal(SIGSTOP);
+    deaf.signal(SIGSTOP);
+    for (int i = 0; i < 5; ++i) {
+        Foreign killed{"tappet-browse watch shaft --every 1ms"};
+        EXPECT_TRUE(killed.says("shaft.angle_deg"));
+        killed.signal(SIGKILL);
+        EXPECT_EQ(killed.wait(), -1);
+    }
+    EXPECT_TRUE(soon([&] { return value_of("weft.picks_woven") > before + 5; })) << "it weaves on";
+    stopped.signal(SIGCONT);
+    deaf.signal(SIGCONT);
+}
+
+TEST_F(LoomBrowser, sends_the_stop_with_its_angle_and_follows_it_to_done) {
+    const Outcome sent = browse({"send", "shaft.stop_at", "300", "--follow", "--timeout", "5s"}, an_operator);
+    EXPECT_EQ(sent.code, 0) << sent.text;
+    EXPECT_THAT(sent.text, HasSubstr("shaft.stop_at: executing"));
+    EXPECT_THAT(sent.text, HasSubstr("shaft.stop_at: done ["));
+    EXPECT_EQ(value_of("shaft.speed_rpm"), 0.0);
+    const double off = value_of("shaft.angle_deg") - 300.0;
+    EXPECT_LT(std::abs(off), 5.0) << "it stands, but not at the angle that was asked for";
+    EXPECT_EQ(loom->end(), 0);
+    expect_undisturbed(*loom);
+}
+
+} // namespace
+} // namespace tappet::bench
