@@ -8,7 +8,7 @@ namespace tappet::browser {
 enum class Style {
     exact, ///< read back it gives the same value; spelled as `set` takes it
     brief, ///< six significant digits, for a screen
-    json   ///< a JSON value; times, enumerations and what is no number are strings, as in the machine's replies
+    json ///< a JSON value; times, enumerations and what is no number are strings, as in the machine's replies
 };
 
 /// `bytes` are at least as many as the type is large.

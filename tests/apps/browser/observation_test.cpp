@@ -102,6 +102,7 @@ public:
         ::kill(watcher, SIGKILL);
         ::waitpid(watcher, &status, 0);
         run.stop();
+        EXPECT_GT(run.loom().plant().picks(), 50u) << "a machine that does not work is easily watched";
         ASSERT_GE(took.size(), cycles);
     }
 
