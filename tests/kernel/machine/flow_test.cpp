@@ -289,6 +289,126 @@ TEST(Flow, through_a_buffer_orders_the_components_of_an_activity_as_data_does) {
     EXPECT_GT(place("near"), place("other")) << "from which it has a buffer only";
 }
 
+/// Two components that feed each other inside one activity: whoever reads by the delayed row is one cycle
+/// behind.
+struct Echo {
+    Input<int> heard;
+    Output<int> said;
+    int last = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        last = heard.get();
+        said.write(last + 1);
+    }
+    static constexpr auto interface() {
+        return facets(input<&Echo::heard>("heard", "", "of the other"),
+                      output<&Echo::said>("said", "", "one more"));
+    }
+};
+
+// clang-format off
+inline constexpr auto echoes = machine("echoes",
+    components(component<Echo>("one"), component<Echo>("other")),
+    activities(activity("motion", every(1ms), runs("other", "one"), budget(10us))),
+    connections(data("one.said", "other.heard"), data("other.said", "one.heard", delayed, initially(100))),
+    reactions(), behaviours());
+
+template <bool across>
+inline constexpr auto guarded = machine("guarded",
+    components(component<Source<double>>("source"), component<Source<double>>("spare"),
+               component<Sink<double>>("near"), component<Sink<double>>("far")),
+    activities(activity("motion", every(1ms), runs("source", "spare", "near"), budget(10us)),
+               activity("logic",  every(5ms), runs("far"),            budget(10us))),
+    connections(across ? data("source.value", "far.value", stale_after(20ms), stop_machine)
+                       : data("source.value", "near.value", stale_after(20ms), stop_machine)),
+    reactions(), behaviours());
+
+inline constexpr auto woken = machine("woken",
+    components(component<Source<double>>("source"), component<Sink<double>>("by_data"), component<Sink<double>>("by_buffer"),
+               component<Sink<double>>("asleep")),
+    activities(activity("motion", every(1ms), runs("source"), budget(10us)),
+               activity("data",   on_work(), at_most(1, 1ms), runs("by_data"),   deadline(1ms), budget(10us)),
+               activity("buffer", on_work(), at_most(1, 1ms), runs("by_buffer"), deadline(1ms), budget(10us)),
+               activity("asleep", on_work(), at_most(1, 1ms), runs("asleep"),    deadline(1ms), budget(10us))),
+    connections(data("source.value",    "by_data.value", wakes),
+                buffer<4>("source.all", "by_buffer.all", wakes),
+                data("source.value",    "asleep.value")),
+    reactions(), behaviours());
+// clang-format on
+
+/// A machine in virtual time.
+template <const auto& machine_table>
+struct Running {
+    Running() {
+        EXPECT_TRUE(instance.configure({}));
+        world.start();
+    }
+    bool run() { return world.run_until(now += 1ms); }
+    template <class C>
+    C& find(std::string_view name) {
+        return *instance.template find<C>(name);
+    }
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<machine_table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Time now = at_ns(0);
+};
+
+TEST(Flow, by_a_delayed_row_gives_the_value_of_the_cycle_before) {
+    Running<echoes> rig;
+    for (int cycle = 0; cycle < 20; ++cycle) {
+        EXPECT_TRUE(rig.run());
+        EXPECT_EQ(rig.find<Echo>("one").last, 100 + 2 * cycle);
+        EXPECT_EQ(rig.find<Echo>("other").last, 101 + 2 * cycle) << "in the same cycle";
+    }
+}
+
+template <const auto& machine_table>
+void stops_when_the_value_is_stale(std::string_view reader) {
+    Running<machine_table> rig;
+    for (int cycle = 0; cycle < 60; ++cycle) EXPECT_TRUE(rig.run()) << "never written is not stale";
+    for (int cycle = 0; cycle < 60; ++cycle) {
+        rig.template find<Source<double>>("source").writes = cycle % 12 == 0;
+        EXPECT_TRUE(rig.run());
+    }
+    for (int cycle = 0; cycle < 60 && rig.run(); ++cycle) {
+    }
+    EXPECT_TRUE(rig.instance.stop_asked());
+    EXPECT_EQ(rig.instance.stop_request().reason, StopReason::stale_input);
+    EXPECT_EQ(rig.instance.describe_stop().view(),
+              Sentence("connection \"source.value\" -> \"", reader,
+                       ".value\" is stale: nothing came for more than 20000 us")
+                  .view());
+}
+
+TEST(Flow, that_went_stale_stops_the_machine_where_its_row_says_so) {
+    stops_when_the_value_is_stale<guarded<false>>("near");
+    stops_when_the_value_is_stale<guarded<true>>("far");
+}
+
+TEST(Flow, wakes_the_activities_of_those_readers_whose_rows_say_so) {
+    Running<woken> rig;
+    const Sink<double>& by_data = rig.find<Sink<double>>("by_data");
+    const Sink<double>& by_buffer = rig.find<Sink<double>>("by_buffer");
+    std::uint64_t writes = 0, pushes = 0;
+    for (int cycle = 0; cycle < 200; ++cycle) {
+        rig.find<Source<double>>("source").writes = cycle % 3 == 0;
+        rig.find<Source<double>>("source").pushes = cycle % 4 == 0;
+        const std::uint64_t data_before = by_data.steps, buffer_before = by_buffer.steps;
+        EXPECT_TRUE(rig.run());
+        writes += cycle % 3 == 0;
+        pushes += cycle % 4 == 0;
+        if (cycle % 3 == 0) {
+            EXPECT_GT(by_data.steps, data_before) << "cycle " << cycle;
+        }
+        if (cycle % 4 == 0) {
+            EXPECT_GT(by_buffer.steps, buffer_before) << "cycle " << cycle;
+        }
+    }
+    EXPECT_LE(by_data.steps, writes + 1) << "at the start perhaps once, and by nothing else";
+    EXPECT_LE(by_buffer.steps, pushes + 1);
+    EXPECT_LE(rig.find<Sink<double>>("asleep").steps, 1u);
+}
+
 /// What the check says of a number for a port of the type.
 template <class T>
 std::string fault_of(double number) {
