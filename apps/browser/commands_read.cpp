@@ -38,6 +38,16 @@ std::string json_text(std::string_view key, std::string_view text) {
     return ", " + in_quotes(key) + ": " + in_quotes(text);
 }
 
+/// "12.5 deg FORCED"; of what has no value only the unit.
+std::string value_with_unit(Work& work, std::uint32_t index) {
+    const MapReader& map = work.session.map();
+    std::string unit{map.text(map.facets()[index].unit)};
+    if (map.facets()[index].value_at == 0) return unit;
+    const Reading reading = work.session.observer().read(index);
+    return value_of(map, reading, Style::brief) + (unit.empty() ? "" : " ") + unit +
+           (reading.forced ? " FORCED" : "");
+}
+
 void list_component(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     const map::Component& component = map.components()[index];
@@ -46,14 +56,16 @@ void list_component(Work& work, std::uint32_t index) {
         if (work.line.json) {
             work.out << "{\"name\": " << in_quotes(map.full_name(i))
                      << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
-                     << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
-                     << "}\n";
+                     << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc));
+            if (facet.value_at != 0)
+                work.out << ", \"value\": " << value_of(map, work.session.observer().read(i), Style::json);
+            work.out << "}\n";
             continue;
         }
-        std::string line =
-            padded(map.full_name(i), 30) + " " + padded(std::string{map.text(facet.kind)}, 10) + " " +
-            padded(type_of(map, facet), 14) + " " + padded(std::string{map.text(facet.unit)}, 6) + " " +
-            std::string{map.text(facet.doc)};
+        std::string line = padded(map.full_name(i), 30) + " " +
+                           padded(std::string{map.text(facet.kind)}, 10) + " " +
+                           padded(type_of(map, facet), 14) + " " + padded(value_with_unit(work, i), 16) +
+                           " " + std::string{map.text(facet.doc)};
         line.erase(line.find_last_not_of(' ') + 1);
         work.out << line << "\n";
     }

@@ -48,7 +48,7 @@ TEST_F(Program, lists_components_and_their_facets) {
     const Outcome one = run({"list", "shaft"});
     EXPECT_THAT(one.out, HasSubstr("shaft.stop"));
     EXPECT_THAT(one.out, HasSubstr("(double)"));
-    EXPECT_THAT(one.out, HasSubstr("of the main shaft"));
+    EXPECT_THAT(one.out, HasSubstr("0 deg            of the main shaft"));
     EXPECT_THAT(run({"list", "shaft", "--json"}).out,
                 HasSubstr(R"("name": "shaft.angle", "kind": "output")"));
 }
