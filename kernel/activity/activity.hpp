@@ -28,8 +28,8 @@ public:
     /// Lets the thread start its engine, for the first time or again; true when that is done within
     /// `milliseconds`.
     [[nodiscard]] bool start(int milliseconds) noexcept;
-    /// Ends the cycles and lets the engine stop on its own thread, which then waits for another start();
-    /// false when it did not within `milliseconds`: its thread hangs, and whoever called may claim the
+    /// Ends the cycles and lets the engine stop on its own thread, which then waits to be started again.
+    /// False when it did not within `milliseconds`: its thread hangs, and whoever called may claim the
     /// engine's stop and run it.
     [[nodiscard]] bool stop(int milliseconds) noexcept;
     /// Ends the thread of an activity that is stopped, or never started; false when it does not end.

@@ -41,6 +41,7 @@ struct EnginePart {
     void* component = nullptr;
     const ComponentType* type = nullptr;
     AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
+    GatedComponent gate{};                                ///< for synchronous reactions
     LifeRequests requests{};
 };
 

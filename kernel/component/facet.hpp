@@ -82,6 +82,7 @@ struct EventOperations {
 struct OperationOperations {
     const void* call; ///< points at a `void (*const)(void*, A...)`
     void (*run)(void* component, const std::byte* packed) noexcept TAPPET_REALTIME;
+    const void* enter = nullptr; ///< as `call`, with a GatedComponent in place of the component
 };
 
 struct TimerOperations {

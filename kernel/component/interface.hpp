@@ -62,7 +62,8 @@ struct WaitArguments<EventWait<A...>> {
 };
 
 template <auto Method>
-inline constexpr OperationOperations operation_of = {&operation_call<Method>, &OperationCall<Method>::run};
+inline constexpr OperationOperations operation_of = {&operation_call<Method>, &OperationCall<Method>::run,
+                                                     &operation_entry<Method>};
 
 template <auto Method>
 struct TimerCall;

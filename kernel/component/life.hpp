@@ -45,6 +45,21 @@ inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTI
     return state.load(std::memory_order_acquire) == ComponentState::running;
 }
 
+/// What a synchronous reaction goes through before it enters a component: one that was stopped, or failed, is
+/// not called, which is counted. One whose activity has not begun yet, or stops just now, is. Any thread.
+struct GatedComponent {
+    void* component = nullptr;
+    const AtomicComponentState* state = nullptr;
+    std::atomic<std::uint32_t> dropped{0};
+
+    [[nodiscard]] bool is_open() noexcept TAPPET_REALTIME {
+        const ComponentState now = state->load(std::memory_order_acquire);
+        if (now != ComponentState::stopped && now != ComponentState::failed) return true;
+        dropped.fetch_add(1, std::memory_order_relaxed);
+        return false;
+    }
+};
+
 enum class LifeChange : std::uint8_t { start, stop, restart };
 
 /// What became of a request. Superseded: another one came after it, which is the one that counts.

@@ -4,6 +4,7 @@
 
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/component/life.hpp"
 #include "kernel/component/subscription.hpp"
 
 #include <cstddef>
@@ -18,6 +19,7 @@ struct OperationCall {
     using Signature = Arguments<>;
     using Call = void (*)(void*) noexcept TAPPET_REALTIME;
     static void call(void*) noexcept TAPPET_REALTIME {}
+    static void enter(void*) noexcept TAPPET_REALTIME {}
     static void run(void*, const std::byte*) noexcept TAPPET_REALTIME {}
 };
 
@@ -31,6 +33,11 @@ struct OperationCall<Method, void (Component::*)(A...) noexcept TAPPET_REALTIME>
 
     static void call(void* component, A... arguments) noexcept TAPPET_REALTIME {
         (static_cast<Component*>(component)->*Method)(arguments...);
+    }
+    /// Only into a component that is not stopped.
+    static void enter(void* gated, A... arguments) noexcept TAPPET_REALTIME {
+        auto& at = *static_cast<GatedComponent*>(gated);
+        if (at.is_open()) call(at.component, arguments...);
     }
     static void run(void* component, const std::byte* packed) noexcept TAPPET_REALTIME {
         [[maybe_unused]] const std::byte* at = packed;
@@ -50,6 +57,8 @@ namespace detail {
 /// The call as an object, whose address is plain data and names the whole signature to whoever knows it.
 template <auto Method>
 inline constexpr typename OperationCall<Method>::Call operation_call = &OperationCall<Method>::call;
+template <auto Method>
+inline constexpr typename OperationCall<Method>::Call operation_entry = &OperationCall<Method>::enter;
 
 } // namespace detail
 

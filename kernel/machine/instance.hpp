@@ -164,7 +164,7 @@ public:
     [[nodiscard]] std::uint64_t event_log_digest() const noexcept;
     /// Emissions that found their queue full, over all rows.
     [[nodiscard]] std::uint64_t lost_emissions() const noexcept;
-    /// Messages that reached a component that did not run, over all rows.
+    /// Messages and synchronous reactions that met a component that did not run, over all rows.
     [[nodiscard]] std::uint64_t dropped_messages() const noexcept;
 
 private:
@@ -193,6 +193,7 @@ private:
     void connect_clocks();
     void connect_data();
     void place_needed_inputs();
+    [[nodiscard]] GatedComponent* gate_of(std::size_t component) noexcept;
     [[nodiscard]] LifeSign life_sign_of(std::string_view watched) noexcept;
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);

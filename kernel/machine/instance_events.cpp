@@ -38,8 +38,8 @@ void MachineInstance::connect_events() {
         }
         std::atomic<std::uint64_t>& connected =
             row.synchronous
-                ? event.subscribe(facet(row.event), facet_at(machine_.table, row.target).operation->call,
-                                  component(row.target.component))
+                ? event.subscribe(facet(row.event), facet_at(machine_.table, row.target).operation->enter,
+                                  gate_of(row.target.component))
                 : event.subscribe(facet(row.event), event.post, reaction);
         if (reaction != nullptr) reaction->connected = &connected;
         const EventHandle handle{connected, bit, reaction == nullptr ? nullptr : &reaction->epoch};

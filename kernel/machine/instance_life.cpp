@@ -61,6 +61,13 @@ LifeSign MachineInstance::life_sign_of(std::string_view watched) noexcept {
     return {};
 }
 
+GatedComponent* MachineInstance::gate_of(std::size_t c) noexcept {
+    EnginePart& part = engines()[machine_.index.activity[c]].plan().parts[machine_.plan.part_of[c]];
+    part.gate.component = component(c);
+    part.gate.state = &part.state;
+    return &part.gate;
+}
+
 LifeTicket MachineInstance::ask_component(std::size_t c, LifeChange change) noexcept TAPPET_REALTIME {
     const std::size_t a = machine_.index.activity[c];
     // A loop that blocks is broken off by the supervisor only: it is alone in its activity.
@@ -180,6 +187,9 @@ Sentence MachineInstance::change_activity(std::size_t a, LifeChange change, cons
 std::uint64_t MachineInstance::dropped_messages() const noexcept {
     std::uint64_t dropped = 0;
     for (std::size_t s = 0; s < machine_.plan.subscriptions.size(); ++s) dropped += counts_of(s).dropped;
+    for (const Engine& engine : engines())
+        for (const EnginePart& part : engine.plan().parts)
+            dropped += part.gate.dropped.load(std::memory_order_relaxed);
     return dropped;
 }
 

@@ -64,8 +64,7 @@ void VirtualWorld::run_engine(std::size_t a, bool woken) {
         wake_at_[a] = engine.next_wake();
         return;
     }
-    if (!loops_[a])
-        loops_[a] = std::make_unique<VirtualLoop>(engine, instance_.clock(), instance_.stack_of(a));
+    if (!loops_[a]) loops_[a].emplace(engine, instance_.clock(), instance_.stack_of(a));
     loops_[a]->run(woken);
     wake_at_[a] = loops_[a]->next_wake();
 }

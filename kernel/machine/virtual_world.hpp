@@ -7,7 +7,7 @@
 #include "kernel/machine/virtual_loop.hpp"
 
 #include <array>
-#include <memory>
+#include <optional>
 
 namespace tappet {
 
@@ -62,7 +62,7 @@ private:
     // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
     // all its timers.
     std::array<Time, checks::max_activities> wake_at_{};
-    std::array<std::unique_ptr<VirtualLoop>, checks::max_activities> loops_{};
+    std::array<std::optional<VirtualLoop>, checks::max_activities> loops_{};
     std::uint64_t steps_ = 0;
 };
 

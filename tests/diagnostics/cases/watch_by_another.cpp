@@ -4,6 +4,6 @@
 
 using namespace small;
 
-constexpr auto table = loom(components_with(component<TimedEvent>("dog", watches("motion"))), dog_in_the_kennel,
-                            good_connections, good_reactions, good_behaviours);
+constexpr auto table = loom(components_with(component<TimedEvent>("dog", watches("motion"))),
+                            dog_in_the_kennel, good_connections, good_reactions, good_behaviours);
 template struct tappet::Firmware<table, good_board>;

@@ -48,6 +48,7 @@ struct Axis {
     Input<double> angle;
     Output<double> drive;
     Timer alarm;
+    Event<> turned;
     std::uint64_t starts = 0, steps = 0, stops = 0, kicks = 0, alarms = 0;
     std::uint64_t steps_outside = 0; ///< before a start or after a stop
     bool runs = false;
@@ -76,6 +77,7 @@ struct Axis {
     static constexpr auto interface() {
         return facets(input<&Axis::angle>("angle", "deg", "to follow"),
                       output<&Axis::drive>("drive", "V", "0: safe"), operation<&Axis::kick>("kick", "counts"),
+                      event<&Axis::turned>("turned", "once round"),
                       timer<&Axis::alarm, &Axis::ring>("alarm", "counts"));
     }
 };
@@ -118,7 +120,9 @@ struct Gate {
     int opened = 0, closed = 0;
     void enter_open() noexcept TAPPET_REALTIME { ++opened; }
     void enter_closed() noexcept TAPPET_REALTIME { ++closed; }
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+    int turns = 0;
+    void on_turn() noexcept TAPPET_REALTIME { ++turns; }
+    static constexpr auto interface() { return facets(operation<&Gate::on_turn>("on_turn", "counts")); }
 };
 
 // clang-format off
@@ -137,7 +141,7 @@ constexpr auto table = machine("lively",
     connections(
         data("sensor.angle", "axis.angle", stale_after(20ms), hold, wakes),
         data("sensor.angle", "careful.angle")),
-    reactions(when("panel.pressed", tell("axis.kick"))),
+    reactions(when("panel.pressed", tell("axis.kick")), when("axis.turned", call("gate.on_turn"))),
     behaviours(behaviour("gate", gate_cycle)));
 constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
@@ -277,6 +281,22 @@ TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_n
     run(20ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 2u);
     EXPECT_EQ(instance.lost_emissions(), 0u);
+}
+
+TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_and_that_is_counted_too) {
+    start();
+    run(5ms);
+    Axis& the_axis = the<Axis>("axis");
+    the_axis.turned();
+    EXPECT_EQ(the<Gate>("gate").turns, 1);
+    static_cast<void>(change(gate, LifeChange::stop));
+    the_axis.turned();
+    the_axis.turned();
+    EXPECT_EQ(the<Gate>("gate").turns, 1);
+    EXPECT_EQ(instance.dropped_messages(), 2u);
+    static_cast<void>(change(gate, LifeChange::start));
+    the_axis.turned();
+    EXPECT_EQ(the<Gate>("gate").turns, 2);
 }
 
 TEST_F(LifeOfAComponent, forgets_its_timers_when_it_stops) {
