@@ -11,6 +11,8 @@
 //     uses("panel.move", "axis.move_to")
 #pragma once
 
+#include "kernel/base/contract.hpp"
+#include "kernel/component/current.hpp"
 #include "kernel/component/life.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/component/signature.hpp"
@@ -78,6 +80,7 @@ public:
         const AtomicComponentState* receiver_state = nullptr;
         Inbox* inbox = nullptr;
         std::size_t sender = 0; ///< the sending activity's mailbox there
+        std::uint32_t sending_activity = no_activity;
         Waker wake_receiver{};
         Waker wake_sender{}; ///< when it has ended
         const os::Clock* clock = nullptr;
@@ -230,7 +233,7 @@ public:
     /// still on its way or when no row connects it. Real-time.
     template <class... Given>
     [[nodiscard]] bool send(const Given&... arguments) noexcept TAPPET_REALTIME {
-        return slot_.connected() && prepare(arguments...) && slot_.send();
+        return slot_.connected() && prepare(arguments...) && send_prepared();
     }
     /// Sets the arguments for a send_prepared() of whoever it is handed on to. False while it is on its way.
     template <class... Given>
@@ -240,7 +243,10 @@ public:
         std::memset(values_.data() + Pack::input_bytes, 0, Pack::result_bytes);
         return true;
     }
-    [[nodiscard]] bool send_prepared() noexcept TAPPET_REALTIME { return slot_.send(); }
+    [[nodiscard]] bool send_prepared() noexcept TAPPET_REALTIME {
+        check_sender();
+        return slot_.send();
+    }
 
     [[nodiscard]] CommandState state() const noexcept TAPPET_REALTIME { return slot_.state(); }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return slot_.connected(); }
@@ -273,7 +279,7 @@ public:
         if (!slot_.connected() || !slot_.is_mine()) return false;
         std::memcpy(values_.data(), arguments, Pack::input_bytes);
         std::memset(values_.data() + Pack::input_bytes, 0, Pack::result_bytes);
-        return slot_.send();
+        return send_prepared();
     }
     [[nodiscard]] CommandProgress progress_packed(std::byte* results) const noexcept TAPPET_REALTIME {
         const CommandState now = state();
@@ -288,6 +294,13 @@ public:
     [[nodiscard]] std::byte* values() noexcept { return values_.data(); }
 
 private:
+    // Each mailbox has one writer. A thread outside the activities, like a test's, is trusted.
+    void check_sender() const noexcept TAPPET_REALTIME {
+        const std::uint32_t sender = slot_.route().sending_activity;
+        const std::uint32_t here = running_activity();
+        TAPPET_CONTRACT(sender == no_activity || here == no_activity || here == sender,
+                        Contract::command_sender, sender, here);
+    }
     template <class... In, class... Given>
     void put(Arguments<In...>, const Given&... arguments) noexcept TAPPET_REALTIME {
         static_assert(sizeof...(In) == sizeof...(Given), "one value for each argument of the command");

@@ -22,6 +22,7 @@ void MachineInstance::connect_operations() {
         const std::size_t receiver = machine_.index.activity[link.to.component];
         CommandSlot::Route route = route_to(link.to);
         route.sender = machine_.plan.command_mail[sender * table.activities.size() + receiver].sender_index;
+        route.sending_activity = static_cast<std::uint32_t>(sender);
         route.wake_sender = waker_of(sender);
         requester.command_call->slot(facet(link.from))
             ->place(route, requester.command_call->values(facet(link.from)));

@@ -25,6 +25,8 @@ const Program& program() {
 const Permission plain{{"memcpy", "memset", "memmove"}, false};
 const Permission calling{plain.outside, true};
 const Permission waking{{"syscall", "write"}, false};
+/// A broken contract ends the thread: what it does then is no step of the operation.
+const Permission sending{{"memcpy", "memset", "memmove", "_ZN6tappet14break_contractERKNS_6BreachE"}, true};
 /// The end of a command wakes the one who waits for it, besides what the component does.
 const Permission ending{{"memcpy", "memset", "memmove", "syscall", "write"}, true};
 
@@ -67,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         Claim{"buffer_push", calling},            Claim{"buffer_pop", plain},
         Claim{"event_emit", calling},             Claim{"event_post", calling},
         Claim{"event_connect", plain},            Claim{"event_disconnect", plain},
-        Claim{"command_send", calling},           Claim{"command_state", plain},         Claim{"command_reset", plain},
+        Claim{"command_send", sending},           Claim{"command_state", plain},         Claim{"command_reset", plain},
         Claim{"command_begin", ending},           Claim{"command_follow", ending},       Claim{"command_take_up", ending},
         Claim{"command_fail_all", ending},        Claim{"command_reject_all", ending},
         Claim{"life_ask", plain},                 Claim{"life_take", plain},             Claim{"life_answer", plain}),

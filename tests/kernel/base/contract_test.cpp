@@ -44,6 +44,7 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::ring_overflow), 102);
     EXPECT_EQ(static_cast<int>(Contract::single_writer), 103);
     EXPECT_EQ(static_cast<int>(Contract::single_reader), 104);
+    EXPECT_EQ(static_cast<int>(Contract::command_sender), 105);
     EXPECT_EQ(static_cast<int>(Contract::allocation_after_seal), 201);
     EXPECT_EQ(static_cast<int>(Contract::mapping_after_seal), 202);
     EXPECT_EQ(static_cast<int>(Contract::heap_exhausted), 203);
@@ -54,7 +55,7 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::time_went_backwards), 301);
     EXPECT_EQ(static_cast<int>(Contract::step_limit_exceeded), 401);
     EXPECT_EQ(static_cast<int>(Contract::state_unknown), 402);
-    EXPECT_EQ(contract_texts.size(), 17u) << "a new contract gets its line here";
+    EXPECT_EQ(contract_texts.size(), 18u) << "a new contract gets its line here";
 }
 
 TEST(Contract, holds_in_a_constant_expression_or_does_not_compile) {

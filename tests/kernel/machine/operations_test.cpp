@@ -402,6 +402,14 @@ TEST(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_whoev
     EXPECT_EQ(planner.move.result(), 2);
 }
 
+TEST(CommandsDeathTest, one_that_is_sent_in_an_activity_that_the_row_does_not_name_breaks_a_contract) {
+    Rig rig;
+    auto& planner = *rig.instance.find<Planner>("planner");
+    const RunsActivity in_its_own{2}; // the row says sent_by("runner")
+    EXPECT_DEATH(static_cast<void>(planner.move.send(1.0)),
+                 "command-sender: A command that activity 3 sends was sent in activity 2");
+}
+
 // ---- what the browser needs
 
 struct AnySlot {
