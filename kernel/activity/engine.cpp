@@ -25,6 +25,16 @@ Time Engine::next_wake() const noexcept TAPPET_REALTIME {
     return next;
 }
 
+bool Engine::begin_change() noexcept TAPPET_REALTIME {
+    if (generation() % 2 != 0) return false;
+    generation_.fetch_add(1, std::memory_order_acq_rel); // observe.begin
+    return true;
+}
+
+void Engine::end_change(bool begun) noexcept TAPPET_REALTIME {
+    if (begun) generation_.fetch_add(1, std::memory_order_release); // observe.end
+}
+
 void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     const RunsActivity here{plan_.activity};
     const Time now = clock_->now();
@@ -32,13 +42,13 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     const bool due = plan_.periodic ? now >= next_release_ : woken;
     if (due && plan_.periodic) release = next_release_;
     for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
-    generation_.fetch_add(1, std::memory_order_acq_rel);
+    const bool begun = begin_change();
     cycle_.now = lap_ = now;
     cycle_.release = release;
     worst_excess_ = Duration::zero();
     worst_function_ = Miss::nobody;
     watch_wakes();
-    if (asked_.load(std::memory_order_relaxed)) serve_requests();
+    if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
     if (awaiting_ != 0) start_awaiting();
     bool acted = run_timers();
     if (due) run_components();
@@ -47,7 +57,7 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     run_behaviours(due || acted); // what ran may have changed a condition
     watch_inputs();
     account();
-    generation_.fetch_add(1, std::memory_order_release);
+    end_change(begun);
 }
 
 bool Engine::run_timers() noexcept TAPPET_REALTIME {

@@ -215,6 +215,10 @@ private:
     [[nodiscard]] Time due_at(const EngineTimer& timer) const noexcept TAPPET_REALTIME {
         return is_running(plan_.parts[timer.part].state) ? timer.timer->when() : never;
     }
+    /// What observers read changes from here to end_change(): a cycle, a start, a stop. False: it is changing
+    /// already, when the stop runs in place of a thread that hangs in its cycle.
+    [[nodiscard]] bool begin_change() noexcept TAPPET_REALTIME;
+    void end_change(bool begun) noexcept TAPPET_REALTIME;
     enum class Rule : std::uint8_t { with_the_machine, alone };
     [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
     void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;

@@ -135,11 +135,11 @@ public:
         if (activity >= activities().size()) return false;
         const std::uint64_t generation_at = activities()[activity].generation_at;
         for (int attempt = 0; attempt < attempts; ++attempt) {
-            const auto before = word<std::uint64_t>(generation_at);
+            const auto before = word<std::uint64_t>(generation_at); // observe.before
             if (before % 2 != 0) continue;
             copy();
             std::atomic_thread_fence(std::memory_order_acquire);
-            if (word<std::uint64_t>(generation_at) == before) return true;
+            if (word<std::uint64_t>(generation_at) == before) return true; // observe.after
         }
         return false;
     }

@@ -29,7 +29,11 @@ struct Worker {
     Duration reaction_load{};
     Timer timer;
     Cycle last{};
+    const Engine* observed = nullptr;
+    std::vector<std::string> unguarded; ///< what it did while observers took its values for whole
     void note(std::string_view what) noexcept TAPPET_REALTIME {
+        if (observed != nullptr && observed->generation() % 2 == 0)
+            TAPPET_ESCAPE("a test remembers", unguarded.emplace_back(what));
         TAPPET_ESCAPE("a test remembers", log->lines.push_back(std::string{name} + " " + std::string{what}));
         clock->consume(load);
     }
@@ -379,6 +383,17 @@ TEST_F(ExecutionEngine, shows_an_even_generation_between_two_cycles) {
     EXPECT_EQ(before % 2, 0u);
     next_cycle();
     EXPECT_EQ(engine.generation(), before + 2);
+}
+
+TEST_F(ExecutionEngine, keeps_its_generation_odd_while_components_start_run_and_stop) {
+    workers[0].observed = &engine;
+    begin();
+    tell(0);
+    next_cycle();
+    engine.stop(clock.now());
+    engine.start(clock.now());
+    EXPECT_EQ(workers[0].unguarded, std::vector<std::string>{});
+    EXPECT_EQ(engine.generation() % 2, 0u);
 }
 
 } // namespace
