@@ -112,6 +112,13 @@ TEST_F(LoomBrowser, sets_the_tensions_gains_in_one_transaction_while_the_loom_we
     EXPECT_TRUE(soon([&] { return value_of("weft.picks_woven") > before; })) << "it weaves on";
 }
 
+TEST_F(LoomBrowser, tells_each_beat_up) {
+    const Outcome events = browse({"events", "shaft.beat_up", "--count", "3"});
+    EXPECT_EQ(events.code, 0) << events.text;
+    EXPECT_THAT(events.text, HasSubstr("shaft.beat_up"));
+    EXPECT_EQ(std::ranges::count(events.text, '\n'), 3) << events.text;
+}
+
 TEST_F(LoomBrowser, forces_a_lamp_and_shows_that_it_is_forced) {
     ASSERT_TRUE(level(wires::line::lamp_run));
     EXPECT_EQ(browse({"force", "loom.lamp_run", "false"}).code, 0);
