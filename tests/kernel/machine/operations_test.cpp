@@ -139,7 +139,8 @@ struct Watcher {
 // clang-format off
 constexpr auto table = machine("track",
     components(component<Axis>("axis"), component<Panel>("panel"), component<Panel>("urgent"), component<Carriage>("carriage"),
-               component<Planner>("planner"), component<Runner>("runner"), component<Watcher>("watcher"), component<Panel>("near"), component<Door>("door")),
+               component<Planner>("planner"), component<Runner>("runner"), component<Watcher>("watcher"),
+               component<Panel>("near"), component<Door>("door")),
     activities(
         activity("motion", every(1ms),  budget(50us), runs("axis", "near", "door")),
         activity("alarm",  every(1ms),  budget(50us), deadline(500us), runs("urgent")),
