@@ -92,7 +92,7 @@ struct Facet {
     Text doc;
     Text kind; ///< "input", "output", "property", "event", "operation", "method", "command", ...
     std::uint32_t component = none;
-    std::uint32_t type = none;   ///< of the value, or of the argument list
+    std::uint32_t type = none; ///< of the value, or of the argument list
     /// Type of what a method returns; of a command the list of its results.
     std::uint32_t result = none;
     std::uint32_t flags = 0;

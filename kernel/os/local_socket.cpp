@@ -151,7 +151,7 @@ std::expected<void, Sentence> LocalListener::listen(std::string_view path, unsig
         return refused("another machine of this name runs: stop it, or give this one another directory");
     }
     // Nobody listens there any more: what a machine that was killed left behind.
-    struct stat left {};
+    struct stat left{};
     if (errno == ECONNREFUSED && lstat(path_, &left) == 0 && S_ISSOCK(left.st_mode)) unlink(path_);
     ::close(descriptor_);
     descriptor_ = new_socket();

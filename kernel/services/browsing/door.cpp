@@ -3,8 +3,6 @@
 
 #include "kernel/services/browsing/reply.hpp"
 
-#include <unistd.h>
-
 namespace tappet::browsing {
 
 std::expected<void, Sentence> Door::open(std::string_view directory, std::string_view machine,

@@ -39,7 +39,7 @@ struct TimedEvent {
     [[nodiscard]] bool armed() const noexcept TAPPET_REALTIME { return timer_.when() != never; }
 
     static constexpr auto interface() {
-        return facets(event<&TimedEvent::due>("due", "the time it was armed for has come"),
+        return facets(event<&TimedEvent::due>("due", "the time it was armed for has come", heard_by(1)),
                       output<&TimedEvent::times>("times", "", "it was due"),
                       output<&TimedEvent::skipped>("skipped", "", "periods lost to lateness"),
                       operation<&TimedEvent::arm_at>("arm_at", "once, at this time"),
