@@ -4,12 +4,14 @@
 
 using namespace small;
 
-struct Counter {
+struct StrokeDial {
     MethodCall<int(int)> strokes;
-    static constexpr auto interface() { return facets(calls<&Counter::strokes>("strokes", "of the press")); }
+    static constexpr auto interface() {
+        return facets(calls<&StrokeDial::strokes>("strokes", "of the press"));
+    }
 };
 
-constexpr auto table = machine("mill", components(component<Press>("press"), component<Counter>("desk")),
+constexpr auto table = machine("mill", components(component<Press>("press"), component<StrokeDial>("desk")),
                                activities(activity("motion", every(1ms), budget(100us), runs("press")),
                                           activity("desk", every(10ms), budget(100us), runs("desk"))),
                                connections(), reactions(uses("desk.strokes", "press.strokes")), behaviours());
