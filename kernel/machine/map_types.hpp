@@ -3,15 +3,20 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
+#include "kernel/base/bounded.hpp"
 #include "kernel/base/type_tag.hpp"
 #include "kernel/machine/map_layout.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 namespace tappet::map {
+
+inline constexpr std::size_t max_types = 512;
+
+/// Not constexpr: a table with more types does not compile, and the error names this.
+inline void a_map_has_room_for_512_types() {}
 
 /// Used by the compiler only.
 class TypeList {
@@ -20,14 +25,14 @@ public:
     constexpr std::uint32_t of(TypeId type) {
         for (std::size_t i = 0; i < types_.size(); ++i)
             if (types_[i] == type) return static_cast<std::uint32_t>(i);
-        types_.push_back(type);
+        if (!types_.push(type)) a_map_has_room_for_512_types();
         return static_cast<std::uint32_t>(types_.size() - 1);
     }
     [[nodiscard]] constexpr std::size_t size() const noexcept { return types_.size(); }
     constexpr TypeId operator[](std::size_t i) const noexcept { return types_[i]; }
 
 private:
-    std::vector<TypeId> types_{};
+    Bounded<TypeId, max_types> types_{};
 };
 
 constexpr Shape shape_of(const TypeTag& tag) noexcept {
