@@ -75,7 +75,6 @@ struct Exception {
 
 // clang-format off
 constexpr std::array exceptions{
-    Exception{"kernel/machine/map_types.hpp", "std::vector", "the compiler's own, while it draws the map"},
     Exception{"kernel/os/heap.cpp",         "malloc",  "the heap itself"},
     Exception{"kernel/os/heap_symbols.cpp", "new",     "the heap itself: the program's operators"},
     Exception{"kernel/os/heap_symbols.cpp", "malloc",  "the heap itself: the program's symbols"},
