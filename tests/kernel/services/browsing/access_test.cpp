@@ -130,6 +130,8 @@ TEST(Access, without_a_directory_the_machine_runs_and_has_no_door) {
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<table, board>::machine(), clock};
     ASSERT_TRUE(instance.browsing_directory().empty()) << "the board names none";
+    PropertyFiles none{{}};
+    instance.read_properties_from(none.store());
     ASSERT_TRUE(instance.configure({}));
     VirtualWorld world{instance};
     world.start();
