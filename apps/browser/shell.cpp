@@ -4,9 +4,11 @@
 #include "apps/browser/completion.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 
 #include <histedit.h>
+#include <poll.h>
 #include <unistd.h>
 
 namespace tappet::browser {
@@ -58,6 +60,36 @@ unsigned char on_tab(EditLine* editor, int) {
     return ::el_insertstr(editor, more.c_str()) == 0 ? CC_REFRESH : CC_REFRESH_BEEP;
 }
 
+/// While a line is typed a signal is let in only where it ends the wait for the next letter: one that came a
+/// moment before would be lost until then.
+class SignalsHeld {
+public:
+    SignalsHeld() {
+        sigset_t held;
+        sigemptyset(&held);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
+        ::sigprocmask(SIG_BLOCK, &held, &before_);
+        open = before_;
+    }
+    ~SignalsHeld() { ::sigprocmask(SIG_SETMASK, &before_, nullptr); }
+    SignalsHeld(const SignalsHeld&) = delete;
+    SignalsHeld& operator=(const SignalsHeld&) = delete;
+
+    static inline sigset_t open{}; ///< the mask of the wait
+
+private:
+    sigset_t before_{};
+};
+
+int read_letter(EditLine*, wchar_t* letter) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (::ppoll(&input, 1, nullptr, &SignalsHeld::open) < 0) return -1;
+    char byte = 0;
+    const ssize_t count = ::read(STDIN_FILENO, &byte, 1);
+    *letter = static_cast<unsigned char>(byte);
+    return static_cast<int>(count);
+}
+
 std::string without_end(const char* text, int count) {
     std::string line{text, static_cast<std::size_t>(count)};
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r' || line.back() == ' '))
@@ -81,14 +113,21 @@ void Shell::run() {
     ::el_set(editor, EL_EDITOR, "emacs");
     ::el_set(editor, EL_HIST, ::history, history);
     ::el_set(editor, EL_SIGNAL, 0);
+    ::el_set(editor, EL_GETCFN, &read_letter);
     ::el_set(editor, EL_ADDFN, "tappet-complete", "completes a command or a name", &on_tab);
     ::el_set(editor, EL_BIND, "^I", "tappet-complete", nullptr);
     ::el_set(editor, EL_BIND, "^R", "em-inc-search-prev", nullptr);
     for (;;) {
         int count = 0;
-        errno = 0;
-        const char* const text = ::el_gets(editor, &count);
-        if (text == nullptr && errno == EINTR && signal_ != nullptr && *signal_ == SIGINT) {
+        const char* text = nullptr;
+        int error = 0;
+        {
+            const SignalsHeld held;
+            errno = 0;
+            text = ::el_gets(editor, &count);
+            error = errno;
+        }
+        if (text == nullptr && error == EINTR && signal_ != nullptr && *signal_ == SIGINT) {
             std::fputs("\n", stdout);
             ::el_reset(editor);
             continue;

@@ -68,12 +68,14 @@ Findings without_idea(const Tree& files) {
 
 Findings untidy_ends(const Tree& files) {
     Findings found;
-    for (const File& file : files)
+    for (const File& file : files) {
+        if (file.is_under("tests/fuzz/corpus")) continue; // a fuzzer wrote them
         for (std::size_t i = 0; i < file.lines.size(); ++i)
             if (file.lines[i].starts_with('\t') && (file.is_cpp() || file.is_cmake()))
                 found.push_back({file.path, i + 1, "a tab", "indent with spaces"});
             else if (file.lines[i].ends_with(' ') || file.lines[i].ends_with('\r'))
                 found.push_back({file.path, i + 1, "white space at the end of the line", "remove it"});
+    }
     return found;
 }
 

@@ -226,8 +226,8 @@ TEST_F(Map, leads_to_every_live_value) {
     EXPECT_EQ(value<double>(facet("right", "gain").value_at), 0.25);
     EXPECT_EQ(value<Text<12>>(facet("left", "label").value_at).view(), "front");
     EXPECT_EQ(value<std::int64_t>(view.activities()[0].now_at), 50'000'000);
-    EXPECT_EQ(view.word<std::uint64_t>(view.activities()[0].generation_at), 100u)
-        << "even, two for each cycle";
+    EXPECT_EQ(view.word<std::uint64_t>(view.activities()[0].generation_at), 102u)
+        << "even, two for the start and for each cycle";
     EXPECT_EQ(facet("left", "turned").value_at, 0u) << "an event has none";
 }
 
