@@ -86,7 +86,9 @@ int read_letter(EditLine*, wchar_t* letter) {
     if (::ppoll(&input, 1, nullptr, &SignalsHeld::open) < 0) return -1;
     char byte = 0;
     const ssize_t count = ::read(STDIN_FILENO, &byte, 1);
-    *letter = static_cast<unsigned char>(byte);
+    // An end of input that was typed before the terminal was given to the prompt comes as a zero.
+    constexpr wchar_t end_of_input = 4;
+    *letter = byte == 0 ? end_of_input : static_cast<unsigned char>(byte);
     return static_cast<int>(count);
 }
 
