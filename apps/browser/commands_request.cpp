@@ -85,7 +85,8 @@ Result<void> run_send(Work& work) {
                      << std::endl;
         if (!news.value("final", false)) continue;
         if (state == "done") return {};
-        return std::unexpected(Failure{Fault::failed, "'" + name + "' was not done: it is " + state});
+        return std::unexpected(
+            Failure{Fault::failed, "'" + name + "' was not done: the machine says " + state});
     }
     return {};
 }

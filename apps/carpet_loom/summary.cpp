@@ -66,7 +66,7 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
         .field("can_restarts", facts.wires.can_restarts)
         .field("can_wrong_lengths", facts.wires.can_wrong_lengths);
     json.field("can_impostors", facts.wires.can_impostors).field("can_malformed", facts.wires.can_malformed);
-    json.field("emissions_lost", instance.lost_emissions());
+    json.field("emissions_lost", instance.lost_emissions()).field("forced_ports", instance.forced_ports());
     json.field("heap_allocations_after_arming",
                os::heap::allocations_after_seal() + os::heap::mappings_after_seal())
         .field("page_faults_after_arming", facts.page_faults_after_arming);

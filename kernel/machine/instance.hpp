@@ -132,6 +132,10 @@ public:
     [[nodiscard]] Observed& observed() noexcept TAPPET_REALTIME {
         return *at<Observed>(machine_.plan.observed_at);
     }
+    /// How many ports of it are forced now.
+    [[nodiscard]] std::uint32_t forced_ports() const noexcept {
+        return const_cast<MachineInstance*>(this)->observed().forced.load(std::memory_order_relaxed);
+    }
     /// A member of a component, by the place of its facet; null for what is none (an operation).
     [[nodiscard]] void* place_of(End end) noexcept {
         return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
