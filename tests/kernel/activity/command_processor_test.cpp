@@ -166,6 +166,7 @@ Seen send_many(std::size_t sender, std::span<const std::unique_ptr<Watched>> cal
 TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_results_in_its_senders_order) {
     constexpr std::size_t senders = 3, slots = 4;
     const os::Clock clock{os::Clock::Kind::real};
+    Seen all; // of one sender a schedule may show one ending only
     for (std::uint64_t seed = stress_seed(); seed < stress_seed() + 4; ++seed) {
         std::array<Receiver, 2> receivers{Receiver{senders, slots}, Receiver{senders, slots}};
         std::array<std::vector<std::unique_ptr<Watched>>, senders> calls;
@@ -201,9 +202,9 @@ TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_result
             EXPECT_EQ(each.wrong_results, 0u) << "seed " << seed;
             EXPECT_EQ(each.wrong_states, 0u) << "seed " << seed;
             EXPECT_EQ(each.not_sent, 0u) << "seed " << seed;
-            EXPECT_GT(each.done, 0u) << "seed " << seed;
-            EXPECT_GT(each.rejected, 0u) << "seed " << seed;
-            EXPECT_GT(each.failed, 0u) << "seed " << seed;
+            all.done += each.done;
+            all.rejected += each.rejected;
+            all.failed += each.failed;
         }
         for (const Receiver& each : receivers) {
             EXPECT_EQ(each.tripler.torn, 0u) << "seed " << seed;
@@ -211,6 +212,9 @@ TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_result
             EXPECT_EQ(each.processor.at_work(), 0u) << "seed " << seed;
         }
     }
+    EXPECT_GT(all.done, 0u);
+    EXPECT_GT(all.rejected, 0u);
+    EXPECT_GT(all.failed, 0u);
 }
 
 TEST(CommandProcessor, a_waiting_sender_is_woken_by_every_end) {
