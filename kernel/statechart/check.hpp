@@ -149,7 +149,7 @@ private:
                 return fail(
                     transition_text(t),
                     " is internal and has no event, so it would fire in every step; use run<> of the state");
-            if (row.to.empty() && row.then == nullptr)
+            if (row.to.empty() && row.then.empty())
                 return fail(transition_text(t), " is internal and does nothing; give it then<>, or drop it");
         }
         return true;
@@ -180,7 +180,7 @@ private:
     [[nodiscard]] constexpr bool blocks(std::size_t first, std::size_t second) const {
         const TransitionRow& a = table_.transitions[first];
         const TransitionRow& b = table_.transitions[second];
-        if (a.guard != nullptr || names_.trigger[first] != names_.trigger[second]) return false;
+        if (!a.guard.empty() || names_.trigger[first] != names_.trigger[second]) return false;
         if (!a.timed) return true;
         return b.timed && names_.from[first] == names_.from[second] && a.after <= b.after;
     }
@@ -271,7 +271,7 @@ private:
         std::size_t found = names_.transitions();
         names_.for_each_out(leaf, [&](TransitionIndex t) {
             const TransitionRow& row = table_.transitions[t];
-            if (!row.on_event && !row.timed && row.guard == nullptr) found = t;
+            if (!row.on_event && !row.timed && row.guard.empty()) found = t;
             return found != t;
         });
         return found;

@@ -138,7 +138,7 @@ private:
         const StateIndex target = is_internal ? leaf : names_.initial_leaf(names_.to[t]);
         const std::size_t kept = is_internal ? names_.depth[leaf] : names_.shared_depth(source, names_.to[t]);
         StateArc arc;
-        arc.guard = row.guard;
+        arc.guard = row.guard.call;
         arc.after = row.timed ? row.after : Duration{};
         arc.source_level = static_cast<std::uint8_t>(names_.depth[source] - 1);
         arc.transition = static_cast<TransitionIndex>(t);
@@ -175,9 +175,9 @@ private:
     [[nodiscard]] constexpr ProgramSlice begin_programs() const {
         return {static_cast<std::uint16_t>(programs_), 0};
     }
-    constexpr void add(StateProgram program, ProgramSlice& slice) {
-        if (program == nullptr) return;
-        if (programs_ < room_.programs.size()) room_.programs[programs_] = program;
+    constexpr void add(ProgramRef program, ProgramSlice& slice) {
+        if (program.call == nullptr) return;
+        if (programs_ < room_.programs.size()) room_.programs[programs_] = program.call;
         ++programs_;
         ++slice.count;
     }

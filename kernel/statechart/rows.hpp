@@ -85,9 +85,9 @@ struct Because {
 template <class Row> constexpr void give(Row& row, std::string_view part, bool is_given) {
     if (is_given && row.twice.empty()) row.twice = part;
 }
-template <class Row, class Pointer>
-constexpr void give(Row& row, std::string_view part, Pointer& place, const Bound<Pointer>& bound) {
-    give(row, part, place != nullptr);
+template <class Row, class Reference, class Pointer>
+constexpr void give(Row& row, std::string_view part, Reference& place, const Bound<Pointer>& bound) {
+    give(row, part, !place.empty());
     place = bound.call;
     if (row.component == nullptr)
         row.component = bound.component;

@@ -6,6 +6,7 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/program/code.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -33,16 +34,64 @@ static_assert(
     "a place in the resolved list of programs has a 16-bit number: one transition calls at most its "
     "own program and an exit and an entry a level, one state at most a run and an exit a level");
 
+/// A program of a state or transition: a C++ function, which is atomic, or one of the table's own programs,
+/// which may take several steps.
+struct ProgramRef {
+    StateProgram call = nullptr;
+    ProgramIndex program = no_program;
+
+    constexpr ProgramRef() = default;
+    constexpr ProgramRef(StateProgram function) : call{function} {}
+    constexpr explicit ProgramRef(ProgramIndex number) : program{number} {}
+    [[nodiscard]] constexpr bool empty() const noexcept TAPPET_REALTIME {
+        return call == nullptr && program == no_program;
+    }
+};
+
+/// A guard or a precondition: a C++ function or a condition of the table; empty: always true.
+struct ConditionRef {
+    StateGuard call = nullptr;
+    ConditionIndex condition = no_condition;
+
+    constexpr ConditionRef() = default;
+    constexpr ConditionRef(StateGuard function) : call{function} {}
+    constexpr explicit ConditionRef(ConditionIndex number) : condition{number} {}
+    [[nodiscard]] constexpr bool empty() const noexcept TAPPET_REALTIME {
+        return call == nullptr && condition == no_condition;
+    }
+};
+
 struct StateRow {
     std::string_view name;
     std::string_view parent{}; ///< the composite state around it; empty: a top state
-    bool initial = false;      ///< entered when its composite, or the machine, is entered
+    std::string_view region{}; ///< of its composite: states of different regions are active at the same time
+    bool initial = false;      ///< entered when its region, or the machine, is entered
     bool final = false;        ///< the safe state of thesis 5.2.2: reachable from everywhere by request
-    StateProgram entry = nullptr;
-    StateProgram exit = nullptr;
-    StateProgram run = nullptr;
-    TypeId component = nullptr; ///< whose programs these are; nullptr: it has none
+    ConditionRef precondition{}; ///< asked in addition to the guard of each transition that enters it
+    ProgramRef entry{};
+    ProgramRef exit{};
+    ProgramRef run{};
+    ProgramRef handle{};        ///< when no transition was taken (thesis 5.2.1)
+    TypeId component = nullptr; ///< whose C++ programs these are; nullptr: it has none
     std::string_view twice{};   ///< the part that the row was given twice; empty in a good row
+    std::uint16_t line = 0;     ///< of the script, from 1; 0: a C++ table
+    std::uint16_t column = 0;
+};
+
+/// What of a composite state is entered by a transition to it (UML 2.5.1, 14.2.3.7).
+enum class EntryKind : std::uint8_t {
+    initial,         ///< its initial states
+    shallow_history, ///< what was last active right inside it, and the initial states of that
+    deep_history     ///< all that was last active inside it
+};
+
+/// An argument of an event on its way into a variable.
+struct CaptureRow {
+    std::uint16_t from = 0;   ///< in the packed arguments
+    std::uint16_t size = 0;   ///< bytes there
+    DataOffset raw = no_data; ///< where its bytes are put
+    std::uint16_t first = 0;  ///< instructions that convert and assign it from there;
+    std::uint16_t count = 0;  ///< none: it lies in place
 };
 
 struct TransitionRow {
@@ -52,11 +101,19 @@ struct TransitionRow {
     bool on_event = false;    ///< false: a condition transition
     bool timed = false;       ///< a condition transition that waits for `after`
     Duration after{};         ///< time since `from` was entered
-    StateGuard guard = nullptr;
-    StateProgram then = nullptr;
+    ConditionRef guard{};
+    ProgramRef then{};
     std::string_view because{}; ///< what the operator is told
     TypeId component = nullptr;
     std::string_view twice{};
+    EntryKind enters = EntryKind::initial;
+    ProgramRef otherwise{};          ///< run when the guard says no (thesis listing 5.4, else);
+    std::string_view otherwise_to{}; ///< and the state entered then; empty: none
+    bool has_otherwise = false;
+    std::uint16_t first_capture = 0; ///< CaptureRow
+    std::uint16_t captures = 0;
+    std::uint16_t line = 0;
+    std::uint16_t column = 0;
 };
 
 /// A view of a state machine; the rows live elsewhere and outlive it.
@@ -65,6 +122,9 @@ struct StateMachineTable {
     std::span<const StateRow> states{};
     std::span<const TransitionRow> transitions{};
     TypeId component = nullptr; ///< the type of the component that the programs run on
+    const ProgramTables* programs =
+        nullptr; ///< where ProgramRef and ConditionRef point; null: C++ programs only
+    std::span<const CaptureRow> captures{};
 };
 
 /// Number of a state: its row in the table.

@@ -218,7 +218,7 @@ TEST(StateMachineCheck, refuses_an_outer_transition_only_when_all_states_inside_
 TEST(StateMachineCheck, refuses_states_that_come_back_without_waiting) {
     Good m;
     m.transitions.push_back(transition("weave", "run_up"));
-    m.transitions[1].guard = nullptr;
+    m.transitions[1].guard = {};
     m.transitions.erase(m.transitions.begin() + 3); // its time-out would never come
     EXPECT_EQ(m.fault(), "state machine \"m\": state \"run_up\" comes back to itself without waiting, by "
                          "transition 5 (\"weave\" to "
@@ -341,7 +341,7 @@ TEST(StateMachineCheck, finds_every_dropped_and_doubled_row_that_matters) {
         Good doubled;
         doubled.transitions.push_back(doubled.transitions[t]);
         // Behind a row with a guard its double may still be taken.
-        EXPECT_EQ(doubled.fault().empty(), doubled.transitions[t].guard != nullptr) << "transition " << t + 1;
+        EXPECT_EQ(doubled.fault().empty(), !doubled.transitions[t].guard.empty()) << "transition " << t + 1;
     }
 }
 

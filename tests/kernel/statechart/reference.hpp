@@ -66,7 +66,7 @@ public:
         }
         conditions_left_ = taken == 8;
         const std::vector<std::string_view> running = active_;
-        for (std::string_view name : running) call(state(name).run);
+        for (std::string_view name : running) call(state(name).run.call);
         busy_ = false;
         settle(now);
     }
@@ -127,20 +127,20 @@ private:
             if (std::find(active_.begin(), active_.end(), name) != active_.end()) continue;
             active_.push_back(name);
             entered_[name] = now;
-            call(state(name).entry);
+            call(state(name).entry.call);
         }
         for (const StateRow& row : table_.states)
             if (row.initial && row.parent == target) return enter(row.name, now);
     }
     void leave_down_to(std::size_t level) {
         while (active_.size() > level) {
-            call(state(active_.back()).exit);
+            call(state(active_.back()).exit.call);
             active_.pop_back();
         }
     }
     void fire(const TransitionRow& row, Time now) {
         if (!row.because.empty()) reason = row.because;
-        call(row.then);
+        call(row.then.call);
         if (!row.to.empty()) {
             auto source = chain(row.from);
             auto target = chain(row.to);
@@ -158,7 +158,7 @@ private:
         for (auto name = active_.rbegin(); name != active_.rend(); ++name)
             for (const TransitionRow& row : table_.transitions) {
                 if (row.from != *name || !row.on_event || row.event != event) continue;
-                if (row.guard != nullptr && !row.guard(component_)) continue;
+                if (!row.guard.empty() && !row.guard.call(component_)) continue;
                 fire(row, now);
                 return true;
             }
@@ -169,7 +169,7 @@ private:
             for (const TransitionRow& row : table_.transitions) {
                 if (row.from != *name || row.on_event) continue;
                 if (row.timed && now - entered_[*name] < row.after) continue;
-                if (row.guard != nullptr && !row.guard(component_)) continue;
+                if (!row.guard.empty() && !row.guard.call(component_)) continue;
                 fire(row, now);
                 return true;
             }

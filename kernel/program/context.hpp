@@ -1,0 +1,34 @@
+// What a program meets while it runs: its component, its data, what it may act on, and the time.
+#pragma once
+
+#include "kernel/base/time.hpp"
+#include "kernel/component/command.hpp"
+#include "kernel/program/table.hpp"
+
+namespace tappet {
+
+/// The addresses behind a LinkRow; filled when the program is bound, before it runs.
+struct ProgramLink {
+    void* component = nullptr;
+    void* place = nullptr;       ///< of the facet in the component; the component itself where it has none
+    CommandSlot* slot = nullptr; ///< of a command of another activity
+};
+
+/// Where a program stands. Plain data, so that it may be kept and shown.
+struct ProgramPosition {
+    NodeIndex node = end_node;
+    bool acted = false;   ///< the node's action is done; its arcs are asked
+    bool entered = false; ///< entered_at holds
+    Time entered_at{};
+};
+
+struct ProgramContext {
+    void* component = nullptr;   ///< whose engine runs it
+    std::byte* data = nullptr;   ///< see DataLayout; aligned to data_alignment
+    const ProgramLink* links = nullptr; ///< by LinkRow
+    Time now{};
+    ProgramPosition position{};
+    void* machines = nullptr; ///< the state machines and programs that this one may command
+};
+
+} // namespace tappet

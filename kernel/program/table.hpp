@@ -1,0 +1,144 @@
+// A program as plain data (thesis 5.1.1): nodes with one action each, arcs with conditions, and the
+// expressions in both. C++ tables and scripts, compiled or loaded, all give this one form; whatever executes,
+// checks, draws or verifies a program reads nothing else.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+#include "kernel/base/type_tag.hpp"
+#include "kernel/component/facet.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+struct ProgramContext;
+struct Instruction;
+
+/// What an instruction says of itself.
+enum class ActionResult : std::uint8_t {
+    done,
+    again, ///< it could not act yet: the node's action is executed again in the next step
+    failed ///< the program is in error, or goes on where its node's on_error leads (thesis 5.1.1)
+};
+
+/// Where a value lies: bytes from the beginning of the program's data, see DataLayout.
+using DataOffset = std::uint16_t;
+inline constexpr DataOffset no_data = 0xffff;
+
+/// What an instruction does. `to`, `a` and `b` are the values at the instruction's offsets. It is a plain
+/// function for the loaded form, which calls it through the pointer, and for the compiled one, in which the
+/// instruction is a constant and the call is folded into its place. Bounded, real-time.
+using Primitive = ActionResult (*)(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,
+                                   const std::byte* b) noexcept TAPPET_REALTIME;
+
+/// One step of an expression or of an action.
+struct Instruction {
+    Primitive run = nullptr;
+    const Facet* facet = nullptr; ///< of the link, for what acts on a component
+    DataOffset to = no_data;
+    DataOffset a = no_data;
+    DataOffset b = no_data;
+    std::uint16_t link = 0xffff; ///< number of the LinkRow it acts through
+    std::uint16_t size = 0;      ///< bytes, or another number that the primitive states
+    std::uint8_t rows = 0; ///< of matrices: `to` is rows x columns, `a` rows x inner, `b` inner x columns
+    std::uint8_t inner = 0;
+    std::uint8_t columns = 0;
+};
+
+/// A run of instructions whose last one leaves a bool at `result`.
+struct ConditionRow {
+    std::uint16_t first = 0;
+    std::uint16_t count = 0;
+    DataOffset result = no_data;
+};
+using ConditionIndex = std::uint16_t;
+inline constexpr ConditionIndex no_condition = 0xffff; ///< always true
+
+using NodeIndex = std::uint16_t;
+inline constexpr NodeIndex no_node = 0xffff;  ///< the program is in error
+inline constexpr NodeIndex end_node = 0xfffe; ///< the program has ended
+
+/// One way out of a node; a node's arcs are asked in their order after its action was done.
+struct ArcRow {
+    ConditionIndex condition = no_condition;
+    NodeIndex to = end_node;
+    DataOffset after =
+        no_data; ///< a Duration: the arc is open when so much time passed since the node was entered
+};
+
+/// One statement. Without an open arc the program waits here; its action is not done twice unless it says
+/// `again` or the node repeats (thesis 5.1.3, 5.1.5).
+struct NodeRow {
+    std::uint16_t first = 0; ///< instruction
+    std::uint16_t count = 0;
+    std::uint16_t first_arc = 0;
+    std::uint16_t arcs = 0;
+    NodeIndex on_error = no_node;
+    std::uint16_t line = 0; ///< of the script, from 1; 0: a C++ table
+    std::uint16_t column = 0;
+    bool repeats = false; ///< its action is executed in each step while the program waits here
+    bool yields = false;  ///< its arcs are asked from the next step on
+};
+
+using ProgramIndex = std::uint16_t;
+inline constexpr ProgramIndex no_program = 0xffff;
+
+struct ProgramRow {
+    std::string_view name{}; ///< "Positioning.run"
+    NodeIndex first = end_node;
+    NodeIndex last = end_node; ///< its nodes are first ... last - 1, in the order of their text
+    bool may_wait = false;     ///< it may need more than one step; otherwise it is atomic
+};
+
+enum class VariableKind : std::uint8_t { parameter, variable, constant, argument };
+
+/// A named value of a program or state machine: a property of it to its peers (thesis 5.1.6).
+struct VariableRow {
+    std::string_view name{};
+    TypeId type = nullptr;
+    DataOffset at = no_data;
+    VariableKind kind = VariableKind::variable;
+};
+
+/// What of a component a program acts on: resolved to addresses once, when the program is bound.
+struct LinkRow {
+    static constexpr std::uint16_t component_itself = 0xffff;
+    std::uint16_t peer = 0;                 ///< number in the reach
+    std::uint16_t facet = component_itself; ///< number among that component's facets
+    bool needs_slot = false;                ///< a command of another activity
+};
+
+/// The data of one program instance, one piece of memory:
+///     [0, constants)            values that nobody changes
+///     [constants, variables)    parameters and variables; kept from step to step
+///     [variables, arguments)    of the event in hand, of functions, what waits need; kept while a program
+///     runs [arguments, size)         scratch: written before it is read within one node
+struct DataLayout {
+    DataOffset constants = 0;
+    DataOffset variables = 0;
+    DataOffset arguments = 0;
+    DataOffset size = 0;
+};
+
+/// Bytes at which each value is aligned in the data; the data themselves too.
+inline constexpr std::size_t data_alignment = 16;
+
+/// All programs of one state machine type, or one program alone; a view, the rows live elsewhere.
+struct ProgramTables {
+    std::span<const Instruction> instructions{};
+    std::span<const ConditionRow> conditions{};
+    std::span<const NodeRow> nodes{};
+    std::span<const ArcRow> arcs{};
+    std::span<const ProgramRow> programs{};
+    std::span<const VariableRow> variables{};
+    std::span<const LinkRow> links{};
+    std::span<const std::byte>
+        image{}; ///< the data at the beginning: constants and initial values, `variables` bytes
+    DataLayout layout{};
+};
+
+} // namespace tappet

@@ -1,0 +1,37 @@
+// What a script may name: the component that it drives and that one's peers (thesis 3.2: no other access
+// path).
+#pragma once
+
+#include "kernel/component/component.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// A component as a script sees it.
+struct Reachable {
+    std::string_view name{};
+    const ComponentType* type = nullptr;
+    /// It runs in the script's activity: its methods, properties and ports are safe to touch. Of a component
+    /// of another activity a script sends commands, tells operations and calls what is any_thread, and no
+    /// more.
+    bool same_activity = false;
+};
+
+/// Number 0 is the component itself. Spans outlive the compilation.
+struct Reach {
+    std::span<const Reachable> components{};
+    /// Of a slot: "component.operation" and "component.event" that may be used of the peers. A compiled
+    /// script may use all.
+    bool limited = false;
+    std::span<const std::string_view> operations{};
+    std::span<const std::string_view> events{};
+    std::uint32_t command_slots = 0xffff;
+    std::uint32_t timers = 0xffff; ///< nodes and transitions that wait for time
+    std::uint32_t depth = 8;       ///< of composite states and child machines
+    /// Statements in one step; 0: a loop that may run without waiting is refused (thesis 5.1.3).
+    std::uint32_t statements_per_step = 0;
+};
+
+} // namespace tappet
