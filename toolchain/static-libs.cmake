@@ -2,8 +2,9 @@
 # A firmware is one static binary, so what it stands on must be there as archives:
 #   tappet::libgpiod   Debian's own libgpiod.a, version 2
 #   tappet::libedit    Debian's own libedit.a with what it stands on; not for a firmware, but for tappet-browse beside it
-#   tappet::pugixml    Debian's own libpugixml.a
-#   tappet::libmodbus  built here from Debian's source package (with its security patches): no package has the archive
+#   tappet::double_conversion  Debian's own libdouble-conversion.a
+#   tappet::libmodbus, tappet::pugixml  built here from Debian's source packages (with their security patches): no
+#                      package has the archive of the one, and that of the other has parts that nobody here needs
 include_guard(GLOBAL)
 include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
 
@@ -39,14 +40,26 @@ set_target_properties(
     INTERFACE_LINK_LIBRARIES "${TAPPET_TINFO_ARCHIVE};${TAPPET_BSD_ARCHIVE};${TAPPET_MD_ARCHIVE}")
 add_library(tappet::libedit ALIAS tappet_libedit)
 
-# --- pugixml ------------------------------------------------------------------------------------------------------
-find_path(TAPPET_PUGIXML_INCLUDE pugixml.hpp)
-find_library(TAPPET_PUGIXML_ARCHIVE libpugixml.a)
-if(NOT TAPPET_PUGIXML_INCLUDE OR NOT TAPPET_PUGIXML_ARCHIVE)
-    message(FATAL_ERROR "pugixml.hpp and libpugixml.a are not installed; run ci/setup once as root")
+# --- double-conversion --------------------------------------------------------------------------------------------
+find_path(TAPPET_DOUBLE_CONVERSION_INCLUDE double-conversion/double-conversion.h)
+find_library(TAPPET_DOUBLE_CONVERSION_ARCHIVE libdouble-conversion.a)
+if(NOT TAPPET_DOUBLE_CONVERSION_INCLUDE OR NOT TAPPET_DOUBLE_CONVERSION_ARCHIVE)
+    message(FATAL_ERROR "libdouble-conversion.a is not installed; run ci/setup once as root")
 endif()
-add_library(tappet_pugixml STATIC IMPORTED GLOBAL)
-set_target_properties(tappet_pugixml PROPERTIES IMPORTED_LOCATION "${TAPPET_PUGIXML_ARCHIVE}")
+add_library(tappet_double_conversion STATIC IMPORTED GLOBAL)
+set_target_properties(tappet_double_conversion PROPERTIES IMPORTED_LOCATION "${TAPPET_DOUBLE_CONVERSION_ARCHIVE}")
+add_library(tappet::double_conversion ALIAS tappet_double_conversion)
+
+# --- pugixml ------------------------------------------------------------------------------------------------------
+set(tappet_pugixml_source "${TAPPET_CACHE}/pugixml/src")
+if(NOT EXISTS "${tappet_pugixml_source}/pugixml.cpp")
+    message(FATAL_ERROR "${tappet_pugixml_source} does not hold the source of pugixml; run ci/setup once as root")
+endif()
+add_library(tappet_pugixml STATIC "${tappet_pugixml_source}/pugixml.cpp")
+target_include_directories(tappet_pugixml SYSTEM PUBLIC "${tappet_pugixml_source}")
+# Property files are read once, before the machine arms: small counts, not fast.
+target_compile_definitions(tappet_pugixml PUBLIC PUGIXML_NO_XPATH PUGIXML_NO_STL PUGIXML_NO_EXCEPTIONS)
+target_compile_options(tappet_pugixml PRIVATE -w -Os -ffunction-sections -fdata-sections)
 add_library(tappet::pugixml ALIAS tappet_pugixml)
 
 # --- libmodbus ----------------------------------------------------------------------------------------------------

@@ -1,4 +1,5 @@
 // Reads values from text: a walk over the type's tag, once to find what is wrong and once to store.
+#include "kernel/base/real_text.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/value_bytes.hpp"
 #include "kernel/base/value_letters.hpp"
@@ -163,10 +164,10 @@ private:
     bool read_real(std::byte* into) noexcept {
         const std::string_view spelled = word();
         Real value = 0;
-        const auto done = std::from_chars(spelled.data(), spelled.data() + spelled.size(), value);
-        if (done.ptr != spelled.data() + spelled.size() || done.ec == std::errc::invalid_argument)
+        const RealTextFault fault = read_real_text(spelled, value);
+        if (fault == RealTextFault::not_a_number)
             return refuse("\"", quotable(spelled), "\" is not a number; write one such as 0.5 or 2e-3");
-        if (done.ec != std::errc{})
+        if (fault != RealTextFault::none)
             return refuse(quotable(spelled), " is out of range; a number of ", sizeof value,
                           " bytes is too small for it");
         store(into, &value, sizeof value);

@@ -1,6 +1,7 @@
 // Writes values as text: a walk over the type's tag.
 #include "kernel/base/value_text.hpp"
 
+#include "kernel/base/real_text.hpp"
 #include "kernel/base/utf8.hpp"
 #include "kernel/base/value_bytes.hpp"
 
@@ -66,8 +67,9 @@ private:
     }
     template <class Real>
     void put_real(Real real) noexcept {
+        char digits[max_real_text];
         if (std::isfinite(real))
-            put_number(real);
+            put({digits, write_shortest(digits, real)});
         else
             quoted_in_json(std::isnan(real) ? "nan" : real > 0 ? "inf" : "-inf");
     }

@@ -1,6 +1,8 @@
 // JSON text into a buffer of fixed size.
 #pragma once
 
+#include "kernel/base/real_text.hpp"
+
 #include <charconv>
 #include <concepts>
 #include <cstddef>
@@ -53,9 +55,8 @@ public:
         if constexpr (std::same_as<T, bool>) {
             put(number ? "true" : "false");
         } else {
-            char digits[32];
-            const auto end = format(digits, number);
-            put({digits, static_cast<std::size_t>(end.ptr - digits)});
+            char digits[max_real_text];
+            put({digits, format(digits, number)});
         }
         return *this;
     }
@@ -80,12 +81,12 @@ public:
 
 private:
     template <std::size_t N>
-    static std::to_chars_result format(char (&digits)[N], double number) noexcept {
-        return std::to_chars(digits, digits + N, number, std::chars_format::general, 6);
+    static std::size_t format(char (&digits)[N], double number) noexcept {
+        return write_rounded(digits, number, 6);
     }
     template <std::size_t N, std::integral T>
-    static std::to_chars_result format(char (&digits)[N], T number) noexcept {
-        return std::to_chars(digits, digits + N, number);
+    static std::size_t format(char (&digits)[N], T number) noexcept {
+        return static_cast<std::size_t>(std::to_chars(digits, digits + N, number).ptr - digits);
     }
     void separate() noexcept {
         if (!first_) put(", ");

@@ -1,0 +1,29 @@
+// Numbers as decimals and back, exactly: the shortest digits that read back as the same number. By
+// double-conversion, since the standard library's own tables would be the largest part of a firmware.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace tappet {
+
+/// No written number is longer.
+inline constexpr std::size_t max_real_text = 32;
+
+/// Writes the shortest decimal that reads back as the same number, as "0.001" or "1e-07", whichever is
+/// shorter; "inf", "-inf", "nan", "-nan". `into` has room for max_real_text characters. Returns how many. No
+/// heap.
+std::size_t write_shortest(char* into, double value) noexcept;
+std::size_t write_shortest(char* into, float value) noexcept;
+/// As printf's %g with `digits` of at most 17.
+std::size_t write_rounded(char* into, double value, int digits) noexcept;
+
+enum class RealTextFault : unsigned char { none, not_a_number, out_of_range };
+
+/// Reads "-12", "0.5", ".5", "2e-3", "inf", "nan", the whole of it; no spaces, no plus sign. Correctly
+/// rounded. A number too large, or too small to differ from zero, is out of range and leaves `into` alone. No
+/// heap.
+RealTextFault read_real_text(std::string_view text, double& into) noexcept;
+RealTextFault read_real_text(std::string_view text, float& into) noexcept;
+
+} // namespace tappet
