@@ -120,7 +120,9 @@ TEST(RealText, EachSpellingOfANumberIsTaken) {
     EXPECT_EQ(value, 1);
     ASSERT_EQ(read_real_text(half + "1", value), RealTextFault::none);
     EXPECT_EQ(value, std::nextafter(1.0, 2.0));
-    ASSERT_EQ(read_real_text(std::string(2000, '7') + "e-1999", value), RealTextFault::none);
+    std::string sevens(2000, '7');
+    sevens += "e-1999";
+    ASSERT_EQ(read_real_text(sevens, value), RealTextFault::none);
     EXPECT_EQ(value, 7.777777777777778);
     ASSERT_EQ(read_real_text("NaN", value), RealTextFault::none);
     EXPECT_TRUE(std::isnan(value));

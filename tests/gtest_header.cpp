@@ -1,0 +1,1 @@
+// Stands for the precompiled header of GoogleTest, which a target must own.
