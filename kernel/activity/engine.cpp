@@ -125,6 +125,12 @@ bool Engine::run_messages() noexcept TAPPET_REALTIME {
 
 void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
     for (const Behaviour& each : plan_.behaviours) {
+        if (each.programs == nullptr || !is_running(plan_.parts[each.part].state)) continue;
+        if (!all && each.next(each.self) > cycle_.now) continue;
+        timed(each.part, FunctionKind::behaviour,
+              [&]() noexcept TAPPET_REALTIME { each.programs(each.self, cycle_.now); });
+    }
+    for (const Behaviour& each : plan_.behaviours) {
         if (!is_running(plan_.parts[each.part].state)) continue;
         if (!all && each.next(each.self) > cycle_.now) continue;
         timed(each.part, FunctionKind::behaviour,

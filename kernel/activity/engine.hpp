@@ -19,13 +19,14 @@
 
 namespace tappet {
 
-/// What a behaviour (a state machine, later a program) looks like to its engine. Plain pointers, filled at
+/// What a behaviour looks like to its engine: programs and state machines. Plain pointers, filled at
 /// start-up.
 struct Behaviour {
     void* self = nullptr;
     std::uint32_t part = 0; ///< of the component it drives
     void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
-    void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
+    void (*programs)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< null: it has none
+    void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< behind all programs
     void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     Time (*next)(const void* self) noexcept
         TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened

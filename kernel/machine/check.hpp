@@ -2,6 +2,7 @@
 // cure. The same function runs in the compiler and in tests.
 #pragma once
 
+#include "kernel/machine/check_behaviours.hpp"
 #include "kernel/machine/check_board.hpp"
 #include "kernel/machine/check_components.hpp"
 #include "kernel/machine/check_flow.hpp"
@@ -26,7 +27,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_reactions(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reach(m, r); !fault.empty()) return fault;
-        if (Sentence fault = checks::check_behaviours(m); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_behaviours(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
         return checks::check_schedulability(m, board, r);
     };

@@ -12,7 +12,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     connect_clocks();
     connect_data();
     place_needed_inputs();
-    place_behaviours();
+    if (const Sentence fault = place_behaviours(); !fault.empty()) return std::unexpected(fault);
     connect_events();
     place_mailboxes();
     connect_operations();
@@ -122,11 +122,19 @@ Waker MachineInstance::waker_of(std::size_t activity) noexcept TAPPET_REALTIME {
     return {&os::Waiter::wake_thunk, &engine.waiter()};
 }
 
-const StateMachineExecution* MachineInstance::state_machine_of(std::string_view component) const noexcept {
+const BehaviourUnit* MachineInstance::behaviour_of(std::string_view component) const noexcept {
     for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b)
         if (machine_.table.behaviours[b].component == component && !machine_.table.behaviours[b].is_slot())
-            return reinterpret_cast<const StateMachineExecution*>(machine_.memory.data() +
-                                                                  machine_.plan.behaviours[b].execution_at);
+            return reinterpret_cast<const BehaviourUnit*>(machine_.memory.data() +
+                                                          machine_.plan.behaviours[b].unit_at);
+    return nullptr;
+}
+
+const StateMachineExecution* MachineInstance::state_machine_of(std::string_view component) const noexcept {
+    const BehaviourUnit* unit = behaviour_of(component);
+    if (unit == nullptr) return nullptr;
+    for (const UnitPart& part : unit->parts())
+        if (part.machine != nullptr) return part.machine;
     return nullptr;
 }
 

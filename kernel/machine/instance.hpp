@@ -68,8 +68,13 @@ public:
     [[nodiscard]] void* component(std::size_t index) noexcept {
         return machine_.memory.data() + machine_.plan.component_at[index];
     }
-    /// The state machine that drives a component; null when none does.
+    /// What the table's row says that drives a component; null when none does.
+    [[nodiscard]] const BehaviourUnit* behaviour_of(std::string_view component) const noexcept;
+    /// The first state machine of that; null when there is none.
     [[nodiscard]] const StateMachineExecution* state_machine_of(std::string_view component) const noexcept;
+
+    /// Where a command slot of a behaviour is sent to that runs in `sender`; for start-up and for loading.
+    [[nodiscard]] CommandSlot::Route command_route(End to, std::size_t sender) noexcept;
 
     /// Runs a call in the engine of an activity, between two of its steps; `message.id` is the part it is
     /// timed as. For the components that see the machine, from their own activity only. False: there are
@@ -208,7 +213,7 @@ private:
     void connect_operations();
     void place_command_processors();
     [[nodiscard]] CommandSlot::Route route_to(End to) noexcept;
-    void place_behaviours();
+    [[nodiscard]] Sentence place_behaviours();
 
     AcceptedMachine machine_;
     os::Clock* clock_;

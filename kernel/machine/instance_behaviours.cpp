@@ -1,4 +1,4 @@
-// Places the state machines that drive components.
+// Places the behaviours that drive components and hands them to their engines.
 #include "kernel/machine/instance.hpp"
 
 #include <new>
@@ -13,51 +13,46 @@ void note_transition(void* engine, StateIndex from, StateIndex to, TransitionInd
     static_cast<Engine*>(engine)->note(what, now);
 }
 
-StateMachineExecution& execution_of(void* self) noexcept TAPPET_REALTIME {
-    return *static_cast<StateMachineExecution*>(self);
-}
-
-// The stop of a component leaves its machine in the final state; the next start leads from there.
-void start_again(StateMachineExecution& execution, Time now) noexcept TAPPET_REALTIME {
-    if (execution.start(now) == StateOutcome::ignored) static_cast<void>(execution.request_initial(now));
-}
+BehaviourUnit& unit_of(void* self) noexcept TAPPET_REALTIME { return *static_cast<BehaviourUnit*>(self); }
 
 } // namespace
 
-void MachineInstance::place_behaviours() {
+Sentence MachineInstance::place_behaviours() {
     std::size_t placed[checks::max_activities] = {};
     for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b) {
         const BehaviourRow& row = machine_.table.behaviours[b];
         if (row.is_slot()) continue;
         const BehaviourPlan& plan = machine_.plan.behaviours[b];
-        const ResolvedSizes& sizes = plan.sizes;
-        const ResolvedRoom room{{at<StatePlan>(plan.plans_at), sizes.states},
-                                {at<std::string_view>(plan.triggers_at), sizes.triggers},
-                                {at<ArcIndex>(plan.cells_at), sizes.states * sizes.triggers},
-                                {at<StateArc>(plan.arcs_at), sizes.arcs},
-                                {at<StateProgram>(plan.programs_at), sizes.programs}};
-        static_cast<void>(resolve_into(row.machine, room));
+        const ScriptUnit script = row.unit();
+        const std::span events{at<std::string_view>(plan.events_at), plan.event_count};
+        std::size_t event = 0;
+        for (const std::string_view name : events_of(script).all())
+            new (&events[event++]) std::string_view{name};
         const std::size_t c = find_component(machine_.table, row.component);
         const std::size_t activity = machine_.index.activity[c];
-        auto* execution = new (at<void>(plan.execution_at)) StateMachineExecution;
-        execution->bind({row.machine, room.triggers, room.plans.data(), room.cells.data(), room.arcs.data(),
-                         room.programs.data()},
-                        component(c));
-        execution->trace(&note_transition, &engines()[activity]);
+        auto* unit = new (at<void>(plan.unit_at)) BehaviourUnit;
+        if (const Sentence fault =
+                unit->place(script, row.code, row.options,
+                            machine_.memory.subspan(plan.memory_at, plan.memory_bytes), events, *this, c);
+            !fault.empty())
+            return Sentence{"behaviour of \"", row.component, "\": ", fault};
+        unit->trace(&note_transition, &engines()[activity]);
         Behaviour behaviour;
-        behaviour.self = execution;
+        behaviour.self = unit;
         behaviour.part = machine_.plan.part_of[c];
-        behaviour.start = [](void* self, Time now) noexcept
-            TAPPET_REALTIME { start_again(execution_of(self), now); };
-        behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { execution_of(self).step(now); };
-        behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME {
-            static_cast<void>(execution_of(self).request_final(now, "its component stops"));
-        };
+        behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { unit_of(self).start(now); };
+        if (unit->has_programs())
+            behaviour.programs = [](void* self, Time now) noexcept
+                TAPPET_REALTIME { unit_of(self).step_programs(now); };
+        behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { unit_of(self).step(now); };
+        behaviour.stop = [](void* self, Time now) noexcept
+            TAPPET_REALTIME { unit_of(self).finish(now, "its component stops"); };
         behaviour.next = [](const void* self) noexcept
-            TAPPET_REALTIME { return static_cast<const StateMachineExecution*>(self)->next_timeout(); };
+            TAPPET_REALTIME { return static_cast<const BehaviourUnit*>(self)->next(); };
         new (at<Behaviour>(machine_.plan.activities[activity].behaviours_at) + placed[activity]++)
             Behaviour{behaviour};
     }
+    return {};
 }
 
 } // namespace tappet

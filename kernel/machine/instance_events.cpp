@@ -8,9 +8,9 @@ namespace tappet {
 
 namespace {
 
-void run_trigger(void* binding, const std::byte*) noexcept TAPPET_REALTIME {
+void run_trigger(void* binding, const std::byte* packed) noexcept TAPPET_REALTIME {
     const auto& trigger = *static_cast<const TriggerBinding*>(binding);
-    static_cast<void>(trigger.execution->dispatch(trigger.trigger, trigger.engine->now()));
+    trigger.unit->dispatch(trigger.event, packed, trigger.engine->now());
 }
 
 void run_observer(void* binding, const std::byte* packed) noexcept TAPPET_REALTIME {
@@ -104,8 +104,8 @@ void MachineInstance::bind_receiver(std::size_t s, AsyncReaction& reaction) {
     }
     case SubscriberKind::trigger:
         reaction.run = &run_trigger;
-        reaction.object = new (at<TriggerBinding>(place.binding_at)) TriggerBinding{
-            at<StateMachineExecution>(plan.behaviours[row.behaviour].execution_at), &receiver, row.trigger};
+        reaction.object = new (at<TriggerBinding>(place.binding_at))
+            TriggerBinding{at<BehaviourUnit>(plan.behaviours[row.behaviour].unit_at), &receiver, row.trigger};
         reaction.part =
             plan.part_of[find_component(machine_.table, machine_.table.behaviours[row.behaviour].component)];
         break;

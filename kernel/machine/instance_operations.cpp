@@ -19,11 +19,7 @@ void MachineInstance::connect_operations() {
             continue;
         }
         const std::size_t sender = sender_of(table, machine_.index, row);
-        const std::size_t receiver = machine_.index.activity[link.to.component];
-        CommandSlot::Route route = route_to(link.to);
-        route.sender = machine_.plan.command_mail[sender * table.activities.size() + receiver].sender_index;
-        route.sending_activity = static_cast<std::uint32_t>(sender);
-        route.wake_sender = waker_of(sender);
+        const CommandSlot::Route route = command_route(link.to, sender);
         requester.command_call->slot(facet(link.from))
             ->place(route, requester.command_call->values(facet(link.from)));
     }
@@ -49,6 +45,16 @@ void MachineInstance::place_command_processors() {
                                              {followed, plan.followed_count},
                                              machine_.plan.command_requests[receiver].capacity);
     }
+}
+
+CommandSlot::Route MachineInstance::command_route(End to, std::size_t sender) noexcept {
+    const std::size_t receiver = machine_.index.activity[to.component];
+    CommandSlot::Route route = route_to(to);
+    route.sender =
+        machine_.plan.command_mail[sender * machine_.table.activities.size() + receiver].sender_index;
+    route.sending_activity = static_cast<std::uint32_t>(sender);
+    route.wake_sender = waker_of(sender);
+    return route;
 }
 
 CommandSlot::Route MachineInstance::route_to(End to) noexcept {

@@ -237,11 +237,7 @@ constexpr void Cartographer::draw_reactions() {
     }
     for (std::size_t b = 0; b < m_.behaviours.size(); ++b) {
         const BehaviourRow& row = m_.behaviours[b];
-        if (row.is_slot()) continue;
-        const StateHierarchy names{row.machine};
-        for (std::size_t t = 0; t < names.triggers; ++t) {
-            End event;
-            static_cast<void>(checks::resolve_trigger(m_, row, names.trigger_name(t), event));
+        const auto draw = [&](End event) {
             Reaction record;
             record.how = text("trigger");
             record.from = facet_index(event);
@@ -251,6 +247,15 @@ constexpr void Cartographer::draw_reactions() {
             record.to_activity =
                 static_cast<std::uint32_t>(r_.activity[find_component(m_, r_.by_name, row.component)]);
             put(room_.reactions, n_.reactions, record);
+        };
+        if (row.is_slot()) {
+            for_each_slot_event(m_, row, draw);
+            continue;
+        }
+        for (const std::string_view name : events_of(row.unit()).all()) {
+            End event;
+            static_cast<void>(checks::resolve_trigger(m_, row, name, event));
+            draw(event);
         }
     }
 }
@@ -260,7 +265,9 @@ constexpr void Cartographer::draw_behaviours() {
         Behaviour record;
         record.component = static_cast<std::uint32_t>(find_component(m_, r_.by_name, row.component));
         record.is_slot = row.is_slot() ? 1 : 0;
-        if (!row.is_slot()) record.states = static_cast<std::uint32_t>(measure(row.machine).states);
+        const ScriptUnit unit = row.unit();
+        for (const BehaviourInstance& each : unit.instances)
+            record.states += static_cast<std::uint32_t>(unit.types[each.type].machine.states.size());
         put(room_.behaviours, n_.behaviours, record);
     }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
+#include "kernel/machine/behaviour_unit.hpp"
 #include "kernel/machine/plan_operations.hpp"
 #include "kernel/machine/subscription.hpp"
 
@@ -59,9 +60,11 @@ struct SubscriptionPlan {
 };
 
 struct BehaviourPlan {
-    std::size_t execution_at = nowhere;
-    ResolvedSizes sizes{};
-    std::size_t plans_at = 0, triggers_at = 0, cells_at = 0, arcs_at = 0, programs_at = 0;
+    std::size_t unit_at = nowhere;   ///< BehaviourUnit
+    std::size_t events_at = nowhere; ///< names of the events that it hears
+    std::size_t event_count = 0;
+    std::size_t memory_at = nowhere; ///< of the unit
+    std::size_t memory_bytes = 0;
     std::size_t slot_at = nowhere;
     std::size_t slot_bytes = 0;
 };
@@ -97,11 +100,11 @@ struct Observed {
     std::atomic<std::uint32_t> forced{0}; ///< ports that are forced now
 };
 
-/// Runs a state machine's trigger out of a message.
+/// Runs the triggers of a behaviour out of a message.
 struct TriggerBinding {
-    StateMachineExecution* execution;
+    BehaviourUnit* unit;
     Engine* engine;
-    std::size_t trigger;
+    std::size_t event; ///< its number in the unit
 };
 
 /// What is called with each emission that an observer is connected to.
@@ -271,13 +274,12 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
             plan.slot_at = ground.take(plan.slot_bytes, alignof(AsyncReaction));
             continue;
         }
-        plan.sizes = measure(row.machine);
-        plan.execution_at = ground.take<StateMachineExecution>();
-        plan.plans_at = ground.take<StatePlan>(plan.sizes.states);
-        plan.triggers_at = ground.take<std::string_view>(plan.sizes.triggers);
-        plan.cells_at = ground.take<ArcIndex>(plan.sizes.states * plan.sizes.triggers);
-        plan.arcs_at = ground.take<StateArc>(plan.sizes.arcs);
-        plan.programs_at = ground.take<StateProgram>(plan.sizes.programs);
+        const ScriptUnit unit = row.unit();
+        plan.event_count = events_of(unit).count;
+        plan.unit_at = ground.take<BehaviourUnit>();
+        plan.events_at = ground.take<std::string_view>(plan.event_count);
+        plan.memory_bytes = unit_bytes(unit, plan.event_count);
+        plan.memory_at = ground.take(plan.memory_bytes, alignof(std::max_align_t));
         ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
     }
     for (auto& activity : p.activities)

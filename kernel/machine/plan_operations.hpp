@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
-#include "kernel/machine/table_index.hpp"
+#include "kernel/machine/unit_rows.hpp"
 
 namespace tappet {
 
@@ -41,6 +41,23 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
         // Each command object is one slot that is sent again only when it has ended: one place for each.
         ++p.command_mail[sender_of(m, r, row) * n + receiver].capacity;
         ++p.activities[receiver].followed_count;
+    }
+    for (const BehaviourRow& row : m.behaviours) {
+        const std::size_t sender = r.activity[find_component(m, r.by_name, row.component)];
+        for_each_command_slot(m, row.component, row.unit(), [&](End command) {
+            const std::size_t receiver = r.activity[command.component];
+            ++p.command_mail[sender * n + receiver].capacity;
+            ++p.activities[receiver].followed_count;
+        });
+        // Of a slot each may go to any of its peers, of the old behaviour and of the new one.
+        for (std::size_t receiver = 0; receiver < n; ++receiver) {
+            bool reached = false;
+            for (const std::string_view peer : row.slot.peers)
+                reached |= r.activity[find_component(m, r.by_name, peer)] == receiver && receiver != sender;
+            if (!reached) continue;
+            p.command_mail[sender * n + receiver].capacity += 2 * row.slot.command_slots;
+            p.activities[receiver].followed_count += 2 * row.slot.command_slots;
+        }
     }
     for (std::size_t receiver = 0; receiver < n; ++receiver) {
         auto& activity = p.activities[receiver];

@@ -1,7 +1,9 @@
-// Behaviour rows: the state machine that drives a component, or the room kept for one that is loaded later.
+// Behaviour rows: the state machine, program or script that drives a component, or the room kept for one that
+// is loaded later.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/script/unit.hpp"
 #include "kernel/statechart/rows.hpp"
 
 #include <cstdint>
@@ -18,18 +20,47 @@ struct Slot {
     std::uint32_t depth = 0;
     std::uint32_t command_slots = 0;
     std::uint32_t timers = 0;
+    std::uint32_t text_bytes = 0; ///< of the script; 0: as much as its nodes usually need
+    std::uint32_t trial = 200;    ///< so many steps an error of a new behaviour brings the old one back
+    std::string_view angle{};     ///< "component.output" in degrees, whose angle a loading may wait for
     Bounded<std::string_view, max_names> peers{};      ///< components
     Bounded<std::string_view, max_names> operations{}; ///< component.operation
     Bounded<std::string_view, max_names> events{};     ///< component.event
-    bool too_many = false;
 };
+
+/// What happens when a behaviour is in error and no parent handles it.
+enum class OnError : std::uint8_t {
+    stop_machine, ///< it is reported, and the machine stops safely
+    report,       ///< it stands still and is reported
+    go_on         ///< the failing statement is passed over (thesis 5.1.2)
+};
+
+struct BehaviourOptions {
+    bool reactive = false;        ///< thesis 5.2.2: neither run programs nor conditions in a step
+    std::uint32_t statements = 0; ///< in one step; 0: default_statements
+    OnError on_error = OnError::stop_machine;
+};
+
+/// A bound that only guards: no program that was checked comes near it in one step.
+inline constexpr std::uint32_t default_statements = 1000;
 
 struct BehaviourRow {
     std::string_view component{};
-    StateMachineTable machine{}; ///< without states: a slot
+    BehaviourType type{};         ///< of a C++ table; script and slot have none
+    BehaviourInstance instance{}; ///< the only one of a C++ table
+    const ScriptUnit* script = nullptr;
+    std::span<const ProgramCode> code{}; ///< of each type; empty: the tables are walked
     Slot slot{};
+    bool reserves = false; ///< it is a slot
+    BehaviourOptions options{};
 
-    [[nodiscard]] constexpr bool is_slot() const noexcept { return machine.component == nullptr; }
+    [[nodiscard]] constexpr bool is_slot() const noexcept { return reserves; }
+    /// What it runs, as one form; of a row that lies where it stays. Empty of a slot.
+    [[nodiscard]] constexpr ScriptUnit unit() const noexcept {
+        if (script != nullptr) return *script;
+        if (reserves) return {};
+        return {.name = type.name, .types = {&type, 1}, .instances = {&instance, 1}};
+    }
 };
 
 template <class... Names>
@@ -59,6 +90,11 @@ struct TimersTag {};
 struct PeersTag {};
 struct OperationsTag {};
 struct EventsTag {};
+struct TextTag {};
+struct TrialTag {};
+struct SlotAngle {
+    std::string_view output;
+};
 
 constexpr void apply(Slot& row, SlotNumber<NodesTag> option) noexcept { row.nodes = option.value; }
 constexpr void apply(Slot& row, SlotNumber<DataTag> option) noexcept { row.data_bytes = option.value; }
@@ -70,6 +106,19 @@ constexpr void apply(Slot& row, const SlotNames<OperationsTag>& option) noexcept
     row.operations = option.list;
 }
 constexpr void apply(Slot& row, const SlotNames<EventsTag>& option) noexcept { row.events = option.list; }
+constexpr void apply(Slot& row, SlotNumber<TextTag> option) noexcept { row.text_bytes = option.value; }
+constexpr void apply(Slot& row, SlotNumber<TrialTag> option) noexcept { row.trial = option.value; }
+constexpr void apply(Slot& row, SlotAngle option) noexcept { row.angle = option.output; }
+
+struct Reactive {};
+struct StatementBound {
+    std::uint32_t statements;
+};
+constexpr void apply(BehaviourOptions& row, Reactive) noexcept { row.reactive = true; }
+constexpr void apply(BehaviourOptions& row, StatementBound bound) noexcept {
+    row.statements = bound.statements;
+}
+constexpr void apply(BehaviourOptions& row, OnError what) noexcept { row.on_error = what; }
 
 } // namespace detail
 
@@ -91,6 +140,12 @@ template <class... Names>
 constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) {
     return {names(each...)};
 }
+/// Letters of a script.
+constexpr detail::SlotNumber<detail::TextTag> text_bytes(std::uint32_t n) noexcept { return {n}; }
+/// Steps in which a new behaviour must show that it works.
+constexpr detail::SlotNumber<detail::TrialTag> trial(std::uint32_t steps) noexcept { return {steps}; }
+/// The output, in degrees and in the slot's activity, whose angle a loading may wait for.
+constexpr detail::SlotAngle angle_of(std::string_view output) noexcept { return {output}; }
 template <class... Options>
 constexpr Slot slot(const Options&... options) {
     Slot row;
@@ -98,14 +153,46 @@ constexpr Slot slot(const Options&... options) {
     return row;
 }
 
+/// No run programs and no conditions in the engine's steps: it moves upon events and requests only.
+inline constexpr detail::Reactive reactive{};
+/// At most so many statements in one step of the engine; what is left over goes on in the next.
+constexpr detail::StatementBound at_most(std::uint32_t statements) noexcept { return {statements}; }
+constexpr OnError on_error(OnError what) noexcept { return what; }
+
 /// A state machine table that drives a component; it runs in the component's activity.
-template <std::size_t S, std::size_t T>
-constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<S, T>& machine) noexcept {
-    return {component, machine.view(), {}};
+template <std::size_t S, std::size_t T, class... Options>
+constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<S, T>& machine,
+                                 const Options&... options) noexcept {
+    BehaviourRow row;
+    row.component = component;
+    row.type.machine = machine.view();
+    row.type.name = row.type.machine.name;
+    row.instance.name = row.type.name;
+    (detail::apply(row.options, options), ...);
+    return row;
+}
+/// A compiled script, or its tables as they are; `script` and `code`, which stands in the order of its types,
+/// outlive the row.
+template <class... Options>
+constexpr BehaviourRow behaviour(std::string_view component, const ScriptUnit& script,
+                                 std::span<const ProgramCode> code, const Options&... options) noexcept {
+    BehaviourRow row;
+    row.component = component;
+    row.script = &script;
+    row.code = code;
+    (detail::apply(row.options, options), ...);
+    return row;
 }
 /// Room and reach for a behaviour that is loaded while the machine runs.
-constexpr BehaviourRow behaviour(std::string_view component, const Slot& slot) noexcept {
-    return {component, {}, slot};
+template <class... Options>
+constexpr BehaviourRow behaviour(std::string_view component, const Slot& slot,
+                                 const Options&... options) noexcept {
+    BehaviourRow row;
+    row.component = component;
+    row.slot = slot;
+    row.reserves = true;
+    (detail::apply(row.options, options), ...);
+    return row;
 }
 
 } // namespace tappet

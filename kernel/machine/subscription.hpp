@@ -12,7 +12,7 @@ namespace tappet {
 enum class SubscriberKind : std::uint8_t {
     operation, ///< of a reaction row
     wait,      ///< of a reaction row: an EventWait
-    trigger,   ///< of a state machine
+    trigger,   ///< of a behaviour
     observer   ///< the component that sees the machine
 };
 
@@ -26,7 +26,7 @@ struct Subscription {
     End target;                      ///< the operation or the wait
     End handle;                      ///< of a reaction row that has one
     std::size_t behaviour = nowhere; ///< of a trigger
-    std::size_t trigger = 0;
+    std::size_t trigger = 0;         ///< number among the events of its unit or slot
     std::uint32_t quota = 0;
     std::uint64_t emitters = 0; ///< one bit for each activity that may emit the event
     std::size_t receiver = 0;   ///< activity
@@ -56,7 +56,7 @@ constexpr std::size_t count_subscriptions(const MachineView& m) {
     std::size_t count = 0;
     for (const auto& row : m.reactions) count += row.kind == ReactionKind::when;
     for (const auto& row : m.behaviours)
-        if (!row.is_slot()) count += measure(row.machine).triggers;
+        count += row.is_slot() ? count_slot_events(m, row) : events_of(row.unit()).count;
     if (find_observer(m) == nowhere) return count;
     for (const auto& row : m.components)
         for (const auto& facet : row.type->facets) count += is_observable(facet);
@@ -86,16 +86,25 @@ constexpr std::size_t collect_subscriptions(const MachineView& m, const TableInd
     }
     for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
         const BehaviourRow& row = m.behaviours[b];
-        if (row.is_slot()) continue;
-        const StateHierarchy names{row.machine};
-        for (std::size_t t = 0; t < names.triggers; ++t) {
+        std::size_t number = 0;
+        const auto hear = [&](End event) {
             Subscription& s = into[n++];
-            static_cast<void>(checks::resolve_trigger(m, row, names.trigger_name(t), s.event));
+            s.event = event;
             s.kind = SubscriberKind::trigger;
             s.behaviour = b;
-            s.trigger = t;
+            s.trigger = number++;
+            s.is_connected = !row.is_slot(); // what is loaded says what it hears
             s.quota = trigger_quota;
             s.receiver = r.activity[find_component(m, row.component)];
+        };
+        if (row.is_slot()) {
+            for_each_slot_event(m, row, hear);
+            continue;
+        }
+        for (const std::string_view name : events_of(row.unit()).all()) {
+            End event;
+            static_cast<void>(checks::resolve_trigger(m, row, name, event));
+            hear(event);
         }
     }
     const std::size_t observer = find_observer(m);

@@ -214,17 +214,17 @@ private:
                 row.slot.events[n],
                 [i, n](Copy& c) -> std::string_view& { return c.behaviours[i].slot.events[n]; }, named);
         // The rows of a state machine are behind a view: a copy of them is kept while its names are misspelt.
-        for (std::size_t t = 0; t < row.machine.transitions.size(); ++t) {
-            const TransitionRow& transition = row.machine.transitions[t];
+        for (std::size_t t = 0; t < row.type.machine.transitions.size(); ++t) {
+            const TransitionRow& transition = row.type.machine.transitions[t];
             for (std::string_view TransitionRow::* const part :
                  {&TransitionRow::from, &TransitionRow::to, &TransitionRow::event}) {
                 if ((transition.*part).empty()) continue;
                 for (const std::string_view wrong : misspellings(transition.*part)) {
-                    std::vector<TransitionRow> rows(row.machine.transitions.begin(),
-                                                    row.machine.transitions.end());
+                    std::vector<TransitionRow> rows(row.type.machine.transitions.begin(),
+                                                    row.type.machine.transitions.end());
                     rows[t].*part = wrong;
                     Copy copy{table_};
-                    copy.behaviours[i].machine.transitions = rows;
+                    copy.behaviours[i].type.machine.transitions = rows;
                     expect(tally_.misspelt,
                            "in " + label(row) + " \"" + std::string{transition.*part} + "\" misspelt \"" +
                                std::string{wrong} + "\"",
@@ -232,16 +232,16 @@ private:
                 }
             }
         }
-        for (std::size_t s = 0; s < row.machine.states.size(); ++s) {
+        for (std::size_t s = 0; s < row.type.machine.states.size(); ++s) {
             // A state that no row names, like a safe state reached by request alone, has any name.
-            if (!is_named(row.machine, row.machine.states[s].name)) continue;
-            for (const std::string_view wrong : misspellings(row.machine.states[s].name)) {
-                std::vector<StateRow> rows(row.machine.states.begin(), row.machine.states.end());
+            if (!is_named(row.type.machine, row.type.machine.states[s].name)) continue;
+            for (const std::string_view wrong : misspellings(row.type.machine.states[s].name)) {
+                std::vector<StateRow> rows(row.type.machine.states.begin(), row.type.machine.states.end());
                 rows[s].name = wrong;
                 Copy copy{table_};
-                copy.behaviours[i].machine.states = rows;
+                copy.behaviours[i].type.machine.states = rows;
                 expect(tally_.misspelt,
-                       "state \"" + std::string{row.machine.states[s].name} + "\" misspelt \"" +
+                       "state \"" + std::string{row.type.machine.states[s].name} + "\" misspelt \"" +
                            std::string{wrong} + "\"",
                        copy, {"\"" + std::string{wrong} + "\""});
             }

@@ -1,0 +1,152 @@
+// A unit of behaviour come to life: each state machine and program of a compiled or loaded script with its
+// data, its links and its command slots, in one piece of memory of a size known before. One engine steps it.
+#pragma once
+
+#include "kernel/machine/unit_rows.hpp"
+#include "kernel/statechart/execution.hpp"
+
+#include <cstddef>
+#include <span>
+
+namespace tappet {
+
+class MachineInstance;
+
+/// One instance of a unit.
+struct UnitPart {
+    const BehaviourInstance* row = nullptr;
+    const BehaviourType* type = nullptr;
+    StateMachineExecution* machine = nullptr; ///< null: a program alone
+    std::byte* data = nullptr;
+    ProgramLink* links = nullptr;
+    CommandSlot* slots = nullptr;
+    std::size_t slot_count = 0;
+};
+
+/// The trigger of an instance that an event means; no_trigger: none.
+struct UnitRoute {
+    TriggerIndex trigger = no_trigger;
+};
+
+namespace detail {
+
+/// Lays things one behind the other in a piece of memory, or, without one, counts.
+class UnitGround {
+public:
+    constexpr UnitGround() = default;
+    explicit constexpr UnitGround(std::span<std::byte> memory) noexcept : memory_{memory} {}
+    template <class T>
+    constexpr T* take(std::size_t count) noexcept {
+        std::byte* place = take(count * sizeof(T), alignof(T));
+        if (place == nullptr) return nullptr;
+        return reinterpret_cast<T*>(place);
+    }
+    constexpr std::byte* take(std::size_t bytes, std::size_t align) noexcept {
+        at_ = (at_ + align - 1) / align * align;
+        const std::size_t here = at_;
+        at_ += bytes;
+        return memory_.empty() || at_ > memory_.size() ? nullptr : memory_.data() + here;
+    }
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
+    [[nodiscard]] constexpr bool full() const noexcept { return at_ > memory_.size(); }
+
+private:
+    std::span<std::byte> memory_{};
+    std::size_t at_ = 0;
+};
+
+/// The commands of one instance that are sent to other activities: calls visit(link number, facet).
+template <class Visit>
+constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& type, const Visit& visit) {
+    for (std::size_t i = 0; i < type.tables.links.size(); ++i) {
+        const LinkRow& link = type.tables.links[i];
+        if (link.needs_slot) visit(i, unit.reach[link.peer].type->facets[link.facet]);
+    }
+}
+
+} // namespace detail
+
+/// Where a type's resolved state machine lies.
+constexpr ResolvedRoom take_room(detail::UnitGround& ground, const ResolvedSizes& sizes) noexcept {
+    auto* plans = ground.take<StatePlan>(sizes.states);
+    auto* triggers = ground.take<std::string_view>(sizes.triggers);
+    auto* cells = ground.take<ArcIndex>(sizes.states * sizes.triggers);
+    auto* arcs = ground.take<StateArc>(sizes.arcs);
+    auto* programs = ground.take<StateProgram>(sizes.programs);
+    return {{plans, sizes.states},
+            {triggers, sizes.triggers},
+            {cells, sizes.states * sizes.triggers},
+            {arcs, sizes.arcs},
+            {programs, sizes.programs}};
+}
+
+/// What a unit that hears so many events takes of memory aligned as std::max_align_t. The same sums as
+/// BehaviourUnit::place.
+constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
+    detail::UnitGround ground;
+    ground.take<UnitPart>(unit.instances.size());
+    ground.take<ResolvedView>(unit.types.size());
+    ground.take<UnitRoute>(events * unit.instances.size());
+    for (const BehaviourType& type : unit.types)
+        if (!type.is_program()) static_cast<void>(take_room(ground, measure(type.machine)));
+    for (const BehaviourInstance& instance : unit.instances) {
+        const BehaviourType& type = unit.types[instance.type];
+        if (!type.is_program()) ground.take<StateMachineExecution>(1);
+        ground.take(type.tables.layout.size, data_alignment);
+        ground.take<ProgramLink>(type.tables.links.size());
+        std::size_t slots = 0;
+        detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet&) { ++slots; });
+        ground.take<CommandSlot>(slots);
+        detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet& facet) {
+            ground.take(facet.command->value_bytes(), data_alignment);
+        });
+    }
+    return ground.used();
+}
+
+/// Not real-time but for what says so. place() while nobody steps it.
+class BehaviourUnit {
+public:
+    /// `driven`: the component. `events` name what its routes count, and outlive it as everything in `unit`
+    /// does. An error: it does not fit, or names what the machine does not have; then it must not be started.
+    [[nodiscard]] Sentence place(const ScriptUnit& unit, std::span<const ProgramCode> code,
+                                 const BehaviourOptions& options, std::span<std::byte> memory,
+                                 std::span<const std::string_view> events, MachineInstance& machine,
+                                 std::size_t driven);
+    [[nodiscard]] std::span<UnitPart> parts() noexcept TAPPET_REALTIME { return parts_; }
+    [[nodiscard]] std::span<const UnitPart> parts() const noexcept TAPPET_REALTIME { return parts_; }
+    [[nodiscard]] const ScriptUnit& unit() const noexcept TAPPET_REALTIME { return unit_; }
+    /// Whether any of its state machines hears the event of that number.
+    [[nodiscard]] bool hears(std::size_t event) const noexcept TAPPET_REALTIME;
+    /// None of its commands is on its way: its memory may be used anew.
+    [[nodiscard]] bool is_quiet() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool has_programs() const noexcept {
+        for (const UnitPart& part : parts_)
+            if (part.machine == nullptr) return true;
+        return false;
+    }
+    void trace(StateMachineExecution::Trace hook, void* context) noexcept;
+
+    // Real-time, in the component's engine.
+
+    /// Its roots start; their children when they are told to.
+    void start(Time now) noexcept TAPPET_REALTIME;
+    /// The programs alone, then the state machines (thesis fig. 5.21).
+    void step_programs(Time now) noexcept TAPPET_REALTIME;
+    void step(Time now) noexcept TAPPET_REALTIME;
+    /// Into the final states; those that cannot go at once follow in the next steps.
+    void finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME;
+    /// Whether finish() has come to its end.
+    [[nodiscard]] bool is_finished() const noexcept TAPPET_REALTIME;
+    /// Out of the final states.
+    void deactivate(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
+    void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
+
+private:
+    ScriptUnit unit_{};
+    std::span<UnitPart> parts_{};
+    std::span<const UnitRoute> routes_{}; // [event * instances + instance]
+};
+
+} // namespace tappet
