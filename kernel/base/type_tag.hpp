@@ -37,6 +37,7 @@ enum class ValueKind : std::uint8_t {
 
 struct TypeTag;
 using TypeId = const TypeTag*;
+struct RegisteredOperator; ///< kernel/program/registered.hpp
 
 inline constexpr std::size_t max_fields = 64;
 
@@ -62,8 +63,10 @@ struct TypeTag {
     std::size_t columns = 0;  ///< of a matrix; of a text or a sequence: how many there may be, from byte 0 on
     std::size_t length_at = 0;    ///< of a text or a sequence: where the number that there are stands,
     std::size_t length_bytes = 0; ///< and how wide it is: 4 or 8
-    std::span<const RecordField> fields{};     ///< of a record, in its own order
-    std::span<const std::string_view> names{}; ///< of an enumeration: the value is the index
+    std::span<const RecordField> fields{};         ///< of a record, in its own order
+    std::span<const std::string_view> names{};     ///< of an enumeration: the value is the index
+    const RegisteredOperator* operators = nullptr; ///< what scripts may do with it, so many
+    std::size_t operator_count = 0;
 };
 
 /// The argument list of an event or an operation, as a type.
@@ -75,6 +78,16 @@ struct Arguments {};
 ///         fields(field<&Pose::x>("x", "mm"), field<&Pose::turn>("turn", "deg"));
 template <class T>
 inline constexpr std::array<RecordField, 0> fields_of{};
+
+/// What a type without operators has.
+struct NoOperators {
+    static constexpr const RegisteredOperator* list = nullptr;
+    static constexpr std::size_t count = 0;
+};
+
+/// Operators and functions that scripts may apply to a type, see kernel/program/registered.hpp.
+template <class T>
+inline constexpr NoOperators operators_of{};
 
 /// Names the values of an enum, from 0 on; one without is shown as a number:
 ///     template <> inline constexpr auto tappet::names_of<Cause> =
@@ -174,6 +187,8 @@ struct TagOf {
     static constexpr TypeTag tag = [] {
         TypeTag made{printed_name<T>(), sizeof(T), alignof(T), std::is_arithmetic_v<T>};
         ShapeOf<T>::put(made);
+        using Operators = std::remove_cvref_t<decltype(operators_of<T>)>;
+        made.operators = Operators::list, made.operator_count = Operators::count;
         return made;
     }();
 };

@@ -59,6 +59,13 @@ public:
             if (rings_.across[i]->pop(into)) return true;
         return false;
     }
+    [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME {
+        const std::size_t inside = rings_.inside.size(), across = rings_.across.size();
+        bool none = true;
+        for (std::size_t i = 0; i < inside; ++i) none &= rings_.inside[i]->empty();
+        for (std::size_t i = 0; i < across; ++i) none &= rings_.across[i]->empty();
+        return none;
+    }
 
 private:
     friend struct PortAccess;

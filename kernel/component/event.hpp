@@ -51,4 +51,18 @@ private:
     std::size_t count_ = 0;
 };
 
+namespace detail {
+
+template <class... A>
+void emit_packed(Event<A...>& event, const std::byte* packed) noexcept TAPPET_REALTIME {
+    [[maybe_unused]] const std::byte* at = packed;
+    // A braced list is evaluated from left to right.
+    struct Emission {
+        Emission(Event<A...>& from, A... arguments) noexcept TAPPET_REALTIME { from.emit(arguments...); }
+    };
+    [[maybe_unused]] const Emission emission{event, unpack_one<A>(at)...};
+}
+
+} // namespace detail
+
 } // namespace tappet

@@ -59,6 +59,9 @@ struct PortOperations {
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
     void (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
+    /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
+    Flow (*read)(void* port, bool is_input, std::byte* into) noexcept TAPPET_REALTIME;
+    void (*write)(void* output, const std::byte* value) noexcept TAPPET_REALTIME;
 };
 
 struct BufferOperations {
@@ -68,6 +71,10 @@ struct BufferOperations {
     void (*link)(void* output, void* input, std::byte* memory, std::size_t capacity, Overflow, bool across);
     void (*set_waker)(void* output, Waker waker);
     std::size_t (*lost)(const void* memory, bool across);
+    // In the port's activity.
+    bool (*push)(void* output, const std::byte* value) noexcept TAPPET_REALTIME;
+    bool (*pop)(void* input, std::byte* into) noexcept TAPPET_REALTIME;
+    bool (*empty)(const void* input) noexcept TAPPET_REALTIME;
 };
 
 struct EventOperations {
@@ -77,6 +84,8 @@ struct EventOperations {
     /// in which the row has the bit of its turn.
     std::atomic<std::uint64_t>& (*subscribe)(void* event, const void* call, void* context);
     const void* post; ///< of the asynchronous reaction, likewise
+    /// With packed arguments, for emitters that know no C++ type.
+    void (*emit)(void* event, const std::byte* packed) noexcept TAPPET_REALTIME;
 };
 
 struct OperationOperations {
@@ -211,6 +220,23 @@ struct PortAccess {
             [](void* port, bool is_input) noexcept TAPPET_REALTIME {
                 is_input ? static_cast<Input<T>*>(port)->release() : static_cast<Output<T>*>(port)->release();
             },
+        .read =
+            [](void* port, bool is_input, std::byte* into) noexcept TAPPET_REALTIME {
+                if (!is_input) {
+                    std::memcpy(into, std::addressof(static_cast<const Output<T>*>(port)->last()), sizeof(T));
+                    return Flow::old;
+                }
+                auto& in = *static_cast<Input<T>*>(port);
+                const Flow flow = in.refresh();
+                std::memcpy(into, std::addressof(in.value_of(flow)), sizeof(T));
+                return flow;
+            },
+        .write =
+            [](void* output, const std::byte* bytes) noexcept TAPPET_REALTIME {
+                T value = default_value<T>();
+                std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
+                static_cast<Output<T>*>(output)->write(value);
+            },
     };
 
     /// Where a ring's storage begins behind the ring itself.
@@ -248,6 +274,21 @@ struct PortAccess {
                 return static_cast<std::size_t>(across ? static_cast<const Ring<T>*>(memory)->lost()
                                                        : static_cast<const LocalRing<T>*>(memory)->lost());
             },
+        .push =
+            [](void* output, const std::byte* bytes) noexcept TAPPET_REALTIME {
+                T value = default_value<T>();
+                std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
+                return static_cast<BufferOutput<T>*>(output)->push(value);
+            },
+        .pop =
+            [](void* input, std::byte* into) noexcept TAPPET_REALTIME {
+                T value = default_value<T>();
+                if (!static_cast<BufferInput<T>*>(input)->pop(value)) return false;
+                std::memcpy(into, std::addressof(value), sizeof value);
+                return true;
+            },
+        .empty = [](const void* input) noexcept
+        TAPPET_REALTIME { return static_cast<const BufferInput<T>*>(input)->empty(); },
     };
 
     template <class... A>
@@ -267,6 +308,8 @@ struct PortAccess {
             return target.connected_;
         },
         .post = &post<A...>,
+        .emit = [](void* event, const std::byte* packed) noexcept
+        TAPPET_REALTIME { detail::emit_packed<A...>(*static_cast<Event<A...>*>(event), packed); },
     };
 };
 

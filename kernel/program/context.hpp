@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/base/time.hpp"
-#include "kernel/component/command.hpp"
+#include "kernel/component/component.hpp"
 #include "kernel/program/table.hpp"
 
 namespace tappet {
@@ -12,6 +12,7 @@ struct ProgramLink {
     void* component = nullptr;
     void* place = nullptr;       ///< of the facet in the component; the component itself where it has none
     CommandSlot* slot = nullptr; ///< of a command of another activity
+    const ComponentType* type = nullptr; ///< of the component: it is asked before its properties change
 };
 
 /// Where a program stands. Plain data, so that it may be kept and shown.
@@ -23,8 +24,8 @@ struct ProgramPosition {
 };
 
 struct ProgramContext {
-    void* component = nullptr;   ///< whose engine runs it
-    std::byte* data = nullptr;   ///< see DataLayout; aligned to data_alignment
+    void* component = nullptr;          ///< whose engine runs it
+    std::byte* data = nullptr;          ///< see DataLayout; aligned to data_alignment
     const ProgramLink* links = nullptr; ///< by LinkRow
     Time now{};
     ProgramPosition position{};

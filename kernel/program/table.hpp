@@ -22,6 +22,7 @@ struct Instruction;
 enum class ActionResult : std::uint8_t {
     done,
     again, ///< it could not act yet: the node's action is executed again in the next step
+    skip,  ///< done, and the next `size` instructions are left out: what && and || need not look at
     failed ///< the program is in error, or goes on where its node's on_error leads (thesis 5.1.1)
 };
 
@@ -47,6 +48,12 @@ struct Instruction {
     std::uint8_t rows = 0; ///< of matrices: `to` is rows x columns, `a` rows x inner, `b` inner x columns
     std::uint8_t inner = 0;
     std::uint8_t columns = 0;
+    const RecordField* field = nullptr; ///< of a record: its place is known when the program runs
+
+    /// A second number, where rows and inner are none.
+    [[nodiscard]] constexpr std::size_t count() const noexcept TAPPET_REALTIME {
+        return static_cast<std::size_t>(rows | inner << 8);
+    }
 };
 
 /// A run of instructions whose last one leaves a bool at `result`.
@@ -66,8 +73,9 @@ inline constexpr NodeIndex end_node = 0xfffe; ///< the program has ended
 struct ArcRow {
     ConditionIndex condition = no_condition;
     NodeIndex to = end_node;
-    DataOffset after =
-        no_data; ///< a Duration: the arc is open when so much time passed since the node was entered
+    /// A Duration: not open before so much time passed since the node was entered. With a condition both must
+    /// hold.
+    DataOffset after = no_data;
 };
 
 /// One statement. Without an open arc the program waits here; its action is not done twice unless it says

@@ -1,0 +1,142 @@
+// The instructions by which a program acts on a component's facet (thesis 5.1.4: the factories of a peer's
+// interface).
+#pragma once
+
+#include "kernel/program/primitives_facet.hpp"
+#include "kernel/program/primitives_value.hpp"
+
+namespace tappet {
+
+/// An instruction of which `to`, `a` and `link` are still to be set. Null run: the facet is not of that kind.
+struct FacetAction {
+    Instruction instruction{};
+    TypeId type = nullptr; ///< of the value in `to` or in `a`, whichever it is about; a stored type
+    constexpr explicit operator bool() const noexcept { return instruction.run != nullptr; }
+};
+
+namespace detail {
+
+constexpr FacetAction facet_action(bool fits, Primitive run, const Facet& facet, TypeId type) noexcept {
+    if (!fits) return {};
+    return {
+        {.run = run, .facet = &facet, .size = static_cast<std::uint16_t>(type != nullptr ? type->size : 0)},
+        type};
+}
+
+} // namespace detail
+
+/// `to` = the value of a property, an input or an output.
+constexpr FacetAction find_read(const Facet& facet) noexcept {
+    const bool port = facet.kind == FacetKind::input || facet.kind == FacetKind::output;
+    return detail::facet_action(port || facet.kind == FacetKind::property,
+                                facet.kind == FacetKind::input    ? &primitive::read_input
+                                : facet.kind == FacetKind::output ? &primitive::read_output
+                                                                  : &primitive::read_property,
+                                facet, facet.type);
+}
+/// A property, an output or a buffered output is given the value `a`. One that is out of its range, not
+/// consented to, or finds no room fails the action.
+constexpr FacetAction find_write(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::output || facet.kind == FacetKind::property ||
+                                    facet.kind == FacetKind::buffer_output,
+                                facet.kind == FacetKind::output          ? &primitive::write_output
+                                : facet.kind == FacetKind::buffer_output ? &primitive::push_all
+                                                                         : &primitive::write_property,
+                                facet, facet.type);
+}
+/// `to`: a bool, of an input.
+constexpr FacetAction input_valid(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::input, &primitive::input_valid, facet,
+                                type_id<bool>);
+}
+constexpr FacetAction input_fresh(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::input, &primitive::input_fresh, facet,
+                                type_id<bool>);
+}
+/// `to`: a Duration, of an input or an output.
+constexpr FacetAction port_age(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::input || facet.kind == FacetKind::output,
+                                &primitive::port_age, facet, type_id<Duration>);
+}
+
+/// A buffered output is given `a`; `to`: a bool, whether all readers had room. type: of the value.
+constexpr FacetAction push_buffer(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::buffer_output, &primitive::push_buffer, facet,
+                                facet.type);
+}
+/// `to` = the oldest value of a buffered input; an empty one fails the action.
+constexpr FacetAction pop_buffer(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::buffer_input, &primitive::pop_buffer, facet,
+                                facet.type);
+}
+/// As pop_buffer; an empty one is waited for. The whole node is executed again, so it does this first.
+constexpr FacetAction wait_buffer(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::buffer_input, &primitive::wait_buffer, facet,
+                                facet.type);
+}
+/// `to`: a bool.
+constexpr FacetAction buffer_empty(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::buffer_input, &primitive::buffer_empty, facet,
+                                type_id<bool>);
+}
+
+// Below, `a` holds the arguments packed one behind the other without gaps, each in its C++ type; they are
+// listed in facet.type->elements, those of a command in facet.command->arguments->elements.
+
+constexpr FacetAction emit_event(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::event, &primitive::emit_event, facet, nullptr);
+}
+constexpr FacetAction call_operation(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::operation, &primitive::call_operation, facet,
+                                nullptr);
+}
+/// `to`: the result, of `type`, which is null when there is none.
+constexpr FacetAction call_method(const Facet& facet) noexcept {
+    if (facet.kind != FacetKind::method) return {};
+    return detail::facet_action(true, &primitive::call_method, facet,
+                                facet.method->result_bytes == 0 ? nullptr : facet.method->result);
+}
+/// A method as a statement: one that returns false fails the action (thesis 5.1.1); another result is
+/// dropped into `to`.
+constexpr FacetAction do_method(const Facet& facet) noexcept {
+    FacetAction action = call_method(facet);
+    if (action && action.type == type_id<bool>) action.instruction.run = &primitive::call_checked;
+    return action;
+}
+
+/// Of the own component: begins it here and now. `to`: argument and result bytes, kept while the program
+/// runs; the instructions before wrote the arguments there.
+constexpr FacetAction begin_command(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::command, &primitive::begin_command, facet, nullptr);
+}
+/// `to`: a bool, done; `a`: the bytes of begin_command, whose results are good then.
+constexpr FacetAction command_progress(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::command, &primitive::command_progress, facet,
+                                type_id<bool>);
+}
+/// Of another activity: sends it with the arguments `a`, again while an earlier one is on its way. The link
+/// needs a slot.
+constexpr FacetAction send_command(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::command, &primitive::send_command, facet, nullptr);
+}
+/// `to`: a bool, done; rejected or failed fails the condition.
+constexpr FacetAction command_ended(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::command, &primitive::command_ended, facet,
+                                type_id<bool>);
+}
+/// `to`: the packed results, facet.command->results, of one that ended.
+constexpr FacetAction command_results(const Facet& facet) noexcept {
+    return detail::facet_action(facet.kind == FacetKind::command, &primitive::command_results, facet,
+                                nullptr);
+}
+
+/// `to`: a Duration, since the node was entered.
+constexpr FacetAction elapsed_time() noexcept {
+    return {{.run = &primitive::elapsed, .size = sizeof(Duration)}, type_id<Duration>};
+}
+/// `to`: a Duration, the machine's time.
+constexpr FacetAction machine_time() noexcept {
+    return {{.run = &primitive::time_now, .size = sizeof(Duration)}, type_id<Duration>};
+}
+
+} // namespace tappet

@@ -1,0 +1,187 @@
+// Primitives that act on components through their facets: ports, buffers, events, methods, operations,
+// commands and properties (thesis 4.4 - 4.7, 5.1.5).
+#pragma once
+
+#include "kernel/program/value_access.hpp"
+
+namespace tappet::primitive {
+
+inline const ProgramLink& link_of(const ProgramContext& context, const Instruction& in) noexcept
+    TAPPET_REALTIME {
+    return context.links[in.link];
+}
+
+// ---- data ports; the value's bytes as the port has them
+
+inline ActionResult read_input(ProgramContext& context, const Instruction& in, std::byte* to,
+                               const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    static_cast<void>(in.facet->port->read(link_of(context, in).place, true, to));
+    return ActionResult::done;
+}
+inline ActionResult read_output(ProgramContext& context, const Instruction& in, std::byte* to,
+                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    static_cast<void>(in.facet->port->read(link_of(context, in).place, false, to));
+    return ActionResult::done;
+}
+inline ActionResult write_output(ProgramContext& context, const Instruction& in, std::byte*,
+                                 const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    in.facet->port->write(link_of(context, in).place, a);
+    return ActionResult::done;
+}
+/// Whether an input has a value that is not stale.
+inline ActionResult input_valid(ProgramContext& context, const Instruction& in, std::byte* to,
+                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    const Flow flow = in.facet->port->flow(link_of(context, in).place);
+    store_value(to, flow == Flow::old || flow == Flow::fresh);
+    return ActionResult::done;
+}
+/// Whether an input has a value that was not read yet.
+inline ActionResult input_fresh(ProgramContext& context, const Instruction& in, std::byte* to,
+                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    store_value(to, in.facet->port->flow(link_of(context, in).place) == Flow::fresh);
+    return ActionResult::done;
+}
+/// How long ago the value was true; of an input that has none, since the machine's time began.
+inline ActionResult port_age(ProgramContext& context, const Instruction& in, std::byte* to, const std::byte*,
+                             const std::byte*) noexcept TAPPET_REALTIME {
+    const bool is_input = in.facet->kind == FacetKind::input;
+    void* const port = link_of(context, in).place;
+    if (is_input) static_cast<void>(in.facet->port->flow(port)); // looks for a newer one
+    const Time stamp = *in.facet->port->places(port, is_input).stamp;
+    store_value(to, context.now - stamp);
+    return ActionResult::done;
+}
+
+// ---- buffers
+
+/// `to`: a truth, whether every reader had room.
+inline ActionResult push_buffer(ProgramContext& context, const Instruction& in, std::byte* to,
+                                const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    store_value(to, in.facet->buffer->push(link_of(context, in).place, a));
+    return ActionResult::done;
+}
+/// As push_buffer; a value that is lost fails the action.
+inline ActionResult push_all(ProgramContext& context, const Instruction& in, std::byte*, const std::byte* a,
+                             const std::byte*) noexcept TAPPET_REALTIME {
+    return in.facet->buffer->push(link_of(context, in).place, a) ? ActionResult::done : ActionResult::failed;
+}
+/// `to` = the oldest value, in place; an empty buffer fails the action.
+inline ActionResult pop_buffer(ProgramContext& context, const Instruction& in, std::byte* to,
+                               const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    return in.facet->buffer->pop(link_of(context, in).place, to) ? ActionResult::done : ActionResult::failed;
+}
+/// As pop_buffer; an empty one is asked again in the next step.
+inline ActionResult wait_buffer(ProgramContext& context, const Instruction& in, std::byte* to,
+                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    return in.facet->buffer->pop(link_of(context, in).place, to) ? ActionResult::done : ActionResult::again;
+}
+inline ActionResult buffer_empty(ProgramContext& context, const Instruction& in, std::byte* to,
+                                 const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    store_value(to, in.facet->buffer->empty(link_of(context, in).place));
+    return ActionResult::done;
+}
+
+// ---- events, methods, operations: `a` holds the arguments packed, as the facet's type lists them
+
+inline ActionResult emit_event(ProgramContext& context, const Instruction& in, std::byte*, const std::byte* a,
+                               const std::byte*) noexcept TAPPET_REALTIME {
+    in.facet->event->emit(link_of(context, in).place, a);
+    return ActionResult::done;
+}
+inline ActionResult call_operation(ProgramContext& context, const Instruction& in, std::byte*,
+                                   const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    in.facet->operation->run(link_of(context, in).component, a);
+    return ActionResult::done;
+}
+/// `to`: the result, if there is one.
+inline ActionResult call_method(ProgramContext& context, const Instruction& in, std::byte* to,
+                                const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    in.facet->method->call_packed(link_of(context, in).component, a, to);
+    return ActionResult::done;
+}
+/// Of a method that returns bool, called as a statement: false fails the action (thesis 5.1.1).
+inline ActionResult call_checked(ProgramContext& context, const Instruction& in, std::byte*,
+                                 const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    std::byte answer{};
+    in.facet->method->call_packed(link_of(context, in).component, a, &answer);
+    return answer != std::byte{0} ? ActionResult::done : ActionResult::failed;
+}
+
+// ---- commands. The own component's run here and now (thesis 5.1.5): `to` of the first and `a` of the second
+// hold the arguments and, behind them, the results, where they stay while the program runs.
+
+/// A command that is rejected fails the action.
+inline ActionResult begin_command(ProgramContext& context, const Instruction& in, std::byte* to,
+                                  const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    return in.facet->command->begin(link_of(context, in).component, to) ? ActionResult::done
+                                                                        : ActionResult::failed;
+}
+/// `to`: a truth, whether it is done; one that failed fails the condition.
+inline ActionResult command_progress(ProgramContext& context, const Instruction& in, std::byte* to,
+                                     const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    // The values are the program's own, and the completion writes its results there.
+    const CommandProgress progress =
+        in.facet->command->progress(link_of(context, in).component, const_cast<std::byte*>(a));
+    store_value(to, progress == CommandProgress::done);
+    return progress == CommandProgress::failed ? ActionResult::failed : ActionResult::done;
+}
+/// Of another activity: `a` holds the arguments. Again while an earlier one is on its way.
+inline ActionResult send_command(ProgramContext& context, const Instruction& in, std::byte*,
+                                 const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    CommandSlot* const slot = link_of(context, in).slot;
+    if (slot == nullptr || !slot->connected()) return ActionResult::failed;
+    if (!slot->is_mine()) return ActionResult::again;
+    const CommandOperations& command = *in.facet->command;
+    std::memcpy(slot->values(), a, command.argument_bytes);
+    std::memset(slot->values() + command.argument_bytes, 0, command.result_bytes);
+    return slot->send() ? ActionResult::done : ActionResult::failed;
+}
+/// `to`: a truth, whether it is done; one that was rejected or failed fails the condition.
+inline ActionResult command_ended(ProgramContext& context, const Instruction& in, std::byte* to,
+                                  const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    const CommandState state = link_of(context, in).slot->state();
+    store_value(to, state == CommandState::done);
+    return state == CommandState::done || in_flight(state) ? ActionResult::done : ActionResult::failed;
+}
+/// `to`: the packed results of one that is done.
+inline ActionResult command_results(ProgramContext& context, const Instruction& in, std::byte* to,
+                                    const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    const CommandSlot* const slot = link_of(context, in).slot;
+    if (slot->state() != CommandState::done) return ActionResult::failed;
+    std::memcpy(to, slot->values() + in.facet->command->argument_bytes, in.facet->command->result_bytes);
+    return ActionResult::done;
+}
+
+// ---- properties
+
+inline ActionResult read_property(ProgramContext& context, const Instruction& in, std::byte* to,
+                                  const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    std::memcpy(to, link_of(context, in).place, in.size);
+    return ActionResult::done;
+}
+/// A value out of the property's range, or that its component does not consent to, fails the action and
+/// changes nothing.
+inline ActionResult write_property(ProgramContext& context, const Instruction& in, std::byte*,
+                                   const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
+    const ProgramLink& link = link_of(context, in);
+    const PropertyOperations& of = *in.facet->property;
+    if (of.kind != PropertySetting::Kind::text) {
+        const std::size_t size = of.size(a);
+        for (std::size_t i = 0; i < size; ++i) {
+            const double number = of.number(a, i);
+            if (!(number >= in.facet->range.low && number <= in.facet->range.high))
+                return ActionResult::failed;
+        }
+    }
+    if (link.type != nullptr && link.type->accepts != nullptr) {
+        const ProposedValue proposed{static_cast<std::byte*>(link.place), a, in.size,
+                                     static_cast<std::uint32_t>(in.facet - link.type->facets.data())};
+        if (!link.type->accepts(link.component, Proposal{{&proposed, 1}}).empty())
+            return ActionResult::failed;
+    }
+    std::memcpy(link.place, a, in.size);
+    if (link.type != nullptr && link.type->changed != nullptr) link.type->changed(link.component);
+    return ActionResult::done;
+}
+
+} // namespace tappet::primitive
