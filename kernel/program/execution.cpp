@@ -1,0 +1,102 @@
+// The status of a program and its changes, as the header's table lists them.
+#include "kernel/program/execution.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace tappet {
+
+void ProgramExecution::bind(const ProgramCode& code, const ProgramContext& context,
+                            std::span<const std::byte> image, const ProgramPolicy& policy,
+                            ProgramIndex program) noexcept TAPPET_REALTIME {
+    code_ = code;
+    context_ = context;
+    image_ = image;
+    policy_ = policy;
+    program_ = program;
+    failures_ = 0;
+    status_ = ProgramStatus::stopped;
+    static_cast<void>(reset());
+}
+
+bool ProgramExecution::reset() noexcept TAPPET_REALTIME {
+    if (status_ == ProgramStatus::running || status_ == ProgramStatus::paused) return false;
+    const DataLayout& layout = code_.tables->layout;
+    const std::size_t given = std::min<std::size_t>(image_.size(), layout.size);
+    if (given != 0) std::memcpy(context_.data, image_.data(), given);
+    if (layout.size != given) std::memset(context_.data + given, 0, layout.size - given);
+    context_.position = {};
+    left_over_ = waits_ = false;
+    status_ = ProgramStatus::ready;
+    return true;
+}
+
+bool ProgramExecution::start() noexcept TAPPET_REALTIME {
+    switch (status_) {
+    case ProgramStatus::ready:
+    case ProgramStatus::stopped:
+        context_.position = {.node = code_.tables->programs[program_].first};
+        waits_ = false;
+        break;
+    case ProgramStatus::paused: break;
+    case ProgramStatus::running:
+    case ProgramStatus::error: return false;
+    }
+    status_ = ProgramStatus::running;
+    return true;
+}
+
+bool ProgramExecution::pause() noexcept TAPPET_REALTIME {
+    if (status_ != ProgramStatus::running) return false;
+    status_ = ProgramStatus::paused;
+    left_over_ = false;
+    return true;
+}
+
+bool ProgramExecution::stop() noexcept TAPPET_REALTIME {
+    if (status_ == ProgramStatus::ready || status_ == ProgramStatus::stopped) return false;
+    status_ = ProgramStatus::stopped;
+    context_.position = {};
+    left_over_ = waits_ = false;
+    return true;
+}
+
+void ProgramExecution::step(Time now) noexcept TAPPET_REALTIME {
+    if (status_ == ProgramStatus::running) run(now, policy_.statements);
+}
+
+bool ProgramExecution::single_step(Time now) noexcept TAPPET_REALTIME {
+    if (status_ != ProgramStatus::paused) return false;
+    run(now, 1);
+    left_over_ = false;
+    return true;
+}
+
+void ProgramExecution::run(Time now, std::uint32_t statements) noexcept TAPPET_REALTIME {
+    context_.now = now;
+    left_over_ = waits_ = false;
+    // A turn behind one that failed begins with a statement, so that there are no more of them than
+    // statements.
+    for (std::uint32_t turn = 0, turns = statements; turn <= turns; ++turn) {
+        switch (code_.run(*code_.tables, context_, statements)) {
+        case ProgramReturn::ended: status_ = ProgramStatus::stopped; return;
+        case ProgramReturn::waits: waits_ = true; return;
+        case ProgramReturn::left_over: left_over_ = true; return;
+        case ProgramReturn::failed: break;
+        }
+        ++failures_;
+        if (!policy_.continue_on_error) {
+            status_ = ProgramStatus::error;
+            return;
+        }
+        context_.position = {.node = past_failure(*code_.tables, context_.position.node)};
+    }
+    left_over_ = true;
+}
+
+Time ProgramExecution::wakes() const noexcept TAPPET_REALTIME {
+    if (status_ != ProgramStatus::running) return never;
+    return waits_ ? code_.wakes(*code_.tables, context_) : context_.now;
+}
+
+} // namespace tappet

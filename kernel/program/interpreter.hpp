@@ -1,0 +1,43 @@
+// The loaded form of programs: their tables are walked as they are (thesis 5.1.3). What it does with a node:
+//
+// clang-format off
+//   entered       the time is noted; then the action: its instructions in order, once. That is one statement.
+//   again         an instruction could not act yet: the program waits, the next step executes the action once more.
+//   arcs          asked in their order behind the action, and in each later step without it; the first open one is
+//                 followed. An arc is open when its time has passed and its condition holds.
+//   none open     the program waits. The action of a node that `repeats` is executed again in the next step.
+//   yields        the program waits behind the action although an arc is open.
+//   failed        of an instruction or a condition: on to the node of on_error, or the program has failed there.
+//   left over     the statements are used up: the program stands before the next action.
+// clang-format on
+#pragma once
+
+#include "kernel/program/code.hpp"
+
+namespace tappet {
+
+/// See ProgramCode. Real-time; one call through a pointer for each instruction.
+ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
+                          std::uint32_t& statements) noexcept TAPPET_REALTIME;
+ConditionResult test_condition(const ProgramTables& tables, ProgramContext& context,
+                               ConditionIndex condition) noexcept TAPPET_REALTIME;
+Time program_wakes(const ProgramTables& tables, const ProgramContext& context) noexcept TAPPET_REALTIME;
+
+/// The programs of these tables, which outlive it, walked in memory.
+constexpr ProgramCode interpreted(const ProgramTables& tables) noexcept {
+    return {&tables, &run_program, &test_condition, &program_wakes};
+}
+
+/// Where a program that failed at `node` goes on when errors are to be passed over (thesis 5.1.3): where its
+/// last arc without a time-out leads; that is behind a statement, and out of a loop.
+constexpr NodeIndex past_failure(const ProgramTables& tables, NodeIndex node) noexcept TAPPET_REALTIME {
+    const NodeRow& row = tables.nodes[node];
+    NodeIndex to = end_node;
+    for (std::size_t i = 0; i < row.arcs; ++i) {
+        const ArcRow& arc = tables.arcs[row.first_arc + i];
+        if (arc.after == no_data) to = arc.to;
+    }
+    return to;
+}
+
+} // namespace tappet

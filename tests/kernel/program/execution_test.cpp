@@ -1,0 +1,246 @@
+// Programs as graphs (thesis 5.1.1 to 5.1.3): nodes act once, arcs are asked in order, a program without an
+// open arc waits; its status and its policies.
+#include "tests/kernel/program/fixture.hpp"
+
+#include <gtest/gtest.h>
+
+namespace program_test {
+
+constexpr Time at_ms(std::int64_t ms) { return at_ns(ms * 1'000'000); }
+
+/// Counts how often each of its nodes acted: the first always leads on, the second waits for a bool.
+struct WaitingProgram {
+    TableBuilder table{};
+    DataOffset one = table.value(ScriptInt{1});
+    DataOffset first = table.value(ScriptInt{0});
+    DataOffset second = table.value(ScriptInt{0});
+    DataOffset third = table.value(ScriptInt{0});
+    DataOffset go = table.value(false);
+    ConditionIndex may_go = table.condition({}, go);
+    WaitingProgram() {
+        table.node({increment(first, one)});
+        table.arc(1);
+        table.node({increment(second, one)});
+        table.arc(2, may_go);
+        table.node({increment(third, one)});
+        table.arc(end_node);
+    }
+};
+
+TEST(A_program, waits_where_no_arc_is_open_and_acts_there_once) {
+    WaitingProgram p;
+    Running running{p.table};
+    EXPECT_EQ(running.execution.status(), ProgramStatus::ready);
+    EXPECT_EQ(running.run(), ProgramStatus::running);
+    running.step(at_ms(1));
+    running.step(at_ms(2));
+    EXPECT_EQ(running.get<ScriptInt>(p.first), 1);
+    EXPECT_EQ(running.get<ScriptInt>(p.second), 1);
+    EXPECT_EQ(running.get<ScriptInt>(p.third), 0);
+    EXPECT_EQ(running.execution.line(), 2);
+    EXPECT_EQ(running.execution.wakes(), never);
+    running.put(p.go, true);
+    EXPECT_EQ(running.step(at_ms(3)), ProgramStatus::stopped);
+    EXPECT_EQ(running.get<ScriptInt>(p.third), 1);
+}
+
+TEST(A_program, repeats_the_action_of_a_node_that_says_so_in_each_step) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset count = table.value(ScriptInt{0});
+    const DataOffset go = table.value(false);
+    table.node({increment(count, one)});
+    table.arc(end_node, table.condition({}, go));
+    table.last().repeats = true;
+    Running running{table};
+    running.run();
+    running.step(at_ms(1));
+    running.step(at_ms(2));
+    EXPECT_EQ(running.get<ScriptInt>(count), 3);
+    running.put(go, true);
+    EXPECT_EQ(running.step(at_ms(3)), ProgramStatus::stopped);
+    EXPECT_EQ(running.get<ScriptInt>(count), 4) << "the action, then the arcs";
+}
+
+TEST(A_program, that_yields_goes_on_in_the_next_step) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset count = table.value(ScriptInt{0});
+    table.node({increment(count, one)});
+    table.arc(0);
+    table.last().yields = true;
+    Running running{table};
+    for (int step = 0; step < 5; ++step) {
+        step == 0 ? running.run() : running.step(at_ms(step));
+        EXPECT_EQ(running.get<ScriptInt>(count), step + 1);
+        EXPECT_FALSE(running.execution.left_over());
+    }
+}
+
+TEST(Arcs, are_followed_in_their_order) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset count = table.value(ScriptInt{0});
+    const DataOffset yes = table.value(true);
+    const DataOffset no = table.value(false);
+    table.node({});
+    table.arc(end_node, table.condition({}, no)).arc(1, table.condition({}, yes)).arc(end_node);
+    table.node({increment(count, one)});
+    table.arc(end_node);
+    Running running{table};
+    EXPECT_EQ(running.run(), ProgramStatus::stopped);
+    EXPECT_EQ(running.get<ScriptInt>(count), 1);
+}
+
+TEST(A_time_out, opens_its_arc_when_its_time_has_passed_since_the_node_was_entered) {
+    TableBuilder table;
+    const DataOffset after = table.value(Duration{20ms});
+    const DataOffset go = table.value(false);
+    table.node({});
+    table.arc(1, table.condition({}, go)).arc(end_node, no_condition, after);
+    table.node({fail_instruction()});
+    Running running{table};
+    EXPECT_EQ(running.run(at_ms(100)), ProgramStatus::running);
+    EXPECT_EQ(running.execution.wakes(), at_ms(120));
+    EXPECT_EQ(running.step(at_ms(119)), ProgramStatus::running);
+    EXPECT_EQ(running.execution.wakes(), at_ms(120));
+    EXPECT_EQ(running.step(at_ms(120)), ProgramStatus::stopped);
+    EXPECT_EQ(running.execution.wakes(), never);
+}
+
+TEST(An_action_that_fails, puts_the_program_in_error_at_its_node) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset behind = table.value(ScriptInt{0});
+    table.node({});
+    table.arc(1);
+    table.node({fail_instruction(), increment(behind, one)});
+    table.arc(2);
+    table.node({increment(behind, one)});
+    table.arc(end_node);
+    Running running{table};
+    EXPECT_EQ(running.run(), ProgramStatus::error);
+    EXPECT_EQ(running.execution.line(), 2);
+    EXPECT_EQ(running.execution.failures(), 1u);
+    EXPECT_EQ(running.step(at_ms(1)), ProgramStatus::error);
+    EXPECT_EQ(running.get<ScriptInt>(behind), 0);
+    EXPECT_FALSE(running.execution.start()) << "an error is left by stop or reset";
+    EXPECT_TRUE(running.execution.stop());
+    EXPECT_EQ(running.execution.status(), ProgramStatus::stopped);
+}
+
+TEST(An_action_that_fails, goes_where_its_node_says) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset caught = table.value(ScriptInt{0});
+    table.node({fail_instruction()}, 1);
+    table.arc(end_node);
+    table.node({increment(caught, one)});
+    table.arc(end_node);
+    Running running{table};
+    EXPECT_EQ(running.run(), ProgramStatus::stopped);
+    EXPECT_EQ(running.get<ScriptInt>(caught), 1);
+    EXPECT_EQ(running.execution.failures(), 0u);
+}
+
+TEST(A_condition_that_fails, is_a_failure_of_its_node) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset zero = table.value(ScriptInt{0});
+    const DataOffset to = table.scratch();
+    table.node({});
+    table.arc(
+        end_node,
+        table.condition({TableBuilder::with(find_binary(Operator::divide, script_int, script_int).instruction,
+                                            to, one, zero)},
+                        to));
+    Running running{table};
+    EXPECT_EQ(running.run(), ProgramStatus::error);
+    EXPECT_EQ(running.execution.line(), 1);
+}
+
+TEST(A_program_that_continues_on_error, passes_over_what_fails) {
+    TableBuilder table;
+    const DataOffset one = table.value(ScriptInt{1});
+    const DataOffset behind = table.value(ScriptInt{0});
+    table.node({fail_instruction()});
+    table.arc(1);
+    table.node({increment(behind, one)});
+    table.arc(0);
+    Running running{table, {.statements = 10, .continue_on_error = true}};
+    EXPECT_EQ(running.run(), ProgramStatus::running);
+    EXPECT_TRUE(running.execution.left_over());
+    EXPECT_EQ(running.get<ScriptInt>(behind), 5) << "ten statements: each second one fails";
+    EXPECT_EQ(running.execution.failures(), 5u);
+}
+
+TEST(A_step, executes_at_most_so_many_statements_and_says_what_it_left) {
+    for (const std::uint32_t bound : {1u, 2u, 7u, 100u}) {
+        TableBuilder table;
+        const DataOffset one = table.value(ScriptInt{1});
+        const DataOffset count = table.value(ScriptInt{0});
+        table.node({increment(count, one)});
+        table.arc(0); // for ever
+        Running running{table, {.statements = bound}};
+        running.run(at_ms(5));
+        EXPECT_TRUE(running.execution.left_over());
+        EXPECT_EQ(running.execution.wakes(), at_ms(5)) << "at once";
+        EXPECT_EQ(running.get<ScriptInt>(count), bound);
+        running.step(at_ms(6));
+        EXPECT_EQ(running.get<ScriptInt>(count), 2 * bound);
+    }
+}
+
+TEST(A_paused_program, executes_one_statement_when_it_is_stepped_from_outside) {
+    WaitingProgram p;
+    Running running{p.table};
+    EXPECT_FALSE(running.execution.pause()) << "only what runs is paused";
+    ASSERT_TRUE(running.execution.start());
+    ASSERT_TRUE(running.execution.pause());
+    EXPECT_EQ(running.step(at_ms(1)), ProgramStatus::paused);
+    EXPECT_EQ(running.get<ScriptInt>(p.first), 0) << "the engine's step passes it by";
+    ASSERT_TRUE(running.execution.single_step(at_ms(2)));
+    EXPECT_EQ(running.get<ScriptInt>(p.first), 1);
+    EXPECT_EQ(running.get<ScriptInt>(p.second), 0);
+    ASSERT_TRUE(running.execution.single_step(at_ms(3)));
+    EXPECT_EQ(running.get<ScriptInt>(p.second), 1);
+    EXPECT_FALSE(running.execution.left_over());
+    ASSERT_TRUE(running.execution.start());
+    running.put(p.go, true);
+    EXPECT_EQ(running.step(at_ms(4)), ProgramStatus::stopped);
+    EXPECT_FALSE(running.execution.single_step(at_ms(5)));
+}
+
+TEST(A_stopped_program, starts_from_its_first_node_and_keeps_its_data_until_it_is_reset) {
+    WaitingProgram p;
+    Running running{p.table};
+    running.run();
+    EXPECT_FALSE(running.execution.reset()) << "it runs";
+    ASSERT_TRUE(running.execution.stop());
+    EXPECT_EQ(running.step(at_ms(1)), ProgramStatus::stopped);
+    running.run(at_ms(2));
+    EXPECT_EQ(running.get<ScriptInt>(p.first), 2);
+    ASSERT_TRUE(running.execution.stop());
+    ASSERT_TRUE(running.execution.reset());
+    EXPECT_EQ(running.execution.status(), ProgramStatus::ready);
+    EXPECT_EQ(running.get<ScriptInt>(p.first), 0);
+}
+
+TEST(An_instruction_that_skips, leaves_out_what_follows_it) {
+    for (const bool is : {false, true}) {
+        TableBuilder table;
+        const DataOffset one = table.value(ScriptInt{1});
+        const DataOffset left = table.value(is);
+        const DataOffset skipped = table.value(ScriptInt{0});
+        const DataOffset behind = table.value(ScriptInt{0});
+        table.node({TableBuilder::with(skip_instruction(true, 2), no_data, left), increment(skipped, one),
+                    increment(skipped, one), increment(behind, one)});
+        table.arc(end_node);
+        Running running{table};
+        EXPECT_EQ(running.run(), ProgramStatus::stopped);
+        EXPECT_EQ(running.get<ScriptInt>(skipped), is ? 2 : 0);
+        EXPECT_EQ(running.get<ScriptInt>(behind), 1);
+    }
+}
+
+} // namespace program_test
