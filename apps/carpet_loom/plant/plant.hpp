@@ -109,6 +109,7 @@ private:
     // weaving.cpp: what happens at the angles of a turn, and its measures
     void pass_marks(double position_deg) noexcept TAPPET_REALTIME;
     void beat_up() noexcept TAPPET_REALTIME;
+    void note_pattern() noexcept TAPPET_REALTIME;
     void open_valve(Time at) noexcept TAPPET_REALTIME;
     void measure_motion(double turned_deg, Duration dt) noexcept TAPPET_REALTIME;
     void record_standstill(Time at) noexcept TAPPET_REALTIME;

@@ -135,6 +135,20 @@ void write_stops(JsonWriter& json, const Report& report) noexcept {
     json.close(']');
 }
 
+void write_patterns(JsonWriter& json, const Report& report) noexcept {
+    json.name("patterns");
+    json.open('[');
+    for (const LiftedPattern& each : report.patterns) {
+        json.separate();
+        json.open('{');
+        json.field("pattern", std::uint64_t{each.pattern});
+        json.field("picks", each.picks);
+        json.field("first_at_pick", each.first_at_pick);
+        json.close('}');
+    }
+    json.close(']');
+}
+
 void write_damage(JsonWriter& json, const Damage& damage) noexcept {
     json.name("damage");
     json.open('{');
@@ -166,6 +180,7 @@ std::size_t write_json(const Report& report, std::span<char> buffer) noexcept {
     json.field("weft_breaks_injected", report.weft_breaks_injected);
     json.field("warp_breaks_injected", report.warp_breaks_injected);
     json.field("patterns_repeated", report.patterns_repeated);
+    write_patterns(json, report);
     json.field("yarn_cuts", report.yarn_cuts);
     json.field("stops_total", report.stops_total);
     write_stops(json, report);

@@ -31,6 +31,13 @@ struct Stop {
     bool operator==(const Stop&) const = default;
 };
 
+/// One pattern that the harnesses were lifted to.
+struct LiftedPattern {
+    std::uint16_t pattern = 0;
+    std::uint64_t picks = 0;
+    std::uint64_t first_at_pick = 0; // picks woven before
+};
+
 /// Sizes of errors, in bins of 0.01 degree up to 20 degrees; beyond that only the maximum knows.
 class ErrorHistogram {
 public:
@@ -66,6 +73,7 @@ struct Damage {
 
 struct Report {
     static constexpr std::size_t most_stops = 256;
+    static constexpr std::size_t most_patterns = 16;
 
     std::uint64_t seed = 0;
     double time_s = 0.0;
@@ -77,6 +85,8 @@ struct Report {
     std::uint64_t weft_breaks_injected = 0;
     std::uint64_t warp_breaks_injected = 0;
     std::uint64_t patterns_repeated = 0; // the dobby was offered no new pick
+    Bounded<LiftedPattern, most_patterns>
+        patterns{}; // in the order of their first picks; those that found room
     std::uint64_t yarn_cuts = 0;
     std::uint64_t stops_total = 0;
     Bounded<Stop, most_stops> stops{}; // the first ones

@@ -29,6 +29,7 @@ void Plant::pass_marks(double position_deg) noexcept TAPPET_REALTIME {
             break;
         case Mark::level:
             if (!dobby_.cross(step_end_, frames_)) ++report_.patterns_repeated;
+            note_pattern();
             break;
         }
         const double here = marks[next_mark_].deg;
@@ -36,6 +37,15 @@ void Plant::pass_marks(double position_deg) noexcept TAPPET_REALTIME {
         const double there = marks[next_mark_].deg;
         next_mark_deg_ += there > here ? there - here : there + 360.0 - here;
     }
+}
+
+void Plant::note_pattern() noexcept TAPPET_REALTIME {
+    for (LiftedPattern& each : report_.patterns)
+        if (each.pattern == dobby_.pattern()) {
+            ++each.picks;
+            return;
+        }
+    static_cast<void>(report_.patterns.push({dobby_.pattern(), 1, report_.picks}));
 }
 
 void Plant::beat_up() noexcept TAPPET_REALTIME {

@@ -59,6 +59,10 @@ TEST_P(Weaving, stops_for_broken_wefts_and_warp_ends_within_ten_degrees_of_the_s
     EXPECT_LE(report.picks_by_hand, report.weft_breaks_injected);
     EXPECT_LE(report.empty_turns, 1u);
     EXPECT_EQ(report.patterns_repeated, 0u);
+    std::uint64_t picks_lifted = 0;
+    for (const loom::LiftedPattern& each : report.patterns) picks_lifted += each.picks;
+    EXPECT_EQ(report.patterns.size(), 3u);
+    EXPECT_GE(picks_lifted, report.picks);
     EXPECT_EQ(rig.component<MainShaft>("shaft").stops.last() > 0, true);
     EXPECT_EQ(rig.run().instance().lost_emissions(), 0u);
 }

@@ -28,6 +28,8 @@ TEST(Json, holds_every_stop_and_fits_its_stated_buffer) {
     Stop stop{StopCause::operator_stop, 123'456'789'012'345, ~std::uint64_t{0}, 309.9994, -0.0006, 47.25};
     while (report.stops.push(stop)) {
     }
+    while (report.patterns.push({0xffff, ~std::uint64_t{0}, ~std::uint64_t{0}})) {
+    }
     std::vector<char> buffer(64 * 1024);
     const std::size_t length = write_json(report, buffer);
     ASSERT_GT(length, 0U);
