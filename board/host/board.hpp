@@ -19,7 +19,8 @@ inline constexpr Board host{
                                    line("button_acknowledge", 5), line("weft_release", 8), line("brake", 9),
                                    line("lamp_run", 10), line("lamp_stop", 11), line("lamp_fault", 12),
                                    line("yarn_cutter", 13)),
-                      board_device("loom-utility", "modbus", "twin")),
+                      board_device("loom-utility", "modbus", "twin"),
+                      board_device("tracking-camera", "camera", "simulated")),
     // A developer's kernel is rarely a real-time one, and its other work goes on.
     .only_warned = warn_only("realtime-kernel", "clock-source", "rt-throttling", "cpu-governor",
                              "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap",

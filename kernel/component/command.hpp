@@ -342,8 +342,8 @@ struct CommandFunctionOf {
         return answer;
     }
     template <std::size_t... I>
-    static R call_packed(void* component, std::byte* values, std::index_sequence<I...>) noexcept
-        TAPPET_REALTIME {
+    static R call_packed(void* component, [[maybe_unused]] std::byte* values,
+                         std::index_sequence<I...>) noexcept TAPPET_REALTIME {
         return call(*static_cast<Component*>(component), Unpacked<P>{values + Pack::offsets[I]}...);
     }
     static R run(void* component, std::byte* values) noexcept TAPPET_REALTIME {

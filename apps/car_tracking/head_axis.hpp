@@ -1,0 +1,61 @@
+// One axis of the camera's head: what its counts mean, and how fast it must turn to come to an angle and
+// stand there.
+#pragma once
+
+#include "apps/car_tracking/camera_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tappet::car_tracking {
+
+/// All real-time; angles in degrees.
+class HeadAxis {
+public:
+    /// Once per step, with the device's reading.
+    void read(const AxisReading& reading) noexcept TAPPET_REALTIME {
+        steps_standing_ = reading.counts == reading_.counts ? steps_standing_ + 1 : 0;
+        reading_ = reading;
+    }
+    /// Where it stood at this reading counts as `angle`.
+    void call_it(double angle) noexcept TAPPET_REALTIME { offset_ = angle - degrees_of(reading_.counts); }
+    /// The index mark is at `angle`. False when the mark was not passed yet.
+    bool take_index(double angle) noexcept TAPPET_REALTIME {
+        if (reading_.is_index_seen) offset_ = angle - degrees_of(reading_.index_counts);
+        return reading_.is_index_seen;
+    }
+    void go_to(double angle) noexcept TAPPET_REALTIME { target_ = angle; }
+
+    [[nodiscard]] double angle() const noexcept TAPPET_REALTIME {
+        return degrees_of(reading_.counts) + offset_;
+    }
+    [[nodiscard]] bool is_index_seen() const noexcept TAPPET_REALTIME { return reading_.is_index_seen; }
+    [[nodiscard]] bool arrived() const noexcept TAPPET_REALTIME {
+        return std::abs(target_ - angle()) < 2.0 * close_enough && steps_standing_ >= 3;
+    }
+    /// The speed to turn at, in deg/s, so that it brakes in time.
+    [[nodiscard]] double speed() const noexcept TAPPET_REALTIME {
+        const double way = target_ - angle();
+        const double far = std::abs(way);
+        if (far < close_enough) return 0.0;
+        const double size = std::min({most_speed, std::sqrt(2.0 * braking * far), near_gain * far});
+        return way > 0.0 ? size : -size;
+    }
+
+private:
+    static constexpr double close_enough = 0.02;
+    static constexpr double most_speed = 120.0; // deg/s
+    static constexpr double braking = 300.0;    // deg/s^2
+    static constexpr double near_gain = 18.0;   // 1/s
+
+    static double degrees_of(std::int64_t counts) noexcept TAPPET_REALTIME {
+        return static_cast<double>(counts) / AxisReading::counts_per_degree;
+    }
+
+    AxisReading reading_{};
+    double offset_ = 0.0;
+    double target_ = 0.0;
+    int steps_standing_ = 0;
+};
+
+} // namespace tappet::car_tracking

@@ -1,0 +1,15 @@
+// The picture of a run: the field from above with the car's true and located track and where the camera
+// looked, and below it the states over time.
+#pragma once
+
+#include "apps/car_tracking/host/virtual_run.hpp"
+
+#include <span>
+#include <string>
+
+namespace tappet::car_tracking {
+
+/// An SVG document.
+[[nodiscard]] std::string picture_of(std::span<const Moment> moments, std::span<const Look> looks);
+
+} // namespace tappet::car_tracking
