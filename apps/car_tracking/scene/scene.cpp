@@ -29,11 +29,13 @@ void Scene::Axis::advance(double seconds) {
     index_counts = counts_at(index);
 }
 
-std::int64_t Scene::Axis::counts_at(double at) const {
+std::int64_t Scene::Axis::counts_at(double at) const noexcept TAPPET_REALTIME {
     return static_cast<std::int64_t>(std::floor((at - origin) * AxisReading::counts_per_degree + 0.5));
 }
 
-AxisReading Scene::Axis::reading() const { return {counts_at(angle), is_index_seen, index_counts}; }
+AxisReading Scene::Axis::reading() const noexcept TAPPET_REALTIME {
+    return {counts_at(angle), is_index_seen, index_counts};
+}
 
 Scene::Scene(std::uint64_t seed)
     : random_{seed},
@@ -59,11 +61,7 @@ void Scene::turn(double pan, double tilt) noexcept TAPPET_REALTIME {
     tilt_.wanted_speed = tilt;
 }
 
-HeadReading Scene::head() const noexcept TAPPET_REALTIME {
-    HeadReading now;
-    TAPPET_ESCAPE("a simulated head stands for its registers", now = {pan_.reading(), tilt_.reading()});
-    return now;
-}
+HeadReading Scene::head() const noexcept TAPPET_REALTIME { return {pan_.reading(), tilt_.reading()}; }
 
 bool Scene::expose(Duration exposure) noexcept TAPPET_REALTIME {
     if (!is_on_ || sensor_ == Sensor::asked || sensor_ == Sensor::exposing || sensor_ == Sensor::reading_out)

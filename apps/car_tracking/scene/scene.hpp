@@ -49,8 +49,8 @@ private:
         bool is_index_seen = false;
         std::int64_t index_counts = 0;
         void advance(double seconds);
-        [[nodiscard]] std::int64_t counts_at(double at) const;
-        [[nodiscard]] AxisReading reading() const;
+        [[nodiscard]] std::int64_t counts_at(double at) const noexcept TAPPET_REALTIME;
+        [[nodiscard]] AxisReading reading() const noexcept TAPPET_REALTIME;
     };
     enum class Sensor : std::uint8_t { idle, asked, exposing, reading_out, ready };
 
