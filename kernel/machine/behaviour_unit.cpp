@@ -60,16 +60,20 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const ProgramCod
         if (type.is_program()) continue;
         const ResolvedRoom room = take_room(ground, measure(type.machine));
         if (ground.full()) return Sentence{"its states do not fit; make the slot larger"};
-        static_cast<void>(resolve_into(type.machine, room));
-        views[t] = {type.machine,      room.triggers,    room.plans.data(),
-                    room.cells.data(), room.arcs.data(), room.programs.data()};
+        views[t] = resolve_into(type.machine, room);
     }
     for (std::size_t i = 0; i < unit.instances.size(); ++i) {
         const BehaviourInstance& row = unit.instances[i];
         UnitPart& part = parts[i];
         part.row = &row;
         part.type = &unit.types[row.type];
-        if (!part.type->is_program()) part.machine = make<StateMachineExecution>(ground, 1);
+        StateMachineBinding binding;
+        if (!part.type->is_program()) {
+            part.machine = make<StateMachineExecution>(ground, 1);
+            const MachineMemory kept = take_machine_memory(ground, views[row.type].sizes);
+            binding.history = kept.history;
+            binding.deferred = kept.deferred;
+        }
         const std::size_t bytes = part.type->tables.layout.size;
         part.data = ground.take(bytes, data_alignment);
         part.links = make<ProgramLink>(ground, part.type->tables.links.size());
@@ -81,7 +85,12 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const ProgramCod
         bind_links(unit, part, ground, machine, driven);
         if (ground.full()) return Sentence{"its commands do not fit; make the slot larger"};
         if (part.machine == nullptr) continue;
-        part.machine->bind(views[row.type], machine.component(driven));
+        binding.machine = views[row.type];
+        binding.component = machine.component(driven);
+        binding.code = row.type < code.size() ? code[row.type] : ProgramCode{};
+        binding.data = part.data;
+        binding.links = part.links;
+        if (!part.machine->bind(binding)) return Sentence{"its programs have no code"};
         for (std::size_t e = 0; e < events.size(); ++e)
             for (std::size_t t = 0; t < views[row.type].triggers.size(); ++t)
                 if (views[row.type].triggers[t] == events[e])
@@ -89,7 +98,6 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const ProgramCod
     }
     parts_ = {parts, unit.instances.size()};
     routes_ = {routes, events.size() * unit.instances.size()};
-    static_cast<void>(code);
     static_cast<void>(options);
     return {};
 }
@@ -152,10 +160,9 @@ Time BehaviourUnit::next() const noexcept TAPPET_REALTIME {
 }
 
 void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
-    static_cast<void>(packed);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const TriggerIndex trigger = routes_[event * parts_.size() + i].trigger;
-        if (trigger != no_trigger) static_cast<void>(parts_[i].machine->dispatch(trigger, now));
+        if (trigger != no_trigger) static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
     }
 }
 

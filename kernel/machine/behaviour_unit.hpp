@@ -73,11 +73,22 @@ constexpr ResolvedRoom take_room(detail::UnitGround& ground, const ResolvedSizes
     auto* cells = ground.take<ArcIndex>(sizes.states * sizes.triggers);
     auto* arcs = ground.take<StateArc>(sizes.arcs);
     auto* programs = ground.take<StateProgram>(sizes.programs);
-    return {{plans, sizes.states},
-            {triggers, sizes.triggers},
-            {cells, sizes.states * sizes.triggers},
-            {arcs, sizes.arcs},
-            {programs, sizes.programs}};
+    auto* regions = ground.take<StateIndex>(sizes.regions);
+    auto* captured = ground.take<std::uint16_t>(sizes.triggers);
+    return {{plans, sizes.states},     {triggers, sizes.triggers}, {cells, sizes.states * sizes.triggers},
+            {arcs, sizes.arcs},        {programs, sizes.programs}, {regions, sizes.regions},
+            {captured, sizes.triggers}};
+}
+
+/// Of one instance, what its execution keeps from step to step.
+struct MachineMemory {
+    std::span<StateIndex> history{};
+    std::span<std::byte> deferred{};
+};
+constexpr MachineMemory take_machine_memory(detail::UnitGround& ground, const ResolvedSizes& sizes) noexcept {
+    const std::size_t bytes = sizes.captured * StateMachineExecution::max_raised_events;
+    auto* history = ground.take<StateIndex>(sizes.history);
+    return {{history, sizes.history}, {ground.take(bytes, data_alignment), bytes}};
 }
 
 /// What a unit that hears so many events takes of memory aligned as std::max_align_t. The same sums as
@@ -91,7 +102,10 @@ constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
         if (!type.is_program()) static_cast<void>(take_room(ground, measure(type.machine)));
     for (const BehaviourInstance& instance : unit.instances) {
         const BehaviourType& type = unit.types[instance.type];
-        if (!type.is_program()) ground.take<StateMachineExecution>(1);
+        if (!type.is_program()) {
+            ground.take<StateMachineExecution>(1);
+            static_cast<void>(take_machine_memory(ground, measure(type.machine)));
+        }
         ground.take(type.tables.layout.size, data_alignment);
         ground.take<ProgramLink>(type.tables.links.size());
         std::size_t slots = 0;

@@ -77,6 +77,9 @@ private:
             if (!row.parent.empty() && names_.parent[i] == no_state)
                 return fail(state_text(i), " is in an unknown state \"", row.parent, "\"; ",
                             cure_for(row.parent));
+            if (!row.region.empty() && row.parent.empty())
+                return fail(state_text(i), " is in region \"", row.region,
+                            "\" of no state; regions lie in a composite: add in(...)");
         }
         return true;
     }
@@ -100,7 +103,7 @@ private:
         for (std::size_t i = 0; i < names_.states(); ++i) {
             const StateRow& row = table_.states[i];
             const StateIndex outer = names_.parent[i];
-            const StateIndex first = outer == no_state ? names_.initial_top : names_.initial_inside[outer];
+            const StateIndex first = names_.region_initial[names_.region_of[i]];
             if (row.initial && first != i)
                 return fail(state_text(i), " is a second initial state ", where(outer), " beside \"",
                             name(first), "\"; keep one");
@@ -116,13 +119,27 @@ private:
         }
         if (names_.initial_top == no_state) return fail("no top state is initial; mark the one to start in");
         for (std::size_t i = 0; i < names_.states(); ++i)
-            if (names_.composite[i] && names_.initial_inside[i] == no_state)
-                return fail(state_text(i),
-                            " is composite and none of its states is initial; mark the one to enter");
+            if (Sentence fault = check_regions(static_cast<StateIndex>(i)); !fault.empty())
+                return fail(state_text(i), fault);
         if (names_.final_state == no_state)
             return fail(
                 "no state is final; mark the safe state that the machine may be brought to from everywhere");
         return true;
+    }
+
+    [[nodiscard]] constexpr Sentence check_regions(StateIndex state) const {
+        for (std::size_t r = 0; r < names_.region_count[state]; ++r) {
+            const std::size_t region = std::size_t{names_.first_region[state]} + r;
+            const std::string_view called = table_.states[names_.region_name[region]].region;
+            if (called.empty() && names_.region_count[state] > 1)
+                return Sentence{" has regions, and \"", name(names_.region_name[region]),
+                                "\" is in none of them; give it region(...)"};
+            if (names_.region_initial[region] != no_state) continue;
+            if (called.empty())
+                return Sentence{" is composite and none of its states is initial; mark the one to enter"};
+            return Sentence{" has no initial state in region \"", called, "\"; mark the one to enter"};
+        }
+        return {};
     }
 
     constexpr bool check_transitions() {
@@ -149,15 +166,52 @@ private:
                 return fail(
                     transition_text(t),
                     " is internal and has no event, so it would fire in every step; use run<> of the state");
-            if (row.to.empty() && row.then.empty())
+            if (row.to.empty() && row.then.empty() && !row.has_otherwise)
                 return fail(transition_text(t), " is internal and does nothing; give it then<>, or drop it");
+            if (!check_ends(t)) return false;
         }
         return true;
+    }
+    // What regions, histories and else branches ask of a row.
+    constexpr bool check_ends(std::size_t t) {
+        const TransitionRow& row = table_.transitions[t];
+        if (row.enters != EntryKind::initial && (row.to.empty() || !names_.composite[names_.to[t]]))
+            return fail(transition_text(t), " enters by history, and \"", row.to,
+                        "\" has no states inside; lead it to a composite state");
+        if (row.has_otherwise && !row.on_event)
+            return fail(transition_text(t),
+                        " has an else branch and no event; write a second transition behind it");
+        if (row.has_otherwise && row.guard.empty() && !has_precondition(names_.to[t]))
+            return fail(transition_text(t), " has an else branch and nothing to refuse it; give it guard<>");
+        if (!row.otherwise_to.empty() && names_.otherwise_to[t] == no_state)
+            return fail(transition_text(t), " leads to an unknown state \"", row.otherwise_to,
+                        "\" otherwise; ", cure_for(row.otherwise_to));
+        for (const StateIndex to : {names_.to[t], names_.otherwise_to[t]})
+            if (to != no_state && crosses(names_.from[t], to))
+                return fail(transition_text(t),
+                            " leads from one region into another of the same state, and both stay active; "
+                            "lead it out of that state, or to that state itself");
+        return true;
+    }
+    [[nodiscard]] constexpr bool has_precondition(StateIndex state) const {
+        for (StateIndex s = state; s != no_state; s = names_.parent[s])
+            if (!table_.states[s].precondition.empty()) return true;
+        for (std::size_t i = 0; state != no_state && i < names_.states(); ++i)
+            if (!table_.states[i].precondition.empty() && names_.is_inside(static_cast<StateIndex>(i), state))
+                return true;
+        return false;
+    }
+    [[nodiscard]] constexpr bool crosses(StateIndex from, StateIndex to) const {
+        const std::size_t next = names_.shared_depth(from, to) + 1;
+        return names_.region_of[names_.ancestor(from, next)] != names_.region_of[names_.ancestor(to, next)];
     }
 
     // ---- the rows together
 
     constexpr bool check_size() {
+        if (names_.most_active > max_active_states)
+            return fail(names_.most_active, " of its states may be active at the same time and ",
+                        max_active_states, " may; take regions out of it");
         if (names_.triggers > max_state_events)
             return fail("it hears ", names_.triggers, " events and may hear ", max_state_events,
                         "; split it over components");
@@ -180,7 +234,9 @@ private:
     [[nodiscard]] constexpr bool blocks(std::size_t first, std::size_t second) const {
         const TransitionRow& a = table_.transitions[first];
         const TransitionRow& b = table_.transitions[second];
-        if (!a.guard.empty() || names_.trigger[first] != names_.trigger[second]) return false;
+        if (names_.trigger[first] != names_.trigger[second]) return false;
+        if (a.has_otherwise) return a.otherwise_to.empty() || !has_precondition(names_.otherwise_to[first]);
+        if (!a.guard.empty() || has_precondition(names_.to[first])) return false;
         if (!a.timed) return true;
         return b.timed && names_.from[first] == names_.from[second] && a.after <= b.after;
     }
@@ -215,33 +271,61 @@ private:
         for (std::size_t i = 0; i < names_.states(); ++i) {
             if (names_.composite[i] || table_.states[i].final) continue;
             const auto leaf = static_cast<StateIndex>(i);
-            bool left = false;
-            names_.for_each_out(leaf, [&](TransitionIndex t) {
-                left = names_.to[t] != no_state && names_.initial_leaf(names_.to[t]) != leaf;
-                return !left;
-            });
-            if (!left) return fail(state_text(i), " has no way out; give it a transition, or mark it final");
+            if (!is_left(leaf))
+                return fail(state_text(i), " has no way out; give it a transition, or mark it final");
         }
         return true;
     }
 
+    // By a transition of its own or of a state around it, or when another region takes away such a state.
+    [[nodiscard]] constexpr bool is_left(StateIndex leaf) const {
+        bool left = false;
+        const auto leads_away = [&](StateIndex to) {
+            return to != no_state && names_.initial_leaf(to) != leaf;
+        };
+        names_.for_each_out(leaf, [&](TransitionIndex t) {
+            left = leads_away(names_.to[t]) || leads_away(names_.otherwise_to[t]);
+            return !left;
+        });
+        for (StateIndex outer = names_.parent[leaf]; outer != no_state && !left; outer = names_.parent[outer])
+            for (std::size_t t = 0; t < names_.transitions() && names_.region_count[outer] > 1; ++t)
+                for (const StateIndex to : {names_.to[t], names_.otherwise_to[t]})
+                    left = left || (to != no_state && names_.is_inside(names_.from[t], outer) &&
+                                    !names_.is_inside(to, outer));
+        return left;
+    }
+
     constexpr bool check_all_reached() {
         std::array<bool, max_states> reached{};
-        std::array<StateIndex, max_states> open{};
+        std::array<bool, max_states> entered{}; // with what is initial inside
+        std::array<StateIndex, 2 * max_states> open{};
         std::size_t waiting = 0;
         const auto reach = [&](StateIndex state) {
-            const StateIndex leaf = names_.initial_leaf(state);
-            if (reached[leaf]) return;
-            open[waiting++] = leaf;
-            for (StateIndex s = leaf; s != no_state; s = names_.parent[s]) reached[s] = true;
+            if (!reached[state]) open[waiting++] = state;
+            reached[state] = true;
         };
-        reach(names_.initial_top);
-        reach(names_.final_state); // always valid by request
-        while (waiting > 0)
-            names_.for_each_out(open[--waiting], [&](TransitionIndex t) {
-                if (names_.to[t] != no_state) reach(names_.to[t]);
-                return true;
-            });
+        const auto enter = [&](StateIndex state) {
+            if (!entered[state]) open[waiting++] = state;
+            entered[state] = reached[state] = true;
+        };
+        enter(names_.initial_top);
+        enter(names_.final_state); // always valid by request
+        while (waiting > 0) {
+            const StateIndex state = open[--waiting];
+            const StateIndex outer = names_.parent[state];
+            if (outer != no_state) {
+                reach(outer);
+                for (std::size_t r = 0; r < names_.region_count[outer]; ++r)
+                    if (const std::size_t region = names_.first_region[outer] + r;
+                        region != names_.region_of[state])
+                        enter(names_.region_initial[region]);
+            }
+            for (std::size_t r = 0; entered[state] && r < names_.region_count[state]; ++r)
+                enter(names_.region_initial[names_.first_region[state] + r]);
+            for (TransitionIndex t = names_.first_out[state]; t != no_transition; t = names_.next_out[t])
+                for (const StateIndex to : {names_.to[t], names_.otherwise_to[t]})
+                    if (to != no_state) enter(to);
+        }
         for (std::size_t i = 0; i < names_.states(); ++i)
             if (!reached[i])
                 return fail(state_text(i),

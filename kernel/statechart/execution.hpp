@@ -1,55 +1,48 @@
-// Executes a resolved state machine on a component (thesis 5.2.2,
-// 5.2.3). What holds, where UML and the thesis differ:
-//
-// clang-format off
-//   order of a transition  its program, the exits from the inside, the entries from the outside. Thesis 5.2.1 (UML: the
-//                          program between exits and entries): it still sees the state it was written for.
-//   what is left           all states below the innermost one that is around source and target and is neither: a
-//                          transition to itself, to its own composite or into its own sub-state leaves its source
-//                          (UML, external). An internal transition leaves and enters nothing.
-//   what is entered        the target, then the initial state of each composite (UML).
-//   which transition       the innermost state's first, each state's in table order; the first whose guard holds (UML).
-//                          When no guard holds the event is gone; it is not kept for a later state.
-//   step()                 condition transitions until none holds, at most `max_transitions_per_step`; then the run
-//                          programs of the active states, outermost first, so that the more special state has the last
-//                          word; then the events that programs raised. The thesis runs before it checks: here no run
-//                          program acts in a state whose reason to be left is already there.
-//   time-outs              conditions on the time since their source was entered, in table order among the conditions,
-//                          true from `after` on. With a guard: once due, asked in every step.
-//   dispatch()             one event, at most one transition. Condition transitions wait for the next step.
-//   run to completion      no program or guard is interrupted: an event raised by one of them waits, at most
-//                          `max_raised_events` do, and is handled before the outer call returns, in the order raised.
-//                          As many are handled in one call; the rest in the next: left_over() says so.
-//   final and initial      a request for the final state is always valid, also out of a program: then it is served
-//                          before the next transition or event. From the final state a reset is (5.2.2).
-//   start, deactivate      enter the initial state; run the exits from the inside and react to nothing any more.
-// clang-format on
+// Executes a resolved state machine on a component (thesis 5.2). The order of everything, and where UML and
+// the thesis differ, is the table in kernel/statechart/README.md; each line of it has a test.
 #pragma once
 
-#include "kernel/base/bounded.hpp"
 #include "kernel/statechart/resolve.hpp"
+#include "kernel/statechart/status.hpp"
 
 #include <array>
 #include <atomic>
 
 namespace tappet {
 
-enum class StateOutcome : std::uint8_t {
-    taken,   ///< a transition was taken
-    ignored, ///< inactive, no transition for it here, no guard held, or the request is not valid now
-    queued,  ///< called out of a program or guard, or behind events that wait: it will be handled in order
-    lost,    ///< no room to queue it; counted
+class StateMachineExecution;
+
+/// Limits and manners of one execution, as its row says.
+struct StateMachinePolicy {
+    /// In one step, event or request; the rest goes on in the next step, and left_over() says so.
+    std::uint32_t statements = 1000;
+    /// What a fault does beside stopping this machine: its parent comes into error too (thesis 5.2.2).
+    bool escalates = false;
 };
 
-/// What an observer sees: plain data without pointers.
-struct StateMachineStatus {
-    StateIndex active = no_state; ///< the active leaf
-    TransitionIndex last_transition = 0;
-    TransitionIndex reason = 0; ///< the last transition that gave one, see reason()
-    std::uint64_t transitions = 0;
-    std::uint64_t lost_events = 0;
-    Time reason_at{};
-    std::array<Time, max_state_depth> entered_at{}; ///< of the active states, from the outside
+/// Native code for the quick path of a machine. It asks and acts as the table says, on the component and data
+/// of the context, and leaves all bookkeeping to the execution. Each answers `generally` before it did
+/// anything where a program may wait or fail: then the table is walked.
+struct StateMachineFast {
+    static constexpr ArcIndex generally = 0xffff;
+    /// The arc whose programs it has run; no_arc: no guard held.
+    ArcIndex (*dispatch)(ProgramContext&, StateIndex leaf, std::size_t trigger,
+                         const std::byte* arguments) noexcept TAPPET_REALTIME = nullptr;
+};
+
+/// All that an execution works on; it outlives it.
+struct StateMachineBinding {
+    ResolvedView machine{};
+    void* component = nullptr;
+    ProgramCode code{};        ///< of machine.table.programs; without run: C++ functions only
+    std::byte* data = nullptr; ///< see DataLayout; filled from the instance's image
+    const ProgramLink* links = nullptr;
+    void* machines = nullptr;        ///< see ProgramContext
+    std::span<StateIndex> history{}; ///< machine.sizes.history
+    std::span<std::byte> deferred{}; ///< machine.sizes.captured * StateMachineExecution::max_raised_events
+    StateMachineExecution* parent = nullptr;
+    StateMachinePolicy policy{};
+    StateMachineFast fast{};
 };
 
 class StateMachineExecution {
@@ -57,63 +50,100 @@ public:
     static constexpr std::size_t max_transitions_per_step = 8;
     static constexpr std::size_t max_raised_events = 8;
 
-    /// Called after each transition, start and deactivation; `from` or `to` is no_state there. Real-time.
+    /// Called after each transition, start and deactivation with the leaf that was left and the one that was
+    /// entered; no_state there: none. Real-time.
     using Trace = void (*)(void* context, StateIndex from, StateIndex to, TransitionIndex transition,
                            Time now) noexcept TAPPET_REALTIME;
+    /// Called when a program failed, before the parent hears of it. Real-time.
+    using FaultHook = void (*)(void* context, const StateMachineExecution& machine) noexcept TAPPET_REALTIME;
 
     StateMachineExecution() = default;
 
-    /// Before start(), on any thread. The resolved machine and the component outlive the execution. Swapping
-    /// the machine needs an inactive execution.
+    /// Before start(), on any thread, of an inactive execution. False, and nothing is bound, when memory that
+    /// the machine takes is missing. Variables keep their values from one activation to the next.
+    [[nodiscard]] bool bind(const StateMachineBinding& binding) noexcept TAPPET_REALTIME;
+    /// Of a machine whose programs are C++ functions and that has no history.
     void bind(const ResolvedView& machine, void* component) noexcept TAPPET_REALTIME {
-        machine_ = machine;
-        component_ = component;
-        mode_ = inactive;
-        status_ = {};
-        reason_ = {};
-        news_ = 0;
-        stepped_at_ = {};
-        conditions_left_ = false;
-        raised_.clear();
+        StateMachineBinding binding;
+        binding.machine = machine;
+        binding.component = component;
+        static_cast<void>(bind(binding));
     }
     void trace(Trace hook, void* context) noexcept TAPPET_REALTIME {
         trace_ = hook;
         trace_context_ = context;
     }
+    void on_fault(FaultHook hook, void* context) noexcept TAPPET_REALTIME {
+        fault_hook_ = hook;
+        fault_context_ = context;
+    }
 
-    /// Enters the initial state. Ignored when active, or without a machine.
+    // ---- commands of thesis fig. 5.19; `now` never decreases from call to call
+
+    /// Enters the initial state, in reactive mode. Ignored when active, or without a machine.
+    StateOutcome activate(Time now) noexcept TAPPET_REALTIME;
+    /// Automatic mode, and out of a pause: activates what is inactive. Ignored when it is so already.
     StateOutcome start(Time now) noexcept TAPPET_REALTIME;
-    /// Runs the exits and becomes inactive; what waited is dropped.
-    /// Ignored when inactive or called out of a program.
-    StateOutcome deactivate(Time now) noexcept TAPPET_REALTIME;
-    /// One step of the engine. `now` never decreases from call to call.
+    /// Reactive mode, and out of a pause. Run programs that are under way stop where they stand.
+    StateOutcome reactive() noexcept TAPPET_REALTIME;
+    /// From here on single steps only; programs stand where they are, events wait.
+    StateOutcome pause() noexcept TAPPET_REALTIME;
+    /// One step of the engine.
     void step(Time now) noexcept TAPPET_REALTIME;
-    /// An event. `trigger` is an index into machine().triggers; out of range it is ignored.
-    StateOutcome dispatch(std::size_t trigger, Time now) noexcept TAPPET_REALTIME;
+    /// Of a paused machine: one statement of the program in hand, or one transition is asked (5.2.3).
+    /// False: there was nothing to do.
+    bool step_once(Time now) noexcept TAPPET_REALTIME;
+    /// An event. `trigger` is an index into machine().triggers; out of range it is ignored. `arguments` as
+    /// packed by its event; they are copied. Without those that a transition takes it is ignored.
+    StateOutcome dispatch(std::size_t trigger, Time now, const std::byte* arguments = nullptr) noexcept
+        TAPPET_REALTIME;
+    /// Takes the first condition transition to that state whose guard holds; the final state and, from it,
+    /// the initial one are always valid; in that state already it does nothing. `run_once`: in reactive mode
+    /// the run programs of the active states are run once, then.
+    StateOutcome request_state(StateIndex target, Time now, bool run_once = false) noexcept TAPPET_REALTIME;
     /// Valid in every active state; ignored in the final one. `reason` outlives the execution.
     StateOutcome request_final(Time now, std::string_view reason = {}) noexcept TAPPET_REALTIME;
     /// From the final to the initial state; ignored elsewhere and out of a program.
     StateOutcome request_initial(Time now) noexcept TAPPET_REALTIME;
+    /// Runs the exits and becomes inactive; what waited is dropped. After an error in it a second call goes
+    /// on without the program that failed. Ignored when inactive or called out of a program.
+    StateOutcome deactivate(Time now) noexcept TAPPET_REALTIME;
 
-    [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME { return status_.active != no_state; }
+    // ---- what there is to see
+
+    [[nodiscard]] MachineStatus machine_status() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME { return !is(inactive); }
+    [[nodiscard]] bool is_automatic() const noexcept TAPPET_REALTIME { return automatic_; }
+    [[nodiscard]] bool is_paused() const noexcept TAPPET_REALTIME { return is(paused); }
+    [[nodiscard]] bool in_error() const noexcept TAPPET_REALTIME { return is(error); }
+    /// A transition, exit, entry or handle program waits for a later step.
+    [[nodiscard]] bool under_way() const noexcept TAPPET_REALTIME { return is(in_hand); }
+    /// The active leaf; with regions the first. While a transition is under way the innermost state that is
+    /// still, or already, active; no_state between the two.
     [[nodiscard]] StateIndex active() const noexcept TAPPET_REALTIME { return status_.active; }
-    /// True in a state and in every composite around it.
     [[nodiscard]] bool is_in(StateIndex state) const noexcept TAPPET_REALTIME {
-        for (StateIndex s = status_.active; s != no_state; s = machine_.plans[s].parent)
-            if (s == state) return true;
+        for (const ActiveState& each : status_.states)
+            if (each.state == state) return true;
         return false;
     }
     [[nodiscard]] bool is_final() const noexcept TAPPET_REALTIME {
-        return is_active() && machine_.table.states[status_.active].final;
+        return status_.active != no_state && status_.active == machine_.final_state;
     }
-    /// Names of the active states, from the outside.
+    /// Names of the active leaf and of the states around it, from the outside.
     [[nodiscard]] Bounded<std::string_view, max_state_depth> path() const noexcept TAPPET_REALTIME;
+    /// All active states, each before those inside it.
+    [[nodiscard]] const Bounded<ActiveState, max_active_states>& states() const noexcept TAPPET_REALTIME {
+        return status_.states;
+    }
     /// When the active leaf was entered.
     [[nodiscard]] Time entered_at() const noexcept TAPPET_REALTIME {
-        return is_active() ? status_.entered_at[machine_.plans[status_.active].depth - 1u] : Time{};
+        for (const ActiveState& each : status_.states)
+            if (each.state == status_.active) return each.entered_at;
+        return {};
     }
-    /// The earliest time-out that a step has still to look at, `never` when there is none: arm a timer with
-    /// it. It is the time of the last step while something is left over.
+    /// The earliest time at which a step has still to look at a time-out, of a transition or of a program
+    /// that waits; `never` when there is none: arm a timer with it. It is the time of the last step while
+    /// something is left over.
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME;
     /// The last reason that a transition gave, and still gives until another one does.
     [[nodiscard]] std::string_view reason() const noexcept TAPPET_REALTIME { return reason_; }
@@ -128,47 +158,161 @@ public:
         const std::uint64_t word = std::atomic_ref{news_}.load(std::memory_order_relaxed);
         return {word >> transition_bits, static_cast<TransitionIndex>(word)};
     }
-    /// The last call reached a bound with more to do: a condition
-    /// that still held, or an event that still waits.
+    /// The last call reached a bound with more to do: a condition that still held, an event that still waits
+    /// although nothing hinders it, or statements.
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME {
-        return conditions_left_ || !raised_.empty();
+        return conditions_left_ || statements_left_ || (raised_count_ != 0 && !is(in_hand));
+    }
+    [[nodiscard]] std::size_t waiting_events() const noexcept TAPPET_REALTIME { return raised_count_; }
+    /// The program in hand, of a transition, exit, entry or handle; no_node: none.
+    [[nodiscard]] NodeIndex node_in_hand() const noexcept TAPPET_REALTIME {
+        return program_begun_ ? position_.node : no_node;
     }
     [[nodiscard]] const StateMachineStatus& status() const noexcept TAPPET_REALTIME { return status_; }
+    [[nodiscard]] const StateMachineFault& fault() const noexcept TAPPET_REALTIME { return status_.fault; }
     [[nodiscard]] const ResolvedView& machine() const noexcept TAPPET_REALTIME { return machine_; }
+    /// For whoever reads or writes its variables; between its steps.
+    [[nodiscard]] std::byte* data() const noexcept TAPPET_REALTIME { return context_.data; }
 
 private:
-    // What keeps an event from being handled at once; 0: nothing.
-    enum Mode : std::uint8_t { ready = 0, inactive = 1, busy = 2, waiting = 4, final_wanted = 8 };
+    // What keeps a call from taking the quick path; 0: nothing.
+    enum Mode : std::uint8_t {
+        ready = 0,
+        inactive = 1,
+        busy = 2,
+        waiting = 4, // an event or a request
+        final_wanted = 8,
+        in_hand = 16, // a job
+        paused = 32,
+        error = 64,
+        mid_round = 128, // of run, conditions and handle
+    };
+    enum class Job : std::uint8_t { none, acting, exiting, entering, arriving, handling };
+    struct Selected {
+        StateIndex source = no_state;
+        ArcIndex arc = no_arc;
+        bool otherwise = false;
+    };
+    enum class Answer : std::uint8_t { no, yes, otherwise, failed };
 
     void set(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<std::uint8_t>(mode_ | bit); }
     void clear(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<std::uint8_t>(mode_ & ~bit); }
     [[nodiscard]] bool is(Mode bit) const noexcept TAPPET_REALTIME { return (mode_ & bit) != 0; }
 
+    // ---- the quick path: a plain machine of C++ functions
     void call(ProgramSlice programs) const noexcept TAPPET_REALTIME {
         const StateProgram* program = machine_.programs + programs.first;
         for (const StateProgram* end = program + programs.count; program != end; ++program)
-            (*program)(component_);
+            (*program)(context_.component);
     }
-    bool take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME;
-    bool take_condition(Time now) noexcept TAPPET_REALTIME;
     void take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
-    void give_reason(TransitionIndex transition, std::string_view text, Time now) noexcept TAPPET_REALTIME;
-    void serve_final(Time now) noexcept TAPPET_REALTIME;
+    void arrive(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
+    bool take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME;
+    void step_folded(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] const StateArc* folded_condition(std::uint8_t held, Time now) const noexcept
+        TAPPET_REALTIME;
+    StateOutcome dispatch_generally(std::size_t trigger, Time now, const std::byte* arguments) noexcept
+        TAPPET_REALTIME;
+
+    // ---- outer calls
+    void open(Time now) noexcept TAPPET_REALTIME;
     void finish(Time now) noexcept TAPPET_REALTIME;
-    StateOutcome queue(std::size_t trigger, Time now) noexcept TAPPET_REALTIME;
-    [[nodiscard]] ArcIndex first_arc(std::size_t trigger) const noexcept TAPPET_REALTIME {
-        return machine_.cells[first_cell_ + trigger];
+    void serve_final(Time now) noexcept TAPPET_REALTIME;
+    StateOutcome serve_request(Time now) noexcept TAPPET_REALTIME;
+    void handle_raised(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool is_leaving() const noexcept TAPPET_REALTIME {
+        return is(in_hand) && job_.transition == leaving_transition;
     }
-    [[nodiscard]] Time due(const StateArc& arc) const noexcept TAPPET_REALTIME {
-        const Time entered = status_.entered_at[arc.source_level];
+    StateOutcome queue(std::size_t trigger, Time now, const std::byte* arguments) noexcept TAPPET_REALTIME;
+    void drop_waiting() noexcept TAPPET_REALTIME;
+    void give_reason(TransitionIndex transition, std::string_view text, Time now) noexcept TAPPET_REALTIME;
+
+    // ---- the walk: one program or question at a time, so that it may stop anywhere
+    bool go_on(Time now) noexcept TAPPET_REALTIME;
+    bool advance(Time now) noexcept TAPPET_REALTIME;
+    void begin(const StateArc& arc, bool otherwise, Time now) noexcept TAPPET_REALTIME;
+    void begin_request(TransitionIndex number, StateIndex target) noexcept TAPPET_REALTIME;
+    void begin_handle(StateIndex state) noexcept TAPPET_REALTIME;
+    void supersede(TransitionIndex number, StateIndex target) noexcept TAPPET_REALTIME;
+    void depart(Time now) noexcept TAPPET_REALTIME;
+    void settle(Time now) noexcept TAPPET_REALTIME;
+    bool react(std::size_t trigger, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
+    void round(Time now) noexcept TAPPET_REALTIME;
+    bool run_states(Time now) noexcept TAPPET_REALTIME;
+    bool run_state(ActiveState& at, Time now) noexcept TAPPET_REALTIME;
+    bool handle_states(Time now) noexcept TAPPET_REALTIME;
+    Answer find_condition(Time now, Selected& found) noexcept TAPPET_REALTIME;
+    Answer ask(const StateArc& arc, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
+    Answer ask(const ConditionRef& condition, Time now) noexcept TAPPET_REALTIME;
+    bool capture(const TransitionRow& row, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
+    Answer may_enter(StateIndex target, std::size_t kept, EntryKind enters, Time now) noexcept
+        TAPPET_REALTIME;
+    bool perform(const ProgramRef& program, Time now) noexcept TAPPET_REALTIME;
+    ProgramReturn run(ProgramPosition& position, Time now) noexcept TAPPET_REALTIME;
+    void fail(StatePart part, StateIndex state, NodeIndex node, Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] StatePart part_in_hand() const noexcept TAPPET_REALTIME;
+
+    // ---- the active states
+    using Entering = Bounded<StateIndex, max_active_states>;
+    void plan_entries(Entering& into, StateIndex target, std::size_t kept, EntryKind enters) const noexcept
+        TAPPET_REALTIME;
+    [[nodiscard]] StateIndex child_to_enter(StateIndex state, std::size_t region, StateIndex target,
+                                            EntryKind enters) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] StateIndex ancestor(StateIndex state, std::size_t depth) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool is_inside(StateIndex state, StateIndex outer) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::size_t index_of(StateIndex state) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::size_t end_of(std::size_t index) const noexcept TAPPET_REALTIME;
+    void insert(std::size_t index, StateIndex state, Time now) noexcept TAPPET_REALTIME;
+    void remove(std::size_t index) noexcept TAPPET_REALTIME;
+    void find_active() noexcept TAPPET_REALTIME;
+
+    [[nodiscard]] const StateRow& row(StateIndex state) const noexcept TAPPET_REALTIME {
+        return machine_.table.states[state];
+    }
+    [[nodiscard]] bool has_run(StateIndex state) const noexcept TAPPET_REALTIME {
+        return (ran_[state / 64u] >> (state % 64u) & 1u) != 0;
+    }
+    void note_run(StateIndex state) noexcept TAPPET_REALTIME {
+        ran_[state / 64u] |= std::uint64_t{1} << (state % 64u);
+    }
+    [[nodiscard]] static Time due(const StateArc& arc, Time entered) noexcept TAPPET_REALTIME {
         return arc.after >= never - entered ? never : entered + arc.after;
     }
 
     ResolvedView machine_;
-    void* component_ = nullptr;
+    ProgramContext context_;
+    ProgramCode code_;
+    StateMachineFast fast_;
     std::uint8_t mode_ = inactive;
-    std::uint16_t first_cell_ = 0; // of the active leaf
+    bool automatic_ = false;
     bool conditions_left_ = false;
+    bool statements_left_ = false;
+    bool single_ = false;          // a single step: questions count as statements
+    bool run_once_ = false;        // asked for by request_state()
+    bool program_begun_ = false;   // position_ holds
+    std::uint16_t first_cell_ = 0; // of the active leaf of a plain machine
+
+    struct {
+        Job phase = Job::none;
+        bool otherwise = false;
+        bool placed = false; // the state that is being entered stands among the active ones
+        bool all = false;    // once the exit in hand has ended, everything is left
+        EntryKind enters = EntryKind::initial;
+        std::uint8_t kept = 0;
+        std::uint8_t entered = 0;
+        std::uint8_t first = 0, end = 0; // the active states that are left
+        TransitionIndex transition = no_transition;
+        StateIndex source = no_state; // of a handle program: its state
+        StateIndex target = no_state;
+        StateIndex from = no_state; // the leaf, for the trace
+    } job_;
+    ProgramPosition position_; // of the program in hand
+    Entering entering_;
+    Bounded<Selected, max_active_states> selected_; // of one event, that have still to be taken; last first
+    std::uint32_t statements_ = 0;                  // left in this call
+    std::uint32_t asked_ = 0;                       // questions of this round that single steps have had
+    std::array<std::uint64_t, max_states / 64> ran_{};
+    StateMachinePolicy policy_;
     StateMachineStatus status_;
     std::string_view reason_;
     static constexpr int transition_bits = 16;
@@ -177,18 +321,32 @@ private:
     alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t news_ =
         0; // mutable: atomic_ref reads it
     std::string_view final_reason_;
+    StateIndex wanted_state_ = no_state;
+    bool wanted_run_ = false;
     Time stepped_at_{};
     Trace trace_ = nullptr;
     void* trace_context_ = nullptr;
-    Bounded<TriggerIndex, max_raised_events> raised_; // oldest first
+    FaultHook fault_hook_ = nullptr;
+    void* fault_context_ = nullptr;
+    StateMachineExecution* parent_ = nullptr;
+    std::span<StateIndex> history_;
+    std::span<std::byte> deferred_;
+    std::array<TriggerIndex, max_raised_events> raised_{}; // a ring
+    std::uint8_t raised_first_ = 0;
+    std::uint8_t raised_count_ = 0;
 };
 
-inline void StateMachineExecution::take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME {
-    if (arc.gives_reason)
-        give_reason(arc.transition, machine_.table.transitions[arc.transition].because, now);
-    call(arc.programs);
-    for (std::size_t level = arc.kept_levels; level < arc.target_levels; ++level)
-        status_.entered_at[level] = now;
+// What a taken transition leaves and enters. Its programs have run.
+inline void StateMachineExecution::arrive(const StateArc& arc, Time now) noexcept TAPPET_REALTIME {
+    StateIndex state = arc.target;
+    for (std::size_t level = arc.target_levels; level > arc.kept_levels;
+         state = machine_.plans[state].parent) {
+        ActiveState& at = status_.states[--level];
+        at.state = state;
+        at.run = RunPhase::fresh;
+        at.entered_at = now;
+    }
+    status_.states.used = arc.target_levels;
     const StateIndex from = status_.active;
     status_.active = arc.target;
     status_.last_transition = arc.transition;
@@ -197,23 +355,36 @@ inline void StateMachineExecution::take(const StateArc& arc, Time now) noexcept 
     if (trace_ != nullptr) trace_(trace_context_, from, arc.target, arc.transition, now);
 }
 
+inline void StateMachineExecution::take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME {
+    if (arc.gives_reason)
+        give_reason(arc.transition, machine_.table.transitions[arc.transition].because, now);
+    call(arc.programs);
+    arrive(arc, now);
+}
+
 inline bool StateMachineExecution::take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME {
     if (first == no_arc) return false;
     for (const StateArc* arc = machine_.arcs + first;; ++arc) {
-        if (arc->guard == nullptr || arc->guard(component_)) {
+        if (arc->guard == nullptr || arc->guard(context_.component)) {
             take(*arc, now);
             return true;
         }
-        if (arc->last) return false;
+        if (arc->last) break;
     }
+    if (machine_.handles) {
+        const ProgramRef& handle = row(machine_.arcs[first].source).handle;
+        if (handle.call != nullptr) handle.call(context_.component);
+    }
+    return false;
 }
 
-inline StateOutcome StateMachineExecution::dispatch(std::size_t trigger, Time now) noexcept TAPPET_REALTIME {
+inline StateOutcome StateMachineExecution::dispatch(std::size_t trigger, Time now,
+                                                    const std::byte* arguments) noexcept TAPPET_REALTIME {
     if (trigger >= machine_.triggers.size()) return StateOutcome::ignored;
-    if (mode_ != ready) [[unlikely]]
-        return queue(trigger, now);
+    if (mode_ != ready || !machine_.folded) [[unlikely]]
+        return dispatch_generally(trigger, now, arguments);
     mode_ = busy;
-    const bool taken = take_first(first_arc(trigger), now);
+    const bool taken = take_first(machine_.cells[first_cell_ + trigger], now);
     mode_ = static_cast<std::uint8_t>(mode_ & ~busy);
     if (mode_ != ready) [[unlikely]]
         finish(now);

@@ -4,6 +4,7 @@
 
 #include "kernel/statechart/table.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace tappet {
@@ -23,17 +24,27 @@ constexpr StateIndex find_state(const StateMachineTable& table, std::string_view
 struct StateHierarchy {
     const StateMachineTable& table;
     std::array<StateIndex, max_states> parent{};
-    std::array<StateIndex, max_states> initial_inside{}; ///< the first initial state right inside
+    std::array<StateIndex, max_states> initial_inside{}; ///< of its first region
     std::array<bool, max_states> composite{};
     std::array<std::uint8_t, max_states>
         depth{}; ///< a top state has 1; 0: deeper than max_state_depth, or a cycle
     std::array<StateIndex, max_transitions> from{};
     std::array<StateIndex, max_transitions> to{};
+    std::array<StateIndex, max_transitions> otherwise_to{};
     std::array<TriggerIndex, max_transitions> trigger{};
     std::array<TransitionIndex, max_transitions>
         first_with{};                                    ///< by trigger: the transition that first names it
     std::array<TransitionIndex, max_states> first_out{}; ///< by state: its first transition
     std::array<TransitionIndex, max_transitions> next_out{}; ///< of the same source, in table order
+    /// Region 0 is the top of the machine. The regions of a composite have numbers one after the other, in
+    /// the order in which its states first name them; without names it has one.
+    std::array<std::uint16_t, max_states> region_of{};    ///< that the state lies in
+    std::array<std::uint16_t, max_states> first_region{}; ///< of those inside the state
+    std::array<std::uint16_t, max_states> region_count{}; ///< 0: a leaf
+    std::array<StateIndex, max_states + 1> region_initial{};
+    std::array<StateIndex, max_states + 1> region_name{}; ///< a state that lies in it
+    std::size_t regions = 1;
+    std::size_t most_active = 0; ///< states that are active at the same time
     std::size_t triggers = 0;
     StateIndex initial_top = no_state;
     StateIndex final_state = no_state;
@@ -41,11 +52,14 @@ struct StateHierarchy {
     explicit constexpr StateHierarchy(const StateMachineTable& of) noexcept : table{of} {
         for (std::size_t i = 0; i < states(); ++i) key_[i] = key_of(table.states[i].name);
         find_parents();
+        find_regions();
+        count_active();
         first_out.fill(no_transition);
         for (std::size_t t = 0; t < table.transitions.size(); ++t) {
             const TransitionRow& row = table.transitions[t];
             from[t] = find(row.from);
             to[t] = row.to.empty() ? no_state : find(row.to);
+            otherwise_to[t] = row.otherwise_to.empty() ? no_state : find(row.otherwise_to);
             trigger[t] = row.on_event ? number_of(row.event, static_cast<TransitionIndex>(t)) : no_trigger;
         }
         for (std::size_t t = transitions(); t-- > 0;) {
@@ -84,7 +98,13 @@ struct StateHierarchy {
     [[nodiscard]] constexpr bool is_inside(StateIndex state, StateIndex outer) const noexcept {
         return ancestor(state, depth[outer]) == outer;
     }
-    /// The leaf that is active once a state was entered; no_state where a composite has no initial state.
+    [[nodiscard]] constexpr bool orthogonal() const noexcept {
+        for (std::size_t i = 0; i < states(); ++i)
+            if (region_count[i] > 1) return true;
+        return false;
+    }
+    /// The leaf that is active once a state was entered, of the first region of each composite; no_state
+    /// where a composite has no initial state.
     [[nodiscard]] constexpr StateIndex initial_leaf(StateIndex state) const noexcept {
         while (state != no_state && composite[state]) state = initial_inside[state];
         return state;
@@ -114,8 +134,6 @@ private:
             const auto self = static_cast<StateIndex>(i);
             if (!row.parent.empty()) parent[i] = find(row.parent);
             if (parent[i] != no_state) composite[parent[i]] = true;
-            StateIndex& initial = parent[i] == no_state ? initial_top : initial_inside[parent[i]];
-            if (row.initial && initial == no_state) initial = self;
             if (row.final && final_state == no_state) final_state = self;
         }
         for (std::size_t i = 0; i < states(); ++i) {
@@ -124,6 +142,45 @@ private:
             for (; outer != no_state && levels <= max_state_depth; outer = parent[outer]) ++levels;
             depth[i] = static_cast<std::uint8_t>(levels <= max_state_depth ? levels : 0);
         }
+    }
+    constexpr void find_regions() noexcept {
+        std::array<StateIndex, max_states> first_child{};
+        std::array<StateIndex, max_states> next{}; // of the same parent, in table order
+        first_child.fill(no_state);
+        region_initial.fill(no_state);
+        for (std::size_t i = states(); i-- > 0;) {
+            if (parent[i] == no_state) continue;
+            next[i] = first_child[parent[i]];
+            first_child[parent[i]] = static_cast<StateIndex>(i);
+        }
+        for (std::size_t i = 0; i < states(); ++i) {
+            if (parent[i] == no_state && table.states[i].initial && initial_top == no_state)
+                initial_top = static_cast<StateIndex>(i);
+            first_region[i] = static_cast<std::uint16_t>(regions);
+            for (StateIndex child = first_child[i]; child != no_state; child = next[child]) {
+                std::size_t r = first_region[i];
+                while (r < regions && table.states[region_name[r]].region != table.states[child].region) ++r;
+                if (r == regions) {
+                    region_name[regions++] = child;
+                    ++region_count[i];
+                }
+                region_of[child] = static_cast<std::uint16_t>(r);
+                if (table.states[child].initial && region_initial[r] == no_state) region_initial[r] = child;
+            }
+            if (region_count[i] != 0) initial_inside[i] = region_initial[first_region[i]];
+        }
+        region_initial[0] = initial_top;
+    }
+    constexpr void count_active() noexcept {
+        std::array<std::size_t, max_states + 1> inside{}; // by region
+        for (std::size_t level = max_state_depth; level > 0; --level)
+            for (std::size_t i = 0; i < states(); ++i) {
+                if (depth[i] != level) continue;
+                std::size_t need = 1;
+                for (std::size_t r = 0; r < region_count[i]; ++r) need += inside[first_region[i] + r];
+                inside[region_of[i]] = std::max(inside[region_of[i]], need);
+            }
+        most_active = inside[0];
     }
     constexpr TriggerIndex number_of(std::string_view event, TransitionIndex transition) noexcept {
         for (std::size_t i = 0; i < triggers; ++i)

@@ -1,6 +1,6 @@
-// A state machine with its hierarchy folded away: for each leaf and trigger the transitions that may be
-// taken, in order, and for each of those one list of programs to call. Computed by the compiler, or on the
-// target into bounded memory.
+// A state machine with its names folded away: for each leaf and trigger the transitions that may be taken, in
+// order. Where nothing may wait each of those has one list of programs to call. Computed by the compiler, or
+// on the target into bounded memory.
 #pragma once
 
 #include "kernel/statechart/check.hpp"
@@ -25,27 +25,34 @@ inline constexpr ArcIndex no_arc = start_arc; ///< in a list of arcs, where no s
 
 /// One way out of one leaf.
 struct StateArc {
-    StateGuard guard = nullptr;
-    Duration after{};             ///< 0: at once
-    ProgramSlice programs;        ///< transition program, exits from the inside, entries from the outside
-    StateIndex target = no_state; ///< the leaf that is active afterwards
+    StateGuard guard = nullptr; ///< of a folded machine
+    Duration after{};           ///< 0: at once
+    ProgramSlice programs;      ///< folded: transition program, exits inside out, entries outside in
+    StateIndex source = no_state;
+    StateIndex to = no_state;        ///< as the row names it; no_state: internal
+    StateIndex otherwise = no_state; ///< likewise, when the guard says no
+    StateIndex target = no_state;    ///< the leaf that is active afterwards, in a plain machine
     TransitionIndex transition = 0;
-    std::uint16_t first_cell = 0;   ///< of `target`
-    std::uint8_t source_level = 0;  ///< whose time of entry `after` counts from
-    std::uint8_t kept_levels = 0;   ///< states that are neither left nor entered, from the outside
-    std::uint8_t target_levels = 0; ///< depth of `target`
+    std::uint16_t first_cell = 0;    ///< of `target`
+    std::uint8_t source_level = 0;   ///< depth of `source` - 1
+    std::uint8_t kept_levels = 0;    ///< states that are neither left nor entered, from the outside
+    std::uint8_t otherwise_kept = 0; ///< likewise, on the way to `otherwise`
+    std::uint8_t target_levels = 0;  ///< depth of `target`
     bool gives_reason = false;
     bool last = true;
 };
 
-/// What a state needs beside its arcs. Composite states have only a parent and a depth.
+/// What a state needs beside its arcs. Composite states have no arcs and programs of their own.
 struct StatePlan {
     StateIndex parent = no_state;
     std::uint16_t depth = 0;
-    ArcIndex conditions = no_arc; ///< condition transitions and time-outs
-    ArcIndex to_final = no_arc;   ///< always valid
-    ProgramSlice run;             ///< from the outside
-    ProgramSlice leave;           ///< every exit, from the inside
+    std::uint16_t region = 0;       ///< that it lies in
+    std::uint16_t first_region = 0; ///< of those inside
+    std::uint16_t regions = 0;      ///< 0: a leaf
+    ArcIndex conditions = no_arc;   ///< condition transitions and time-outs
+    ArcIndex to_final = no_arc;     ///< always valid
+    ProgramSlice run;               ///< folded: from the outside
+    ProgramSlice handle;            ///< folded: from the outside
 };
 
 struct ResolvedSizes {
@@ -53,10 +60,14 @@ struct ResolvedSizes {
     std::size_t triggers = 0;
     std::size_t arcs = 0;
     std::size_t programs = 0;
+    std::size_t regions = 0;
+    // Of the memory of one execution, see StateMachineBinding.
+    std::size_t history = 0;  ///< StateIndex
+    std::size_t captured = 0; ///< bytes of the longest arguments that a transition takes
 
     [[nodiscard]] constexpr bool fits_in(const ResolvedSizes& room) const noexcept {
         return states <= room.states && triggers <= room.triggers && arcs <= room.arcs &&
-               programs <= room.programs;
+               programs <= room.programs && regions <= room.regions;
     }
     constexpr bool operator==(const ResolvedSizes&) const = default;
 };
@@ -69,6 +80,16 @@ struct ResolvedView {
     const ArcIndex* cells = nullptr;  ///< [state][trigger]: the first arc to ask, or no_arc
     const StateArc* arcs = nullptr;
     const StateProgram* programs = nullptr;
+    const StateIndex* regions = nullptr;     ///< [region]: its initial state
+    const std::uint16_t* captured = nullptr; ///< [trigger]: bytes of its arguments that transitions take
+    ResolvedSizes sizes{};
+    StateIndex final_state = no_state;
+    /// No orthogonal regions, no history: the active states are a leaf and those around it.
+    bool plain = false;
+    /// Plain, and every program and guard is a C++ function: nothing waits and nothing fails.
+    bool folded = false;
+    bool preconditions = false; ///< some state has one
+    bool handles = false;       ///< some state has a handle program
 };
 
 /// Where the resolver writes. What has no room is counted and not stored.
@@ -78,17 +99,24 @@ struct ResolvedRoom {
     std::span<ArcIndex> cells;
     std::span<StateArc> arcs;
     std::span<StateProgram> programs;
+    std::span<StateIndex> regions;
+    std::span<std::uint16_t> captured; ///< as many as triggers
 };
 
 namespace statechart {
 
 class Resolver {
 public:
-    constexpr Resolver(const StateHierarchy& names, const ResolvedRoom& room) : names_{names}, room_{room} {}
+    constexpr Resolver(const StateHierarchy& names, const ResolvedRoom& room) : names_{names}, room_{room} {
+        look();
+    }
 
     constexpr ResolvedSizes resolve() {
         for (std::size_t i = 0; i < names_.triggers; ++i)
             if (i < room_.triggers.size()) room_.triggers[i] = names_.trigger_name(i);
+        find_captured();
+        for (std::size_t r = 0; r < names_.regions; ++r)
+            if (r < room_.regions.size()) room_.regions[r] = names_.region_initial[r];
         add_request(no_state, names_.initial_top, start_transition); // start_arc, then reset_arc
         add_request(names_.final_state, names_.initial_top, reset_transition);
         for (std::size_t i = 0; i < names_.states(); ++i) {
@@ -96,13 +124,60 @@ public:
             const auto state = static_cast<StateIndex>(i);
             plan.parent = names_.parent[i];
             plan.depth = names_.depth[i];
+            plan.region = names_.region_of[i];
+            plan.first_region = names_.first_region[i];
+            plan.regions = names_.region_count[i];
             if (!names_.composite[i]) resolve_leaf(state, plan);
             if (i < room_.plans.size()) room_.plans[i] = plan;
         }
-        return {names_.states(), names_.triggers, arcs_, programs_};
+        return {names_.states(), names_.triggers, arcs_, programs_, names_.regions, history_, captured_};
+    }
+    /// The flags of the view; its pointers are whose the room is.
+    constexpr void describe(ResolvedView& view) const {
+        view.final_state = names_.final_state;
+        view.plain = plain_;
+        view.folded = folded_;
+        view.preconditions = preconditions_;
+        view.handles = handles_;
     }
 
 private:
+    constexpr void look() {
+        plain_ = !names_.orthogonal();
+        for (const TransitionRow& row : names_.table.transitions)
+            if (row.enters != EntryKind::initial) plain_ = false, history_ = names_.regions;
+        folded_ = plain_;
+        const auto note = [this](const ProgramRef& program) { folded_ &= program.program == no_program; };
+        for (const StateRow& row : names_.table.states) {
+            for (const ProgramRef* program : {&row.entry, &row.exit, &row.run, &row.handle}) note(*program);
+            preconditions_ |= !row.precondition.empty();
+            handles_ |= !row.handle.empty();
+        }
+        for (const TransitionRow& row : names_.table.transitions) {
+            note(row.then);
+            folded_ &= row.guard.condition == no_condition && !row.has_otherwise && row.captures == 0;
+            captured_ = std::max(captured_, captured_by(row));
+        }
+        folded_ &= !preconditions_;
+    }
+    [[nodiscard]] constexpr std::size_t captured_by(const TransitionRow& row) const {
+        std::size_t bytes = 0;
+        for (std::size_t i = 0; i < row.captures; ++i) {
+            const CaptureRow& capture = names_.table.captures[row.first_capture + i];
+            bytes = std::max<std::size_t>(bytes, std::size_t{capture.from} + capture.size);
+        }
+        return bytes;
+    }
+    constexpr void find_captured() {
+        for (std::uint16_t& bytes : room_.captured) bytes = 0;
+        for (std::size_t t = 0; t < names_.transitions(); ++t) {
+            if (names_.trigger[t] >= room_.captured.size()) continue;
+            std::uint16_t& bytes = room_.captured[names_.trigger[t]];
+            bytes = static_cast<std::uint16_t>(
+                std::max<std::size_t>(bytes, captured_by(names_.table.transitions[t])));
+        }
+    }
+
     constexpr void resolve_leaf(StateIndex leaf, StatePlan& plan) {
         plan.conditions = add_arcs(leaf, no_trigger);
         for (std::size_t trigger = 0; trigger < names_.triggers; ++trigger) {
@@ -116,8 +191,9 @@ private:
         plan.run = begin_programs();
         for (std::size_t level = 1; level <= names_.depth[leaf]; ++level)
             add(row_of(names_.ancestor(leaf, level)).run, plan.run);
-        plan.leave = begin_programs();
-        add_exits(leaf, 0, plan.leave);
+        plan.handle = begin_programs();
+        for (std::size_t level = 1; level <= names_.depth[leaf]; ++level)
+            add(row_of(names_.ancestor(leaf, level)).handle, plan.handle);
     }
 
     // The transitions of one leaf and trigger, in the order in which they are asked (UML).
@@ -140,6 +216,11 @@ private:
         StateArc arc;
         arc.guard = row.guard.call;
         arc.after = row.timed ? row.after : Duration{};
+        arc.source = source;
+        arc.to = names_.to[t];
+        arc.otherwise = names_.otherwise_to[t];
+        if (arc.otherwise != no_state)
+            arc.otherwise_kept = static_cast<std::uint8_t>(names_.shared_depth(source, arc.otherwise));
         arc.source_level = static_cast<std::uint8_t>(names_.depth[source] - 1);
         arc.transition = static_cast<TransitionIndex>(t);
         arc.gives_reason = !row.because.empty();
@@ -151,6 +232,8 @@ private:
     constexpr void add_request(StateIndex leaf, StateIndex target, TransitionIndex number) {
         StateArc arc;
         arc.transition = number;
+        arc.source = leaf;
+        arc.to = target;
         arc.programs = begin_programs();
         finish(arc, leaf, names_.initial_leaf(target), 0);
     }
@@ -176,7 +259,7 @@ private:
         return {static_cast<std::uint16_t>(programs_), 0};
     }
     constexpr void add(ProgramRef program, ProgramSlice& slice) {
-        if (program.call == nullptr) return;
+        if (!folded_ || program.call == nullptr) return;
         if (programs_ < room_.programs.size()) room_.programs[programs_] = program.call;
         ++programs_;
         ++slice.count;
@@ -189,14 +272,38 @@ private:
     ResolvedRoom room_;
     std::size_t arcs_ = 0;
     std::size_t programs_ = 0;
+    std::size_t history_ = 0;
+    std::size_t captured_ = 0;
+    bool plain_ = false;
+    bool folded_ = false;
+    bool preconditions_ = false;
+    bool handles_ = false;
 };
+
+constexpr ResolvedView view_of(const StateMachineTable& table, const ResolvedRoom& room,
+                               const ResolvedSizes& taken, const Resolver& resolver) {
+    ResolvedView view{.table = table,
+                      .triggers = room.triggers.first(std::min(taken.triggers, room.triggers.size())),
+                      .plans = room.plans.data(),
+                      .cells = room.cells.data(),
+                      .arcs = room.arcs.data(),
+                      .programs = room.programs.data(),
+                      .regions = room.regions.data(),
+                      .captured = room.captured.data(),
+                      .sizes = taken};
+    resolver.describe(view);
+    return view;
+}
 
 } // namespace statechart
 
-/// Resolves a table that check() found good. Returns what it takes; it is stored whole when that fits in the
-/// room. Bounded, without heap; not for real-time threads.
-constexpr ResolvedSizes resolve_into(const StateMachineTable& table, const ResolvedRoom& room) {
-    return statechart::Resolver{StateHierarchy{table}, room}.resolve();
+/// Resolves a table that check() found good, and answers a view of the room. Whether it fitted into the room
+/// is said by view.sizes. Bounded, without heap; not for real-time threads.
+constexpr ResolvedView resolve_into(const StateMachineTable& table, const ResolvedRoom& room) {
+    const StateHierarchy names{table};
+    statechart::Resolver resolver{names, room};
+    const ResolvedSizes taken = resolver.resolve();
+    return statechart::view_of(table, room, taken, resolver);
 }
 
 /// What a machine takes; nothing when check() finds a fault in it.
@@ -210,13 +317,14 @@ constexpr ResolvedSizes measure(const StateMachineTable& table) {
 /// Room for a machine of at most these sizes: exactly measured for a constant table, or a slot that machines
 /// are loaded into on the target. It keeps views of the table's rows, which outlive it.
 template <ResolvedSizes sizes> struct ResolvedMachine {
-    StateMachineTable table{};
-    std::size_t trigger_count = 0;
     std::array<StatePlan, sizes.states> plans{};
     std::array<std::string_view, sizes.triggers> triggers{};
     std::array<ArcIndex, sizes.states * sizes.triggers> cells{};
     std::array<StateArc, sizes.arcs> arcs{};
     std::array<StateProgram, sizes.programs> programs{};
+    std::array<StateIndex, sizes.regions> regions{};
+    std::array<std::uint16_t, sizes.triggers> captured{};
+    ResolvedView described{}; ///< without its pointers, so that the room may be copied
 
     constexpr ResolvedMachine() = default;
     explicit constexpr ResolvedMachine(const StateMachineTable& of) { static_cast<void>(load(of)); }
@@ -224,35 +332,41 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
     /// Checks and resolves. Empty when the machine is there; otherwise what is wrong, and no machine is
     /// there. No execution may be using this room.
     [[nodiscard]] constexpr Sentence load(const StateMachineTable& of) {
-        table = {};
-        trigger_count = 0;
+        described = {};
         if (Sentence fault = statechart::check_limits(of); !fault.empty()) return fault;
         const StateHierarchy names{of};
         if (Sentence fault = statechart::Checker{names}.check(); !fault.empty()) return fault;
-        const ResolvedSizes taken =
-            statechart::Resolver{names, {plans, triggers, cells, arcs, programs}}.resolve();
+        statechart::Resolver resolver{names, {plans, triggers, cells, arcs, programs, regions, captured}};
+        const ResolvedSizes taken = resolver.resolve();
         if (!taken.fits_in(sizes)) {
             const auto list = [](const ResolvedSizes& n) {
                 return Sentence{n.states,    " states, ", n.triggers,
                                 " events, ", n.arcs,      " transitions of leaves, "}
                     .add(n.programs)
-                    .add(" program calls");
+                    .add(" program calls, ")
+                    .add(n.regions)
+                    .add(" regions");
             };
             return Sentence{"state machine \"", of.name, "\": it takes ", list(taken),
                             ", and there is room for "}
                 .add(list(sizes))
                 .add("; make the room larger or the machine smaller");
         }
-        table = of;
-        trigger_count = taken.triggers;
+        described = statechart::view_of(of, {}, taken, resolver);
         return {};
     }
     /// Without a machine, a view that no execution starts.
     [[nodiscard]] constexpr ResolvedView view() const {
-        if (table.states.empty()) return {};
-        return {table,        std::span{triggers}.first(trigger_count),
-                plans.data(), cells.data(),
-                arcs.data(),  programs.data()};
+        ResolvedView view = described;
+        if (view.table.states.empty()) return view;
+        view.triggers = std::span{triggers}.first(described.sizes.triggers);
+        view.plans = plans.data();
+        view.cells = cells.data();
+        view.arcs = arcs.data();
+        view.programs = programs.data();
+        view.regions = regions.data();
+        view.captured = captured.data();
+        return view;
     }
 };
 

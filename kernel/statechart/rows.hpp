@@ -65,9 +65,18 @@ template <auto Function, class Result> consteval auto bind() {
 struct Entry : Bound<StateProgram> {};
 struct Exit : Bound<StateProgram> {};
 struct Run : Bound<StateProgram> {};
+struct Handle : Bound<StateProgram> {};
 struct Then : Bound<StateProgram> {};
+struct Otherwise : Bound<StateProgram> {};
 struct When : Bound<StateGuard> {};
+struct Precondition : Bound<StateGuard> {};
 struct In {
+    std::string_view state;
+};
+struct Region {
+    std::string_view name;
+};
+struct OtherwiseTo {
     std::string_view state;
 };
 struct On {
@@ -103,9 +112,23 @@ enum StateRole : std::uint8_t { initial, final };
 template <auto Function> inline constexpr statechart::Entry entry{statechart::bind<Function, void>()};
 template <auto Function> inline constexpr statechart::Exit exit{statechart::bind<Function, void>()};
 template <auto Function> inline constexpr statechart::Run run{statechart::bind<Function, void>()};
+/// Run after each run program that no transition followed, and when a guard refused an event.
+template <auto Function> inline constexpr statechart::Handle handles{statechart::bind<Function, void>()};
+/// Asked in addition to the guard of each transition that enters the state.
+template <auto Function>
+inline constexpr statechart::Precondition precondition{statechart::bind<Function, bool>()};
 /// The transition program.
 template <auto Function> inline constexpr statechart::Then then{statechart::bind<Function, void>()};
 template <auto Function> inline constexpr statechart::When guard{statechart::bind<Function, bool>()};
+/// Run instead when the guard of an event transition refuses, and the state entered then (listing 5.4, else).
+template <auto Function>
+inline constexpr statechart::Otherwise otherwise{statechart::bind<Function, void>()};
+constexpr statechart::OtherwiseTo otherwise_to(std::string_view state) { return {state}; }
+/// The region of the composite that this state lies in: one state of each is active.
+constexpr statechart::Region region(std::string_view name) { return {name}; }
+/// How a transition enters its composite target: as it was last left, see EntryKind.
+inline constexpr EntryKind shallow_history = EntryKind::shallow_history;
+inline constexpr EntryKind deep_history = EntryKind::deep_history;
 /// The composite state around this one.
 constexpr statechart::In in(std::string_view state) { return {state}; }
 /// An event transition: "component.event", or "event" of the own component.
@@ -129,6 +152,14 @@ constexpr void apply(StateRow& row, In part) {
 constexpr void apply(StateRow& row, const Entry& part) { give(row, "entry", row.entry, part); }
 constexpr void apply(StateRow& row, const Exit& part) { give(row, "exit", row.exit, part); }
 constexpr void apply(StateRow& row, const Run& part) { give(row, "run", row.run, part); }
+constexpr void apply(StateRow& row, const Handle& part) { give(row, "handle", row.handle, part); }
+constexpr void apply(StateRow& row, const Precondition& part) {
+    give(row, "precondition", row.precondition, part);
+}
+constexpr void apply(StateRow& row, Region part) {
+    give(row, "region", !row.region.empty());
+    row.region = part.name;
+}
 
 constexpr void apply(TransitionRow& row, On part) {
     give(row, "on", row.on_event);
@@ -146,6 +177,19 @@ constexpr void apply(TransitionRow& row, Because part) {
 }
 constexpr void apply(TransitionRow& row, const When& part) { give(row, "guard", row.guard, part); }
 constexpr void apply(TransitionRow& row, const Then& part) { give(row, "then", row.then, part); }
+constexpr void apply(TransitionRow& row, const Otherwise& part) {
+    give(row, "otherwise", row.otherwise, part);
+    row.has_otherwise = true;
+}
+constexpr void apply(TransitionRow& row, OtherwiseTo part) {
+    give(row, "otherwise_to", !row.otherwise_to.empty());
+    row.otherwise_to = part.state;
+    row.has_otherwise = true;
+}
+constexpr void apply(TransitionRow& row, EntryKind part) {
+    give(row, "history", row.enters != EntryKind::initial);
+    row.enters = part;
+}
 
 } // namespace statechart
 

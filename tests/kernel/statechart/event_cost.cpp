@@ -9,26 +9,26 @@
 namespace tappet {
 namespace {
 
-struct Counter {
+struct Tally {
     unsigned calls = 0;
     template <unsigned step> void count() noexcept TAPPET_REALTIME { calls += step; }
     bool refuse() const noexcept TAPPET_REALTIME { return calls == 0; }
 };
 
-constexpr auto swing = state_machine<Counter>(
+constexpr auto swing = state_machine<Tally>(
     "swing",
-    states(state("left", initial, entry<&Counter::count<1>>, exit<&Counter::count<2>>),
-           state("l", in("left"), initial, entry<&Counter::count<3>>, exit<&Counter::count<4>>),
-           state("right", entry<&Counter::count<5>>, exit<&Counter::count<6>>),
-           state("r", in("right"), initial, entry<&Counter::count<7>>, exit<&Counter::count<8>>),
-           state("plain", run<&Counter::count<9>>), state("other"), state("safe", final)),
-    transitions(transition("l", "safe", on("swing"), guard<&Counter::refuse>),
-                transition("left", "right", on("swing"), then<&Counter::count<10>>),
-                transition("r", "safe", on("swing"), guard<&Counter::refuse>),
-                transition("right", "left", on("swing"), then<&Counter::count<10>>),
+    states(state("left", initial, entry<&Tally::count<1>>, exit<&Tally::count<2>>),
+           state("l", in("left"), initial, entry<&Tally::count<3>>, exit<&Tally::count<4>>),
+           state("right", entry<&Tally::count<5>>, exit<&Tally::count<6>>),
+           state("r", in("right"), initial, entry<&Tally::count<7>>, exit<&Tally::count<8>>),
+           state("plain", run<&Tally::count<9>>), state("other"), state("safe", final)),
+    transitions(transition("l", "safe", on("swing"), guard<&Tally::refuse>),
+                transition("left", "right", on("swing"), then<&Tally::count<10>>),
+                transition("r", "safe", on("swing"), guard<&Tally::refuse>),
+                transition("right", "left", on("swing"), then<&Tally::count<10>>),
                 transition("l", "plain", on("plain")), transition("plain", "other", on("plain")),
                 transition("other", "plain", on("plain")), transition("plain", "safe", after(1h)),
-                transition("plain", "safe", guard<&Counter::refuse>)));
+                transition("plain", "safe", guard<&Tally::refuse>)));
 static_assert(check(swing.view()).empty());
 
 } // namespace
@@ -48,7 +48,7 @@ extern "C" {
 
 int main() {
     constexpr int events = 1000;
-    tappet::Counter counter;
+    tappet::Tally counter;
     tappet::StateMachineExecution machine;
     machine.bind(tappet::resolved<tappet::swing>.view(), &counter);
     machine.start(tappet::at_ns(0));

@@ -1,5 +1,5 @@
-// The order of exits, transition programs, entries and runs: one
-// test for each line of the table in execution.hpp.
+// The order of exits, transition programs, entries and runs in machines of C++ functions: the lines of the
+// table in kernel/statechart/README.md that need nothing that waits (thesis 5.2.1, 5.2.2).
 #include "tests/kernel/statechart/recorder.hpp"
 
 #include "kernel/statechart/check.hpp"
@@ -306,11 +306,11 @@ constexpr auto timed = state_machine<R>(
                 transition("outer", "safe", on("stop")), transition("late", "idle", after(Duration::max()))));
 static_assert(check(timed.view()).empty());
 
-TEST(StateMachine, evaluates_conditions_in_every_step_before_the_run_programs) {
+TEST(StateMachine, asks_the_conditions_in_every_step_behind_the_run_programs) {
     Running<timed> m;
     EXPECT_EQ(m.step(), "!idle");
     m.component.yes = true;
-    EXPECT_EQ(m.step(), "*go !outer !first");
+    EXPECT_EQ(m.step(), "!idle *go !outer !first");
 }
 
 TEST(StateMachine, times_out_when_the_time_is_reached_and_not_before) {
@@ -320,7 +320,7 @@ TEST(StateMachine, times_out_when_the_time_is_reached_and_not_before) {
     m.component.yes = false;
     EXPECT_EQ(m.execution.next_timeout(), m.now + 10ms);
     EXPECT_EQ(m.step(10ms - 1ns), "!outer !first");
-    EXPECT_EQ(m.step(1ns), "*10ms !outer !second");
+    EXPECT_EQ(m.step(1ns), "!outer !first *10ms !second");
     EXPECT_EQ(m.execution.next_timeout(), m.now + 30ms);
 }
 
@@ -333,7 +333,7 @@ TEST(StateMachine, counts_the_time_of_a_composite_through_the_changes_inside_it)
     m.step(10ms);
     m.step(60ms);
     EXPECT_EQ(m.execution.next_timeout(), entered + 100ms);
-    EXPECT_EQ(m.step(30ms), "!late");
+    EXPECT_EQ(m.step(30ms), "!outer !second !late");
     EXPECT_EQ(m.execution.reason(), "outer took too long");
 }
 
@@ -349,7 +349,7 @@ TEST(StateMachine, asks_the_guard_of_a_due_time_out_in_every_step) {
     m.step();
     EXPECT_EQ(m.component.asked, 2);
     m.component.yes = true;
-    EXPECT_EQ(m.step(), "*guarded !outer !first");
+    EXPECT_EQ(m.step(), "!outer !second *guarded !first");
     EXPECT_EQ(m.execution.next_timeout(), m.now + 10ms);
 }
 
@@ -371,7 +371,7 @@ TEST(StateMachine, leaves_condition_transitions_to_the_step_after_an_event) {
     m.component.yes = true;
     EXPECT_EQ(m.send("stop"), Outcome::ignored);
     EXPECT_EQ(m.path(), "idle");
-    EXPECT_EQ(m.step(), "*go !outer !first");
+    EXPECT_EQ(m.step(), "!idle *go !outer !first");
 }
 
 // ---- bounds

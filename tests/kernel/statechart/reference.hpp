@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tappet {
@@ -30,17 +32,17 @@ public:
     }
     void deactivate() {
         if (active_.empty() || busy_) return;
-        busy_ = true;
-        leave_down_to(0);
-        busy_ = final_wanted_ = conditions_left_ = false;
         raised_.clear();
+        busy_ = leaving_ = true;
+        leave_down_to(0);
+        leaving_ = busy_ = final_wanted_ = conditions_left_ = false;
         ++transitions;
     }
     void dispatch(std::string_view event, Time now) {
         const auto names_it = [event](const TransitionRow& row) {
             return row.on_event && row.event == event;
         };
-        if (active_.empty() || std::ranges::none_of(table_.transitions, names_it)) return;
+        if (active_.empty() || leaving_ || std::ranges::none_of(table_.transitions, names_it)) return;
         if (busy_ || !raised_.empty()) {
             if (raised_.size() < 8)
                 raised_.emplace_back(event);
@@ -59,19 +61,39 @@ public:
         busy_ = true;
         stepped_at_ = now;
         serve_final(now);
-        int taken = 0;
-        while (taken < 8 && take_condition(now)) {
-            ++taken;
+        std::set<std::string_view> ran;
+        held_.clear();
+        entered_now_ = active_;
+        conditions_left_ = false;
+        for (int taken = 0;;) {
+            const std::vector<std::string_view> fresh = std::exchange(entered_now_, {});
+            for (std::string_view name : fresh) {
+                if (state(name).run.empty()) continue;
+                if (!ran.insert(name).second)
+                    held_.insert(name);
+                else
+                    call(state(name).run.call);
+            }
+            if (final_wanted_) {
+                serve_final(now);
+                if (!entered_now_.empty()) continue;
+            }
+            if (!take_condition(now)) break;
             serve_final(now);
+            if (++taken == 8) {
+                conditions_left_ = true;
+                break;
+            }
         }
-        conditions_left_ = taken == 8;
-        const std::vector<std::string_view> running = active_;
-        for (std::string_view name : running) call(state(name).run.call);
+        if (!conditions_left_)
+            for (std::string_view name : std::vector{active_})
+                if (!held_.contains(name)) call(state(name).handle.call);
+        held_.clear();
         busy_ = false;
         settle(now);
     }
     void request_final(Time now, std::string_view why) {
-        if (active_.empty() || (!busy_ && in_final())) return;
+        if (active_.empty() || leaving_ || (!busy_ && in_final())) return;
         final_wanted_ = true;
         final_reason_ = why;
         if (!busy_) settle(now);
@@ -127,6 +149,7 @@ private:
             if (std::find(active_.begin(), active_.end(), name) != active_.end()) continue;
             active_.push_back(name);
             entered_[name] = now;
+            entered_now_.push_back(name);
             call(state(name).entry.call);
         }
         for (const StateRow& row : table_.states)
@@ -135,6 +158,8 @@ private:
     void leave_down_to(std::size_t level) {
         while (active_.size() > level) {
             call(state(active_.back()).exit.call);
+            held_.erase(active_.back());
+            std::erase(entered_now_, active_.back());
             active_.pop_back();
         }
     }
@@ -167,7 +192,7 @@ private:
     bool take_condition(Time now) {
         for (auto name = active_.rbegin(); name != active_.rend(); ++name)
             for (const TransitionRow& row : table_.transitions) {
-                if (row.from != *name || row.on_event) continue;
+                if (row.from != *name || row.on_event || held_.contains(*name)) continue;
                 if (row.timed && now - entered_[*name] < row.after) continue;
                 if (!row.guard.empty() && !row.guard.call(component_)) continue;
                 fire(row, now);
@@ -202,10 +227,13 @@ private:
     void* component_;
     std::vector<std::string_view> active_; // from the outside
     std::map<std::string_view, Time> entered_;
+    std::vector<std::string_view> entered_now_; // since the run programs were looked at
+    std::set<std::string_view> held_;           // entered again in the step in which they ran
     std::deque<std::string> raised_;
     std::string final_reason_;
     Time stepped_at_{};
     bool busy_ = false;
+    bool leaving_ = false;
     bool final_wanted_ = false;
     bool conditions_left_ = false;
 };

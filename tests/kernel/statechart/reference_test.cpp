@@ -131,7 +131,7 @@ private:
     }
 };
 
-using Slot = ResolvedMachine<ResolvedSizes{20, 5, 2048, 16384}>;
+using Slot = ResolvedMachine<ResolvedSizes{20, 5, 2048, 16384, 20}>;
 
 struct Pair {
     Log real_log;

@@ -89,16 +89,20 @@ TEST(StateMachineResolver, takes_exactly_the_room_it_measured) {
             << said.view();
         EXPECT_EQ(room.view().plans, nullptr);
     };
-    refused(ResolvedMachine<ResolvedSizes{sizes.states - 1, sizes.triggers, sizes.arcs, sizes.programs}>{});
-    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers - 1, sizes.arcs, sizes.programs}>{});
-    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers, sizes.arcs - 1, sizes.programs}>{});
-    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers, sizes.arcs, sizes.programs - 1}>{});
+    refused(ResolvedMachine<ResolvedSizes{sizes.states - 1, sizes.triggers, sizes.arcs, sizes.programs,
+                                          sizes.regions}>{});
+    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers - 1, sizes.arcs, sizes.programs,
+                                          sizes.regions}>{});
+    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers, sizes.arcs - 1, sizes.programs,
+                                          sizes.regions}>{});
+    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers, sizes.arcs, sizes.programs - 1,
+                                          sizes.regions}>{});
 }
 
 TEST(StateMachineResolver, makes_the_same_of_a_table_at_run_time_as_the_compiler_did) {
     const std::vector<StateRow> states{loom.states.begin(), loom.states.end()};
     const std::vector<TransitionRow> transitions{loom.transitions.begin(), loom.transitions.end()};
-    ResolvedMachine<ResolvedSizes{40, 10, 500, 900}> room;
+    ResolvedMachine<ResolvedSizes{40, 10, 500, 900, 8}> room;
     ASSERT_EQ(room.load({"loom", states, transitions, type_id<R>}).view(), "");
     const ResolvedView loaded = room.view();
     constexpr ResolvedSizes sizes = measure(loom.view());
@@ -116,7 +120,7 @@ TEST(StateMachineResolver, makes_the_same_of_a_table_at_run_time_as_the_compiler
 TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
     static constexpr auto small = state_machine<R>("small", states(state("a", initial), state("z", final)),
                                                    transitions(transition("a", "z", on("end"))));
-    ResolvedMachine<ResolvedSizes{40, 10, 500, 900}> room;
+    ResolvedMachine<ResolvedSizes{40, 10, 500, 900, 8}> room;
     Recorder recorder;
     StateMachineExecution execution;
     ASSERT_EQ(room.load(loom.view()).view(), "");
@@ -135,7 +139,7 @@ TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
 }
 
 TEST(StateMachineResolver, keeps_no_machine_when_a_faulty_one_was_loaded) {
-    ResolvedMachine<ResolvedSizes{40, 10, 500, 900}> room{loom.view()};
+    ResolvedMachine<ResolvedSizes{40, 10, 500, 900, 8}> room{loom.view()};
     const std::vector<StateRow> faulty{state("a", initial), state("safe", final)};
     EXPECT_EQ(room.load({"faulty", faulty, {}, type_id<R>}).view(),
               "state machine \"faulty\": state \"a\" has no way out; give it a transition, or mark it final");

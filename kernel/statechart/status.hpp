@@ -1,0 +1,111 @@
+// What a state machine tells of itself: plain data without pointers, for observers in other activities and
+// processes.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/statechart/hierarchy.hpp"
+
+namespace tappet {
+
+enum class StateOutcome : std::uint8_t {
+    taken,   ///< a transition was taken; it may need more steps, see under_way()
+    ignored, ///< inactive, no transition for it here, no guard held, or the request is not valid now
+    queued, ///< called out of a program or guard, or behind something that waits: it will be handled in order
+    lost,   ///< no room to queue it; counted
+};
+
+/// The status of thesis fig. 5.19.
+enum class MachineStatus : std::uint8_t {
+    inactive, ///< reacts to nothing
+    active,   ///< reactive mode: events and requests only
+    running,  ///< automatic mode
+    paused,   ///< executes nothing but single steps; events wait
+    stopped,  ///< in the final state
+    error     ///< a program failed; only a request for the final state and a deactivation are served
+};
+
+constexpr std::string_view to_text(MachineStatus status) noexcept {
+    switch (status) {
+    case MachineStatus::inactive: return "inactive";
+    case MachineStatus::active: return "active";
+    case MachineStatus::running: return "running";
+    case MachineStatus::paused: return "paused";
+    case MachineStatus::stopped: return "stopped";
+    case MachineStatus::error: return "error";
+    }
+    return "?";
+}
+
+/// How far the run program of an active state is in this round of run, conditions and handle.
+enum class RunPhase : std::uint8_t {
+    fresh,     ///< not started
+    under_way, ///< started, goes on in this step
+    waits,     ///< started, goes on in the next step
+    ran,       ///< ended; its conditions are asked next
+    asked,     ///< no condition held; its handle program is next
+    done,      ///< runs again in the next step
+    held       ///< entered again in the step in which it ran; runs in the next step
+};
+
+struct ActiveState {
+    StateIndex state = no_state;
+    RunPhase run = RunPhase::fresh;
+    ProgramPosition position{}; ///< of its run program
+    Time entered_at{};
+};
+
+/// Which kind of program was in hand.
+enum class StatePart : std::uint8_t {
+    none,
+    entry,
+    exit,
+    run,
+    handle,
+    then,
+    otherwise,
+    guard,
+    capture,
+    child
+};
+
+constexpr std::string_view to_text(StatePart part) noexcept {
+    switch (part) {
+    case StatePart::none: return "nothing";
+    case StatePart::entry: return "entry";
+    case StatePart::exit: return "exit";
+    case StatePart::run: return "run";
+    case StatePart::handle: return "handle";
+    case StatePart::then: return "transition program";
+    case StatePart::otherwise: return "else program";
+    case StatePart::guard: return "guard";
+    case StatePart::capture: return "arguments";
+    case StatePart::child: return "child machine";
+    }
+    return "?";
+}
+
+/// Where a machine came into error.
+struct StateMachineFault {
+    StatePart part = StatePart::none;
+    StateIndex state = no_state;                ///< of the program, or the source of the transition
+    TransitionIndex transition = no_transition; ///< of a transition's part
+    NodeIndex node = end_node;                  ///< that failed; end_node: not inside a program
+    std::uint64_t number = 0;                   ///< so many errors with this one
+    Time at{};
+};
+
+struct StateMachineStatus {
+    StateIndex active = no_state; ///< the active leaf, of the first region of each composite
+    TransitionIndex last_transition = 0;
+    TransitionIndex reason = 0; ///< the last transition that gave one, see reason()
+    std::uint64_t transitions = 0;
+    std::uint64_t lost_events = 0;
+    std::uint64_t deferred_events = 0; ///< that had to wait for a program or for their turn
+    Time reason_at{};
+    /// The active states, each before those inside it, regions in their order. A state stands here from
+    /// before its entry program to behind its exit program.
+    Bounded<ActiveState, max_active_states> states;
+    StateMachineFault fault;
+};
+
+} // namespace tappet
