@@ -40,18 +40,20 @@ ConditionResult is_open(const ProgramTables& tables, ProgramContext& context, co
 
 enum class Way : std::uint8_t { on, waits, failed };
 
-/// Asks the node's arcs; `on`: the position is where the first open one leads.
+/// Asks the node's arcs; `on`: the position is where the first open one leads. Before the action is done
+/// those without a condition alone: the time-outs.
 Way follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& node) noexcept
     TAPPET_REALTIME {
     const ArcRow* arc = tables.arcs.data() + node.first_arc;
     for (const ArcRow* const end = arc + node.arcs; arc != end; ++arc) {
+        if (!context.position.acted && (arc->condition != no_condition || arc->after == no_data)) continue;
         const ConditionResult open = is_open(tables, context, *arc);
         if (open == ConditionResult::no) continue;
-        if (open == ConditionResult::failed) return Way::failed;
+        if (open == ConditionResult::failed || arc->to == no_node) return Way::failed;
         context.position = {.node = arc->to};
         return Way::on;
     }
-    context.position.acted = !node.repeats;
+    if (node.repeats) context.position.acted = false;
     return Way::waits;
 }
 
@@ -61,7 +63,7 @@ Way act(const ProgramTables& tables, ProgramContext& context, const NodeRow& nod
     if (!position.entered) position.entered = true, position.entered_at = context.now;
     const ActionResult result = execute(tables, context, node.first, node.count);
     if (result == ActionResult::failed) return Way::failed;
-    if (result == ActionResult::again) return Way::waits;
+    if (result == ActionResult::again) return Way::on;
     position.acted = true;
     return node.yields ? Way::waits : Way::on;
 }

@@ -175,9 +175,27 @@ template <const auto& source, std::size_t type> class Code {
                 return true;
             }
         }
-        leaves_node<number>(context, run);
-        next = row.to;
+        if constexpr (row.to == no_node) {
+            next = failed<number>(context, run);
+        } else {
+            leaves_node<number>(context, run);
+            next = row.to;
+        }
         return true;
+    }
+    // While the action could not act yet.
+    template <NodeIndex number, std::size_t arc>
+    [[gnu::always_inline]] static bool times_out(ProgramContext& context, Run& run, std::byte* scratch,
+                                                 Next& next) noexcept TAPPET_REALTIME {
+        if constexpr (tables.arcs[arc].condition == no_condition && tables.arcs[arc].after != no_data)
+            return takes<number, arc>(context, run, scratch, next);
+        else
+            return false;
+    }
+    template <NodeIndex number, std::size_t first, std::size_t... i>
+    [[gnu::always_inline]] static bool time_outs(std::index_sequence<i...>, ProgramContext& context, Run& run,
+                                                 std::byte* scratch, Next& next) noexcept TAPPET_REALTIME {
+        return (times_out<number, first + i>(context, run, scratch, next) || ...);
     }
     template <NodeIndex number, std::size_t first, std::size_t... i>
     [[gnu::always_inline]] static bool arcs(std::index_sequence<i...>, ProgramContext& context, Run& run,
@@ -201,8 +219,13 @@ template <const auto& source, std::size_t type> class Code {
                 instructions<row.first>(std::make_index_sequence<row.count>{}, context, run.data, scratch);
             if (result == ActionResult::failed) [[unlikely]]
                 return failed<number>(context, run);
-            if (result != ActionResult::done) [[unlikely]]
+            if (result != ActionResult::done) [[unlikely]] {
+                Next next = end_node;
+                if (time_outs<number, row.first_arc>(std::make_index_sequence<row.arcs>{}, context, run,
+                                                     scratch, next))
+                    return next;
                 return halts_at(number, Halt::again);
+            }
             if constexpr (stands(row)) context.position.acted = true;
             if constexpr (row.yields) return halts_at(number, Halt::waits);
         }

@@ -108,6 +108,37 @@ TEST(A_time_out, opens_its_arc_when_its_time_has_passed_since_the_node_was_enter
     EXPECT_EQ(running.execution.wakes(), never);
 }
 
+TEST(A_time_out, that_leads_nowhere_puts_the_program_in_error_at_its_node) {
+    TableBuilder table;
+    const DataOffset limit = table.value(Duration{20ms});
+    const DataOffset go = table.value(false);
+    table.node({});
+    table.arc(end_node, table.condition({}, go)).arc(no_node, no_condition, limit);
+    Running running{table};
+    EXPECT_EQ(running.run(at_ms(100)), ProgramStatus::running);
+    EXPECT_EQ(running.step(at_ms(120)), ProgramStatus::error);
+    EXPECT_EQ(running.execution.line(), 1);
+}
+
+ActionResult not_yet(ProgramContext&, const Instruction&, std::byte*, const std::byte*,
+                     const std::byte*) noexcept TAPPET_REALTIME {
+    return ActionResult::again;
+}
+
+TEST(A_time_out, opens_its_arc_also_while_the_action_cannot_act_yet_and_a_condition_does_not) {
+    TableBuilder table;
+    const DataOffset limit = table.value(Duration{20ms});
+    const DataOffset done = table.value(true);
+    table.node({{.run = &not_yet}});
+    table.arc(1, table.condition({}, done)).arc(end_node, no_condition, limit);
+    table.node({fail_instruction()});
+    Running running{table};
+    EXPECT_EQ(running.run(at_ms(100)), ProgramStatus::running);
+    EXPECT_EQ(running.execution.wakes(), at_ms(120));
+    EXPECT_EQ(running.step(at_ms(119)), ProgramStatus::running);
+    EXPECT_EQ(running.step(at_ms(120)), ProgramStatus::stopped);
+}
+
 TEST(An_action_that_fails, puts_the_program_in_error_at_its_node) {
     TableBuilder table;
     const DataOffset one = table.value(ScriptInt{1});
