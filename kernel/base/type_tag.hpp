@@ -208,9 +208,20 @@ struct FieldOf;
 template <class Record, class T, T Record::* Member>
 struct FieldOf<Member> {
     using Type = T;
-    // A pointer to a data member is the member's offset (Itanium C++ ABI, 2.3).
-    static std::size_t offset() noexcept TAPPET_REALTIME {
-        return static_cast<std::size_t>(std::bit_cast<std::ptrdiff_t>(Member));
+    // Found by comparing addresses, which a constant expression may do and which the compiler folds.
+    static constexpr std::size_t offset() noexcept TAPPET_REALTIME {
+        union Place {
+            char bytes[sizeof(Record)];
+            Record record;
+            constexpr Place() noexcept : bytes{} {}
+            constexpr ~Place() {}
+        };
+        Place place;
+        for (std::size_t i = 0; i < sizeof(Record); ++i)
+            if (static_cast<const void*>(&place.bytes[i]) ==
+                static_cast<const void*>(&(place.record.*Member)))
+                return i;
+        return sizeof(Record);
     }
 };
 

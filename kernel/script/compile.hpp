@@ -1,0 +1,25 @@
+// The compiler of scripts (thesis 5.1.4, 5.2.4): text in, flat tables out. One piece of code, which runs in a
+// constant expression for a script that is compiled with the firmware, and on the target for one that is
+// loaded. The language is written down in grammar.md.
+#pragma once
+
+#include "kernel/script/compiler.hpp"
+#include "kernel/script/room.hpp"
+
+namespace tappet {
+
+/// Compiles `text` against what `reach` names and stores the result in `room`, of which nothing is needed
+/// before and everything is overwritten. `name` is that of the file, for messages. The unit refers to the
+/// room, to the names in `reach` and to the facets of its types, not to `text`.
+///
+/// Not real-time, but bounded: no heap, no recursion deeper than script_max_depth, and at most
+/// script_work(text.size()) tokens read, whatever the text. About 24 kB of stack.
+constexpr ScriptOutcome compile_into(std::string_view text, std::string_view name, const Reach& reach,
+                                     const ScriptRoom& room) {
+    ScriptOutcome outcome;
+    script_detail::Compiler compiler{text, name, reach, room, outcome};
+    compiler.compile();
+    return outcome;
+}
+
+} // namespace tappet

@@ -1,0 +1,141 @@
+// A script that is compiled with the firmware: text and reach are constants, and so is what comes of them.
+//
+//     inline constexpr tappet::ScriptSource weft_source{"weft.osd", "StateMachine Weft { ... }"};  // by
+//     tappet_script() inline constexpr auto weft_reach = tappet::script_reach<WeftInsertion>("weft"); inline
+//     constexpr const tappet::ScriptUnit& weft_script = tappet::compiled_script<weft_source, weft_reach>;
+#pragma once
+
+#include "kernel/script/compile.hpp"
+
+#include <memory>
+
+namespace tappet {
+
+struct ScriptSource {
+    std::string_view name{};
+    std::string_view text{};
+};
+
+/// A component that a script reaches, by type and name.
+template <class T>
+constexpr Reachable reachable(std::string_view name, bool same_activity = true) noexcept {
+    return {name, &component_type<T>, same_activity};
+}
+
+/// A reach that owns its list; the first is the component that the script drives.
+template <std::size_t N>
+struct ScriptReach {
+    std::array<Reachable, N> components{};
+    std::uint32_t statements_per_step = 0;
+
+    [[nodiscard]] constexpr Reach view() const noexcept {
+        Reach reach;
+        reach.components = components;
+        reach.statements_per_step = statements_per_step;
+        return reach;
+    }
+};
+template <class... R>
+constexpr ScriptReach<sizeof...(R)> script_reach(const R&... each) noexcept {
+    return {{each...}};
+}
+
+namespace script_detail {
+
+struct Measured {
+    Sentence fault{};
+    ScriptSizes sizes{};
+};
+
+// The heap of a constant expression ends with it.
+template <class T>
+constexpr std::span<T> lend(std::unique_ptr<T[]>& owner, std::size_t n) {
+    owner = std::make_unique<T[]>(n);
+    return {owner.get(), n};
+}
+
+constexpr Measured measure_script(const ScriptSource& source, const Reach& reach) {
+    for (std::uint32_t nodes = static_cast<std::uint32_t>(source.text.size() / 24 + 64);; nodes *= 4) {
+        const ScriptSizes most =
+            script_sizes_for(nodes, 2048 + 16 * nodes, static_cast<std::uint32_t>(reach.components.size()));
+        std::unique_ptr<Instruction[]> instructions;
+        std::unique_ptr<ConditionRow[]> conditions;
+        std::unique_ptr<NodeRow[]> node_rows;
+        std::unique_ptr<ArcRow[]> arcs;
+        std::unique_ptr<ProgramRow[]> programs;
+        std::unique_ptr<VariableRow[]> variables;
+        std::unique_ptr<LinkRow[]> links;
+        std::unique_ptr<std::byte[]> image;
+        std::unique_ptr<StateRow[]> states;
+        std::unique_ptr<TransitionRow[]> transitions;
+        std::unique_ptr<CaptureRow[]> captures;
+        std::unique_ptr<BehaviourType[]> types;
+        std::unique_ptr<BehaviourInstance[]> instances;
+        std::unique_ptr<char[]> names;
+        std::unique_ptr<Reachable[]> reachables;
+        const ScriptRoom room{lend(instructions, most.instructions),
+                              lend(conditions, most.conditions),
+                              lend(node_rows, most.nodes),
+                              lend(arcs, most.arcs),
+                              lend(programs, most.programs),
+                              lend(variables, most.variables),
+                              lend(links, most.links),
+                              lend(image, most.image),
+                              lend(states, most.states),
+                              lend(transitions, most.transitions),
+                              lend(captures, most.captures),
+                              lend(types, most.types),
+                              lend(instances, most.instances),
+                              lend(names, most.names),
+                              lend(reachables, most.reach)};
+        const ScriptOutcome outcome = compile_into(source.text, source.name, reach, room);
+        if (outcome.out_of_room && nodes < 16000) continue;
+        return {outcome.fault, outcome.good() ? outcome.sizes : ScriptSizes{}};
+    }
+}
+
+template <const auto& Source, const auto& Peers>
+inline constexpr Measured measured = measure_script(Source, Peers.view());
+
+template <ScriptSizes sizes>
+struct StoredScript {
+    ScriptBuffer<sizes> rows{};
+    ScriptUnit unit{};
+
+    constexpr StoredScript(const ScriptSource& source, const Reach& peers) {
+        unit = compile_into(source.text, source.name, peers, rows.room()).unit;
+    }
+};
+
+template <const auto& Source, const auto& Peers>
+inline constexpr StoredScript<measured<Source, Peers>.sizes> stored{Source, Peers.view()};
+
+/// Not defined: a compiler that prints no message objects prints the sentence as the argument of this name.
+template <text sentence>
+struct script_fault;
+template <>
+struct script_fault<text<0>{}> {};
+
+template <const auto& Source, const auto& Peers>
+struct CheckedScript {
+    static constexpr const Sentence& fault = measured<Source, Peers>.fault;
+#if defined(__clang__)
+    static_assert(fault.empty(), fault);
+#else
+    static_assert(sizeof(script_fault<text<fault.size()>{fault.view()}>) != 0);
+#endif
+    static constexpr const ScriptUnit& unit = stored<Source, Peers>.unit;
+};
+
+} // namespace script_detail
+
+/// The unit of a constant script; a fault in it is an error of the C++ build that says the script's own line.
+/// `Source` is a ScriptSource and `Peers` a ScriptReach, constexpr variables at namespace scope.
+template <const auto& Source, const auto& Peers>
+inline constexpr const ScriptUnit& compiled_script = script_detail::CheckedScript<Source, Peers>::unit;
+
+/// What is wrong with a constant script, for who wants to know and not to stop.
+template <const auto& Source, const auto& Peers>
+inline constexpr const Sentence& script_fault_of = script_detail::measured<Source, Peers>.fault;
+
+} // namespace tappet

@@ -1,0 +1,184 @@
+// A whole script: types, programs, and the instances of them.
+#pragma once
+
+#include "kernel/script/compiler_machines.hpp"
+
+namespace tappet::script_detail {
+
+class Compiler : Machines {
+public:
+    using Machines::Machines;
+
+    constexpr void compile() {
+        advance();
+        if (reach_.components.empty()) fail(token_, {"there is no component that the script could drive"});
+        while (ok() && !is(Sign::end)) {
+            switch (token_.sign) {
+            case Sign::semicolon: advance(); break;
+            case Sign::k_StateMachine: parse_machine(); break;
+            case Sign::k_RootStateMachine: parse_root(); break;
+            case Sign::k_program: parse_named_program(); break;
+            case Sign::k_function: parse_function_definition(false); break;
+            default: parse_bare_program(); break;
+            }
+        }
+        if (ok() && types_.used == 0)
+            fail(token_, {"the script is empty; give it a program or a StateMachine"});
+        if (ok() && instances_.used == 0) add_implied_root();
+        finish();
+        note_sizes();
+    }
+
+private:
+    /// "program name { ... }": one instance of its own type.
+    constexpr void parse_named_program() {
+        advance();
+        const Token name = need_name("the name of the program");
+        need(Sign::open_brace, "\"{\"");
+        make_program(name, name.text, false);
+        need(Sign::close_brace, "\"}\"");
+    }
+    /// Statements alone are one program with the name of the file.
+    constexpr void parse_bare_program() {
+        if (is(Sign::broken) || types_.used != 0)
+            return fail_expected("StateMachine, RootStateMachine, program or function");
+        std::string_view name = file_.substr(file_.rfind('/') + 1);
+        name = name.substr(0, name.find('.'));
+        make_program(token_, name, true);
+    }
+    constexpr void make_program(const Token& at, std::string_view name, bool to_the_end) {
+        if (!ok()) return;
+        begin_type();
+        BehaviourType type;
+        type.name = keep({name});
+        exports_variables_ = true;
+        const ProgramIndex program = parse_program({name}, to_the_end);
+        exports_variables_ = false;
+        if (ok() && program == no_program) return fail(at, {"the program has no statement"});
+        end_type(type);
+        if (!ok()) return;
+        BehaviourInstance instance;
+        instance.name = types_.room[types_.used - 1].name;
+        instance.type = static_cast<TypeIndex>(types_.used - 1);
+        instance.image = types_.room[instance.type].tables.image;
+        check_instance_name(at, instance.name);
+        add(instances_, instance, "instances");
+    }
+    constexpr void check_instance_name(const Token& at, std::string_view name) {
+        for (std::size_t i = 0; i < instances_.used; ++i)
+            if (instances_.room[i].name == name)
+                return fail(at, {"\"", quoted(name), "\" is there twice; rename one"});
+    }
+    /// "RootStateMachine Type name(arguments)"
+    constexpr void parse_root() {
+        advance();
+        const Token type_at = need_name("the type of the state machine");
+        const TypeIndex type = ok() ? find_machine_type(type_at.text) : none;
+        if (ok() && type == none) {
+            Nearest nearest{type_at.text};
+            for (std::size_t i = 0; i < types_.used; ++i) nearest.consider(types_.room[i].name);
+            fail_unknown(type_at, "state machine type", nearest, " before this line");
+        }
+        const Token name = need_name("the name of the state machine");
+        if (!ok()) return;
+        check_instance_name(name, name.text);
+        const auto first = static_cast<std::uint16_t>(arguments_used_);
+        const std::uint16_t count = parse_machine_arguments(name, type);
+        add_root(name, keep({name.text}), type, first, count);
+        arguments_used_ = first;
+        static_cast<void>(take(Sign::semicolon));
+    }
+    /// Without RootStateMachine the last type stands for one instance of it.
+    constexpr void add_implied_root() {
+        const auto type = static_cast<TypeIndex>(types_.used - 1);
+        Token at = machine_name_token();
+        static_cast<void>(parse_machine_arguments(at, type));
+        add_root(at, types_.room[type].name, type, 0, 0);
+    }
+    constexpr void add_root(const Token& at, std::string_view name, TypeIndex type, std::uint16_t first,
+                            std::uint16_t count) {
+        if (!ok()) return;
+        std::uint32_t i = instances_.used;
+        add_instance(name, type, no_instance, first, count);
+        for (; ok() && i < instances_.used; ++i) {
+            std::uint32_t depth = 1;
+            for (InstanceIndex outer = instances_.room[i].parent; outer != no_instance;
+                 outer = instances_.room[outer].parent)
+                ++depth;
+            if (depth > reach_.depth)
+                return fail(at, {"child machines are nested deeper than ", Sentence{reach_.depth}.view(),
+                                 " levels, which its row allows"});
+            for (std::size_t c = 0; ok() && c < children_used_; ++c) {
+                const Child& child = children_[c];
+                if (child.parent != instances_.room[i].type) continue;
+                if (instances_.room[i].children++ == 0)
+                    instances_.room[i].first_child = static_cast<InstanceIndex>(instances_.used);
+                add_instance(keep({instances_.room[i].name, ".", child.name}), child.type,
+                             static_cast<InstanceIndex>(i), child.first_argument, child.arguments);
+            }
+        }
+    }
+    constexpr void add_instance(std::string_view name, TypeIndex type, InstanceIndex parent,
+                                std::uint16_t first, std::uint16_t count) {
+        if (!ok()) return;
+        BehaviourInstance instance;
+        instance.name = name;
+        instance.type = type;
+        instance.parent = parent;
+        const ProgramTables& tables = types_.room[type].tables;
+        instance.image = tables.image;
+        if (count != 0) {
+            image_base_ = aligned(image_base_, data_alignment);
+            const std::size_t size = tables.image.size();
+            if (room_.image.size() < image_base_ || room_.image.size() - image_base_ < size)
+                return fail_room("bytes of initial data");
+            const auto own = room_.image.subspan(image_base_, size);
+            std::copy_n(tables.image.data(), size, own.data());
+            for (std::size_t i = first; i < std::size_t{first} + count; ++i) {
+                const VariableRow& variable = tables.variables[arguments_[i].variable];
+                static_cast<void>(encode(arguments_[i].value, variable.type, own.data() + variable.at));
+            }
+            instance.image = own;
+            image_base_ += static_cast<std::uint32_t>(size);
+        }
+        add(instances_, instance, "instances");
+    }
+    /// What all instances take when they run, and whether the slot has it.
+    constexpr void finish() {
+        if (!ok()) return;
+        ScriptSizes& s = outcome_.sizes;
+        for (std::size_t i = 0; i < instances_.used; ++i) {
+            const BehaviourType& type = types_.room[instances_.room[i].type];
+            s.data += aligned(type.tables.layout.size, data_alignment);
+            s.bound_links += static_cast<std::uint32_t>(type.tables.links.size());
+            for (const LinkRow& row : type.tables.links) s.command_slots += row.needs_slot ? 1 : 0;
+            for (const TransitionRow& row : type.machine.transitions) s.timers += row.timed ? 1 : 0;
+            for (const NodeRow& node : type.tables.nodes)
+                for (std::size_t a = 0; a < node.arcs; ++a)
+                    if (type.tables.arcs[node.first_arc + a].after != no_data) {
+                        ++s.timers;
+                        break;
+                    }
+        }
+        if (s.command_slots > reach_.command_slots)
+            return fail(token_,
+                        {"the script sends ", Sentence{s.command_slots}.view(),
+                         " commands and its slot has room for ", Sentence{reach_.command_slots}.view(),
+                         "; send fewer or give its row more command_slots(...)"});
+        if (s.timers > reach_.timers)
+            return fail(token_, {"the script waits for time at ", Sentence{s.timers}.view(),
+                                 " places and its slot has room for ", Sentence{reach_.timers}.view(),
+                                 "; wait at fewer or give its row more timers(...)"});
+        if (room_.reach.size() < reach_.components.size()) return fail_room("components");
+        std::copy_n(reach_.components.data(), reach_.components.size(), room_.reach.data());
+        ScriptUnit& unit = outcome_.unit;
+        unit.name = keep({file_});
+        unit.types = room_.types.first(types_.used);
+        unit.instances = room_.instances.first(instances_.used);
+        unit.reach = room_.reach.first(reach_.components.size());
+        unit.command_slots = static_cast<std::uint16_t>(s.command_slots);
+        if (!ok()) unit = {};
+    }
+};
+
+} // namespace tappet::script_detail
