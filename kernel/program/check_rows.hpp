@@ -1,5 +1,5 @@
 // Checks of a program that is spelled in C++: its names mean nodes, each node is reached and left, and its
-// functions belong to one component. Included by rows.hpp.
+// functions belong to one component.
 #pragma once
 
 #include "kernel/program/rows.hpp"

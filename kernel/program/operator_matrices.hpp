@@ -1,8 +1,9 @@
 // Operators of matrices behind operators.hpp, by the shapes of the operands, and those that types register.
-// Included by it.
+//
 #pragma once
 
-#include "kernel/program/operators.hpp"
+#include "kernel/program/operator_kinds.hpp"
+#include "kernel/program/primitives_matrix.hpp"
 
 namespace tappet::detail {
 
@@ -95,6 +96,21 @@ inline constexpr auto matrix_tags = [] {
         }
     return tags;
 }();
+
+} // namespace tappet::detail
+
+namespace tappet {
+
+/// A matrix of doubles, 1 to 4 rows and columns, for products and literals; null: none of that shape.
+constexpr TypeId matrix_type(std::size_t rows, std::size_t columns) noexcept {
+    if (rows == 0 || columns == 0 || rows > detail::most_matrix_rows || columns > detail::most_matrix_rows)
+        return nullptr;
+    return &detail::matrix_tags[rows - 1][columns - 1];
+}
+
+} // namespace tappet
+
+namespace tappet::detail {
 
 /// The type of that shape that stands nearest: one of the operands', or a general one. Null: none.
 constexpr TypeId shaped(std::size_t rows, std::size_t columns, TypeId a, TypeId b) noexcept {

@@ -1,7 +1,8 @@
-// The tables of scalars behind operators.hpp. Included by it.
+// The tables of scalars behind operators.hpp.
 #pragma once
 
-#include "kernel/program/operators.hpp"
+#include "kernel/program/operator_kinds.hpp"
+#include "kernel/program/primitives_scalar.hpp"
 
 namespace tappet {
 

@@ -3,84 +3,12 @@
 #pragma once
 
 #include "kernel/program/actions.hpp"
-#include "kernel/program/primitives_matrix.hpp"
-#include "kernel/program/primitives_scalar.hpp"
-#include "kernel/program/primitives_value.hpp"
-#include "kernel/program/registered.hpp"
+#include "kernel/program/operator_matrices.hpp"
+#include "kernel/program/operator_tables.hpp"
 
 #include <span>
 
 namespace tappet {
-
-enum class Operator : std::uint8_t {
-    add,
-    subtract,
-    multiply,
-    divide,
-    remainder,
-    equal,
-    unequal,
-    less,
-    at_most,
-    greater,
-    at_least,
-    both,
-    either,
-    negate, ///< of one operand, from here on
-    invert
-};
-
-/// As it is spelled.
-constexpr std::string_view to_text(Operator op) noexcept {
-    constexpr std::string_view spelled[] = {"+",  "-", "*",  "/",  "%",  "==", "!=", "<",
-                                            "<=", ">", ">=", "&&", "||", "-",  "!"};
-    return spelled[static_cast<std::size_t>(op)];
-}
-
-/// How an expression is computed. Of `instruction` everything is set but `to`, `a`, `b` and `link`. Operands
-/// that are not of the types `a` and `b` are converted to them first; the result may be of a stored type,
-/// which is converted to script_type(result) before it is reckoned with.
-struct OperatorMatch {
-    Instruction instruction{};
-    TypeId result = nullptr;
-    TypeId a = nullptr;
-    TypeId b = nullptr; ///< null: one operand
-    constexpr explicit operator bool() const noexcept { return instruction.run != nullptr; }
-};
-
-/// How a value becomes one of another type, from `a` to `to`.
-struct Conversion {
-    Instruction instruction{};
-    bool implicit = false; ///< done where a value of the other type is expected, without being asked for
-    constexpr explicit operator bool() const noexcept { return instruction.run != nullptr; }
-};
-
-inline constexpr TypeId script_bool = type_id<bool>;
-inline constexpr TypeId script_int = type_id<ScriptInt>;
-inline constexpr TypeId script_double = type_id<double>;
-inline constexpr TypeId script_duration = type_id<Duration>;
-/// Of a text in the script itself. Longer ones are refused.
-using ScriptText = Text<60>;
-inline constexpr TypeId script_text = type_id<ScriptText>;
-
-/// The type that a script reckons with when a value of this one was read: bool, int, double or Duration for
-/// every C++ type of that kind, else the type itself.
-constexpr TypeId script_type(TypeId stored) noexcept;
-/// A matrix of doubles, 1 to 4 rows and columns, for products and literals; null: none of that shape.
-constexpr TypeId matrix_type(std::size_t rows, std::size_t columns) noexcept;
-
-/// `op` of two operands; false: these types have none.
-constexpr OperatorMatch find_binary(Operator op, TypeId a, TypeId b) noexcept;
-/// Operator::negate or Operator::invert.
-constexpr OperatorMatch find_unary(Operator op, TypeId a) noexcept;
-/// A function of one or two operands: those of <cmath>, of matrices and times, those that the types register.
-constexpr OperatorMatch find_function(std::string_view name, std::span<const TypeId> operands) noexcept;
-/// Names for "did you mean": those of the functions that find_function knows without registered ones.
-constexpr std::span<const std::string_view> function_names() noexcept;
-/// Types are the same, or alike (every C++ number to and from the script's own; int to double; texts of other
-/// lengths; matrices of one shape): implicit. By name only, as int(x): double to int, bool to int,
-/// enumeration to int.
-constexpr Conversion find_conversion(TypeId from, TypeId to) noexcept;
 
 // ---- parts of values and what steers a node
 
@@ -106,14 +34,155 @@ constexpr Instruction field_write(const RecordField& field) noexcept {
             .size = static_cast<std::uint16_t>(field.type->size),
             .field = &field};
 }
-/// `to` = a[b] of a matrix, std::array or Sequence, counted through all its elements as they lie; `b` is an
-/// int. The element's type is type->element. Null run: it has no elements.
-constexpr Instruction element_read(TypeId type) noexcept;
+
+/// Types are the same, or alike (every C++ number to and from the script's own; int to double; texts of other
+/// lengths; matrices of one shape): implicit. By name only, as int(x): double to int, bool to int,
+/// enumeration to int.
+constexpr Conversion find_conversion(TypeId from, TypeId to) noexcept {
+    if (from == to) return {copy_instruction(from), true};
+    for (const detail::ConversionRow& row : detail::conversion_rows)
+        if (row.from == from && row.to == to) return {{.run = row.run}, row.implicit};
+    const bool from_script = from == script_type(from), to_script = to == script_type(to);
+    // Numbers of C++ to the script's, and back.
+    if (to == script_int && (detail::is_integer(from) || from->kind == ValueKind::enumeration)) {
+        const TypeId stored = from->kind == ValueKind::enumeration ? from->element : from;
+        return {{.run = detail::widenings[detail::width_index(stored, stored->kind == ValueKind::natural)]},
+                from->kind != ValueKind::enumeration};
+    }
+    if (from == script_int && detail::is_integer(to))
+        return {{.run = detail::narrowings[detail::width_index(to, to->kind == ValueKind::natural)]}, true};
+    if (to == script_double && detail::is_float(from))
+        return {{.run = &primitive::unary<float, double, &primitive::widen_real>}, true};
+    if (from == script_double && detail::is_float(to))
+        return {{.run = &primitive::unary<double, float, &primitive::narrow_real>}, true};
+    // Others of the same kind and size: Time and Duration, bool under another name.
+    if (from_script != to_script && script_type(from) == script_type(to) && from->size == to->size &&
+        !detail::is_integer(from) && from->kind != ValueKind::real)
+        return {copy_instruction(from), true};
+    if (from->kind == ValueKind::text && to->kind == ValueKind::text)
+        return {{.run = &primitive::text_copy,
+                 .size = static_cast<std::uint16_t>(to->columns),
+                 .rows = static_cast<std::uint8_t>(from->length_at & 0xff),
+                 .inner = static_cast<std::uint8_t>(from->length_at >> 8)},
+                true};
+    if (detail::same_shape(from, to)) {
+        if (detail::same_order(from, to)) return {copy_instruction(from), true};
+        const Primitive run = detail::matrix_function(detail::element_kind(from), "transpose");
+        Instruction reorder = detail::matrix_instruction(run, from->rows, 0, from->columns);
+        reorder.size = detail::orders(from, nullptr, to);
+        return {reorder, true};
+    }
+    return {};
+}
+
+/// `op` of two operands; false: these types have none.
+constexpr OperatorMatch find_binary(Operator op, TypeId a, TypeId b) noexcept {
+    if (const OperatorMatch found = detail::find_registered(to_text(op), a, b)) return found;
+    if (a->kind == ValueKind::matrix || b->kind == ValueKind::matrix)
+        return detail::find_matrix_binary(op, a, b);
+    const bool compares = op == Operator::equal || op == Operator::unequal;
+    if (a->kind == ValueKind::enumeration && a == b && compares)
+        return {{.run = op == Operator::equal ? &primitive::bytes_equal : &primitive::bytes_unequal,
+                 .size = static_cast<std::uint16_t>(a->size)},
+                script_bool,
+                a,
+                b};
+    if (a->kind == ValueKind::text && b->kind == ValueKind::text && compares)
+        return {{.run = op == Operator::equal ? &primitive::text_equal : &primitive::text_unequal,
+                 .size = static_cast<std::uint16_t>(a->length_at),
+                 .rows = static_cast<std::uint8_t>(b->length_at & 0xff),
+                 .inner = static_cast<std::uint8_t>(b->length_at >> 8)},
+                script_bool,
+                a,
+                b};
+    TypeId left = script_type(a), right = script_type(b);
+    for (int widened = 0; widened < 2; ++widened) {
+        for (const detail::BinaryRow& row : detail::binary_rows)
+            if (row.op == op && row.a == left && row.b == right)
+                return {{.run = row.run}, row.result, row.a, row.b};
+        const bool mixed =
+            (left == script_int && right == script_double) || (left == script_double && right == script_int);
+        if (!mixed) break;
+        left = right = script_double;
+    }
+    return {};
+}
+
+/// Operator::negate or Operator::invert.
+constexpr OperatorMatch find_unary(Operator op, TypeId a) noexcept {
+    if (const OperatorMatch found = detail::find_registered(to_text(op), a, nullptr)) return found;
+    if (const auto kind = detail::element_kind(a);
+        kind != detail::ElementKind::none && op == Operator::negate)
+        return {detail::matrix_instruction(detail::matrix_function(kind, "negate"), a->rows, 0, a->columns),
+                a, a, nullptr};
+    for (const detail::UnaryRow& row : detail::unary_rows)
+        if (row.op == op && row.a == script_type(a)) return {{.run = row.run}, row.result, row.a, nullptr};
+    return {};
+}
+
+/// A function of one or two operands: those of <cmath>, of matrices and times, those that the types register.
+constexpr OperatorMatch find_function(std::string_view name, std::span<const TypeId> operands) noexcept {
+    if (operands.empty() || operands.size() > 2) return {};
+    const TypeId a = operands[0], b = operands.size() == 2 ? operands[1] : nullptr;
+    if (const OperatorMatch found = detail::find_registered(name, a, b)) return found;
+    if (const OperatorMatch found = detail::find_matrix_function(name, a, b)) return found;
+    if (name == "size" && b == nullptr && a->kind == ValueKind::sequence)
+        return {{.run = &primitive::sequence_size,
+                 .size = static_cast<std::uint16_t>(a->length_at),
+                 .rows = static_cast<std::uint8_t>(a->columns & 0xff),
+                 .inner = static_cast<std::uint8_t>(a->columns >> 8)},
+                script_int,
+                a,
+                nullptr};
+    if (b == nullptr && (name == "int" || name == "double")) {
+        const TypeId to = name == "int" ? script_int : script_double;
+        const TypeId from = a->kind == ValueKind::enumeration ? a : script_type(a);
+        if (const Conversion made = find_conversion(from, to)) return {made.instruction, to, from, nullptr};
+        return {};
+    }
+    TypeId left = script_type(a), right = b == nullptr ? nullptr : script_type(b);
+    for (int widened = 0; widened < 2; ++widened) {
+        for (const detail::FunctionRow& row : detail::function_rows)
+            if (row.name == name && row.a == left && row.b == right)
+                return {{.run = row.run}, row.result, row.a, row.b};
+        if (left == script_int) left = script_double;
+        if (right == script_int) right = script_double;
+    }
+    return {};
+}
+
+/// Names for "did you mean": those of the functions that find_function knows without registered ones.
+constexpr std::span<const std::string_view> function_names() noexcept { return detail::known_functions; }
+
+namespace detail {
+
+constexpr Instruction element_instruction(Primitive run, TypeId type) noexcept {
+    if (type->kind != ValueKind::matrix && type->kind != ValueKind::sequence) return {};
+    const std::size_t count = type->kind == ValueKind::matrix ? type->rows * type->columns : type->columns;
+    return {.run = run,
+            .size = static_cast<std::uint16_t>(type->element->size),
+            .rows = static_cast<std::uint8_t>(count & 0xff),
+            .inner = static_cast<std::uint8_t>(count >> 8)};
+}
+
+} // namespace detail
+
+/// `to` = a[b] of a matrix or std::array, counted through all its elements as they lie, or of the elements
+/// that a Sequence holds; `b` is an int. The element's type is type->element. Null run: it has no elements.
+constexpr Instruction element_read(TypeId type) noexcept {
+    return detail::element_instruction(
+        type->kind == ValueKind::sequence ? &primitive::sequence_read : &primitive::element_read, type);
+}
 /// to[b] = `a`
-constexpr Instruction element_write(TypeId type) noexcept;
+constexpr Instruction element_write(TypeId type) noexcept {
+    return detail::element_instruction(
+        type->kind == ValueKind::sequence ? &primitive::sequence_write : &primitive::element_write, type);
+}
 /// `to` = the int with which element_read finds row `a`, column `b`.
-constexpr Instruction matrix_index(TypeId type) noexcept;
+constexpr Instruction matrix_index(TypeId type) noexcept {
+    if (detail::element_kind(type) == detail::ElementKind::none) return {};
+    return detail::matrix_instruction(&primitive::matrix_index, type->rows, type->row_major ? 1 : 0,
+                                      type->columns);
+}
 
 } // namespace tappet
-
-#include "kernel/program/operator_search.hpp"

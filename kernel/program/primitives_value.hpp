@@ -134,6 +134,24 @@ constexpr std::size_t sequence_length(const std::byte* a, std::size_t length_at,
     const auto length = load_value<std::uint64_t>(a + length_at);
     return length < most ? static_cast<std::size_t>(length) : most;
 }
+/// Where a sequence of count() elements of `size` bytes has its length: behind them (Bounded).
+constexpr std::size_t length_place(const Instruction& in) noexcept TAPPET_REALTIME {
+    return (in.count() * in.size + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t) * sizeof(std::uint64_t);
+}
+/// As element_read, of the elements that there are.
+constexpr ActionResult sequence_read(ProgramContext& context, const Instruction& in, std::byte* to,
+                                     const std::byte* a, const std::byte* b) noexcept TAPPET_REALTIME {
+    const std::size_t length = sequence_length(a, length_place(in), in.count());
+    if (!in_range(load_value<ScriptInt>(b), length)) return ActionResult::failed;
+    return element_read(context, in, to, a, b);
+}
+/// As element_write, of the elements that there are.
+constexpr ActionResult sequence_write(ProgramContext& context, const Instruction& in, std::byte* to,
+                                      const std::byte* a, const std::byte* b) noexcept TAPPET_REALTIME {
+    const std::size_t length = sequence_length(to, length_place(in), in.count());
+    if (!in_range(load_value<ScriptInt>(b), length)) return ActionResult::failed;
+    return element_write(context, in, to, a, b);
+}
 constexpr ActionResult sequence_size(ProgramContext&, const Instruction& in, std::byte* to,
                                      const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     store_value(to, static_cast<ScriptInt>(sequence_length(a, in.size, in.count())));

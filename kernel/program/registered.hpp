@@ -35,7 +35,7 @@ template <auto Function, class = decltype(Function)>
 struct RegisteredCall;
 template <auto Function, class R, class A>
 struct RegisteredCall<Function, R (*)(A) noexcept TAPPET_REALTIME> {
-    static constexpr TypeId result = &TagOf<R>::tag; // type_id<R> may be on its way to here
+    static constexpr TypeId result = &TagOf<R>::tag; // not type_id<R>, which may be what is being made
     static constexpr std::array<TypeId, 2> operands{&TagOf<std::remove_cvref_t<A>>::tag, nullptr};
     static ActionResult run(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,
                             const std::byte*) noexcept TAPPET_REALTIME {
@@ -46,7 +46,7 @@ struct RegisteredCall<Function, R (*)(A) noexcept TAPPET_REALTIME> {
 };
 template <auto Function, class R, class A, class B>
 struct RegisteredCall<Function, R (*)(A, B) noexcept TAPPET_REALTIME> {
-    static constexpr TypeId result = &TagOf<R>::tag; // type_id<R> may be on its way to here
+    static constexpr TypeId result = &TagOf<R>::tag; // not type_id<R>, which may be what is being made
     static constexpr std::array<TypeId, 2> operands{&TagOf<std::remove_cvref_t<A>>::tag,
                                                     &TagOf<std::remove_cvref_t<B>>::tag};
     static ActionResult run(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,

@@ -9,7 +9,7 @@
 //              arc<&Axis::at_switch>("creep", program_end),
 //              arc("creep", "brake", timeout(5s)),
 //              arc("brake", program_end)));
-//     static_assert(check(homing).empty());
+//     static_assert(check(homing).empty()); // kernel/program/check_rows.hpp
 //
 // It begins at its first node; a node's arcs are asked in the order of their rows. A node without an open arc
 // is waited at, one without any arc for ever.
@@ -249,5 +249,3 @@ constexpr ProgramTable<N, A> program(std::string_view name, const std::array<Pro
 }
 
 } // namespace tappet
-
-#include "kernel/program/check_rows.hpp"

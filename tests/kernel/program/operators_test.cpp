@@ -436,4 +436,23 @@ TEST(A_sequence, tells_how_many_it_holds) {
     EXPECT_EQ((compute<ScriptInt>(find_function("size", one), list, 0)), 2);
 }
 
+TEST(Elements_of_a_sequence, are_those_that_it_holds) {
+    using List = Bounded<std::int16_t, 5>;
+    List list;
+    ASSERT_TRUE(list.push(7));
+    ASSERT_TRUE(list.push(8));
+    for (const ScriptInt index : {-1, 0, 1, 2, 4, 5}) {
+        const bool good = index == 0 || index == 1;
+        Data data;
+        data.put(1, list);
+        data.put(2, index);
+        EXPECT_EQ(data.run(element_read(type_id<List>)), good ? ActionResult::done : ActionResult::failed);
+        EXPECT_EQ(data.get<std::int16_t>(0), good ? 7 + index : 0);
+        data.put(0, list);
+        data.put(1, std::int16_t{9});
+        EXPECT_EQ(data.run(element_write(type_id<List>)), good ? ActionResult::done : ActionResult::failed);
+        EXPECT_EQ(data.get<List>(0).items[1], index == 1 ? 9 : 8);
+    }
+}
+
 } // namespace operators_test

@@ -1,7 +1,7 @@
 // Programs spelled in C++ (thesis fig. 5.2): a table of nodes and arcs with member functions, what it
 // executes, and what its check refuses.
+#include "kernel/program/check_rows.hpp"
 #include "kernel/program/execution.hpp"
-#include "kernel/program/rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
