@@ -46,7 +46,7 @@ private:
     static constexpr double close_enough = 0.02;
     static constexpr double most_speed = 120.0; // deg/s
     static constexpr double braking = 300.0;    // deg/s^2
-    static constexpr double near_gain = 18.0;   // 1/s
+    static constexpr double near_gain = 30.0;   // 1/s
 
     static double degrees_of(std::int64_t counts) noexcept TAPPET_REALTIME {
         return static_cast<double>(counts) / AxisReading::counts_per_degree;

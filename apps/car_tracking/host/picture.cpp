@@ -67,7 +67,7 @@ public:
         raw("<text").at("x", x).at("y", y);
         return raw(" ").raw(style).raw(">").raw(letters).raw("</text>\n");
     }
-    [[nodiscard]] std::string& text() { return text_; }
+    [[nodiscard]] std::string take() { return std::move(text_); }
 
 private:
     std::string text_;
@@ -194,9 +194,7 @@ void draw_looks(Svg& svg, std::span<const Moment> moments, std::span<const Look>
     for (double at = 0; at <= time.end_s(); at += 10.0) {
         svg.line(time.x(at), time_top, time.x(at), error_top + error_height,
                  "stroke=\"#000\" stroke-opacity=\"0.12\"");
-        Svg label;
-        label.number(at).raw(" s");
-        svg.words(time.x(at), error_top + error_height + 18, label.text(),
+        svg.words(time.x(at), error_top + error_height + 18, Sentence{static_cast<int>(at), " s"}.view(),
                   "text-anchor=\"middle\" font-size=\"11\"");
     }
 }
@@ -216,7 +214,7 @@ std::string picture_of(std::span<const Moment> moments, std::span<const Look> lo
     draw_states(svg, moments, time);
     draw_looks(svg, moments, looks, time);
     svg.raw("</svg>\n");
-    return std::move(svg.text());
+    return svg.take();
 }
 
 } // namespace tappet::car_tracking

@@ -156,7 +156,7 @@ struct Golden {
     std::uint64_t seed;
     std::uint64_t digest;
 };
-constexpr Golden golden[] = {{1, 0x64bd0a153ea9bdf1}, {2, 0x56d09ec799a2f116}, {3, 0x6c6410bf585daccc}};
+constexpr Golden golden[] = {{1, 0xae1623ecaa9366d2}, {2, 0xbeb77babb25a9210}, {3, 0xb3d278cd913a4df2}};
 
 TEST(CarTracking, is_the_same_with_both_compilers) {
     for (const Golden& each : golden)
