@@ -308,6 +308,9 @@ private:
             if (!entered[state]) open[waiting++] = state;
             entered[state] = reached[state] = true;
         };
+        std::array<bool, max_states> remembers{}; // by shallow history: with what is initial inside those
+        for (std::size_t t = 0; t < names_.transitions(); ++t)
+            if (table_.transitions[t].enters == EntryKind::shallow_history) remembers[names_.to[t]] = true;
         enter(names_.initial_top);
         enter(names_.final_state); // always valid by request
         while (waiting > 0) {
@@ -315,6 +318,7 @@ private:
             const StateIndex outer = names_.parent[state];
             if (outer != no_state) {
                 reach(outer);
+                if (remembers[outer]) enter(state);
                 for (std::size_t r = 0; r < names_.region_count[outer]; ++r)
                     if (const std::size_t region = names_.first_region[outer] + r;
                         region != names_.region_of[state])

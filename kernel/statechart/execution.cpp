@@ -138,7 +138,7 @@ StateOutcome StateMachineExecution::dispatch_generally(std::size_t trigger, Time
         return queue(trigger, now, arguments);
     open(now);
     bool taken = false;
-    const ArcIndex quick = fast_.dispatch == nullptr || !machine_.plain
+    const ArcIndex quick = fast_.dispatch == nullptr || !machine_.plain || is(mid_round)
                                ? StateMachineFast::generally
                                : fast_.dispatch(context_, status_.active, trigger, arguments);
     if (quick != StateMachineFast::generally) {

@@ -119,7 +119,7 @@ public:
     /// A transition, exit, entry or handle program waits for a later step.
     [[nodiscard]] bool under_way() const noexcept TAPPET_REALTIME { return is(in_hand); }
     /// The active leaf; with regions the first. While a transition is under way the innermost state that is
-    /// still, or already, active; no_state between the two.
+    /// still, or already, active; no_state only inside a call.
     [[nodiscard]] StateIndex active() const noexcept TAPPET_REALTIME { return status_.active; }
     [[nodiscard]] bool is_in(StateIndex state) const noexcept TAPPET_REALTIME {
         for (const ActiveState& each : status_.states)

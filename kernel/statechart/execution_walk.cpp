@@ -128,9 +128,13 @@ bool StateMachineExecution::capture(const TransitionRow& row, const std::byte* a
         std::memcpy(context_.data + each.raw, arguments + each.from, each.size);
         const auto at = [this](DataOffset offset) noexcept
             TAPPET_REALTIME { return offset == no_data ? nullptr : context_.data + offset; };
-        for (std::size_t n = each.first; n < std::size_t{each.first} + each.count; ++n) {
+        for (std::size_t n = each.first, end = n + each.count; n < end; ++n) {
             const Instruction& in = code_.tables->instructions[n];
-            if (in.run(context_, in, at(in.to), at(in.a), at(in.b)) != ActionResult::done) return false;
+            const ActionResult result = in.run(context_, in, at(in.to), at(in.a), at(in.b));
+            if (result == ActionResult::skip)
+                n += in.size;
+            else if (result != ActionResult::done)
+                return false;
         }
     }
     return true;
