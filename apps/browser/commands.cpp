@@ -28,6 +28,8 @@ constexpr auto table = std::to_array<Command>({
     {"start",   "start COMPONENT|ACTIVITY",                "starts what was stopped (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"stop",    "stop COMPONENT|ACTIVITY",                 "stops it; it leaves safe values (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"restart", "restart COMPONENT|ACTIVITY",              "stops and starts it (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
+    {"behaviour", "behaviour [list [NAME] | watch [NAME] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
+                                                           "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour},
 });
 // clang-format on
 

@@ -76,5 +76,6 @@ Result<void> run_call(Work& work);
 Result<void> run_send(Work& work);
 Result<void> run_force(Work& work);
 Result<void> run_plain_request(Work& work);
+Result<void> run_behaviour(Work& work);
 
 } // namespace tappet::browser

@@ -10,8 +10,8 @@ namespace tappet::browser {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> names{"--json",  "--follow", "--help",    "--count",
-                                                "--every", "--socket", "--timeout", "--directory"};
+constexpr std::array<std::string_view, 9> names{"--json", "--follow", "--help",    "--count",    "--every",
+                                                "--at",   "--socket", "--timeout", "--directory"};
 
 bool is_number(std::string_view text) {
     const std::string_view rest = text.substr(
@@ -67,7 +67,9 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
         if (i + 1 == words.size())
             return std::unexpected(word + " needs a value behind it; --help shows which");
         const std::string& value = words[++i];
-        if (word == "--socket" || word == "--directory") {
+        if (word == "--at") {
+            line.at = value;
+        } else if (word == "--socket" || word == "--directory") {
             (word == "--socket" ? line.socket : line.directory) = value;
         } else if (word == "--count") {
             const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), line.count);

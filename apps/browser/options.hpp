@@ -17,6 +17,7 @@ struct Line {
     bool json = false;                ///< one JSON object a line
     bool follow = false;              ///< send: until the command has come to its end
     bool help = false;
+    std::string at{};                     ///< behaviour load: an event or an angle; empty: at once
     long count = 0;                       ///< of pictures or events; 0: without end
     std::chrono::milliseconds every{200}; ///< between two pictures
     std::chrono::milliseconds patience{3000};

@@ -141,7 +141,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
     behaviours(
         behaviour("loom", loom_cycle),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
-                               peers("shaft", "loom"), operations("weft.allow", "weft.hold"), events("shaft.beat_up")))));
+                               peers("shaft", "loom"), operations("weft.lift", "weft.weave_carpet"),
+                               events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(400)))));
 // clang-format on
 
 } // namespace tappet::carpet

@@ -35,6 +35,16 @@ struct WeftInsertion {
         close_valve.emit();
     }
 
+    /// The pattern of the picks to come instead of the carpet's, one bit for each of the dobby's harnesses.
+    /// False: no harness, or one that the dobby does not have.
+    bool lift(std::int64_t harnesses) noexcept TAPPET_REALTIME {
+        if (harnesses <= 0 || harnesses > all_harnesses) return false;
+        lifted_ = harnesses;
+        return true;
+    }
+    /// The carpet's patterns again.
+    void weave_carpet() noexcept TAPPET_REALTIME { lifted_ = 0; }
+
     void on_beat_up() noexcept TAPPET_REALTIME {
         if (arrived_) picks_woven.write(picks_woven.last() + 1);
         released_ = arrived_ = false;
@@ -44,7 +54,7 @@ struct WeftInsertion {
     }
     void on_offer_pattern() noexcept TAPPET_REALTIME {
         const std::int64_t next = pick.last() + 1;
-        pattern.write(patterns[static_cast<std::size_t>(next) % patterns.size()]);
+        pattern.write(lifted_ != 0 ? lifted_ : patterns[static_cast<std::size_t>(next) % patterns.size()]);
         pick.write(next);
     }
     void on_release_angle() noexcept TAPPET_REALTIME {
@@ -94,6 +104,8 @@ struct WeftInsertion {
             event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
             event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive", heard_by(1)),
             handle<&WeftInsertion::detector>("detector", "of the detector, while a weft is on its way"),
+            method<&WeftInsertion::lift>("lift", "the harnesses of the picks to come, one bit each"),
+            method<&WeftInsertion::weave_carpet>("weave_carpet", "the carpet's patterns again"),
             operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
             operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
             operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),
@@ -113,6 +125,9 @@ private:
     // Carpet, face to face: two harness pairs alternate, every fourth pick binds the pile.
     static constexpr std::array<std::int64_t, 4> patterns{0x5A5A, 0xA5A5, 0x5A5A, 0xF0F0};
 
+    static constexpr std::int64_t all_harnesses = 0xffff;
+
+    std::int64_t lifted_ = 0; // by a behaviour; 0: the carpet's
     bool allowed_ = false;
     bool ready_ = false;
     bool released_ = false;

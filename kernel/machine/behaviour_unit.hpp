@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/unit_rows.hpp"
+#include "kernel/program/execution.hpp"
 #include "kernel/statechart/execution.hpp"
 
 #include <cstddef>
@@ -11,16 +12,19 @@
 namespace tappet {
 
 class MachineInstance;
+class Engine;
 
-/// One instance of a unit.
+/// One instance of a unit; it has either of the two executions.
 struct UnitPart {
     const BehaviourInstance* row = nullptr;
     const BehaviourType* type = nullptr;
-    StateMachineExecution* machine = nullptr; ///< null: a program alone
+    StateMachineExecution* machine = nullptr;
+    ProgramExecution* program = nullptr;
     std::byte* data = nullptr;
     ProgramLink* links = nullptr;
     CommandSlot* slots = nullptr;
     std::size_t slot_count = 0;
+    StateMachineBinding binding{}; ///< of a machine, to bind it anew
 };
 
 /// The trigger of an instance that an event means; no_trigger: none.
@@ -96,16 +100,19 @@ constexpr MachineMemory take_machine_memory(detail::UnitGround& ground, const Re
 constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
     detail::UnitGround ground;
     ground.take<UnitPart>(unit.instances.size());
+    ground.take<StateMachineExecution>(unit.instances.size());
     ground.take<ResolvedView>(unit.types.size());
     ground.take<UnitRoute>(events * unit.instances.size());
-    for (const BehaviourType& type : unit.types)
-        if (!type.is_program()) static_cast<void>(take_room(ground, measure(type.machine)));
+    for (std::size_t t = 0; t < unit.types.size(); ++t) {
+        if (unit.types[t].is_program()) continue;
+        const ResolvedSizes sizes = measure(unit.types[t].machine);
+        static_cast<void>(take_room(ground, sizes));
+        for (const BehaviourInstance& instance : unit.instances)
+            if (instance.type == t) static_cast<void>(take_machine_memory(ground, sizes));
+    }
     for (const BehaviourInstance& instance : unit.instances) {
         const BehaviourType& type = unit.types[instance.type];
-        if (!type.is_program()) {
-            ground.take<StateMachineExecution>(1);
-            static_cast<void>(take_machine_memory(ground, measure(type.machine)));
-        }
+        if (type.is_program()) ground.take<ProgramExecution>(1);
         ground.take(type.tables.layout.size, data_alignment);
         ground.take<ProgramLink>(type.tables.links.size());
         std::size_t slots = 0;
@@ -123,7 +130,7 @@ class BehaviourUnit {
 public:
     /// `driven`: the component. `events` name what its routes count, and outlive it as everything in `unit`
     /// does. An error: it does not fit, or names what the machine does not have; then it must not be started.
-    [[nodiscard]] Sentence place(const ScriptUnit& unit, std::span<const ProgramCode> code,
+    [[nodiscard]] Sentence place(const ScriptUnit& unit, std::span<const BehaviourCode> code,
                                  const BehaviourOptions& options, std::span<std::byte> memory,
                                  std::span<const std::string_view> events, MachineInstance& machine,
                                  std::size_t driven);
@@ -136,7 +143,7 @@ public:
     [[nodiscard]] bool is_quiet() const noexcept TAPPET_REALTIME;
     [[nodiscard]] bool has_programs() const noexcept {
         for (const UnitPart& part : parts_)
-            if (part.machine == nullptr) return true;
+            if (part.program != nullptr) return true;
         return false;
     }
     void trace(StateMachineExecution::Trace hook, void* context) noexcept;
@@ -145,21 +152,53 @@ public:
 
     /// Its roots start; their children when they are told to.
     void start(Time now) noexcept TAPPET_REALTIME;
-    /// The programs alone, then the state machines (thesis fig. 5.21).
+    /// The programs alone; their engine does so before it steps any state machine (thesis fig. 5.21).
     void step_programs(Time now) noexcept TAPPET_REALTIME;
+    /// The state machines.
     void step(Time now) noexcept TAPPET_REALTIME;
     /// Into the final states; those that cannot go at once follow in the next steps.
     void finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME;
-    /// Whether finish() has come to its end.
+    /// Whether finish() has come to its end, or cannot: a machine in error stays where it is.
     [[nodiscard]] bool is_finished() const noexcept TAPPET_REALTIME;
-    /// Out of the final states.
+    /// Out of the final states. A second call goes on without a program that failed in the first.
     void deactivate(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME;
+    /// Inactive from now on, whatever was in hand: no program of it runs.
+    void drop() noexcept TAPPET_REALTIME;
+    /// The first instance in error; null: none is.
+    [[nodiscard]] const UnitPart* failed_part() const noexcept TAPPET_REALTIME;
+    /// The last step used up its statements with more to do.
+    [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME;
+    /// Keeps which instance is in error, for describe_fault().
+    void note_fault() noexcept TAPPET_REALTIME;
+    /// Does what the row says about errors, once for each.
+    void report_errors() noexcept TAPPET_REALTIME;
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
     void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
 
+    /// Steps that left statements over, since place().
+    [[nodiscard]] std::uint64_t steps_left_over() const noexcept TAPPET_REALTIME { return left_over_; }
+    /// What failed last: instance, program and line. Not real-time.
+    [[nodiscard]] Sentence describe_fault() const;
+
 private:
+    void bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view);
+
     ScriptUnit unit_{};
+    BehaviourOptions options_{};
+    MachineInstance* machine_ = nullptr;
+    const Engine* engine_ = nullptr;
+    std::size_t driven_ = 0;
     std::span<UnitPart> parts_{};
+    std::uint64_t left_over_ = 0;
+    struct {
+        InstanceIndex instance = no_instance;
+        std::uint16_t line = 0; // of a program
+        StateMachineFault machine{};
+    } fault_;
+    bool reported_ = false;
+    StateMachineExecution::Trace trace_ = nullptr;
+    void* trace_context_ = nullptr;
     std::span<const UnitRoute> routes_{}; // [event * instances + instance]
 };
 

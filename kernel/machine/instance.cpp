@@ -130,6 +130,13 @@ const BehaviourUnit* MachineInstance::behaviour_of(std::string_view component) c
     return nullptr;
 }
 
+BehaviourSlot* MachineInstance::slot_of(std::string_view component) noexcept {
+    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b)
+        if (machine_.table.behaviours[b].component == component && machine_.table.behaviours[b].is_slot())
+            return slot_of_row(b);
+    return nullptr;
+}
+
 const StateMachineExecution* MachineInstance::state_machine_of(std::string_view component) const noexcept {
     const BehaviourUnit* unit = behaviour_of(component);
     if (unit == nullptr) return nullptr;
@@ -153,7 +160,16 @@ Sentence MachineInstance::describe_stop() const {
     case StopReason::none: return Sentence{"nobody asked"};
     case StopReason::requested: return Sentence{"asked for from outside"};
     case StopReason::broken_contract: return Sentence{"a contract was broken in activity \"", who, "\""};
-    case StopReason::behaviour: return Sentence{"asked for by a behaviour in activity \"", who, "\""};
+    case StopReason::behaviour: {
+        const std::string_view driven = machine_.table.components[stop_.detail].name;
+        Sentence text{"the behaviour of \"", driven, "\" in activity \"", who, "\" is in error: "};
+        if (const BehaviourUnit* unit = behaviour_of(driven);
+            unit != nullptr && unit->failed_part() != nullptr)
+            return text.add(unit->describe_fault());
+        const BehaviourSlot* slot = const_cast<MachineInstance*>(this)->slot_of(driven);
+        return slot != nullptr && slot->active() != nullptr ? text.add(slot->active()->describe_fault())
+                                                            : text;
+    }
     case StopReason::missed_deadline: {
         const auto function = static_cast<std::uint32_t>(stop_.detail);
         if (function == Miss::nobody || stop_.from == nullptr)

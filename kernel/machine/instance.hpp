@@ -70,6 +70,20 @@ public:
     }
     /// What the table's row says that drives a component; null when none does.
     [[nodiscard]] const BehaviourUnit* behaviour_of(std::string_view component) const noexcept;
+    /// Of a behaviour row; null: it is a slot, or it is none.
+    [[nodiscard]] BehaviourUnit* unit_of_row(std::size_t behaviour) noexcept {
+        const std::size_t place = machine_.plan.behaviours[behaviour].unit_at;
+        return place == nowhere ? nullptr : at<BehaviourUnit>(place);
+    }
+    [[nodiscard]] BehaviourSlot* slot_of_row(std::size_t behaviour) noexcept {
+        const std::size_t place = machine_.plan.behaviours[behaviour].slot_at;
+        return place == nowhere ? nullptr : at<BehaviourSlot>(place);
+    }
+    /// The slot reserved for a component; null when there is none.
+    [[nodiscard]] BehaviourSlot* slot_of(std::string_view component) noexcept;
+    /// Lets the slot carry out its wish in its engine; for a component that sees the machine. False: that
+    /// engine has too many requests to serve. Real-time.
+    [[nodiscard]] bool post_wish(BehaviourSlot& slot) noexcept TAPPET_REALTIME;
     /// The first state machine of that; null when there is none.
     [[nodiscard]] const StateMachineExecution* state_machine_of(std::string_view component) const noexcept;
 
@@ -214,6 +228,8 @@ private:
     void place_command_processors();
     [[nodiscard]] CommandSlot::Route route_to(End to) noexcept;
     [[nodiscard]] Sentence place_behaviours();
+    [[nodiscard]] Sentence place_unit(std::size_t row, Behaviour& behaviour);
+    void place_slot(std::size_t row, Behaviour& behaviour);
 
     AcceptedMachine machine_;
     os::Clock* clock_;

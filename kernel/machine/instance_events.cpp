@@ -10,7 +10,10 @@ namespace {
 
 void run_trigger(void* binding, const std::byte* packed) noexcept TAPPET_REALTIME {
     const auto& trigger = *static_cast<const TriggerBinding*>(binding);
-    trigger.unit->dispatch(trigger.event, packed, trigger.engine->now());
+    if (trigger.slot != nullptr)
+        trigger.slot->dispatch(trigger.event, packed, trigger.engine->now());
+    else
+        trigger.unit->dispatch(trigger.event, packed, trigger.engine->now());
 }
 
 void run_observer(void* binding, const std::byte* packed) noexcept TAPPET_REALTIME {
@@ -44,6 +47,9 @@ void MachineInstance::connect_events() {
         if (reaction != nullptr) reaction->connected = &connected;
         const EventHandle handle{connected, bit, reaction == nullptr ? nullptr : &reaction->epoch};
         if (row.is_connected) handle.connect();
+        if (row.kind == SubscriberKind::trigger && slot_of_row(row.behaviour) != nullptr)
+            new (at<EventHandle>(machine_.plan.behaviours[row.behaviour].handles_at) + row.trigger)
+                EventHandle{handle};
         if (row.handle.component != nowhere) *static_cast<EventHandle*>(facet(row.handle)) = handle;
     }
 }
@@ -105,7 +111,7 @@ void MachineInstance::bind_receiver(std::size_t s, AsyncReaction& reaction) {
     case SubscriberKind::trigger:
         reaction.run = &run_trigger;
         reaction.object = new (at<TriggerBinding>(place.binding_at))
-            TriggerBinding{at<BehaviourUnit>(plan.behaviours[row.behaviour].unit_at), &receiver, row.trigger};
+            TriggerBinding{unit_of_row(row.behaviour), slot_of_row(row.behaviour), &receiver, row.trigger};
         reaction.part =
             plan.part_of[find_component(machine_.table, machine_.table.behaviours[row.behaviour].component)];
         break;

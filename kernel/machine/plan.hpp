@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
-#include "kernel/machine/behaviour_unit.hpp"
+#include "kernel/machine/behaviour_slot.hpp"
 #include "kernel/machine/plan_operations.hpp"
 #include "kernel/machine/subscription.hpp"
 
@@ -60,13 +60,15 @@ struct SubscriptionPlan {
 };
 
 struct BehaviourPlan {
-    std::size_t unit_at = nowhere;   ///< BehaviourUnit
-    std::size_t events_at = nowhere; ///< names of the events that it hears
+    std::size_t events_at = nowhere; ///< names of the events that it hears, or may hear
     std::size_t event_count = 0;
-    std::size_t memory_at = nowhere; ///< of the unit
+    std::size_t unit_at = nowhere;   ///< BehaviourUnit
+    std::size_t memory_at = nowhere; ///< of the unit; of a slot its two banks, one behind the other
     std::size_t memory_bytes = 0;
-    std::size_t slot_at = nowhere;
-    std::size_t slot_bytes = 0;
+    std::size_t slot_at = nowhere;    ///< BehaviourSlot
+    std::size_t handles_at = nowhere; ///< of a slot's events
+    std::size_t text_at = nowhere;    ///< of the script on its way into a slot
+    std::size_t text_bytes = 0;
 };
 
 /// A mailbox from one activity to another: its ring's storage, and its index at the receiver.
@@ -102,9 +104,10 @@ struct Observed {
 
 /// Runs the triggers of a behaviour out of a message.
 struct TriggerBinding {
-    BehaviourUnit* unit;
+    BehaviourUnit* unit; ///< of the row; null: of a slot
+    BehaviourSlot* slot;
     Engine* engine;
-    std::size_t event; ///< its number in the unit
+    std::size_t event; ///< its number in the unit or slot
 };
 
 /// What is called with each emission that an observer is connected to.
@@ -264,21 +267,19 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
         const BehaviourRow& row = m.behaviours[b];
         BehaviourPlan& plan = p.behaviours[b];
         if (row.is_slot()) {
-            // A node is one action or condition with its operands, a level of depth one saved node; both are
-            // one word.
-            constexpr std::size_t node_bytes = 32, level_bytes = 8;
-            plan.slot_bytes = row.slot.nodes * node_bytes + row.slot.depth * level_bytes +
-                              row.slot.data_bytes + row.slot.command_slots * sizeof(Message) +
-                              row.slot.timers * sizeof(Timer) +
-                              row.slot.events.size() * sizeof(AsyncReaction);
-            plan.slot_at = ground.take(plan.slot_bytes, alignof(AsyncReaction));
-            continue;
+            plan.event_count = count_slot_events(m, row);
+            plan.slot_at = ground.take<BehaviourSlot>();
+            plan.handles_at = ground.take<EventHandle>(plan.event_count);
+            plan.text_bytes = slot_text_bytes(row.slot);
+            plan.text_at = ground.take(plan.text_bytes, 1);
+            plan.memory_bytes = 2 * slot_bank_bytes(row.slot, plan.event_count);
+        } else {
+            const ScriptUnit unit = row.unit();
+            plan.event_count = events_of(unit).count;
+            plan.unit_at = ground.take<BehaviourUnit>();
+            plan.memory_bytes = unit_bytes(unit, plan.event_count);
         }
-        const ScriptUnit unit = row.unit();
-        plan.event_count = events_of(unit).count;
-        plan.unit_at = ground.take<BehaviourUnit>();
         plan.events_at = ground.take<std::string_view>(plan.event_count);
-        plan.memory_bytes = unit_bytes(unit, plan.event_count);
         plan.memory_at = ground.take(plan.memory_bytes, alignof(std::max_align_t));
         ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
     }

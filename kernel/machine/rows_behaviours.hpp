@@ -3,7 +3,9 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/program/rows.hpp"
 #include "kernel/script/unit.hpp"
+#include "kernel/statechart/execution.hpp"
 #include "kernel/statechart/rows.hpp"
 
 #include <cstdint>
@@ -37,6 +39,7 @@ enum class OnError : std::uint8_t {
 
 struct BehaviourOptions {
     bool reactive = false;        ///< thesis 5.2.2: neither run programs nor conditions in a step
+    bool escalates = false;       ///< a child in error puts its parent in error
     std::uint32_t statements = 0; ///< in one step; 0: default_statements
     OnError on_error = OnError::stop_machine;
 };
@@ -44,12 +47,18 @@ struct BehaviourOptions {
 /// A bound that only guards: no program that was checked comes near it in one step.
 inline constexpr std::uint32_t default_statements = 1000;
 
+/// Native code of one type of a unit.
+struct BehaviourCode {
+    ProgramCode code{};
+    StateMachineFast fast{};
+};
+
 struct BehaviourRow {
     std::string_view component{};
     BehaviourType type{};         ///< of a C++ table; script and slot have none
     BehaviourInstance instance{}; ///< the only one of a C++ table
     const ScriptUnit* script = nullptr;
-    std::span<const ProgramCode> code{}; ///< of each type; empty: the tables are walked
+    std::span<const BehaviourCode> code{}; ///< of each type; empty: the tables are walked
     Slot slot{};
     bool reserves = false; ///< it is a slot
     BehaviourOptions options{};
@@ -111,10 +120,12 @@ constexpr void apply(Slot& row, SlotNumber<TrialTag> option) noexcept { row.tria
 constexpr void apply(Slot& row, SlotAngle option) noexcept { row.angle = option.output; }
 
 struct Reactive {};
+struct Escalates {};
 struct StatementBound {
     std::uint32_t statements;
 };
 constexpr void apply(BehaviourOptions& row, Reactive) noexcept { row.reactive = true; }
+constexpr void apply(BehaviourOptions& row, Escalates) noexcept { row.escalates = true; }
 constexpr void apply(BehaviourOptions& row, StatementBound bound) noexcept {
     row.statements = bound.statements;
 }
@@ -155,6 +166,8 @@ constexpr Slot slot(const Options&... options) {
 
 /// No run programs and no conditions in the engine's steps: it moves upon events and requests only.
 inline constexpr detail::Reactive reactive{};
+/// A child machine in error puts its parent in error, which may have no other way to notice.
+inline constexpr detail::Escalates escalates{};
 /// At most so many statements in one step of the engine; what is left over goes on in the next.
 constexpr detail::StatementBound at_most(std::uint32_t statements) noexcept { return {statements}; }
 constexpr OnError on_error(OnError what) noexcept { return what; }
@@ -171,11 +184,24 @@ constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<
     (detail::apply(row.options, options), ...);
     return row;
 }
+/// A program table; it runs with its component, from its first node on. The table outlives the row.
+template <std::size_t N, std::size_t A, class... Options>
+constexpr BehaviourRow behaviour(std::string_view component, const ProgramTable<N, A>& program,
+                                 const Options&... options) noexcept {
+    BehaviourRow row;
+    row.component = component;
+    row.type.name = row.instance.name = row.type.machine.name = program.name;
+    row.type.machine.component = program.component;
+    row.type.tables = program.tables();
+    row.instance.image = row.type.tables.image;
+    (detail::apply(row.options, options), ...);
+    return row;
+}
 /// A compiled script, or its tables as they are; `script` and `code`, which stands in the order of its types,
 /// outlive the row.
 template <class... Options>
 constexpr BehaviourRow behaviour(std::string_view component, const ScriptUnit& script,
-                                 std::span<const ProgramCode> code, const Options&... options) noexcept {
+                                 std::span<const BehaviourCode> code, const Options&... options) noexcept {
     BehaviourRow row;
     row.component = component;
     row.script = &script;

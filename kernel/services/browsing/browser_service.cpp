@@ -103,6 +103,12 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::subscribe: return subscribe(client, request);
     case Verb::unsubscribe: return unsubscribe(client, request);
     case Verb::save: return save(client, request);
+    case Verb::behaviours: return behaviours(client, request);
+    case Verb::behave: return behave(client, request);
+    case Verb::script: return script(client, request);
+    case Verb::load: return load(client, request);
+    case Verb::unload: return unload(client, request, BehaviourSlot::Wish::unload);
+    case Verb::roll_back: return unload(client, request, BehaviourSlot::Wish::roll_back);
     }
     return {Refusal::unsupported,
             Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};

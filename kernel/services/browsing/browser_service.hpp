@@ -4,6 +4,7 @@
 
 #include "kernel/component/component.hpp"
 #include "kernel/machine/map_view.hpp"
+#include "kernel/services/browsing/behaviour_order.hpp"
 #include "kernel/services/browsing/door.hpp"
 #include "kernel/services/browsing/errand.hpp"
 #include "kernel/services/browsing/reply.hpp"
@@ -144,6 +145,36 @@ private:
     void tell_events();
     void drop(Subscribed& subscribed) noexcept;
 
+    // Behaviours; requests_behaviour.cpp
+    struct FoundBehaviour {
+        std::size_t row = 0;
+        BehaviourUnit* unit = nullptr;
+        std::size_t part = 0;
+    };
+    /// A script on its way into a slot.
+    struct Upload {
+        BehaviourSlot* slot = nullptr;
+        std::uint64_t client = 0;
+        std::size_t letters = 0;
+        Time since{};
+    };
+    Verdict behaviours(Client& client, const Request& request);
+    Verdict behave(Client& client, const Request& request);
+    Verdict script(Client& client, const Request& request);
+    Verdict load(Client& client, const Request& request);
+    Verdict unload(Client& client, const Request& request, BehaviourSlot::Wish wish);
+    Verdict change_slot(Client& client, const Request& request, BehaviourSlot& slot, BehaviourSlot::Wish wish,
+                        const SlotMoment& moment);
+    [[nodiscard]] bool finish_behave(const browsing::Errand& errand);
+    [[nodiscard]] BehaviourUnit* unit_of(std::size_t row) noexcept;
+    Sentence find_behaviour(std::string_view name, FoundBehaviour& found) noexcept;
+    Sentence find_slot(std::string_view name, BehaviourSlot*& slot) noexcept;
+    template <class Copy>
+    [[nodiscard]] bool read_between_steps(std::size_t activity, const Copy& copy);
+    void put_behaviour(Reply& reply, std::size_t row, const BehaviourUnit& unit, const UnitPart& part,
+                       bool all);
+    void put_slot(Reply& reply, const BehaviourSlot& slot);
+
     // Properties to their files; requests_save.cpp
     Verdict save(Client& client, const Request& request);
     void follow_saving();
@@ -164,6 +195,7 @@ private:
     std::size_t seen_count_ = 0;
     std::uint64_t unseen_ = 0; ///< emissions beyond max_events
     Save save_{};
+    Upload upload_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
 };
 

@@ -30,8 +30,11 @@
 ///         "done";
 ///     {"id": N, "event": "shaft.beat_up", "time_ns": T, "arguments": [..], "lost": n}
 ///         n: emissions of this subscription that were lost so far.
-/// What a client does not read is not kept for it: beyond its socket's buffer packets are dropped, and the
-/// next that it gets says "dropped": n.
+/// A script comes in pieces, `script SLOT 0 "..."` and so on at the number of bytes that the last reply said;
+/// `load` compiles it, answers its first error with file, line and column, and lets it take over at once, at
+/// an event of the slot's reach or when the slot's angle is passed. `behaviours SLOT` tells what became of
+/// it. What a client does not read is not kept for it: beyond its socket's buffer packets are dropped, and
+/// the next that it gets says "dropped": n.
 ///
 /// Times are the machine's: nanoseconds of CLOCK_MONOTONIC on a box, virtual ones under virtual time.
 namespace tappet::browsing {
@@ -61,7 +64,13 @@ enum class Verb : std::uint8_t {
     save,
     start,
     stop,
-    restart
+    restart,
+    behaviours,
+    behave,
+    script,
+    load,
+    unload,
+    roll_back
 };
 
 struct VerbRow {
@@ -94,6 +103,13 @@ inline constexpr auto verbs = std::to_array<VerbRow>({
     {Verb::start,       "start",       Role::engineer,         "start COMPONENT|activity:NAME",         1, 1, ""},
     {Verb::stop,        "stop",        Role::engineer,         "stop COMPONENT|activity:NAME",          1, 1, ""},
     {Verb::restart,     "restart",     Role::engineer,         "restart COMPONENT|activity:NAME",       1, 1, ""},
+    {Verb::behaviours,  "behaviours",  Role::observer,         "behaviours [NAME|SLOT]",           0, 1,
+     R"("behaviours": [{"name": "component.instance", "kind": "machine|program", "status": "...", "state": "a/b", "line": n}], "slots": [{"slot": "component", "phase": "empty|steady|waiting|handing_over|trial", "script": "...", "loads": n, "roll_backs": n, "news": "..."}]; of one also "variables", "transitions", "left_over", "fault")"},
+    {Verb::behave,      "behave",      Role::engineer,         "behave start|stop|pause|step|reset|deactivate|reactive|request NAME [STATE]", 2, 3, ""},
+    {Verb::script,      "script",      Role::engineer,         "script SLOT OFFSET TEXT",          3, 3, R"("bytes": n, of the script so far)"},
+    {Verb::load,        "load",        Role::engineer,         "load SLOT FILE [now|EVENT|DEGREES]", 2, 3, ""},
+    {Verb::unload,      "unload",      Role::engineer,         "unload SLOT",                      1, 1, ""},
+    {Verb::roll_back,   "roll_back",   Role::engineer,         "roll_back SLOT",                   1, 1, ""},
 });
 // clang-format on
 

@@ -163,7 +163,7 @@ void BrowserService::follow_errands() {
         if (each.is_over()) {
             each.taken = false;
             Client* client = each.given_up ? nullptr : door_.find(each.asker.client);
-            if (client == nullptr) continue;
+            if (client == nullptr || finish_behave(each)) continue;
             Reply reply{each.asker.number, true};
             if (each.act == &run_method && each.facet->method->result_bytes != 0) {
                 alignas(16) std::array<std::byte, Errand::max_value_bytes> result{};

@@ -1,0 +1,61 @@
+// What a browser tells a behaviour to do, on its way to the engine that runs it.
+#pragma once
+
+#include "kernel/machine/instance.hpp"
+#include "kernel/services/browsing/errand.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet::browsing {
+
+/// Thesis fig. 5.9 and 5.19.
+enum class BehaviourAction : std::uint8_t {
+    start,      ///< a program runs, a machine is activated and goes automatically
+    stop,       ///< a program ends, a machine goes to its final state
+    pause,      ///< where it stands
+    step,       ///< one statement or question of what is paused
+    reset,      ///< a program to its beginning, a machine from the final to the initial state
+    deactivate, ///< a machine runs its exits and is inactive
+    reactive,   ///< a machine hears events and requests only
+    request     ///< a machine takes the transition to a state, if its guard holds
+};
+
+inline constexpr std::array<std::string_view, 8> behaviour_actions{
+    "start", "stop", "pause", "step", "reset", "deactivate", "reactive", "request"};
+
+/// False: there is no such action.
+constexpr bool parse(std::string_view text, BehaviourAction& action) noexcept {
+    for (std::size_t i = 0; i < behaviour_actions.size(); ++i)
+        if (behaviour_actions[i] == text) {
+            action = static_cast<BehaviourAction>(i);
+            return true;
+        }
+    return false;
+}
+
+struct BehaviourOrder {
+    BehaviourUnit* unit = nullptr;
+    BehaviourSlot* slot = nullptr; ///< that holds the unit; null: a row's own
+    const Engine* engine = nullptr;
+    std::size_t part = 0;
+    StateIndex state = no_state; ///< that is requested
+    BehaviourAction action = BehaviourAction::start;
+    bool done = false;
+};
+static_assert(sizeof(BehaviourOrder) <= Errand::max_value_bytes);
+
+/// The letters of a word of a request: what stands between its outer quotes, \" and \\ for themselves. False:
+/// it is not quoted well.
+template <class Put>
+constexpr bool unquote(std::string_view word, const Put& put) {
+    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
+    if (quoted) word = word.substr(1, word.size() - 2);
+    for (std::size_t i = 0; i < word.size(); ++i) {
+        if (quoted && word[i] == '\\' && ++i == word.size()) return false;
+        put(word[i]);
+    }
+    return true;
+}
+
+} // namespace tappet::browsing
