@@ -4,7 +4,6 @@
 
 #include "kernel/machine/check_events.hpp"
 #include "kernel/machine/unit_rows.hpp"
-#include "kernel/program/actions.hpp"
 #include "kernel/statechart/check.hpp"
 
 namespace tappet::checks {
@@ -102,24 +101,6 @@ constexpr Sentence check_unit_reach(const MachineView& m, const TableIndexView& 
     return {};
 }
 
-/// An output has one writer, its own component: a script of another one may read it.
-constexpr Sentence check_unit_writes(const MachineView& m, const BehaviourRow& row) {
-    const ScriptUnit unit = row.unit();
-    for (const BehaviourType& type : unit.types)
-        for (const Instruction& each : type.tables.instructions) {
-            if (each.run != &primitive::write_output && each.run != &primitive::push_buffer &&
-                each.run != &primitive::push_all)
-                continue;
-            if (each.link >= type.tables.links.size() || type.tables.links[each.link].peer == 0) continue;
-            const std::size_t c = component_of(m, row.component, unit, type.tables.links[each.link].peer);
-            return of_behaviour(row, ": script \"", unit.name, "\" writes output \"", m.components[c].name,
-                                ".", each.facet->name,
-                                "\" of another component, which writes it too; call an "
-                                "operation of it instead");
-        }
-    return {};
-}
-
 /// What a unit's programs act on must be safe in the activity that runs them.
 constexpr Sentence check_unit_links(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const ScriptUnit unit = row.unit();
@@ -151,7 +132,6 @@ constexpr Sentence check_unit(const MachineView& m, const TableIndexView& r, con
                             "\" has nothing to run; add a RootStateMachine or a program");
     if (Sentence fault = check_unit_reach(m, r, row); !fault.empty()) return fault;
     if (Sentence fault = check_unit_links(m, r, row); !fault.empty()) return fault;
-    if (Sentence fault = check_unit_writes(m, row); !fault.empty()) return fault;
     for (const BehaviourType& type : unit.types) {
         const StateMachineTable& machine = type.machine;
         const bool is_program = type.is_program() && !type.tables.nodes.empty();

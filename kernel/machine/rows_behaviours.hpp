@@ -165,7 +165,7 @@ constexpr Slot slot(const Options&... options) {
 }
 
 /// No run programs and no conditions in the engine's steps: it moves upon events and requests only.
-inline constexpr detail::Reactive reactive{};
+inline constexpr detail::Reactive reactive_mode{};
 /// A child machine in error puts its parent in error, which may have no other way to notice.
 inline constexpr detail::Escalates escalates{};
 /// At most so many statements in one step of the engine; what is left over goes on in the next.

@@ -1,0 +1,107 @@
+// A small machine for behaviours: an oven that a script drives, a door in its activity, a feeder in another
+// one.
+#pragma once
+
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/instance.hpp"
+#include "kernel/machine/virtual_world.hpp"
+#include "kernel/script/compiled.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::bakery {
+
+/// Turns by 10 degrees a millisecond and writes down what it is told.
+struct Oven {
+    Output<double> angle_deg;
+    Output<std::int64_t> shown;
+    Property<double> target{20.0};
+    Event<double, std::int64_t> hot;
+    Event<> tick;
+    std::vector<std::int64_t> told{};
+    std::uint64_t steps = 0;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        ++steps;
+        angle_deg.write(static_cast<double>(steps % 36 * 10));
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { angle_deg.write(0); }
+    /// False for what no oven does.
+    bool note(std::int64_t what) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's notes are kept on its heap", told.push_back(what));
+        return what >= 0;
+    }
+    static constexpr auto interface() {
+        return facets(output<&Oven::angle_deg>("angle_deg", "deg", "of the turntable"),
+                      output<&Oven::shown>("shown", "", "on its display"),
+                      property<&Oven::target>("target", "degC", "", range(0, 300)),
+                      event<&Oven::hot>("hot", "it is as hot as it should be"),
+                      event<&Oven::tick>("tick", "of the test"),
+                      method<&Oven::note>("note", "is written down"));
+    }
+};
+
+struct Door {
+    Property<bool> open{false};
+    Event<> moved;
+    std::int64_t pushes = 0;
+    std::int64_t push(std::int64_t by) noexcept TAPPET_REALTIME { return pushes += by; }
+    static constexpr auto interface() {
+        return facets(property<&Door::open>("open", "", "the door"), event<&Door::moved>("moved", "it did"),
+                      method<&Door::push>("push", "counts"));
+    }
+};
+
+/// Feeds one piece in each of its steps; more than ten it rejects.
+struct Feeder {
+    std::int64_t left = 0;
+    std::int64_t fed = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (left > 0) --left, ++fed;
+    }
+    bool feed(std::int64_t pieces) noexcept TAPPET_REALTIME {
+        if (pieces > 10) return false;
+        left = pieces;
+        return true;
+    }
+    bool fed_all() noexcept TAPPET_REALTIME { return left == 0; }
+    static constexpr auto interface() {
+        return facets(command<&Feeder::feed, &Feeder::fed_all>("feed", "so many pieces"));
+    }
+};
+
+struct Watcher {
+    static constexpr bool sees_machine = true;
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
+
+template <class Firmware>
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware::machine(), clock};
+    VirtualWorld world{instance};
+    Rig() {
+        const auto configured = instance.configure({});
+        EXPECT_TRUE(configured) << configured.error().view();
+        world.start();
+    }
+    bool run(Duration time) { return world.run_until(clock.now() + time); }
+    Oven& oven() { return *instance.template find<Oven>("oven"); }
+    Door& door() { return *instance.template find<Door>("door"); }
+    Feeder& feeder() { return *instance.template find<Feeder>("feeder"); }
+    std::string state(const BehaviourUnit& unit, std::size_t part = 0) {
+        std::string path;
+        for (const std::string_view each : unit.parts()[part].machine->path())
+            path += (path.empty() ? "" : "/") + std::string{each};
+        return path;
+    }
+};
+
+} // namespace tappet::bakery

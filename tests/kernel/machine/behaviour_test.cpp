@@ -1,0 +1,162 @@
+// A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script or a program table, in the
+// component's activity, behind its commands and events; what it may touch the table checks.
+#include "tests/kernel/machine/behaviour_machine.hpp"
+
+#include <gmock/gmock.h>
+
+namespace tappet::bakery {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr ScriptSource baking{"baking.osd", R"(
+StateMachine Baking {
+    var double heat = 0.0;
+    var int pieces = 0;
+    initial state Cold {
+        transition oven.hot(heat, pieces) if heat > 100.0 then select Feeding
+    }
+    state Feeding {
+        entry { set oven.target = heat; do oven.note(pieces); }
+        run { do feeder.feed(pieces); }
+        transitions { select Done }
+    }
+    state Done {
+        entry { set door.open = true; do oven.note(door.push(5)); }
+        transition oven.tick() select Cold
+    }
+    final state Off { entry { do oven.note(99); } }
+}
+RootStateMachine Baking baking
+program counting {
+    var int n = 0;
+    while (n < 3) { do oven.note(1000 + n); set n = n + 1; yield; }
+}
+)"};
+constexpr auto reach =
+    script_reach(reachable<Oven>("oven"), reachable<Door>("door"), reachable<Feeder>("feeder", false));
+
+// clang-format off
+constexpr auto parts = components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Watcher>("watcher"));
+constexpr auto threads = activities(
+    activity("fast", every(1ms), budget(50us), runs("oven", "door")),
+    activity("slow", every(5ms), budget(50us), runs("feeder")),
+    activity("office", every(50ms), not_real_time, runs("watcher")));
+constexpr auto table = machine("bakery", parts, threads, connections(), reactions(),
+    behaviours(behaviour("oven", compiled_script<baking, reach>, {})));
+// clang-format on
+using Bakery = Rig<Firmware<table, board>>;
+
+TEST(Behaviour, a_script_hears_events_with_their_arguments_and_acts_on_components_of_its_activity) {
+    Bakery rig;
+    rig.run(10ms);
+    rig.oven().told.clear();
+    const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
+    EXPECT_EQ(rig.state(unit), "Cold");
+    rig.oven().hot.emit(50.0, 3);
+    rig.run(5ms);
+    EXPECT_EQ(rig.state(unit), "Cold"); // its guard said no
+    rig.oven().hot.emit(180.0, 3);
+    rig.run(2ms);
+    EXPECT_EQ(rig.state(unit), "Feeding");
+    EXPECT_EQ(rig.oven().target.get(), 180.0);
+    EXPECT_THAT(rig.oven().told, ElementsAre(3));
+    rig.run(60ms);
+    EXPECT_EQ(rig.state(unit), "Done");
+    EXPECT_EQ(rig.feeder().fed, 3); // a command of another activity was sent, and waited for
+    EXPECT_TRUE(rig.door().open.get());
+    EXPECT_THAT(rig.oven().told, ElementsAre(3, 5));
+}
+
+TEST(Behaviour, a_program_runs_with_its_component_before_the_state_machines) {
+    Bakery rig;
+    rig.run(10ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(1000, 1001, 1002));
+    EXPECT_EQ(rig.instance.behaviour_of("oven")->parts()[1].program->status(), ProgramStatus::stopped);
+}
+
+TEST(Behaviour, the_stop_of_its_component_leads_to_the_final_state_and_its_start_out_of_it) {
+    Bakery rig;
+    rig.run(10ms);
+    rig.oven().told.clear();
+    static_cast<void>(rig.instance.ask_component(0, LifeChange::stop));
+    rig.run(5ms);
+    const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
+    EXPECT_EQ(rig.state(unit), "Off");
+    EXPECT_THAT(rig.oven().told, ElementsAre(99));
+    static_cast<void>(rig.instance.ask_component(0, LifeChange::start));
+    rig.run(5ms);
+    EXPECT_EQ(rig.state(unit), "Cold");
+}
+
+TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
+    Bakery rig;
+    rig.run(10ms);
+    rig.oven().hot.emit(180.0, 11); // the feeder rejects so many
+    rig.run(60ms);
+    EXPECT_TRUE(rig.instance.stop_asked());
+    const std::string why{rig.instance.describe_stop().view()};
+    EXPECT_THAT(why, HasSubstr("the behaviour of \"oven\""));
+    EXPECT_THAT(why, HasSubstr("\"baking\": run of state \"Feeding\" failed in line 10"));
+}
+
+/// Heats until it is hot, by member functions.
+struct Kettle {
+    std::int64_t heated = 0;
+    bool off = false;
+    void heat() noexcept TAPPET_REALTIME { ++heated; }
+    void switch_off() noexcept TAPPET_REALTIME { off = true; }
+    bool boils() noexcept TAPPET_REALTIME { return heated >= 5; }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+constexpr auto boiling =
+    program<Kettle>("boiling", graph(node<&Kettle::heat>("heat", repeated), node<&Kettle::switch_off>("off")),
+                    arcs(arc<&Kettle::boils>("heat", "off"), arc("off", program_end)));
+// clang-format off
+constexpr auto kitchen = machine("kitchen", components(component<Kettle>("kettle")),
+    activities(activity("fast", every(1ms), budget(50us), runs("kettle"))), connections(), reactions(),
+    behaviours(behaviour("kettle", boiling)));
+// clang-format on
+
+TEST(Behaviour, a_program_table_of_member_functions_drives_a_component) {
+    Rig<Firmware<kitchen, board>> rig;
+    rig.run(3ms);
+    Kettle& kettle = *rig.instance.find<Kettle>("kettle");
+    EXPECT_FALSE(kettle.off);
+    rig.run(10ms);
+    EXPECT_EQ(kettle.heated, 5);
+    EXPECT_TRUE(kettle.off);
+    EXPECT_EQ(rig.instance.behaviour_of("kettle")->parts()[0].program->status(), ProgramStatus::stopped);
+}
+
+// ---- what the table refuses
+
+template <class... Rows>
+std::string refusal_of(const Rows&... rows) {
+    const auto wrong = machine("bakery", parts, threads, connections(), reactions(), behaviours(rows...));
+    auto verdict = judge(wrong, board);
+    return std::string{verdict.refusal.view()};
+}
+
+TEST(BehaviourChecks, a_script_compiled_for_one_activity_is_refused_where_two_run_its_peers) {
+    static constexpr auto too_near =
+        script_reach(reachable<Oven>("oven"), reachable<Door>("door"), reachable<Feeder>("feeder"));
+    EXPECT_THAT(refusal_of(behaviour("oven", compiled_script<baking, too_near>, {})),
+                HasSubstr("touches \"feeder\" as one of its own activity, but activity \"slow\" runs it"));
+}
+
+TEST(BehaviourChecks, a_script_for_a_component_of_another_type_is_refused) {
+    EXPECT_THAT(refusal_of(behaviour("door", compiled_script<baking, reach>, {})),
+                HasSubstr("was compiled for"));
+}
+
+TEST(BehaviourChecks, a_peer_that_the_machine_does_not_have_is_named_with_the_nearest) {
+    static constexpr auto misspelt = script_reach(reachable<Oven>("oven"), reachable<Door>("doors"));
+    static constexpr ScriptSource pushes{"pushes.osd", "do doors.push(1);"};
+    EXPECT_THAT(refusal_of(behaviour("oven", compiled_script<pushes, misspelt>, {})),
+                HasSubstr("there is no component \"doors\"; did you mean \"door\"?"));
+}
+
+} // namespace
+} // namespace tappet::bakery
