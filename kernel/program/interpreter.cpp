@@ -8,17 +8,16 @@ namespace tappet {
 namespace {
 
 // Offsets that an instruction does not use point nowhere, and its primitive does not look.
-ActionResult execute(const ProgramTables& tables, ProgramContext& context, std::size_t first,
-                     std::size_t count) noexcept TAPPET_REALTIME {
-    const Instruction* in = tables.instructions.data() + first;
-    const Instruction* const end = in + count;
+[[gnu::always_inline]] inline ActionResult execute(ProgramContext& context, const Instruction* in,
+                                                   std::size_t count) noexcept TAPPET_REALTIME {
     std::byte* const data = context.data;
+    const Instruction* const end = in + count;
     while (in < end) {
         const ActionResult result = in->run(context, *in, data + in->to, data + in->a, data + in->b);
-        if (result == ActionResult::skip)
+        if (result != ActionResult::done) [[unlikely]] {
+            if (result != ActionResult::skip) return result;
             in += in->size;
-        else if (result != ActionResult::done)
-            return result;
+        }
         ++in;
     }
     return ActionResult::done;
@@ -40,12 +39,12 @@ ConditionResult is_open(const ProgramTables& tables, ProgramContext& context, co
 
 enum class Way : std::uint8_t { on, waits, failed };
 
-/// Asks the node's arcs; `on`: the position is where the first open one leads. Before the action is done
-/// those without a condition alone: the time-outs.
-Way follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& node) noexcept
-    TAPPET_REALTIME {
-    const ArcRow* arc = tables.arcs.data() + node.first_arc;
-    for (const ArcRow* const end = arc + node.arcs; arc != end; ++arc) {
+/// Asks the node's arcs from number `first` on; `on`: the position is where the first open one leads. Before
+/// the action is done those without a condition alone: the time-outs.
+Way follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& node,
+           std::size_t first) noexcept TAPPET_REALTIME {
+    const ArcRow* arc = tables.arcs.data() + node.first_arc + first;
+    for (std::size_t i = first; i < node.arcs; ++i, ++arc) {
         if (!context.position.acted && (arc->condition != no_condition || arc->after == no_data)) continue;
         const ConditionResult open = is_open(tables, context, *arc);
         if (open == ConditionResult::no) continue;
@@ -57,11 +56,32 @@ Way follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& 
     return Way::waits;
 }
 
-/// Executes the node's action; `on`: its arcs are to be asked.
-Way act(const ProgramTables& tables, ProgramContext& context, const NodeRow& node) noexcept TAPPET_REALTIME {
+/// No node: the program stays where it is.
+constexpr NodeIndex stays = end_node - 1;
+
+/// Where a node leads whose action was done just now: its arcs up to the first time-out. no_node: into error;
+/// `stays`: so many were `asked` in vain.
+[[gnu::always_inline]] inline NodeIndex leads_to(const ProgramTables& tables, ProgramContext& context,
+                                                 const NodeRow& node, std::size_t& asked) noexcept
+    TAPPET_REALTIME {
+    if (node.yields) return stays;
+    const ArcRow* arc = tables.arcs.data() + node.first_arc;
+    for (; asked < node.arcs && arc->after == no_data; ++asked, ++arc) {
+        if (arc->condition == no_condition) return arc->to;
+        const ConditionRow& row = tables.conditions[arc->condition];
+        if (execute(context, tables.instructions.data() + row.first, row.count) != ActionResult::done)
+            [[unlikely]]
+            return no_node;
+        if (load_value<bool>(context.data + row.result)) return arc->to;
+    }
+    return stays;
+}
+
+/// What follows an action; `on`: the node's arcs are to be asked.
+Way behind_action(ProgramContext& context, const NodeRow& node, ActionResult result) noexcept
+    TAPPET_REALTIME {
     ProgramPosition& position = context.position;
     if (!position.entered) position.entered = true, position.entered_at = context.now;
-    const ActionResult result = execute(tables, context, node.first, node.count);
     if (result == ActionResult::failed) return Way::failed;
     if (result == ActionResult::again) return Way::on;
     position.acted = true;
@@ -74,28 +94,68 @@ ConditionResult test_condition(const ProgramTables& tables, ProgramContext& cont
                                ConditionIndex condition) noexcept TAPPET_REALTIME {
     if (condition == no_condition) return ConditionResult::yes;
     const ConditionRow& row = tables.conditions[condition];
-    if (execute(tables, context, row.first, row.count) != ActionResult::done) return ConditionResult::failed;
+    if (execute(context, tables.instructions.data() + row.first, row.count) != ActionResult::done)
+        return ConditionResult::failed;
     return load_value<bool>(context.data + row.result) ? ConditionResult::yes : ConditionResult::no;
 }
 
 ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
                           std::uint32_t& statements) noexcept TAPPET_REALTIME {
+    const Instruction* const instructions = tables.instructions.data();
+    const NodeRow* const nodes = tables.nodes.data();
     ProgramPosition& position = context.position;
-    while (position.node != end_node) {
-        const NodeRow& node = tables.nodes[position.node];
+    // In registers, since each statement waits for them; position.node holds where the program returns.
+    NodeIndex at = position.node;
+    std::uint32_t left = statements;
+    bool acted = position.acted;
+    const NodeRow* row = nodes;
+    if (at != end_node) row += at;
+    while (at != end_node) {
+        const NodeRow& node = *row;
         Way way = Way::on;
-        if (!position.acted) {
-            if (statements == 0) return ProgramReturn::left_over;
-            --statements;
-            way = act(tables, context, node);
+        if (!acted) {
+            if (left == 0) break;
+            --left;
+            const ActionResult result = execute(context, instructions + node.first, node.count);
+            std::size_t asked = 0;
+            NodeIndex to = stays;
+            if (result == ActionResult::done) [[likely]]
+                to = leads_to(tables, context, node, asked);
+            // Most nodes lead on at once: nobody will ask when they were entered.
+            if (to < stays || to == end_node) [[likely]] {
+                position.entered = false;
+                // Mostly to the next row: a branch is predicted, a number that was read is waited for.
+                if (to == at + 1) [[likely]] {
+                    ++at, ++row;
+                    asm("" : "+r"(row)); // so that it stays a branch
+                    continue;
+                }
+                at = to;
+                if (at != end_node) row = nodes + at;
+                continue;
+            }
+            position.node = at;
+            way = behind_action(context, node, result);
+            if (to == no_node) way = Way::failed;
+            if (way == Way::on) way = follow(tables, context, node, asked);
+        } else {
+            way = follow(tables, context, node, 0);
         }
-        if (way == Way::on) way = follow(tables, context, node);
-        if (way == Way::waits) return ProgramReturn::waits;
-        if (way == Way::failed) {
-            if (node.on_error == no_node) return ProgramReturn::failed;
+        if (way == Way::failed && node.on_error != no_node) {
             position = {.node = node.on_error};
+            way = Way::on;
         }
+        if (way != Way::on) {
+            statements = left;
+            return way == Way::waits ? ProgramReturn::waits : ProgramReturn::failed;
+        }
+        at = position.node;
+        if (at != end_node) row = nodes + at;
+        acted = false;
     }
+    statements = left;
+    position.node = at;
+    if (at != end_node) return ProgramReturn::left_over;
     position = {};
     return ProgramReturn::ended;
 }

@@ -37,7 +37,7 @@ constexpr NodeIndex past_failure(const ProgramTables& tables, NodeIndex node) no
     NodeIndex to = end_node;
     for (std::size_t i = 0; i < row.arcs; ++i) {
         const ArcRow& arc = tables.arcs[row.first_arc + i];
-        if (arc.after == no_data) to = arc.to;
+        if (arc.after == no_data && arc.to != no_node) to = arc.to;
     }
     return to;
 }
