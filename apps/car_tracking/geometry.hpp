@@ -7,6 +7,7 @@
 
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/program/registered.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -24,13 +25,16 @@ struct Aim {
     double tilt = 0.0;
 
     friend constexpr bool operator==(const Aim&, const Aim&) = default;
-    friend constexpr Aim operator+(const Aim& a, const Aim& b) noexcept TAPPET_REALTIME {
-        return {a.pan + b.pan, a.tilt + b.tilt};
-    }
-    friend constexpr Aim operator-(const Aim& a, const Aim& b) noexcept TAPPET_REALTIME {
-        return {a.pan - b.pan, a.tilt - b.tilt};
-    }
 };
+
+constexpr Aim operator+(const Aim& a, const Aim& b) noexcept TAPPET_REALTIME {
+    return {a.pan + b.pan, a.tilt + b.tilt};
+}
+constexpr Aim operator-(const Aim& a, const Aim& b) noexcept TAPPET_REALTIME {
+    return {a.pan - b.pan, a.tilt - b.tilt};
+}
+constexpr Aim sum_of_aims(const Aim& a, const Aim& b) noexcept TAPPET_REALTIME { return a + b; }
+constexpr Aim difference_of_aims(const Aim& a, const Aim& b) noexcept TAPPET_REALTIME { return a - b; }
 
 /// A lens and the sensor behind it: focal length in pixels, and the radial distortion that maps the distance
 /// r from the optical axis (of the plane at distance 1) to r (1 + k1 r^2).
@@ -108,6 +112,11 @@ template <>
 inline constexpr auto tappet::fields_of<tappet::car_tracking::Aim> =
     tappet::fields(tappet::field<&tappet::car_tracking::Aim::pan>("pan", "deg"),
                    tappet::field<&tappet::car_tracking::Aim::tilt>("tilt", "deg"));
+/// A script adds and subtracts aims.
+template <>
+inline constexpr tappet::Registered<tappet::Op<"+", &tappet::car_tracking::sum_of_aims>,
+                                    tappet::Op<"-", &tappet::car_tracking::difference_of_aims>>
+    tappet::operators_of<tappet::car_tracking::Aim>{};
 template <>
 inline constexpr auto tappet::fields_of<tappet::car_tracking::Lens> =
     tappet::fields(tappet::field<&tappet::car_tracking::Lens::focal_px>("focal_px", "px"),
