@@ -1,7 +1,7 @@
 // A whole script: types, programs, and the instances of them.
 #pragma once
 
-#include "kernel/script/compiler_machines.hpp"
+#include "kernel/script/compiler_transitions.hpp"
 
 namespace tappet::script_detail {
 

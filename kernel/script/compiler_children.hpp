@@ -2,7 +2,8 @@
 #pragma once
 
 #include "kernel/script/child_machines.hpp"
-#include "kernel/script/compiler_statements.hpp"
+#include "kernel/script/compiler_actions.hpp"
+#include "kernel/script/compiler_loops.hpp"
 
 namespace tappet::script_detail {
 

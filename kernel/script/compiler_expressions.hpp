@@ -2,172 +2,13 @@
 // scratch.
 #pragma once
 
-#include "kernel/script/compiler_names.hpp"
+#include "kernel/script/compiler_values.hpp"
 
 namespace tappet::script_detail {
 
-class Expressions : protected Names {
+class Expressions : protected Values {
 protected:
-    using Names::Names;
-
-    // ---- values
-
-    static constexpr Operand literal_of(TypeId type, std::int64_t whole, double real) noexcept {
-        Operand value;
-        value.type = type;
-        value.literal = true;
-        value.whole = whole;
-        value.real = real;
-        return value;
-    }
-    static constexpr Operand whole_literal(std::int64_t value) noexcept {
-        return literal_of(script_int, value, static_cast<double>(value));
-    }
-    static constexpr Operand at_place(TypeId type, DataOffset at) noexcept {
-        Operand value;
-        value.type = type;
-        value.at = at;
-        return value;
-    }
-    /// What the instruction just emitted leaves.
-    static constexpr Operand made(TypeId type, DataOffset at) noexcept {
-        Operand value = at_place(type, at);
-        value.simple = true;
-        return value;
-    }
-
-    /// The bytes of a literal as a value of `type`; false: it is none.
-    static constexpr bool encode(const Operand& value, TypeId type, std::byte* into) noexcept {
-        switch (type->kind) {
-        case ValueKind::truth:
-            if (value.type != script_bool) return false;
-            store_value(into, value.whole != 0);
-            return true;
-        case ValueKind::whole:
-        case ValueKind::natural: {
-            if (value.type != script_int) return false;
-            const bool is_signed = type->kind == ValueKind::whole;
-            const std::size_t bits = 8 * type->size - (is_signed ? 1 : 0);
-            if (value.whole < 0 && (!is_signed || (bits < 63 && value.whole < -(std::int64_t{1} << bits))))
-                return false;
-            if (value.whole >= 0 && bits < 63 && value.whole >> bits != 0) return false;
-            for (std::size_t i = 0; i < type->size; ++i)
-                into[i] = static_cast<std::byte>(static_cast<std::uint64_t>(value.whole) >> (8 * i));
-            return true;
-        }
-        case ValueKind::real:
-            if (value.type != script_int && value.type != script_double) return false;
-            if (type->size == sizeof(double)) {
-                store_value(into, value.real);
-            } else {
-                if (value.real > 3.4028234663852886e38 || value.real < -3.4028234663852886e38) return false;
-                store_value(into, static_cast<float>(value.real));
-            }
-            return true;
-        case ValueKind::duration:
-            if (value.type != script_duration) return false;
-            store_value(into, value.whole);
-            return true;
-        case ValueKind::enumeration:
-            if (value.type != type) return false;
-            for (std::size_t i = 0; i < type->size; ++i)
-                into[i] = static_cast<std::byte>(static_cast<std::uint64_t>(value.whole) >> (8 * i));
-            return true;
-        case ValueKind::text: {
-            if (value.type != script_text) return false;
-            std::size_t used = 0;
-            for (std::size_t i = 0; i < value.text.size(); ++i) {
-                char letter = value.text[i];
-                if (letter == '\\' && i + 1 < value.text.size()) {
-                    letter = value.text[++i];
-                    if (letter == 'n')
-                        letter = '\n';
-                    else if (letter == 't')
-                        letter = '\t';
-                }
-                if (used == type->columns) return false;
-                into[used++] = static_cast<std::byte>(letter);
-            }
-            store_value(into + type->length_at, static_cast<std::uint32_t>(used));
-            return true;
-        }
-        default: return false;
-        }
-    }
-    constexpr void fail_type(const Token& at, TypeId found, std::string_view wanted, std::string_view where) {
-        fail(at, {"found a value of type ", type_name(found), ", expected ", wanted, where});
-    }
-    /// The value as one of exactly this type, in the data.
-    constexpr Operand as(const Token& at, const Operand& value, TypeId type, std::string_view where) {
-        if (!ok()) return {};
-        if (value.literal) return constant(at, value, type, where);
-        if (value.type == type) return value;
-        const Conversion conversion = find_conversion(value.type, type);
-        if (!conversion || !conversion.implicit) {
-            fail_type(at, value.type, type_name(type), where);
-            return {};
-        }
-        return convert(conversion, value, type, scratch(type->size));
-    }
-    constexpr Operand convert(const Conversion& conversion, const Operand& value, TypeId type,
-                              DataOffset to) {
-        Instruction in = conversion.instruction;
-        in.to = to;
-        in.a = value.at;
-        emit(in);
-        return made(type, to);
-    }
-    constexpr Operand constant(const Token& at, const Operand& value, TypeId type, std::string_view where) {
-        Operand placed = at_place(type, no_data);
-        placed.constant = true;
-        std::byte bytes[8] = {};
-        if (type->size <= 8 && encode(value, type, bytes)) {
-            placed.at = small_constant(load_value<std::uint64_t>(bytes), type->size);
-            return placed;
-        }
-        if (type->size > 8 && type->kind == value.type->kind) {
-            std::byte* const big = add_constant(type->size, placed.at);
-            if (big == nullptr || encode(value, type, big)) return placed;
-        }
-        if (type->kind == value.type->kind || (value.type == script_int && type->kind == ValueKind::natural))
-            fail(at, {"found a value that does not fit into ", short_name(type->name), where,
-                      "; write one that does"});
-        else
-            fail_type(at, value.type, type_name(type), where);
-        return {};
-    }
-    /// The value in the data, of the type it has.
-    constexpr Operand in_data(const Token& at, const Operand& value) {
-        return value.literal ? constant(at, value, value.type, "") : value;
-    }
-    /// C++ numbers of any width become those that scripts reckon with.
-    constexpr Operand reckoned(const Token& at, const Operand& value) {
-        if (!ok() || value.literal) return value;
-        const TypeId type = script_type(value.type);
-        return type == value.type ? value : as(at, value, type, "");
-    }
-    /// to = value, converted to the type of the place.
-    constexpr void store(const Token& at, const Operand& value, TypeId type, DataOffset to,
-                         std::string_view where) {
-        if (!ok()) return;
-        if (!value.literal && value.type != type) {
-            const Conversion conversion = find_conversion(value.type, type);
-            if (!conversion || !conversion.implicit) return fail_type(at, value.type, type_name(type), where);
-            convert(conversion, value, type, to);
-            return;
-        }
-        const Operand ready = as(at, value, type, where);
-        if (!ok()) return;
-        // A number is made where it belongs; what is larger might still be read while it is made.
-        if (ready.simple && type->size <= 8 && last_instruction().to == ready.at) {
-            last_instruction().to = to;
-            return;
-        }
-        Instruction in = copy_instruction(type);
-        in.to = to;
-        in.a = ready.at;
-        emit(in);
-    }
+    using Values::Values;
 
     // ---- the grammar's expressions, one function a level
 
@@ -385,34 +226,7 @@ private:
 
 protected:
     /// The field or element behind a dot or bracket of a value; parts of a place are places.
-    constexpr Operand take_part(const Operand& whole) {
-        const Token at = token_;
-        if (whole.literal) {
-            fail(at, {"a ", type_name(whole.type), " has no parts"});
-            return {};
-        }
-        if (is(Sign::open_square)) return take_element(whole);
-        advance();
-        const Token name = need_word("the name of a field");
-        if (!ok()) return {};
-        const TypeId type = whole.type;
-        if (type->kind == ValueKind::record) {
-            for (const RecordField& field : type->fields)
-                if (field.name == name.text) return part_of(whole, field.type, field.offset());
-            Nearest nearest{name.text};
-            for (const RecordField& field : type->fields) nearest.consider(field.name);
-            fail_unknown(name, "field", nearest, " in the record");
-            return {};
-        }
-        if (type->kind == ValueKind::matrix && type->columns == 1 && name.text.size() == 1) {
-            const std::size_t i = name.text[0] == 'w' ? 3 : static_cast<std::size_t>(name.text[0] - 'x');
-            if (name.text[0] >= 'w' && name.text[0] <= 'z' && i < type->rows)
-                return part_of(whole, type->element, i * type->element->size);
-        }
-        fail(name, {"a ", type_name(type), " has no \"", quoted(name.text),
-                    "\"; fields are those of records, and x, y, z of vectors"});
-        return {};
-    }
+    constexpr Operand take_part(const Operand& whole);
 
 private:
     static constexpr Operand part_of(const Operand& whole, TypeId type, std::size_t offset) noexcept {
@@ -420,23 +234,7 @@ private:
         part.constant = whole.constant;
         return part;
     }
-    constexpr Operand take_element(const Operand& whole) {
-        const Token at = token_;
-        const Index index = parse_index(whole.type);
-        if (!ok()) return {};
-        const TypeId element = whole.type->element;
-        if (index.is_known) return part_of(whole, element, index.number * element->size);
-        Instruction in = element_read(whole.type);
-        if (in.run == nullptr) {
-            fail(at, {"a ", type_name(whole.type), " has no elements"});
-            return {};
-        }
-        in.to = scratch(element->size);
-        in.a = whole.at;
-        in.b = index.at;
-        emit(in);
-        return made(element, in.to);
-    }
+    constexpr Operand take_element(const Operand& whole);
 
 protected:
     struct Index {
@@ -445,61 +243,10 @@ protected:
         DataOffset at = no_data;
     };
     /// "[i]", of a matrix of more rows and columns "[i][j]" or "[i, j]"; counted from 0.
-    constexpr Index parse_index(TypeId type) {
-        Index index;
-        const Token at = token_;
-        if (!need(Sign::open_square, "\"[\"")) return index;
-        if (type->kind != ValueKind::matrix && type->kind != ValueKind::sequence) {
-            fail(at, {"a ", type_name(type), " has no elements"});
-            return index;
-        }
-        const bool is_matrix = type->kind == ValueKind::matrix && type->rows > 1 && type->columns > 1;
-        const std::size_t rows = is_matrix                         ? type->rows
-                                 : type->kind == ValueKind::matrix ? type->rows * type->columns
-                                                                   : type->columns;
-        const Operand row = parse_subscript(rows);
-        if (!is_matrix) {
-            need(Sign::close_square, "\"]\"");
-            if (!ok()) return index;
-            index.is_known = row.literal && type->kind == ValueKind::matrix;
-            index.number = static_cast<std::size_t>(row.whole);
-            if (!index.is_known) index.at = in_data(at, row).at;
-            return index;
-        }
-        if (!take(Sign::comma)) {
-            need(Sign::close_square, "\"]\"");
-            need(Sign::open_square, "\"[\" and the column");
-        }
-        const Operand column = parse_subscript(type->columns);
-        need(Sign::close_square, "\"]\"");
-        if (!ok()) return index;
-        if (row.literal && column.literal) {
-            const auto r = static_cast<std::size_t>(row.whole), c = static_cast<std::size_t>(column.whole);
-            index.is_known = true;
-            index.number = type->row_major ? r * type->columns + c : c * type->rows + r;
-            return index;
-        }
-        Instruction in = matrix_index(type);
-        in.to = scratch(sizeof(ScriptInt));
-        in.a = in_data(at, row).at;
-        in.b = in_data(at, column).at;
-        emit(in);
-        index.at = in.to;
-        return index;
-    }
+    constexpr Index parse_index(TypeId type);
 
 private:
-    constexpr Operand parse_subscript(std::size_t size) {
-        const Token at = token_;
-        const Operand value = reckoned(at, parse_expression(script_int));
-        if (!ok()) return {};
-        if (value.type != script_int)
-            fail_type(at, value.type, "an int", " as an index");
-        else if (value.literal && (value.whole < 0 || value.whole >= static_cast<std::int64_t>(size)))
-            fail(at, {"found an index out of range; elements are counted from 0 on, and there are ",
-                      Sentence{size}.view()});
-        return value;
-    }
+    constexpr Operand parse_subscript(std::size_t size);
 
     // ---- what an expression begins with
 
@@ -585,140 +332,10 @@ protected:
 
 private:
     /// A function of the library or of a type, a conversion, or a value put together of its parts.
-    constexpr Operand parse_function(const Token& name) {
-        if (name.text == "time" || name.text == "elapsed") {
-            advance();
-            if (!need(Sign::close_round, "\")\"")) return {};
-            const FacetAction action = name.text == "time" ? machine_time() : elapsed_time();
-            Instruction in = action.instruction;
-            in.to = scratch(sizeof(Duration));
-            emit(in);
-            return made(action.type, in.to);
-        }
-        if (const TypeId type = find_type(name.text); type != nullptr) return parse_constructor(name, type);
-        advance();
-        Operand operands[2];
-        TypeId types[2] = {};
-        std::size_t count = 0;
-        while (ok() && !is(Sign::close_round)) {
-            if (count == 2) {
-                fail(token_, {"\"", quoted(name.text), "\" has at most 2 arguments"});
-                return {};
-            }
-            const Token at = token_;
-            operands[count] = reckoned(at, parse_expression());
-            types[count] = operands[count].type;
-            ++count;
-            if (!is(Sign::close_round) && !need(Sign::comma, "\",\" or \")\"")) return {};
-        }
-        if (!ok() || !need(Sign::close_round, "\")\"")) return {};
-        const OperatorMatch match = find_function(name.text, std::span{types}.first(count));
-        if (!match) {
-            Nearest nearest{name.text};
-            bool is_known = false;
-            for (const std::string_view each : function_names()) {
-                is_known = is_known || each == name.text;
-                nearest.consider(each);
-            }
-            for (std::size_t i = 0; i < functions_used_; ++i) nearest.consider(functions_[i].name);
-            for (const Facet& each : facets(0))
-                if (each.kind == FacetKind::method) nearest.consider(each.name);
-            if (is_known)
-                fail(name, {"there is no ", name.text, "(", type_name(types[0]), count > 1 ? ", " : "",
-                            count > 1 ? type_name(types[1]) : "", ")"});
-            else
-                fail_unknown(name, "function", nearest, "");
-            return {};
-        }
-        const Operand a = as(name, operands[0], match.a, "");
-        const Operand b = match.b != nullptr ? as(name, operands[1], match.b, "") : Operand{};
-        return apply(match, a, b);
-    }
-    constexpr Operand parse_constructor(const Token& name, TypeId type) {
-        advance();
-        const bool is_record = type->kind == ValueKind::record, is_matrix = type->kind == ValueKind::matrix;
-        if (!is_record && !is_matrix) {
-            const Token at = token_;
-            const Operand value = reckoned(at, parse_expression());
-            if (!need(Sign::close_round, "\")\"")) return {};
-            if (value.literal && value.type == script_int && type == script_double)
-                return literal_of(script_double, 0, value.real);
-            if (value.type == type) return value;
-            const Conversion conversion = find_conversion(value.type, type);
-            if (!conversion) {
-                fail_type(at, value.type, type_name(type), "");
-                return {};
-            }
-            const Operand ready = in_data(at, value);
-            return ok() ? convert(conversion, ready, type, scratch(type->size)) : Operand{};
-        }
-        // Its known parts stand among the constants; those that are not are written into a copy of that.
-        Operand whole = at_place(type, no_data);
-        static_cast<void>(add_constant(type->size, whole.at));
-        whole.constant = true;
-        const std::size_t parts = is_record ? type->fields.size() : type->rows * type->columns;
-        for (std::size_t i = 0; ok() && i < parts; ++i) {
-            if (i != 0 && !need(Sign::comma, "\",\" and a value for each part")) return {};
-            const TypeId part = is_record ? type->fields[i].type : type->element;
-            // A matrix is written row by row.
-            const std::size_t offset =
-                is_record ? type->fields[i].offset()
-                          : type->element->size *
-                                (type->row_major ? i : (i % type->columns) * type->rows + i / type->columns);
-            const Token at = token_;
-            const Operand value = parse_expression(part);
-            if (!ok()) return {};
-            if (whole.constant && value.literal) {
-                std::byte bytes[8] = {};
-                std::byte* const into = room_.image.data() + image_base_ + within(whole.at) + offset;
-                if (part->size <= 8 ? !encode(value, part, bytes) : !encode(value, part, into)) {
-                    fail_type(at, value.type, type_name(part), "");
-                    return {};
-                }
-                if (part->size <= 8) std::copy_n(bytes, part->size, into);
-                continue;
-            }
-            if (whole.constant) {
-                Instruction in = copy_instruction(type);
-                in.a = whole.at;
-                in.to = whole.at = scratch(type->size);
-                whole.constant = false;
-                // The value may have been made by the instruction before this one.
-                Operand kept = value;
-                kept.simple = false;
-                emit(in);
-                store(at, kept, part, moved(whole.at, offset), "");
-                continue;
-            }
-            store(at, value, part, moved(whole.at, offset), "");
-        }
-        if (!ok()) return {};
-        if (is(Sign::comma)) {
-            fail(token_,
-                 {"a ", type_name(type), " has ", Sentence{parts}.view(), " parts; leave out what is more"});
-            return {};
-        }
-        static_cast<void>(name);
-        need(Sign::close_round, "\")\"");
-        return whole;
-    }
+    constexpr Operand parse_function(const Token& name);
+    constexpr Operand parse_constructor(const Token& name, TypeId type);
     /// A function whose body is one return, expanded here.
-    constexpr Operand call_value(const Token& name, Function& function) {
-        if (!function.is_value) {
-            fail(name, {"function \"", function.name, "\" has statements; call it by \"set x = ",
-                        function.name, "(...)\" or \"do\" alone, or make one return of it"});
-            return {};
-        }
-        const Expansion expansion = begin_expansion(name, function);
-        if (!ok()) return {};
-        advance(); // return
-        const Token at = token_;
-        Operand value = parse_expression(function.result);
-        if (function.result != nullptr && ok() && !value.literal)
-            value = as(at, value, function.result, " as the function returns");
-        end_expansion(function, expansion);
-        return value;
-    }
+    constexpr Operand call_value(const Token& name, Function& function);
 
 protected:
     struct Expansion {
@@ -730,240 +347,34 @@ protected:
     };
     /// Reads the arguments at the call and stands behind the opening brace of the body then. An argument that
     /// is no constant is reckoned once, into the scratch or where `keeps` says.
-    constexpr Expansion begin_expansion(const Token& name, Function& function, bool keeps = false) {
-        Expansion expansion;
-        if (function.expanding)
-            fail(name,
-                 {"function \"", function.name, "\" calls itself; recursion has no bound, write a loop"});
-        if (!enter()) return expansion;
-        if (!need(Sign::open_round, "\"(\" and the arguments")) return expansion;
-        expansion.symbols = symbols_used_;
-        expansion.scope = scope_;
-        expansion.hidden_begin = hidden_begin_;
-        expansion.hidden_end = hidden_end_;
-        Place parameters{function.lexer, function.token};
-        while (ok()) { // the caller's text and the function's are read in turns
-            const Place call = here();
-            go_to(parameters);
-            if (is(Sign::close_round)) {
-                advance();
-                need(Sign::open_brace, "\"{\"");
-                parameters = here();
-                go_to(call);
-                break;
-            }
-            const TypeId type = parse_type();
-            const Token parameter = need_name("the name of a parameter");
-            static_cast<void>(take(Sign::comma));
-            parameters = here();
-            go_to(call);
-            const Token at = token_;
-            if (is(Sign::close_round) && ok()) {
-                fail(token_, {"an argument is missing: \"", quoted(parameter.text), "\" of ", function.name});
-                break;
-            }
-            Operand value = parse_expression(type);
-            if (!value.literal && ok()) {
-                const DataOffset to = keeps ? place_in(Region::arguments, type->size) : scratch(type->size);
-                store(at, value, type, to, " as an argument");
-                value = at_place(type, to);
-            } else if (ok()) {
-                const Operand placed = as(at, value, type, " as an argument");
-                if (value.type != type && type->kind != ValueKind::real)
-                    value = placed;
-                else if (type == script_double)
-                    value = literal_of(script_double, 0, value.real);
-            }
-            Symbol symbol;
-            symbol.kind = SymbolKind::value;
-            symbol.fixed = true;
-            symbol.operand = value;
-            symbol.name = parameter.text; // in sight when all arguments are read: until then without its hash
-            if (symbols_used_ == symbols_.size())
-                fail_room("names in sight at one place");
-            else
-                symbols_[symbols_used_++] = symbol;
-            if (!is(Sign::close_round)) need(Sign::comma, "\",\" or \")\"");
-        }
-        need(Sign::close_round, "\")\" behind the arguments");
-        expansion.behind = here();
-        if (!ok()) return expansion;
-        for (std::size_t i = expansion.symbols; i < symbols_used_; ++i) {
-            const std::uint32_t hash = hash_of(symbols_[i].name);
-            symbols_[i].hash = hash != 0 ? hash : 1;
-        }
-        hidden_begin_ = function.symbols == none ? program_symbols_ : function.symbols;
-        hidden_end_ = expansion.symbols;
-        scope_ = expansion.symbols;
-        function.expanding = true;
-        go_to(parameters);
-        return expansion;
-    }
-    constexpr void end_expansion(Function& function, const Expansion& expansion) {
-        function.expanding = false;
-        leave();
-        symbols_used_ = expansion.symbols;
-        scope_ = expansion.scope;
-        hidden_begin_ = expansion.hidden_begin;
-        hidden_end_ = expansion.hidden_end;
-        go_to(expansion.behind);
-    }
+    constexpr Expansion begin_expansion(const Token& name, Function& function, bool keeps = false);
+    constexpr void end_expansion(Function& function, const Expansion& expansion);
 
     // ---- what components have
 
     /// "(a, b)", each converted to the type of the interface and packed at `to`.
-    constexpr void parse_arguments(std::span<const TypeId> types, DataOffset to) {
-        if (!need(Sign::open_round, "\"(\" and the arguments")) return;
-        std::size_t at = 0;
-        for (std::size_t i = 0; ok() && i < types.size(); ++i) {
-            if (i != 0 && !is(Sign::close_round)) need(Sign::comma, "\",\" or \")\"");
-            parse_argument(types[i], moved(to, at), i, types.size());
-            at += types[i]->size;
-        }
-        end_arguments(types.size());
-    }
-    constexpr void parse_argument(TypeId type, DataOffset to, std::size_t number, std::size_t count) {
-        if (!ok()) return;
-        const Token at = token_;
-        if (is(Sign::close_round))
-            return fail(at,
-                        {"found ", Sentence{number}.view(), " arguments, expected ", Sentence{count}.view()});
-        store(at, parse_expression(type), type, to, " as an argument");
-    }
-    constexpr void end_arguments(std::size_t count) {
-        if (!ok() || take(Sign::close_round)) return;
-        if (is(Sign::comma)) return fail(token_, {"found more arguments, expected ", Sentence{count}.view()});
-        fail_expected("\")\"");
-    }
+    constexpr void parse_arguments(std::span<const TypeId> types, DataOffset to);
+    constexpr void parse_argument(TypeId type, DataOffset to, std::size_t number, std::size_t count);
+    constexpr void end_arguments(std::size_t count);
     constexpr void act(const FacetAction& action, std::uint16_t component, std::uint16_t facet, DataOffset to,
-                       DataOffset a) {
-        if (!ok()) return;
-        Instruction in = action.instruction;
-        in.to = to;
-        in.a = a;
-        in.link = link(component, facet, false);
-        emit(in);
-    }
+                       DataOffset a);
     [[nodiscard]] constexpr const Facet& facet_of(std::uint16_t component,
                                                   std::uint16_t facet) const noexcept {
         return facets(component)[facet];
     }
     /// A method in this thread: its own, those of the activity, or one that may be called by any.
-    constexpr void check_call(const Token& at, std::uint16_t component, const Facet& facet) {
-        check_reach(at, component, facet.name, reach_.operations, "operations");
-        if (ok() && !facet.any_thread && !is_near(component))
-            fail(at, {"\"", quoted(facet.name), "\" of \"", reach_.components[component].name,
-                      "\" is called in its own activity only; make it any_thread, or send a command"});
-    }
+    constexpr void check_call(const Token& at, std::uint16_t component, const Facet& facet);
 
 private:
-    constexpr Operand read_facet(const Token& name, std::uint16_t component, std::uint16_t number) {
-        const Facet& facet = facet_of(component, number);
-        switch (facet.kind) {
-        case FacetKind::method: {
-            check_call(name, component, facet);
-            const FacetAction action = call_method(facet);
-            if (ok() && action.type == nullptr)
-                fail(name, {"\"", quoted(facet.name), "\" returns nothing; write \"do\" and no value"});
-            if (!ok()) return {};
-            const DataOffset packed =
-                facet.method->argument_bytes != 0 ? scratch(facet.method->argument_bytes) : no_data;
-            parse_arguments(facet.type->elements, packed);
-            if (!ok()) return {};
-            const DataOffset to = scratch(action.type->size);
-            act(action, component, number, to, packed);
-            return made(action.type, to);
-        }
-        case FacetKind::property:
-        case FacetKind::output:
-        case FacetKind::input: {
-            check_near(name, component, to_text(facet.kind));
-            if (ok() && is(Sign::dot) && facet.kind != FacetKind::property) {
-                const Place before = here();
-                advance();
-                const std::string_view part = token_.text;
-                const FacetAction asked = part == "valid"   ? input_valid(facet)
-                                          : part == "fresh" ? input_fresh(facet)
-                                          : part == "age"   ? port_age(facet)
-                                                            : FacetAction{};
-                if (part == "value") {
-                    advance();
-                } else if (asked) {
-                    advance();
-                    return read_by(asked, component, number);
-                } else {
-                    go_to(before);
-                }
-            }
-            return read_by(find_read(facet), component, number);
-        }
-        case FacetKind::buffer_input: {
-            check_near(name, component, "a buffer");
-            if (!need(Sign::dot, "\".empty\" or \".pop()\" of the buffer")) return {};
-            const Token part = need_word("empty or pop");
-            if (part.text == "empty") return read_by(buffer_empty(facet), component, number);
-            if (part.text != "pop")
-                fail(part, {"a buffered input has empty and pop(), not \"", quoted(part.text), "\""});
-            need(Sign::open_round, "\"(\"");
-            need(Sign::close_round, "\")\"");
-            return read_by(pop_buffer(facet), component, number);
-        }
-        case FacetKind::buffer_output: {
-            check_near(name, component, "a buffer");
-            need(Sign::dot, "\".push(value)\" of the buffer");
-            const Token part = need_word("push");
-            if (ok() && part.text != "push")
-                fail(part, {"a buffered output has push(value), not \"", quoted(part.text), "\""});
-            if (!ok()) return {};
-            const DataOffset value = scratch(facet.type->size), to = scratch(1);
-            parse_arguments({&facet.type, 1}, value);
-            act(push_buffer(facet), component, number, to, value);
-            return made(script_bool, to);
-        }
-        case FacetKind::command:
-            fail(name,
-                 {"\"", quoted(facet.name), "\" is a command, which takes time; write \"do\" and no value"});
-            return {};
-        default:
-            fail(name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind), ", which has no value"});
-            return {};
-        }
-    }
-    constexpr Operand read_by(const FacetAction& action, std::uint16_t component, std::uint16_t facet) {
-        if (!ok() || action.type == nullptr) return {};
-        const DataOffset to = scratch(action.type->size);
-        act(action, component, facet, to, no_data);
-        return made(action.type, to);
-    }
+    constexpr Operand read_facet(const Token& name, std::uint16_t component, std::uint16_t number);
+    constexpr Operand read_by(const FacetAction& action, std::uint16_t component, std::uint16_t facet);
     /// What a parent asks of its child machine; in compiler_children.hpp, as what it does with one.
     constexpr Operand parse_machine_value(std::uint16_t child);
 
 protected:
     /// The name of a state of the child, in quotes or without.
-    constexpr std::uint16_t parse_child_state(const Child& child) {
-        const Token name = token_;
-        if (!is(Sign::text) && !token_.is_word()) {
-            fail_expected("the name of a state");
-            return 0;
-        }
-        advance();
-        const auto states = types_.room[child.type].machine.states;
-        for (std::size_t i = 0; i < states.size(); ++i)
-            if (states[i].name == name.text) return static_cast<std::uint16_t>(i);
-        Nearest nearest{name.text};
-        for (const StateRow& each : states) nearest.consider(each.name);
-        fail_unknown(name, "state", nearest, " of the child machine");
-        return 0;
-    }
-    constexpr const VariableRow* child_variable(const Child& child, const Token& word) {
-        const auto variables = types_.room[child.type].tables.variables;
-        for (const VariableRow& each : variables)
-            if (each.name == word.text) return &each;
-        Nearest nearest{word.text};
-        for (const VariableRow& each : variables) nearest.consider(each.name);
-        fail_unknown(word, "variable", nearest, " of the child machine");
-        return nullptr;
-    }
+    constexpr std::uint16_t parse_child_state(const Child& child);
+    constexpr const VariableRow* child_variable(const Child& child, const Token& word);
     static constexpr void set_child_place(Instruction& in, const VariableRow& variable) noexcept {
         in.size = static_cast<std::uint16_t>(variable.type->size);
         in.inner = static_cast<std::uint8_t>(variable.at & 0xff);

@@ -2,7 +2,8 @@
 // waiting.
 #pragma once
 
-#include "kernel/script/compiler_expressions.hpp"
+#include "kernel/script/compiler_calls.hpp"
+#include "kernel/script/compiler_parts.hpp"
 
 namespace tappet::script_detail {
 

@@ -10,6 +10,12 @@ namespace tappet {
 
 namespace statechart {
 
+/// What a sentence begins with, and where in a script that stands; 0: in none.
+struct NamedRow : Sentence {
+    std::uint16_t line = 0;
+    std::uint16_t column = 0;
+};
+
 class Checker {
 public:
     explicit constexpr Checker(const StateHierarchy& names) : table_{names.table}, names_{names} {}
@@ -20,6 +26,9 @@ public:
             static_cast<void>(check_waits());
         return fault_;
     }
+    /// Of the row that the fault is about, in its script; 0: of none, or a C++ table.
+    [[nodiscard]] constexpr std::uint16_t line() const { return line_; }
+    [[nodiscard]] constexpr std::uint16_t column() const { return column_; }
 
 private:
     // ---- sentences; fail() is a template and must be complete before a constant expression calls it
@@ -28,12 +37,17 @@ private:
         fault_ = Sentence{"state machine \"", table_.name, "\": ", pieces...};
         return false;
     }
-    constexpr bool fail_twice(const Sentence& who, std::string_view part) {
+    template <class... Pieces> constexpr bool fail(const NamedRow& row, const Pieces&... pieces) {
+        line_ = row.line;
+        column_ = row.column;
+        return fail(static_cast<const Sentence&>(row), pieces...);
+    }
+    constexpr bool fail_twice(const NamedRow& who, std::string_view part) {
         if (part == "component type")
             return fail(who, " has programs of two component types; use those of one");
         return fail(who, " is given ", part, " twice; keep one");
     }
-    constexpr bool fail_foreign(const Sentence& who, TypeId component) {
+    constexpr bool fail_foreign(const NamedRow& who, TypeId component) {
         return fail(who, " has a program of ", component->name, ", and the machine is one of ",
                     table_.component == nullptr ? "no component" : table_.component->name,
                     "; use member functions that this component itself declares");
@@ -44,18 +58,19 @@ private:
     [[nodiscard]] constexpr std::string_view name(StateIndex state) const {
         return table_.states[state].name;
     }
-    [[nodiscard]] constexpr Sentence state_text(std::size_t i) const {
-        return Sentence{"state \"", table_.states[i].name, "\""};
+    [[nodiscard]] constexpr NamedRow state_text(std::size_t i) const {
+        const StateRow& row = table_.states[i];
+        return {Sentence{"state \"", row.name, "\""}, row.line, row.column};
     }
     [[nodiscard]] constexpr Sentence where(StateIndex outer) const {
         return outer == no_state ? Sentence{"at the top"} : Sentence{"in \"", name(outer), "\""};
     }
-    [[nodiscard]] constexpr Sentence transition_text(std::size_t t) const {
+    [[nodiscard]] constexpr NamedRow transition_text(std::size_t t) const {
         const TransitionRow& row = table_.transitions[t];
         Sentence text{"transition ", t + 1, " (\"", row.from, "\""};
         if (!row.to.empty()) text.add(" to \"").add(row.to).add("\"");
         if (row.on_event) text.add(" on \"").add(row.event).add("\"");
-        return text.add(")");
+        return {text.add(")"), row.line, row.column};
     }
     [[nodiscard]] constexpr Sentence cure_for(std::string_view written) const {
         Nearest nearest{written};
@@ -357,6 +372,8 @@ private:
     }
     [[nodiscard]] constexpr std::size_t free_transition_of(StateIndex leaf) const {
         std::size_t found = names_.transitions();
+        for (StateIndex state = leaf; state != no_state; state = names_.parent[state])
+            if (may_wait(table_.states[state].entry) || may_wait(table_.states[state].run)) return found;
         names_.for_each_out(leaf, [&](TransitionIndex t) {
             const TransitionRow& row = table_.transitions[t];
             if (!row.on_event && !row.timed && row.guard.empty()) found = t;
@@ -364,10 +381,16 @@ private:
         });
         return found;
     }
+    [[nodiscard]] constexpr bool may_wait(const ProgramRef& program) const {
+        return program.program != no_program && table_.programs != nullptr &&
+               table_.programs->programs[program.program].may_wait;
+    }
 
     const StateMachineTable& table_;
     const StateHierarchy& names_;
     Sentence fault_;
+    std::uint16_t line_ = 0;
+    std::uint16_t column_ = 0;
 };
 
 constexpr Sentence check_limits(const StateMachineTable& table) {

@@ -1,0 +1,231 @@
+// What tests of scripts stand on: a component with a facet of every kind, two peers of its type, and a script
+// that is compiled at run time and executed in its loaded form.
+#pragma once
+
+#include "kernel/activity/command_processor.hpp"
+#include "kernel/component/operation_interface.hpp"
+#include "kernel/program/execution.hpp"
+#include "kernel/script/room.hpp"
+#include "kernel/statechart/execution.hpp"
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace script_test {
+
+using namespace tappet;
+
+enum class Mode : std::uint8_t { idle, slow, fast };
+
+struct Position {
+    double x = 0;
+    double y = 0;
+    std::int32_t turns = 0;
+};
+
+} // namespace script_test
+
+template <>
+inline constexpr auto tappet::names_of<script_test::Mode> =
+    std::array<std::string_view, 3>{"idle", "slow", "fast"};
+template <>
+inline constexpr auto tappet::fields_of<script_test::Position> =
+    tappet::fields(tappet::field<&script_test::Position::x>("x"),
+                   tappet::field<&script_test::Position::y>("y"),
+                   tappet::field<&script_test::Position::turns>("turns"));
+
+namespace script_test {
+
+using Name = Text<12>;
+
+/// Keeps a trace of what was called, so that a test reads like the script that ran.
+struct Cell {
+    Property<double> gain{1.0};
+    Property<Mode> mode{Mode::idle};
+    Property<std::int16_t> narrow{7};
+    Output<double> speed;
+    Output<std::uint8_t> small;
+    Output<Position> aim;
+    Event<> startMovement, startCalibration, startLocalisation, halt;
+    Event<double> moveCamera;
+    Event<std::int32_t, Position> seen;
+    std::string trace;
+    std::int64_t axes = 3;
+    bool rejects = false;
+    bool fails = false;
+    int steps_to_go = 0;
+    int calibrations = 0;
+    bool located = true;
+
+    void say(std::string_view what) { trace += trace.empty() ? std::string{what} : " " + std::string{what}; }
+
+    // Tests alone call these, and they may allocate.
+    bool setParameter(const Name& name, double value) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a trace of the test",
+                      say(std::string{name.view()} + "=" + std::to_string(static_cast<int>(value))));
+        return true;
+    }
+    void note(std::int64_t value) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a trace of the test", say(std::to_string(value)));
+    }
+    std::int32_t totalAxes() noexcept TAPPET_REALTIME { return static_cast<std::int32_t>(axes); }
+    bool isTrue(bool value) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a trace of the test", say(value ? "yes" : "no"));
+        return value;
+    }
+    bool refuse() noexcept TAPPET_REALTIME { return false; }
+    bool isCalibrated() noexcept TAPPET_REALTIME { return calibrations > 0; }
+    bool carLocated() noexcept TAPPET_REALTIME { return located; }
+    double carLocation() noexcept TAPPET_REALTIME { return 0.5; }
+    double getPosition() noexcept TAPPET_REALTIME { return 10; }
+    Position whereabouts() noexcept TAPPET_REALTIME { return {1, 2, 3}; }
+    void disableAxis(std::int32_t axis) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a trace of the test", say("disable" + std::to_string(axis)));
+    }
+    void beep(std::int32_t times) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a trace of the test", say("beep" + std::to_string(times)));
+    }
+
+    bool begin_move(double axis, double velocity, double position) noexcept TAPPET_REALTIME {
+        if (rejects) return false;
+        TAPPET_ESCAPE("a trace of the test",
+                      say("move" + std::to_string(static_cast<int>(axis * 100 + velocity * 10 + position))));
+        return true;
+    }
+    bool begin_simple() noexcept TAPPET_REALTIME {
+        if (rejects) return false;
+        TAPPET_ESCAPE("a trace of the test", say("begin"));
+        return true;
+    }
+    bool begin_to(double to) noexcept TAPPET_REALTIME {
+        if (rejects) return false;
+        TAPPET_ESCAPE("a trace of the test", say("to" + std::to_string(static_cast<int>(to * 10))));
+        return true;
+    }
+    CommandProgress progress() noexcept TAPPET_REALTIME {
+        if (fails) return CommandProgress::failed;
+        if (steps_to_go == 0) {
+            TAPPET_ESCAPE("a trace of the test", say("end"));
+            return CommandProgress::done;
+        }
+        --steps_to_go;
+        return CommandProgress::executing;
+    }
+    CommandProgress calibrated() noexcept TAPPET_REALTIME {
+        ++calibrations;
+        return CommandProgress::done;
+    }
+    bool begin_measure(std::int32_t samples, std::int32_t& taken, double&) noexcept TAPPET_REALTIME {
+        taken = samples;
+        return !rejects;
+    }
+    CommandProgress measured(std::int32_t, std::int32_t&, double& mean) noexcept TAPPET_REALTIME {
+        if (steps_to_go-- > 0) return CommandProgress::executing;
+        mean = 2.5;
+        return CommandProgress::done;
+    }
+
+    static constexpr auto interface() {
+        return facets(property<&Cell::gain>("gain", "", "within bounds", range(0, 10)),
+                      property<&Cell::mode>("mode", "", "an enumeration"),
+                      property<&Cell::narrow>("narrow", "", "16 bits"),
+                      output<&Cell::speed>("speed", "", "a real"),
+                      output<&Cell::small>("small", "", "8 bits"), output<&Cell::aim>("aim", "", "a record"),
+                      event<&Cell::startMovement>("startMovement", "to a position"),
+                      event<&Cell::startCalibration>("startCalibration", ""),
+                      event<&Cell::startLocalisation>("startLocalisation", ""),
+                      event<&Cell::halt>("halt", ""), event<&Cell::moveCamera>("moveCamera", "with a target"),
+                      event<&Cell::seen>("seen", "with a number and a place"),
+                      method<&Cell::setParameter>("setParameter", ""), method<&Cell::note>("note", ""),
+                      method<&Cell::totalAxes>("totalAxes", ""), method<&Cell::isTrue>("isTrue", ""),
+                      method<&Cell::refuse>("refuse", "says no"),
+                      method<&Cell::isCalibrated>("isCalibrated", "", any_thread),
+                      method<&Cell::carLocated>("carLocated", "", any_thread),
+                      method<&Cell::carLocation>("carLocation", "", any_thread),
+                      method<&Cell::getPosition>("getPosition", "", any_thread),
+                      method<&Cell::whereabouts>("whereabouts", "a record"),
+                      method<&Cell::disableAxis>("disableAxis", ""), operation<&Cell::beep>("beep", ""),
+                      command<&Cell::begin_move, &Cell::progress>("moveAxis", ""),
+                      command<&Cell::begin_to, &Cell::progress>("moveTo", ""),
+                      command<&Cell::begin_simple, &Cell::progress>("fetchImage", ""),
+                      command<&Cell::begin_simple, &Cell::progress>("processImage", ""),
+                      command<&Cell::begin_simple, &Cell::progress>("go", ""),
+                      command<&Cell::begin_simple, &Cell::calibrated>("calibrate", ""),
+                      command<&Cell::begin_measure, &Cell::measured>("measure", ""));
+    }
+};
+
+/// Large enough for every script of these tests; of a slot in the firmware.
+inline constexpr ScriptSizes buffer_sizes = script_sizes_for(512, 16384, 8);
+
+/// compile_into(), in one translation unit.
+ScriptOutcome compile(std::string_view text, std::string_view name, const Reach& reach,
+                      const ScriptRoom& room);
+
+/// "own" drives; "robot" runs in its activity; "far" runs in another one.
+std::span<const Reachable> components();
+
+/// The sentence that a script is refused with; empty: it is accepted.
+std::string fault_of(std::string_view text, std::uint32_t statements_per_step = 0);
+
+/// A script with its components, its links bound, and every command slot served by an engine of its own.
+class Played {
+public:
+    explicit Played(std::string_view text, std::uint32_t statements_per_step = 0);
+    ~Played();
+    Played(const Played&) = delete;
+    Played& operator=(const Played&) = delete;
+
+    Cell own, robot, far;
+    ScriptOutcome outcome;
+
+    /// One step of all of it: programs, then machines that were started; time goes on by 10 ms.
+    void step();
+    void steps(int n) {
+        for (int i = 0; i < n; ++i) step();
+    }
+    /// The first program.
+    ProgramExecution& program();
+    /// A machine by its instance's name.
+    StateMachineExecution& machine(std::string_view name);
+    std::string state(std::string_view name);
+    /// An event by the name that its transitions have, with its arguments packed.
+    template <class... A>
+    StateOutcome event(std::string_view machine_name, std::string_view event_name, const A&... arguments) {
+        std::vector<std::byte> packed;
+        (append(packed, &arguments, sizeof arguments), ...);
+        packed.resize(packed.size() + 1);
+        return dispatch(machine_name, event_name, packed.data());
+    }
+    /// A variable as it stands in the data of an instance.
+    template <class T>
+    T get(std::string_view instance, std::string_view variable) {
+        T value{};
+        std::memcpy(static_cast<void*>(&value), variable_at(instance, variable), sizeof value);
+        return value;
+    }
+    template <class T>
+    void set(std::string_view instance, std::string_view variable, const T& value) {
+        std::memcpy(variable_at(instance, variable), static_cast<const void*>(&value), sizeof value);
+    }
+    [[nodiscard]] Time now() const { return now_; }
+
+private:
+    static void append(std::vector<std::byte>& to, const void* from, std::size_t bytes) {
+        const auto* begin = static_cast<const std::byte*>(from);
+        to.insert(to.end(), begin, begin + bytes);
+    }
+    StateOutcome dispatch(std::string_view machine_name, std::string_view event_name,
+                          const std::byte* packed);
+    std::byte* variable_at(std::string_view instance, std::string_view variable);
+
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+    Time now_ = at_ns(0);
+};
+
+} // namespace script_test

@@ -1,0 +1,190 @@
+// State machines of the script language: states in states, regions, history, time, children, functions
+// (thesis 5.2.1, 5.2.4, and what it leaves as future work).
+#include "tests/kernel/script/fixture.hpp"
+
+#include <gmock/gmock.h>
+
+namespace {
+
+using namespace script_test;
+
+TEST(A_state_machine, enters_the_states_inside_a_state_and_remembers_them) {
+    Played p{R"(
+StateMachine M {
+    initial state Idle {
+        transition startMovement select Work
+        transition startCalibration select history(Work)
+        transition startLocalisation select deep history(Work)
+    }
+    state Work {
+        transition halt select Idle
+        initial state Easy { transition moveCamera select Hard }
+        state Hard {
+            initial state Begin { transition seen select Middle }
+            state Middle { }
+        }
+    }
+    final state Safe { }
+}
+RootStateMachine M m)"};
+    static_cast<void>(p.machine("m").start(p.now()));
+    p.event("m", "startMovement");
+    EXPECT_EQ(p.state("m"), "Easy");
+    p.event("m", "moveCamera", 1.0);
+    p.event("m", "seen", std::int32_t{1}, Position{});
+    EXPECT_EQ(p.state("m"), "Middle");
+    p.event("m", "halt");
+    p.event("m", "startCalibration");
+    EXPECT_EQ(p.state("m"), "Begin");
+    p.event("m", "seen", std::int32_t{1}, Position{});
+    p.event("m", "halt");
+    p.event("m", "startLocalisation");
+    EXPECT_EQ(p.state("m"), "Middle");
+}
+
+TEST(A_state_machine, has_regions_that_are_active_at_the_same_time) {
+    Played p{R"(
+StateMachine M {
+    initial state Both {
+        region left {
+            initial state L1 { entry { do note(1); } transition halt select L2 }
+            state L2 { entry { do note(2); } }
+        }
+        region right {
+            initial state R1 { entry { do note(3); } transition halt select R2 }
+            state R2 { entry { do note(4); } transition halt select Safe }
+        }
+        transition startMovement select Safe
+    }
+    final state Safe { }
+}
+RootStateMachine M m)"};
+    static_cast<void>(p.machine("m").start(p.now()));
+    EXPECT_EQ(p.own.trace, "1 3");
+    p.event("m", "halt");
+    EXPECT_EQ(p.own.trace, "1 3 2 4");
+    p.event("m", "startMovement");
+    EXPECT_EQ(p.state("m"), "Safe");
+}
+
+TEST(A_state_machine, may_name_the_state_around_a_state_with_in) {
+    Played p{R"(
+StateMachine M {
+    initial state Outer { transition halt select Safe }
+    initial state Inner in Outer region first { transition startMovement select Other }
+    state Other in Outer region first { }
+    initial state Beside in Outer region second { }
+    final state Safe { }
+})"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    p.event("M", "startMovement");
+    EXPECT_TRUE(p.machine("M").is_in(2));
+    EXPECT_TRUE(p.machine("M").is_in(3));
+}
+
+TEST(A_timed_transition, is_taken_when_its_state_was_active_so_long) {
+    Played p{R"(
+StateMachine M {
+    initial state Wait {
+        transitions { after(30 ms) { do note(1); } select Safe because "nothing came" }
+    }
+    final state Safe { }
+})"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    p.steps(2);
+    EXPECT_EQ(p.state("M"), "Wait");
+    p.step();
+    EXPECT_EQ(p.state("M"), "Safe");
+    EXPECT_EQ(p.machine("M").reason(), "nothing came");
+}
+
+TEST(A_state_machine, commands_and_asks_its_children_and_reaches_their_variables) {
+    Played p{R"(
+StateMachine Axis {
+    param int number
+    var double target = 0
+    initial state Off { entry { do note(number); } transition startMovement select On }
+    state On { entry { do note(number * 10); } transitions { if target > 1.0 then select Moved } }
+    state Moved { entry { do note(number * 100); } transition startMovement select Off }
+    final state Safe { entry { do note(number * 1000); } }
+}
+StateMachine Pair {
+    SubStateMachine Axis left(1)
+    SubStateMachine Axis right(2)
+    initial state Begin {
+        entry { do left.start(); do right.activate(); set left.target = 2.5; do right.requestState(Off); }
+        transition halt select Run
+    }
+    state Run {
+        entry { if left.inState("Off") && !right.isRunning() then do note(int(left.target * 2)); do right.start(); }
+        transition halt select Safe
+    }
+    final state Safe { entry { do left.stop(); do right.stop(); } exit { do left.deactivate(); do right.deactivate(); } }
+}
+RootStateMachine Pair pair)"};
+    EXPECT_EQ(p.outcome.unit.instances.size(), 3u);
+    static_cast<void>(p.machine("pair").start(p.now()));
+    EXPECT_EQ(p.own.trace, "1 2");
+    p.event("pair", "halt");
+    EXPECT_EQ(p.own.trace, "1 2 5");
+    p.event("pair.left", "startMovement");
+    p.step();
+    EXPECT_EQ(p.state("pair.left"), "Moved");
+    p.event("pair", "halt");
+    EXPECT_EQ(p.own.trace, "1 2 5 10 100 1000 2000");
+    static_cast<void>(p.machine("pair").deactivate(p.now()));
+    EXPECT_FALSE(p.machine("pair.left").is_active());
+}
+
+TEST(A_run_program, waits_over_steps_while_events_go_on) {
+    Played p{R"(
+StateMachine M {
+    const duration pause = 20ms
+    function count(int by) { do note(by); wait(pause); do note(by + 1); }
+    initial state A {
+        run { do count(1); do count(5); }
+        transitions { select B }
+        transition halt { do note(9); } select B
+    }
+    state B { transition halt select A }
+    final state Z { }
+})"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    p.step();
+    EXPECT_EQ(p.own.trace, "1");
+    p.steps(2);
+    EXPECT_EQ(p.own.trace, "1 2 5");
+    p.event("M", "halt");
+    EXPECT_EQ(p.state("M"), "B") << "a run program that waits is aborted";
+    EXPECT_EQ(p.own.trace, "1 2 5 9");
+    p.own.trace.clear();
+    p.event("M", "halt");
+    p.steps(6);
+    EXPECT_EQ(p.own.trace, "1 2 5 6") << "from its beginning again";
+    EXPECT_EQ(p.state("M"), "B");
+}
+
+TEST(A_failing_program, puts_the_machine_in_error_where_its_line_says) {
+    Played p{"StateMachine M {\n initial state A {\n  entry {\n   do refuse();\n  }\n transition halt select "
+             "Z }\n final state Z { } }"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    EXPECT_TRUE(p.machine("M").in_error());
+    const NodeIndex node = p.machine("M").fault().node;
+    EXPECT_EQ(p.outcome.unit.types[0].tables.nodes[node].line, 4);
+}
+
+TEST(Every_condition_of_a_chain, has_an_else_that_is_the_last_one) {
+    Played p{R"(
+StateMachine M {
+    var int n = 0
+    initial state A { transitions { if n == 1 then select B else { do note(7); } select Z } }
+    state B { transition halt select Z }
+    final state Z { }
+})"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    p.step();
+    EXPECT_EQ(p.state("M"), "Z");
+    EXPECT_EQ(p.own.trace, "7");
+}
+
+} // namespace
