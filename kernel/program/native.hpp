@@ -41,7 +41,7 @@ struct Run {
 /// Nodes in one function. A program goes from page to page by its number; within one it falls or jumps.
 inline constexpr std::size_t page_nodes = 32;
 
-template <const auto& source, std::size_t type> class Code {
+template <const auto& source, std::size_t type> struct Code {
     static constexpr const ProgramTables& tables = tables_of(source, type);
     static constexpr DataLayout layout = tables.layout;
     static constexpr std::size_t scratch_bytes = std::max<std::size_t>(
@@ -384,7 +384,40 @@ template <const auto& source, std::size_t type> class Code {
         return at;
     }
 
-public:
+    // Nodes that lead on only, and few: the whole program fits into the place where it is called.
+    static constexpr bool is_short(const ProgramRow& row) {
+        constexpr std::size_t most = 8;
+        if (row.may_wait || row.first == end_node || row.last > row.first + most) return false;
+        for (NodeIndex node = row.first; node < row.last; ++node) {
+            const NodeRow& at = tables.nodes[node];
+            if (at.on_error <= node || stands(at)) return false;
+            for (std::size_t i = 0; i < at.arcs; ++i)
+                if (tables.arcs[at.first_arc + i].to <= node) return false;
+        }
+        return true;
+    }
+    template <NodeIndex first, std::size_t... i>
+    [[gnu::always_inline]] static Next straight(std::index_sequence<i...>, ProgramContext& context,
+                                                Run& run) noexcept TAPPET_REALTIME {
+        Next next = first;
+        (passes<first + i>(context, run, next), ...);
+        return next;
+    }
+    /// A program from its beginning, until it ends or halts.
+    template <ProgramIndex number>
+    static Next program(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
+        constexpr ProgramRow row = tables.programs[number];
+        run.fresh = true;
+        context.position.acted = context.position.entered = false;
+        if constexpr (is_short(row)) {
+            return straight<row.first>(std::make_index_sequence<row.last - row.first>{}, context, run);
+        } else {
+            Next next = row.first;
+            while (next < tables.nodes.size()) next = goes_to<0, tables.nodes.size()>(context, run, next);
+            return next;
+        }
+    }
+
     static Time wakes(const ProgramTables&, const ProgramContext& context) noexcept TAPPET_REALTIME {
         return context.position.entered ? wakes_at(std::make_index_sequence<timed_nodes>{}, context) : never;
     }

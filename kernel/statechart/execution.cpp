@@ -138,18 +138,7 @@ StateOutcome StateMachineExecution::dispatch_generally(std::size_t trigger, Time
         return queue(trigger, now, arguments);
     open(now);
     bool taken = false;
-    const ArcIndex quick = fast_.dispatch == nullptr || !machine_.plain || is(mid_round)
-                               ? StateMachineFast::generally
-                               : fast_.dispatch(context_, status_.active, trigger, arguments);
-    if (quick != StateMachineFast::generally) {
-        taken = quick != no_arc;
-        if (taken) {
-            const StateArc& arc = machine_.arcs[quick];
-            if (arc.gives_reason)
-                give_reason(arc.transition, machine_.table.transitions[arc.transition].because, now);
-            arrive(arc, now);
-        }
-    } else if (machine_.folded)
+    if (machine_.folded)
         taken = take_first(machine_.cells[first_cell_ + trigger], now);
     else {
         taken = react(trigger, arguments, now);
@@ -208,15 +197,20 @@ void StateMachineExecution::step(Time now) noexcept TAPPET_REALTIME {
     if ((mode_ & (inactive | busy | paused | error)) != 0) return;
     stepped_at_ = now;
     conditions_left_ = false;
-    if (machine_.folded && automatic_ && (mode_ & (in_hand | mid_round)) == 0)
+    if (fast_.step != nullptr && automatic_ && mode_ == ready)
+        fast_.step(*this, now);
+    else if (machine_.folded && automatic_ && (mode_ & (in_hand | mid_round)) == 0)
         step_folded(now);
-    else {
-        open(now);
-        ran_ = {};
-        serve_final(now);
-        round(now);
-        finish(now);
-    }
+    else
+        step_generally(now);
+}
+
+void StateMachineExecution::step_generally(Time now) noexcept TAPPET_REALTIME {
+    open(now);
+    ran_ = {};
+    serve_final(now);
+    round(now);
+    finish(now);
 }
 
 bool StateMachineExecution::step_once(Time now) noexcept TAPPET_REALTIME {

@@ -20,15 +20,21 @@ struct StateMachinePolicy {
     bool escalates = false;
 };
 
-/// Native code for the quick path of a machine. It asks and acts as the table says, on the component and data
-/// of the context, and leaves all bookkeeping to the execution. Each answers `generally` before it did
-/// anything where a program may wait or fail: then the table is walked.
+/// Native code for the quick path of a machine, see native.hpp: called when nothing waits and nothing is
+/// under way. It does what the walk does; where a program waits or fails it hands over to the walk.
 struct StateMachineFast {
-    static constexpr ArcIndex generally = 0xffff;
-    /// The arc whose programs it has run; no_arc: no guard held.
-    ArcIndex (*dispatch)(ProgramContext&, StateIndex leaf, std::size_t trigger,
-                         const std::byte* arguments) noexcept TAPPET_REALTIME = nullptr;
+    StateOutcome (*dispatch)(StateMachineExecution&, std::size_t trigger, Time now,
+                             const std::byte* arguments) noexcept TAPPET_REALTIME = nullptr;
+    void (*step)(StateMachineExecution&, Time now) noexcept TAPPET_REALTIME = nullptr;
+    /// The arguments of a transition's event into its variables; false: one does not fit.
+    bool (*capture)(StateMachineExecution&, TransitionIndex, const std::byte* arguments) noexcept
+        TAPPET_REALTIME = nullptr;
 };
+
+namespace native {
+template <const auto& source, std::size_t type>
+struct MachineCode;
+}
 
 /// All that an execution works on; it outlives it.
 struct StateMachineBinding {
@@ -175,6 +181,9 @@ public:
     [[nodiscard]] std::byte* data() const noexcept TAPPET_REALTIME { return context_.data; }
 
 private:
+    template <const auto& source, std::size_t type>
+    friend struct native::MachineCode;
+
     // What keeps a call from taking the quick path; 0: nothing.
     enum Mode : std::uint8_t {
         ready = 0,
@@ -209,6 +218,7 @@ private:
     void arrive(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
     bool take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME;
     void step_folded(Time now) noexcept TAPPET_REALTIME;
+    void step_generally(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] const StateArc* folded_condition(std::uint8_t held, Time now) const noexcept
         TAPPET_REALTIME;
     StateOutcome dispatch_generally(std::size_t trigger, Time now, const std::byte* arguments) noexcept
@@ -236,7 +246,9 @@ private:
     void supersede(TransitionIndex number, StateIndex target) noexcept TAPPET_REALTIME;
     void depart(Time now) noexcept TAPPET_REALTIME;
     void settle(Time now) noexcept TAPPET_REALTIME;
-    bool react(std::size_t trigger, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
+    // Arcs before `from` have said no.
+    bool react(std::size_t trigger, const std::byte* arguments, Time now, ArcIndex from = start_arc) noexcept
+        TAPPET_REALTIME;
     void round(Time now) noexcept TAPPET_REALTIME;
     bool run_states(Time now) noexcept TAPPET_REALTIME;
     bool run_state(ActiveState& at, Time now) noexcept TAPPET_REALTIME;
@@ -244,13 +256,26 @@ private:
     Answer find_condition(Time now, Selected& found) noexcept TAPPET_REALTIME;
     Answer ask(const StateArc& arc, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
     Answer ask(const ConditionRef& condition, Time now) noexcept TAPPET_REALTIME;
-    bool capture(const TransitionRow& row, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
+    bool capture(TransitionIndex transition, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
     Answer may_enter(StateIndex target, std::size_t kept, EntryKind enters, Time now) noexcept
         TAPPET_REALTIME;
     bool perform(const ProgramRef& program, Time now) noexcept TAPPET_REALTIME;
     ProgramReturn run(ProgramPosition& position, Time now) noexcept TAPPET_REALTIME;
     void fail(StatePart part, StateIndex state, NodeIndex node, Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] StatePart part_in_hand() const noexcept TAPPET_REALTIME;
+
+    // ---- where native code hands over. The position of a program that did not end is in the context.
+    void resume_transition(ArcIndex arc, std::size_t part, ProgramReturn why, Time now) noexcept
+        TAPPET_REALTIME;
+    StateOutcome resume_event(std::size_t trigger, Time now, const std::byte* arguments,
+                              ArcIndex from) noexcept TAPPET_REALTIME;
+    void resume_run(std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
+    void resume_handle(std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
+    void resume_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME;
+    void note_round() noexcept TAPPET_REALTIME;
+    void go_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME;
+    void hand_over(std::size_t part, ProgramReturn why) noexcept TAPPET_REALTIME;
+    ProgramReturn take_over(const ProgramRef& program) noexcept TAPPET_REALTIME;
 
     // ---- the active states
     using Entering = Bounded<StateIndex, max_active_states>;
@@ -310,7 +335,11 @@ private:
     Entering entering_;
     Bounded<Selected, max_active_states> selected_; // of one event, that have still to be taken; last first
     std::uint32_t statements_ = 0;                  // left in this call
-    std::uint32_t asked_ = 0;                       // questions of this round that single steps have had
+    // What native code has run of what is in hand: so many programs, of which the last stands as `why` says.
+    std::uint8_t handed_parts_ = 0;
+    ProgramReturn handed_why_ = ProgramReturn::ended;
+    bool handed_error_ = false;
+    std::uint32_t asked_ = 0; // questions of this round that single steps have had
     std::array<std::uint64_t, max_states / 64> ran_{};
     StateMachinePolicy policy_;
     StateMachineStatus status_;
@@ -381,6 +410,8 @@ inline bool StateMachineExecution::take_first(ArcIndex first, Time now) noexcept
 inline StateOutcome StateMachineExecution::dispatch(std::size_t trigger, Time now,
                                                     const std::byte* arguments) noexcept TAPPET_REALTIME {
     if (trigger >= machine_.triggers.size()) return StateOutcome::ignored;
+    if (mode_ == ready && fast_.dispatch != nullptr) [[likely]]
+        return fast_.dispatch(*this, trigger, now, arguments);
     if (mode_ != ready || !machine_.folded) [[unlikely]]
         return dispatch_generally(trigger, now, arguments);
     mode_ = busy;

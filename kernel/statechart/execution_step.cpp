@@ -90,7 +90,11 @@ void StateMachineExecution::round(Time now) noexcept TAPPET_REALTIME {
             active.run = RunPhase::fresh;
     if (!is(mid_round)) asked_ = 0;
     set(mid_round);
-    for (std::size_t taken = 0;;) {
+    go_round(0, now);
+}
+
+void StateMachineExecution::go_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME {
+    for (;;) {
         if (!run_states(now)) return;
         while (is(final_wanted)) {
             serve_final(now);

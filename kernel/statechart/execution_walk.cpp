@@ -120,9 +120,11 @@ auto StateMachineExecution::may_enter(StateIndex target, std::size_t kept, Entry
     return Answer::yes;
 }
 
-bool StateMachineExecution::capture(const TransitionRow& row, const std::byte* arguments, Time now) noexcept
+bool StateMachineExecution::capture(TransitionIndex transition, const std::byte* arguments, Time now) noexcept
     TAPPET_REALTIME {
     context_.now = now;
+    if (fast_.capture != nullptr) return fast_.capture(*this, transition, arguments);
+    const TransitionRow& row = machine_.table.transitions[transition];
     for (std::size_t i = 0; i < row.captures; ++i) {
         const CaptureRow& each = machine_.table.captures[row.first_capture + i];
         std::memcpy(context_.data + each.raw, arguments + each.from, each.size);
@@ -150,7 +152,8 @@ auto StateMachineExecution::ask(const StateArc& arc, const std::byte* arguments,
         status_.fault.transition = arc.transition;
         return Answer::failed;
     };
-    if (transition.captures != 0 && !capture(transition, arguments, now)) return failed(StatePart::capture);
+    if (transition.captures != 0 && !capture(arc.transition, arguments, now))
+        return failed(StatePart::capture);
     Answer answer = ask(transition.guard, now);
     if (answer == Answer::yes) answer = may_enter(arc.to, arc.kept_levels, transition.enters, now);
     if (answer == Answer::no && transition.has_otherwise) {
@@ -162,8 +165,8 @@ auto StateMachineExecution::ask(const StateArc& arc, const std::byte* arguments,
 
 // Each region's leaf from the inside; a state around several leaves is asked when none of them took it.
 // Nothing runs before all have been asked (UML: one run to completion).
-bool StateMachineExecution::react(std::size_t trigger, const std::byte* arguments, Time now) noexcept
-    TAPPET_REALTIME {
+bool StateMachineExecution::react(std::size_t trigger, const std::byte* arguments, Time now,
+                                  ArcIndex from) noexcept TAPPET_REALTIME {
     StateIndex refused = no_state;
     selected_.clear();
     for (std::size_t leaf = 0; leaf < status_.states.size(); ++leaf) {
@@ -176,7 +179,8 @@ bool StateMachineExecution::react(std::size_t trigger, const std::byte* argument
             bool is_taken = false;
             for (const Selected& each : selected_) is_taken = is_taken || is_inside(each.source, arc->source);
             if (!is_taken) {
-                const Answer answer = ask(*arc, arguments, now);
+                const bool was_asked = arc < machine_.arcs + from;
+                const Answer answer = was_asked ? Answer::no : ask(*arc, arguments, now);
                 if (answer == Answer::failed) return false;
                 if (answer == Answer::no) {
                     if (refused == no_state) refused = arc->source;
@@ -221,18 +225,27 @@ StatePart StateMachineExecution::part_in_hand() const noexcept TAPPET_REALTIME {
 // Whether it has ended.
 bool StateMachineExecution::perform(const ProgramRef& program, Time now) noexcept TAPPET_REALTIME {
     if (program.empty()) return true;
-    if (statements_ == 0) {
+    if (handed_parts_ > 1) {
+        --handed_parts_;
+        return true;
+    }
+    ProgramReturn why = ProgramReturn::ended;
+    if (handed_parts_ == 1) {
+        why = take_over(program);
+        if (program.call != nullptr) return why == ProgramReturn::ended;
+    } else if (statements_ == 0) {
         statements_left_ = true;
         return false;
-    }
-    if (program.call != nullptr) {
+    } else if (program.call != nullptr) {
         --statements_;
         program.call(context_.component);
         return true;
+    } else {
+        if (!program_begun_) position_ = {code_.tables->programs[program.program].first};
+        program_begun_ = true;
+        why = run(position_, now);
     }
-    if (!program_begun_) position_ = {code_.tables->programs[program.program].first};
-    program_begun_ = true;
-    switch (run(position_, now)) {
+    switch (why) {
     case ProgramReturn::ended: program_begun_ = false; return true;
     case ProgramReturn::waits:
     case ProgramReturn::left_over: return false;
