@@ -1,0 +1,16 @@
+// Native code of a script that is compiled with the firmware: each of its types as code, nothing interpreted.
+#pragma once
+
+#include "kernel/script/unit.hpp"
+#include "kernel/statechart/native.hpp"
+
+namespace tappet {
+
+constexpr const ProgramTables& tables_of(const ScriptUnit& unit, std::size_t type) noexcept {
+    return unit.types[type].tables;
+}
+constexpr StateMachineTable machine_of(const ScriptUnit& unit, std::size_t type) noexcept {
+    return unit.types[type].machine;
+}
+
+} // namespace tappet
