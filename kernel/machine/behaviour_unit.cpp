@@ -2,6 +2,8 @@
 #include "kernel/machine/behaviour_unit.hpp"
 
 #include "kernel/machine/instance.hpp"
+#include "kernel/program/check_tables.hpp"
+#include "kernel/statechart/check_references.hpp"
 
 #include <algorithm>
 #include <new>
@@ -77,8 +79,10 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     if (ground.full()) return too_small("instances");
     for (std::size_t t = 0; t < unit.types.size(); ++t) {
         const BehaviourType& type = unit.types[t];
+        if (Sentence fault = check_tables(type.tables); !fault.empty()) return fault;
         if (type.is_program()) continue;
         if (Sentence fault = check(type.machine); !fault.empty()) return fault;
+        if (Sentence fault = check_references(type.machine); !fault.empty()) return fault;
         const ResolvedRoom room = take_room(ground, measure(type.machine));
         if (ground.full()) return too_small("states and transitions");
         views[t] = resolve_into(type.machine, room);
