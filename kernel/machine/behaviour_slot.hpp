@@ -105,6 +105,7 @@ constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noex
     const ScriptSizes sizes = slot_sizes(slot);
     detail::UnitGround ground;
     static_cast<void>(detail::take_script_room(ground, sizes));
+    ground.take(0, unit_alignment);
     ground.take<UnitPart>(sizes.instances);
     ground.take<ResolvedView>(sizes.types);
     ground.take<UnitRoute>(events * sizes.instances);
@@ -119,6 +120,7 @@ constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noex
     ground.take<ProgramLink>(2 * sizes.links);
     ground.take<CommandSlot>(slot.command_slots);
     ground.take(slot.command_slots * slot_command_bytes, data_alignment);
+    ground.take(0, unit_alignment); // the other bank stands behind it
     return ground.used();
 }
 

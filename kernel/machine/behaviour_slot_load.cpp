@@ -23,6 +23,7 @@ void BehaviourSlot::place(const Place& place) {
     for (std::size_t bank = 0; bank < 2; ++bank) {
         detail::UnitGround ground{place.banks[bank]};
         rooms_[bank] = detail::take_script_room(ground, slot_sizes(place.row->slot));
+        ground.take(0, unit_alignment);
         unit_memory_[bank] = place.banks[bank].subspan(ground.used());
     }
 }

@@ -6,6 +6,7 @@
 #include "kernel/program/execution.hpp"
 #include "kernel/statechart/execution.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -95,7 +96,10 @@ constexpr MachineMemory take_machine_memory(detail::UnitGround& ground, const Re
     return {{history, sizes.history}, {ground.take(bytes, data_alignment), bytes}};
 }
 
-/// What a unit that hears so many events takes of memory aligned as std::max_align_t. The same sums as
+/// Of the memory of a unit.
+inline constexpr std::size_t unit_alignment = std::max(alignof(CommandSlot), data_alignment);
+
+/// What a unit that hears so many events takes of memory aligned to unit_alignment. The same sums as
 /// BehaviourUnit::place.
 constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
     detail::UnitGround ground;

@@ -280,7 +280,7 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
             plan.memory_bytes = unit_bytes(unit, plan.event_count);
         }
         plan.events_at = ground.take<std::string_view>(plan.event_count);
-        plan.memory_at = ground.take(plan.memory_bytes, alignof(std::max_align_t));
+        plan.memory_at = ground.take(plan.memory_bytes, unit_alignment);
         ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
     }
     for (auto& activity : p.activities)

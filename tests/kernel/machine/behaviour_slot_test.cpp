@@ -1,0 +1,296 @@
+// A behaviour is loaded into a running machine (thesis 5.1.4, 5.2.4: programs and state machines are loaded at
+// run time): the old one ends safely, the new one is on trial, and what is faulty changes nothing.
+#include "tests/kernel/machine/behaviour_machine.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace tappet::bakery {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// clang-format off
+constexpr auto table = machine("bakery",
+    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Watcher>("watcher")),
+    activities(
+        activity("fast", every(1ms), budget(50us), runs("oven", "door")),
+        activity("slow", every(5ms), budget(50us), runs("feeder")),
+        activity("office", every(50ms), not_real_time, runs("watcher"))),
+    connections(), reactions(),
+    behaviours(behaviour("oven", slot(nodes(40), data_bytes(512), depth(3), command_slots(1), timers(2), text_bytes(2000),
+                                      peers("door", "feeder"), operations("door.push", "feeder.feed"), events("door.moved"),
+                                      angle_of("oven.angle_deg"), trial(20)), at_most(30))));
+// clang-format on
+
+/// Writes down its number when it begins, at each tick, and one more when it ends.
+std::string numbered(int number, std::string_view more = {}) {
+    const std::string n = std::to_string(number);
+    return "StateMachine Numbered {\n"
+           "    initial state Begin { entry { do oven.note(" + n + "); } transition oven.tick() select Ticked }\n"
+           "    state Ticked { entry { do oven.note(" + n + "0); } " + std::string{more} +
+           " transition oven.tick() select Begin }\n"
+           "    final state End { entry { do oven.note(" + n + "1); } }\n"
+           "}\n";
+}
+
+class BehaviourSlotTest : public testing::Test, protected Rig<Firmware<table, board>> {
+protected:
+    BehaviourSlot& slot = *instance.slot_of("oven");
+    BehaviourSlotTest() { run(5ms); }
+
+    std::string compile(std::string_view text, std::string_view name = "test.osd") {
+        if (text.size() > slot.text().size()) return "too long for the text";
+        std::ranges::copy(text, slot.text().begin());
+        return std::string{slot.compile(text.size(), name).view()};
+    }
+    std::string wish(BehaviourSlot::Wish wish, std::string_view moment = "now") {
+        SlotMoment at;
+        if (const Sentence fault = slot.parse_moment(moment, at); !fault.empty())
+            return std::string{fault.view()};
+        if (const Sentence fault = slot.may(wish); !fault.empty()) return std::string{fault.view()};
+        EXPECT_TRUE(slot.wish(wish, at));
+        EXPECT_TRUE(instance.post_wish(slot));
+        return {};
+    }
+    std::string load(std::string_view text, std::string_view moment = "now") {
+        const std::string fault = compile(text);
+        return fault.empty() ? wish(BehaviourSlot::Wish::take_over, moment) : fault;
+    }
+    void load_and_settle(std::string_view text) {
+        EXPECT_EQ(load(text), "");
+        run(30ms);
+        EXPECT_EQ(slot.phase(), SlotPhase::steady);
+        oven().told.clear();
+    }
+    std::string state_now() { return slot.active() == nullptr ? "none" : state(*slot.active()); }
+    std::uint64_t posted(std::string_view event) {
+        const auto& machine = instance.machine();
+        std::uint64_t count = 0;
+        for (std::size_t s = 0; s < machine.plan.subscriptions.size(); ++s)
+            if (machine.plan.subscriptions[s].kind == SubscriberKind::trigger &&
+                facet_at(machine.table, machine.plan.subscriptions[s].event).name == event)
+                count += instance.counts_of(s).posted;
+        return count;
+    }
+};
+
+TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_before) {
+    EXPECT_EQ(slot.phase(), SlotPhase::empty);
+    EXPECT_EQ(load(numbered(1)), "");
+    run(2ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::trial);
+    EXPECT_EQ(slot.script(), "test.osd");
+    EXPECT_THAT(oven().told, ElementsAre(1));
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_THAT(oven().told, ElementsAre(1, 10));
+    run(20ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+}
+
+TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears_them) {
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_EQ(posted("tick"), 0u);
+    load_and_settle(numbered(1));
+    oven().tick.emit();
+    door().moved.emit();
+    run(2ms);
+    EXPECT_EQ(posted("tick"), 1u);
+    EXPECT_EQ(posted("moved"), 0u);
+    EXPECT_EQ(wish(BehaviourSlot::Wish::unload), "");
+    run(3ms);
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_EQ(posted("tick"), 1u);
+}
+
+TEST_F(BehaviourSlotTest, a_faulty_script_is_refused_with_its_line_and_the_old_one_does_not_notice) {
+    load_and_settle(numbered(1));
+    EXPECT_THAT(load("StateMachine Faulty {\n    initial state A {\n        entry { do oven.notes(1); }\n"),
+                HasSubstr("test.osd:3:"));
+    EXPECT_THAT(load("StateMachine Faulty {\n    initial state A {\n        entry { do oven.notes(1); }\n"),
+                HasSubstr("did you mean \"note\"?"));
+    run(5ms);
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_THAT(oven().told, ElementsAre(10));
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+}
+
+TEST_F(BehaviourSlotTest, the_old_behaviour_comes_to_its_final_state_before_the_new_one_begins) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(numbered(2)), "");
+    run(2ms);
+    EXPECT_THAT(oven().told, ElementsAre(11, 2));
+}
+
+TEST_F(BehaviourSlotTest, an_old_behaviour_that_needs_time_to_end_is_given_it) {
+    load_and_settle("StateMachine Slow { initial state A { entry { do oven.note(1); } transition oven.tick() select A }\n"
+                    "final state End { entry { wait(20ms); do oven.note(2); } } }");
+    EXPECT_EQ(load(numbered(3)), "");
+    run(10ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::handing_over);
+    EXPECT_THAT(oven().told, IsEmpty());
+    run(20ms);
+    EXPECT_THAT(oven().told, ElementsAre(2, 3));
+}
+
+TEST_F(BehaviourSlotTest, it_takes_over_at_an_event_of_its_reach) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(numbered(2), "door.moved"), "");
+    run(50ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::waiting);
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_THAT(oven().told, ElementsAre(10)); // the old one is at work
+    door().moved.emit();
+    run(2ms);
+    EXPECT_THAT(oven().told, ElementsAre(10, 11, 2));
+}
+
+TEST_F(BehaviourSlotTest, it_takes_over_when_its_angle_is_passed_upwards) {
+    for (const double wanted : {0.0, 85.0, 90.0, 355.0}) {
+        load_and_settle(numbered(1));
+        EXPECT_EQ(load(numbered(2), std::to_string(wanted)), "");
+        for (int i = 0; i < 100 && oven().told.empty(); ++i) run(1ms);
+        const double at = oven().angle_deg.last();
+        double past = at - wanted;
+        while (past < 0) past += 360;
+        EXPECT_LT(past, 10.0) << "wanted " << wanted << ", was " << at; // one step turns 10 degrees
+        run(30ms);
+    }
+}
+
+TEST_F(BehaviourSlotTest, a_moment_that_is_none_is_refused_with_the_nearest) {
+    SlotMoment moment;
+    EXPECT_THAT(std::string{slot.parse_moment("door.mved", moment).view()},
+                HasSubstr("did you mean \"door.moved\"?"));
+    EXPECT_THAT(std::string{slot.parse_moment("360", moment).view()}, HasSubstr("between 0 and 360"));
+    EXPECT_THAT(std::string{slot.parse_moment("-1", moment).view()}, HasSubstr("between 0 and 360"));
+    EXPECT_THAT(std::string{slot.parse_moment("nan", moment).view()}, HasSubstr("between 0 and 360"));
+}
+
+TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_is_taken_back_and_its_line_is_told) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load("StateMachine Failing {\n"
+                   "    initial state A { entry { do oven.note(5); } transition oven.tick() select B }\n"
+                   "    state B {\n"
+                   "        entry { do oven.note(-1); } // which the oven refuses\n"
+                   "        transition oven.tick() select A }\n"
+                   "    final state End { entry { do oven.note(6); } } }"),
+              "");
+    run(2ms);
+    oven().tick.emit();
+    run(3ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+    EXPECT_EQ(slot.last_roll_back(), RollBack::error);
+    EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("failed in line 4"));
+    EXPECT_FALSE(instance.stop_asked());
+    // It was brought to its safe state, and the old one begins anew.
+    EXPECT_THAT(oven().told, ElementsAre(11, 5, -1, 6, 1));
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_EQ(state_now(), "Ticked");
+}
+
+TEST_F(BehaviourSlotTest, one_that_does_not_come_to_an_end_of_a_step_is_taken_back) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load("var int n = 0; while (true) { set n = n + 1; }"), "");
+    run(5ms);
+    EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
+    EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("did not come to an end"));
+    EXPECT_EQ(state_now(), "Begin");
+}
+
+TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_with_none_before_leaves_the_slot_empty) {
+    EXPECT_EQ(load("do oven.note(-1);"), "");
+    run(5ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::empty);
+    EXPECT_EQ(slot.roll_backs(), 1u);
+    EXPECT_FALSE(instance.stop_asked());
+}
+
+TEST_F(BehaviourSlotTest, an_error_after_the_trial_does_what_its_row_says) {
+    load_and_settle("StateMachine Late { initial state A { transition oven.tick() select B }\n"
+                    "state B { entry { do oven.note(-1); } transition oven.tick() select A } final state E {} }");
+    oven().tick.emit();
+    run(3ms);
+    EXPECT_TRUE(instance.stop_asked());
+    EXPECT_THAT(std::string{instance.describe_stop().view()}, HasSubstr("failed in line 2"));
+}
+
+TEST_F(BehaviourSlotTest, while_one_is_on_trial_no_other_is_loaded) {
+    EXPECT_EQ(load(numbered(1)), "");
+    run(3ms);
+    EXPECT_THAT(compile(numbered(2)), HasSubstr("is on trial"));
+    run(30ms);
+    EXPECT_EQ(load(numbered(2), "door.moved"), "");
+    run(3ms);
+    EXPECT_THAT(compile(numbered(3)), HasSubstr("another change of behaviour"));
+}
+
+TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for) {
+    load_and_settle(numbered(1));
+    load_and_settle(numbered(2));
+    EXPECT_EQ(wish(BehaviourSlot::Wish::roll_back), "");
+    run(3ms);
+    EXPECT_THAT(oven().told, ElementsAre(21, 1));
+    EXPECT_EQ(slot.last_roll_back(), RollBack::asked);
+    EXPECT_EQ(wish(BehaviourSlot::Wish::unload), "");
+    run(3ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::empty);
+    EXPECT_THAT(oven().told, ElementsAre(21, 1, 11));
+    EXPECT_THAT(wish(BehaviourSlot::Wish::unload), HasSubstr("nothing is loaded"));
+}
+
+TEST_F(BehaviourSlotTest, there_is_no_way_back_behind_a_bank_that_was_written_over) {
+    EXPECT_THAT(wish(BehaviourSlot::Wish::roll_back), HasSubstr("no earlier behaviour"));
+    load_and_settle(numbered(1));
+    load_and_settle(numbered(2));
+    EXPECT_THAT(compile("nonsense"), HasSubstr("test.osd:1:1"));
+    EXPECT_THAT(wish(BehaviourSlot::Wish::roll_back), HasSubstr("no earlier behaviour"));
+    run(3ms);
+    EXPECT_EQ(state_now(), "Begin");
+}
+
+TEST_F(BehaviourSlotTest, what_the_slot_has_no_room_or_reach_for_is_refused) {
+    std::string many = "StateMachine Many { initial state A { entry {";
+    for (int i = 0; i < 60; ++i) many += "do oven.note(1);";
+    many += "} transition oven.tick() select A } final state E {} }";
+    EXPECT_THAT(load(many), HasSubstr("test.osd:"));
+    EXPECT_THAT(load("do feeder.feed(1); do feeder.feed(2);"), HasSubstr("command"));
+    EXPECT_THAT(load("wait(1ms); wait(2ms); wait(3ms);"), HasSubstr("time"));
+    EXPECT_THAT(load("set door.opn = true;"), HasSubstr("\"open\""));
+    EXPECT_EQ(slot.phase(), SlotPhase::empty);
+}
+
+TEST_F(BehaviourSlotTest, a_bank_whose_command_is_still_on_its_way_is_not_written_over) {
+    EXPECT_EQ(load("StateMachine Feeding { initial state A { run { do feeder.feed(10); wait(1s); }\n"
+                   "transition oven.tick() select A } final state E {} }"),
+              "");
+    run(22ms); // ten pieces take 50 ms
+    EXPECT_EQ(load(numbered(2)), "");
+    run(22ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+    EXPECT_THAT(compile(numbered(3)), HasSubstr("is still on its way"));
+    run(100ms);
+    EXPECT_EQ(compile(numbered(3)), "");
+}
+
+TEST_F(BehaviourSlotTest, the_stop_of_its_component_ends_it_safely_and_its_start_begins_again) {
+    load_and_settle(numbered(1));
+    static_cast<void>(instance.ask_component(0, LifeChange::stop));
+    run(3ms);
+    EXPECT_THAT(oven().told, ElementsAre(11));
+    static_cast<void>(instance.ask_component(0, LifeChange::start));
+    run(3ms);
+    EXPECT_THAT(oven().told, ElementsAre(11, 1));
+}
+
+} // namespace
+} // namespace tappet::bakery
