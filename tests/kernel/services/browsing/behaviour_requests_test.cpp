@@ -1,0 +1,162 @@
+// A browser sees behaviours, commands them, and loads scripts into a slot of the running machine (thesis 4.8,
+// 5.1.6, 5.2.5): what it may not do, or did not spell well, is said with its cure.
+#include "tests/kernel/services/browsing/press_rig.hpp"
+
+#include <gmock/gmock.h>
+
+namespace tappet::press {
+namespace {
+
+using testing::HasSubstr;
+
+struct RamCycle {
+    static constexpr auto machine() {
+        return state_machine<Ram>(
+            "cycle", states(state("up", initial), state("down"), state("safe", final)),
+            transitions(transition("up", "down", on("arrived")), transition("down", "up", on("arrived"))));
+    }
+};
+constexpr auto cycle = RamCycle::machine();
+
+// clang-format off
+constexpr auto with_behaviours = machine("press",
+    components(component<Ram>("ram"), component<Table>("table"), component<BrowserService>("browser", set("log", false))),
+    activities(
+        activity("motion",  every(1ms), budget(50us), runs("ram")),
+        activity("slow",    every(10ms), budget(50us), runs("table")),
+        activity("browser", every(20ms), not_real_time, runs("browser"))),
+    connections(data("table.height", "ram.limit", stale_after(1s), hold)),
+    reactions(),
+    behaviours(behaviour("ram", cycle),
+               behaviour("ram", slot(nodes(60), data_bytes(512), depth(3), command_slots(1), timers(4), trial(10)))));
+// clang-format on
+
+constexpr std::string_view script = "StateMachine Pressing {\n"
+                                    "    var int strokes = 0;\n"
+                                    "    initial state Waiting { transition ram.arrived() select Counting }\n"
+                                    "    state Counting { entry { set strokes = strokes + 1; }\n"
+                                    "        transition ram.arrived() select Waiting }\n"
+                                    "    final state Safe { }\n"
+                                    "}\n";
+
+std::string in_quotes(std::string_view text) {
+    std::string word{"\""};
+    for (const char letter : text)
+        word += letter == '"' || letter == '\\' ? std::string{'\\', letter} : std::string{letter};
+    return word + "\"";
+}
+
+class Behaviours : public testing::Test {
+protected:
+    std::string directory = "/tmp/tappet-behaviours-" + std::to_string(getpid());
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<with_behaviours, board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    void SetUp() override {
+        instance.browse_in(directory);
+        const auto configured = instance.configure({});
+        ASSERT_TRUE(configured) << configured.error().view();
+        world.start();
+        run(50ms);
+        talker = std::make_unique<Talker>(directory + "/press.socket");
+    }
+    ~Behaviours() override {
+        instance.find<BrowserService>("browser")->finalise();
+        std::filesystem::remove_all(directory);
+    }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    std::string ask(std::string_view request) {
+        EXPECT_TRUE(talker->send("1 " + std::string{request}));
+        std::string answer;
+        for (int i = 0; i < 20 && answer.empty(); ++i) {
+            run(10ms);
+            answer = talker->receive();
+        }
+        return answer;
+    }
+    std::string load(std::string_view text, std::string_view moment = "now") {
+        constexpr std::size_t piece = 50;
+        for (std::size_t at = 0; at < text.size(); at += piece)
+            EXPECT_THAT(ask("script ram " + std::to_string(at) + " " + in_quotes(text.substr(at, piece))),
+                        HasSubstr("\"ok\": true"));
+        return ask("load ram pressing.osd " + std::string{moment});
+    }
+    std::unique_ptr<Talker> talker{};
+};
+
+TEST_F(Behaviours, the_list_shows_each_with_its_status_and_state) {
+    const std::string list = ask("behaviours");
+    EXPECT_THAT(list,
+                HasSubstr(R"({"name": "ram.cycle", "kind": "machine", "status": "running", "state": "up"})"));
+    EXPECT_THAT(list, HasSubstr(R"("slot": "ram", "phase": "empty")"));
+    instance.find<Ram>("ram")->arrived.emit(1.0);
+    run(5ms);
+    EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down", )"));
+    EXPECT_THAT(ask("behaviours ram.cicle"), HasSubstr("did you mean \\\"ram.cycle\\\"?"));
+}
+
+TEST_F(Behaviours, one_is_paused_and_stepped_and_sent_to_a_state) {
+    EXPECT_THAT(ask("behave pause ram.cycle"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr("paused"));
+    instance.find<Ram>("ram")->arrived.emit(1.0);
+    run(5ms);
+    EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "up")"));
+    EXPECT_THAT(ask("behave step ram.cycle"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down")"));
+    EXPECT_THAT(ask("behave start ram.cycle"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(ask("behave request ram.cycle safe"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "safe")"));
+    EXPECT_THAT(ask("behave request ram.cycle saef"), HasSubstr("did you mean \\\"safe\\\"?"));
+    EXPECT_THAT(ask("behave jump ram.cycle"), HasSubstr("bad_request"));
+    EXPECT_THAT(ask("behave request ram.cycle"), HasSubstr("bad_request"));
+    EXPECT_THAT(ask("behave step ram.cycle"), HasSubstr("not_now")); // it is not paused
+}
+
+TEST_F(Behaviours, a_script_is_loaded_in_pieces_and_its_variables_are_seen) {
+    EXPECT_THAT(load(script), HasSubstr("\"ok\": true"));
+    run(5ms);
+    instance.find<Ram>("ram")->arrived.emit(1.0);
+    run(30ms);
+    const std::string seen = ask("behaviours ram");
+    EXPECT_THAT(seen, HasSubstr(R"("name": "ram.Pressing")"));
+    EXPECT_THAT(seen, HasSubstr(R"("state": "Counting")"));
+    EXPECT_THAT(seen, HasSubstr(R"("strokes": 1)"));
+    EXPECT_THAT(seen, HasSubstr(R"("phase": "steady", "script": "pressing.osd")"));
+    EXPECT_THAT(ask("unload ram"), HasSubstr("\"ok\": true"));
+    run(10ms);
+    EXPECT_THAT(ask("behaviours"), HasSubstr(R"("phase": "empty")"));
+}
+
+TEST_F(Behaviours, a_faulty_script_is_refused_with_file_line_and_column) {
+    std::string faulty{script};
+    faulty.replace(faulty.find("strokes + 1"), 7, "stroke");
+    const std::string answer = load(faulty);
+    EXPECT_THAT(answer, HasSubstr("bad_value"));
+    EXPECT_THAT(answer, HasSubstr("pressing.osd:4:"));
+    EXPECT_THAT(answer, HasSubstr("did you mean \\\"strokes\\\"?"));
+    EXPECT_THAT(ask("behaviours"), HasSubstr(R"("phase": "empty")"));
+}
+
+TEST_F(Behaviours, pieces_out_of_order_and_loads_without_a_script_are_refused) {
+    EXPECT_THAT(ask("load ram x.osd"), HasSubstr("no script was sent"));
+    EXPECT_THAT(ask("script ram 5 \"x\""), HasSubstr("begin again"));
+    EXPECT_THAT(ask("script rum 0 \"x\""), HasSubstr("did you mean \\\"ram\\\"?"));
+    EXPECT_THAT(ask("script ram x \"x\""), HasSubstr("bad_request"));
+    std::string filling(2000, ' ');
+    EXPECT_THAT(ask("script ram 0 " + in_quotes(filling)), HasSubstr("\"bytes\": 2000"));
+    EXPECT_THAT(ask("script ram 2000 " + in_quotes(filling)), HasSubstr("room for 2880"));
+    EXPECT_THAT(ask("rollback ram"), HasSubstr("did you mean \\\"roll_back\\\"?"));
+    EXPECT_THAT(ask("roll_back ram"), HasSubstr("no earlier behaviour"));
+}
+
+TEST_F(Behaviours, one_that_fails_its_trial_is_taken_back_and_the_slot_says_why) {
+    EXPECT_THAT(load("var int n = 0;\nset n = 1 / n;\n"), HasSubstr("\"ok\": true"));
+    run(10ms);
+    const std::string seen = ask("behaviours");
+    EXPECT_THAT(seen, HasSubstr(R"("phase": "empty")"));
+    EXPECT_THAT(seen, HasSubstr("failed in line 2"));
+}
+
+} // namespace
+} // namespace tappet::press
