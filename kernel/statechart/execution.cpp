@@ -88,9 +88,12 @@ void StateMachineExecution::serve_final(Time now) noexcept TAPPET_REALTIME {
     if (is(inactive) || is_leaving() || under_way || is_there) return;
     if (!final_reason_.empty()) give_reason(final_transition, final_reason_, now);
     if (machine_.folded && (mode_ & (in_hand | error)) == 0)
-        return take(machine_.arcs[machine_.plans[status_.active].to_final], now);
-    supersede(final_transition, machine_.final_state);
-    static_cast<void>(go_on(now));
+        take(machine_.arcs[machine_.plans[status_.active].to_final], now);
+    else {
+        supersede(final_transition, machine_.final_state);
+        static_cast<void>(go_on(now));
+    }
+    if (is_final() && (mode_ & (in_hand | error)) == 0) clear(final_wanted); // asked for on the way there
 }
 
 // ---- events
@@ -352,7 +355,7 @@ Time StateMachineExecution::next_timeout() const noexcept TAPPET_REALTIME {
         earliest = std::min(earliest, code_.wakes(*code_.tables, context));
     };
     if (program_begun_) program(position_);
-    if (!automatic_ && !run_once_) return earliest;
+    if ((!automatic_ && !run_once_) || is(in_hand)) return earliest;
     for (const ActiveState& active : status_.states) {
         if (active.run == RunPhase::waits) program(active.position);
         const StatePlan& plan = machine_.plans[active.state];
