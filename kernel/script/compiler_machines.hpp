@@ -22,6 +22,7 @@ protected:
         scope_ = symbols_used_;
         unresolved_used_ = 0;
         command_scope_ = 0;
+        state_heads_ = {};
         const std::string_view name = keep({machine_name_.text});
         while (ok() && !is(Sign::close_brace)) parse_member();
         need(Sign::close_brace, "\"}\"");
@@ -222,9 +223,10 @@ private:
         }
         need(Sign::k_state, "\"state\"");
         const Token name = need_name("the name of the state");
-        for (const StateRow& each : states_.view())
-            if (each.name == name.text)
-                fail(name, {"state \"", quoted(name.text), "\" is there twice; rename one"});
+        if (ok() && find_state_row(name.text, name.hash) != nullptr)
+            fail(name, {"state \"", quoted(name.text), "\" is there twice; rename one"});
+        if (states_.count() == max_states) fail_room("states in one machine");
+        if (!ok()) return;
         row.name = keep({name.text});
         if (is(Sign::k_in)) {
             advance();
@@ -237,8 +239,11 @@ private:
                 row.region = ok() ? keep({named.text}) : std::string_view{};
             }
         }
-        if (!ok()) return;
         const std::uint16_t number = add(states_, row, "states");
+        if (!ok()) return;
+        std::uint16_t& head = state_heads_[name.hash % state_heads_.size()];
+        state_next_[number] = head;
+        head = static_cast<std::uint16_t>(number + 1);
         if (ok() && !row.region.empty())
             command_scope_ = static_cast<std::uint16_t>(hash_of(row.region) | 1u);
         if (need(Sign::open_brace, "\"{\"")) parse_state_body(number);
@@ -353,10 +358,13 @@ private:
 
     // ---- when all states are there
 
-    constexpr const StateRow* find_state_row(std::string_view name) const noexcept {
-        for (const StateRow& each : states_.view())
-            if (each.name == name) return &each;
+    constexpr const StateRow* find_state_row(std::string_view name, std::uint32_t hash) const noexcept {
+        for (std::uint16_t i = state_heads_[hash % state_heads_.size()]; i != 0; i = state_next_[i - 1])
+            if (states_[i - 1].name == name) return &states_[i - 1];
         return nullptr;
+    }
+    constexpr const StateRow* find_state_row(std::string_view name) const noexcept {
+        return find_state_row(name, hash_of(name));
     }
     /// Names of states become those that outlive the text.
     constexpr void resolve_names() {
@@ -426,6 +434,8 @@ private:
     Token machine_name_{};
     std::array<Unresolved, 192> unresolved_{};
     std::size_t unresolved_used_ = 0;
+    std::array<std::uint16_t, 64> state_heads_{}; // by the hash of the name: 1 + the last such state's number
+    std::array<std::uint16_t, max_states> state_next_{};
     NodeSet required_{}; // parameters without a default, by their number over all types
 };
 

@@ -139,8 +139,9 @@ constexpr void Machines::parse_event(TransitionRow& row) {
     const Facet& facet = facet_of(component, number);
     check_reach(event_name, component, facet.name, reach_.events, "events");
     row.on_event = true;
-    for (const TransitionRow& each : transitions_.view()) // the letters once
-        if (each.on_event && is_event(each.event, component, facet.name)) row.event = each.event;
+    for (std::size_t i = transitions_.count(); row.event.empty() && i-- > 0;) // the letters once
+        if (transitions_[i].on_event && is_event(transitions_[i].event, component, facet.name))
+            row.event = transitions_[i].event;
     if (row.event.empty())
         row.event =
             component == 0 ? keep({facet.name}) : keep({reach_.components[component].name, ".", facet.name});

@@ -355,18 +355,22 @@ private:
     // Follows the transitions that need nothing to be taken; coming
     // back to a state means that no step would end.
     constexpr bool check_waits() {
+        std::array<StateIndex, max_states> next{};
         for (std::size_t i = 0; i < names_.states(); ++i) {
-            if (names_.composite[i]) continue;
-            auto leaf = static_cast<StateIndex>(i);
-            for (std::size_t hops = 0; hops <= names_.states(); ++hops) {
-                const std::size_t t = free_transition_of(leaf);
-                if (t == names_.transitions()) break;
-                leaf = names_.initial_leaf(names_.to[t]);
-                if (leaf == i)
-                    return fail(state_text(i), " comes back to itself without waiting, by ",
-                                transition_text(t),
-                                "; give one transition of the ring on(...), after(...) or guard<>");
-            }
+            const std::size_t t =
+                names_.composite[i] ? names_.transitions() : free_transition_of(static_cast<StateIndex>(i));
+            next[i] = t == names_.transitions() ? no_state : names_.initial_leaf(names_.to[t]);
+        }
+        for (std::size_t i = 0; i < names_.states(); ++i) {
+            std::size_t hops = 0;
+            auto last = static_cast<StateIndex>(i);
+            StateIndex leaf = next[i];
+            for (; leaf != no_state && leaf != i && hops < names_.states(); leaf = next[leaf])
+                last = leaf, ++hops;
+            if (leaf == i)
+                return fail(state_text(i), " comes back to itself without waiting, by ",
+                            transition_text(free_transition_of(last)),
+                            "; give one transition of the ring on(...), after(...) or guard<>");
         }
         return true;
     }
