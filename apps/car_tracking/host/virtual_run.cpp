@@ -10,10 +10,12 @@
 
 namespace tappet::car_tracking {
 
-VirtualRun::VirtualRun(std::uint64_t seed)
+AcceptedMachine on_host() { return Firmware<car_tracking, board::host>::machine(); }
+
+VirtualRun::VirtualRun(std::uint64_t seed, const AcceptedMachine& machine)
     : scene_{seed},
       devices_{{{type_id<CameraDevice>, "tracking-camera", static_cast<CameraDevice*>(&scene_)}}},
-      instance_{Firmware<car_tracking, board::host>::machine(), clock_},
+      instance_{machine, clock_},
       world_{instance_} {}
 
 std::expected<void, Sentence> VirtualRun::start() {

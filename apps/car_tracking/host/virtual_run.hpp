@@ -30,10 +30,14 @@ struct Look {
     [[nodiscard]] double error_m() const { return std::hypot(x - car_x, y - car_y); }
 };
 
+/// The car tracker, accepted for the host's board.
+AcceptedMachine on_host();
+
 /// Everything of one run; lives as long as the run. One at a time: the machine's memory is static.
 class VirtualRun {
 public:
-    explicit VirtualRun(std::uint64_t seed);
+    /// `machine`: the car tracker, or one that differs in how its behaviour is executed.
+    explicit VirtualRun(std::uint64_t seed, const AcceptedMachine& machine = on_host());
 
     std::expected<void, Sentence> start();
     /// Looks every `look_every`. False: the machine asked to stop.
