@@ -3,6 +3,7 @@
 #pragma once
 
 #include "apps/car_tracking/behaviour.hpp"
+#include "kernel/machine/compiled.hpp"
 #include "kernel/machine/machine.hpp"
 
 namespace tappet::car_tracking {
@@ -24,7 +25,7 @@ inline constexpr auto car_tracking = machine("car-tracking",
         data("camera.lens",  "recognition.lens")),
     reactions(), // what happens upon the panel's buttons stands in tracking.osd
     behaviours(
-        behaviour("tracking", tracking_script, {})));
+        behaviour("tracking", compiled<tracking_script>)));
 // clang-format on
 
 } // namespace tappet::car_tracking

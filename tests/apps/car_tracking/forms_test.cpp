@@ -1,0 +1,40 @@
+// Thesis 5.1.4, 5.4: the tracker's script is the same machine in both forms: native code made by the C++
+// compiler, and tables walked in memory, as a script that is loaded is executed.
+#include "apps/car_tracking/host/virtual_run.hpp"
+#include "apps/car_tracking/machine.hpp"
+#include "board/host/board.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::car_tracking {
+namespace {
+
+constexpr auto with_tables_walked = [] {
+    auto machine = car_tracking;
+    machine.behaviours[0] = behaviour("tracking", tracking_script, {});
+    return machine;
+}();
+
+std::uint64_t digest_of(VirtualRun& run) {
+    EXPECT_TRUE(run.start());
+    EXPECT_TRUE(run.run_for(30s));
+    run.stop();
+    EXPECT_GT(run.looks().size(), 30u);
+    return run.digest();
+}
+
+TEST(CarTrackingForms, native_and_walked_are_the_same_day) {
+    for (const std::uint64_t seed : {1u, 8u}) {
+        VirtualRun native{seed};
+        VirtualRun walked{seed, Firmware<with_tables_walked, board::host>::machine()};
+        EXPECT_EQ(digest_of(native), digest_of(walked)) << "seed " << seed;
+    }
+}
+
+TEST(CarTrackingForms, the_machine_has_native_code_for_each_type_of_its_script) {
+    ASSERT_NE(car_tracking.behaviours[0].script, nullptr);
+    EXPECT_EQ(car_tracking.behaviours[0].code.size(), car_tracking.behaviours[0].script->types.size());
+}
+
+} // namespace
+} // namespace tappet::car_tracking
