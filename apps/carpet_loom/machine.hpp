@@ -47,7 +47,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
-        activity("browser", every(20ms),      runs("browser"), not_real_time)),
+        activity("browser", every(20ms),      runs("browser"), not_real_time, stack(256 * 1024))),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
         data("shaft.speed_rpm",           "warp.shaft_speed"),

@@ -13,7 +13,7 @@ namespace tappet {
 /// room, to the names in `reach` and to the facets of its types, not to `text`.
 ///
 /// Not real-time, but bounded: no heap, no recursion deeper than script_max_depth, and at most
-/// script_work(text.size()) tokens read, whatever the text. About 24 kB of stack.
+/// script_work(text.size()) tokens read, whatever the text, on script_stack_bytes of stack.
 constexpr ScriptOutcome compile_into(std::string_view text, std::string_view name, const Reach& reach,
                                      const ScriptRoom& room) {
     ScriptOutcome outcome;

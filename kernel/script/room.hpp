@@ -6,7 +6,12 @@
 
 #include <array>
 
+#include <cstddef>
+
 namespace tappet {
+
+/// What a compilation takes of its thread's stack at most, whatever the text.
+inline constexpr std::size_t script_stack_bytes = 160 * 1024;
 
 /// Numbers of rows over all types of a script, and what its instances take when they run.
 struct ScriptSizes {
