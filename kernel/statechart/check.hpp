@@ -18,7 +18,10 @@ struct NamedRow : Sentence {
 
 class Checker {
 public:
-    explicit constexpr Checker(const StateHierarchy& names) : table_{names.table}, names_{names} {}
+    explicit constexpr Checker(const StateHierarchy& names) : table_{names.table}, names_{names} {
+        for (const StateRow& row : table_.states)
+            preconditions_ = preconditions_ || !row.precondition.empty();
+    }
 
     constexpr Sentence check() {
         if (check_states() && check_nesting() && check_roles() && check_transitions() && check_size() &&
@@ -196,7 +199,7 @@ private:
         if (row.has_otherwise && !row.on_event)
             return fail(transition_text(t),
                         " has an else branch and no event; write a second transition behind it");
-        if (row.has_otherwise && row.guard.empty() && !has_precondition(names_.to[t]))
+        if (row.has_otherwise && row.guard.empty() && !has_precondition(names_.from[t], names_.to[t]))
             return fail(transition_text(t), " has an else branch and nothing to refuse it; give it guard<>");
         if (!row.otherwise_to.empty() && names_.otherwise_to[t] == no_state)
             return fail(transition_text(t), " leads to an unknown state \"", row.otherwise_to,
@@ -208,11 +211,13 @@ private:
                             "lead it out of that state, or to that state itself");
         return true;
     }
-    [[nodiscard]] constexpr bool has_precondition(StateIndex state) const {
-        for (StateIndex s = state; s != no_state; s = names_.parent[s])
-            if (!table_.states[s].precondition.empty()) return true;
-        for (std::size_t i = 0; state != no_state && i < names_.states(); ++i)
-            if (!table_.states[i].precondition.empty() && names_.is_inside(static_cast<StateIndex>(i), state))
+    // Of a state that the way from one to the other may enter.
+    [[nodiscard]] constexpr bool has_precondition(StateIndex from, StateIndex to) const {
+        if (to == no_state || !preconditions_) return false;
+        const StateIndex outermost = names_.ancestor(to, names_.shared_depth(from, to) + 1);
+        for (std::size_t i = 0; i < names_.states(); ++i)
+            if (!table_.states[i].precondition.empty() &&
+                names_.is_inside(static_cast<StateIndex>(i), outermost))
                 return true;
         return false;
     }
@@ -250,8 +255,10 @@ private:
         const TransitionRow& a = table_.transitions[first];
         const TransitionRow& b = table_.transitions[second];
         if (names_.trigger[first] != names_.trigger[second]) return false;
-        if (a.has_otherwise) return a.otherwise_to.empty() || !has_precondition(names_.otherwise_to[first]);
-        if (!a.guard.empty() || has_precondition(names_.to[first])) return false;
+        if (a.has_otherwise)
+            return a.otherwise_to.empty() ||
+                   !has_precondition(names_.from[first], names_.otherwise_to[first]);
+        if (!a.guard.empty() || has_precondition(names_.from[first], names_.to[first])) return false;
         if (!a.timed) return true;
         return b.timed && names_.from[first] == names_.from[second] && a.after <= b.after;
     }
@@ -326,6 +333,16 @@ private:
         std::array<bool, max_states> remembers{}; // by shallow history: with what is initial inside those
         for (std::size_t t = 0; t < names_.transitions(); ++t)
             if (table_.transitions[t].enters == EntryKind::shallow_history) remembers[names_.to[t]] = true;
+        const auto lead_to = [&](StateIndex from, StateIndex target) { // with other regions on the way
+            enter(target);
+            const std::size_t kept = names_.shared_depth(from, target);
+            for (StateIndex s = target, outer = names_.parent[s];
+                 outer != no_state && names_.depth[outer] > kept; s = outer, outer = names_.parent[s])
+                for (std::size_t r = 0; r < names_.region_count[outer]; ++r)
+                    if (const std::size_t region = names_.first_region[outer] + r;
+                        region != names_.region_of[s])
+                        enter(names_.region_initial[region]);
+        };
         enter(names_.initial_top);
         enter(names_.final_state); // always valid by request
         while (waiting > 0) {
@@ -334,16 +351,12 @@ private:
             if (outer != no_state) {
                 reach(outer);
                 if (remembers[outer]) enter(state);
-                for (std::size_t r = 0; r < names_.region_count[outer]; ++r)
-                    if (const std::size_t region = names_.first_region[outer] + r;
-                        region != names_.region_of[state])
-                        enter(names_.region_initial[region]);
             }
             for (std::size_t r = 0; entered[state] && r < names_.region_count[state]; ++r)
                 enter(names_.region_initial[names_.first_region[state] + r]);
             for (TransitionIndex t = names_.first_out[state]; t != no_transition; t = names_.next_out[t])
                 for (const StateIndex to : {names_.to[t], names_.otherwise_to[t]})
-                    if (to != no_state) enter(to);
+                    if (to != no_state) lead_to(state, to);
         }
         for (std::size_t i = 0; i < names_.states(); ++i)
             if (!reached[i])
@@ -392,6 +405,7 @@ private:
 
     const StateMachineTable& table_;
     const StateHierarchy& names_;
+    bool preconditions_ = false;
     Sentence fault_;
     std::uint16_t line_ = 0;
     std::uint16_t column_ = 0;
