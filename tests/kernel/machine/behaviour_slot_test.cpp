@@ -19,7 +19,7 @@ constexpr auto table = machine("bakery",
     activities(
         activity("fast", every(1ms), budget(50us), runs("oven", "door")),
         activity("slow", every(5ms), budget(50us), runs("feeder")),
-        activity("office", every(50ms), not_real_time, runs("watcher"))),
+        activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
     connections(), reactions(),
     behaviours(behaviour("oven", slot(nodes(40), data_bytes(512), depth(3), command_slots(1), timers(2), text_bytes(2000),
                                       peers("door", "feeder"), operations("door.push", "feeder.feed"), events("door.moved"),

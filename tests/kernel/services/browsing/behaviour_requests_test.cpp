@@ -24,7 +24,7 @@ constexpr auto with_behaviours = machine("press",
     activities(
         activity("motion",  every(1ms), budget(50us), runs("ram")),
         activity("slow",    every(10ms), budget(50us), runs("table")),
-        activity("browser", every(20ms), not_real_time, runs("browser"))),
+        activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser"))),
     connections(data("table.height", "ram.limit", stale_after(1s), hold)),
     reactions(),
     behaviours(behaviour("ram", cycle),
