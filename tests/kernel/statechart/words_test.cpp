@@ -1,0 +1,109 @@
+// The words of rows.hpp beyond entry, exit and run, on C++ functions: handle programs, preconditions, else
+// branches, regions and history (thesis 5.2.1, listing 5.4), and single steps through functions (5.2.3).
+#include "tests/kernel/statechart/recorder.hpp"
+
+#include "kernel/statechart/check.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+using R = Recorder;
+
+constexpr auto plain = state_machine<R>(
+    "plain",
+    states(state("a", initial, run<&R::say<"!a">>, handles<&R::say<"~a">>, exit<&R::say<"-a">>),
+           state("b", entry<&R::say<"+b">>), state("safe", final)),
+    transitions(transition("a", "b", on("go"), guard<&R::if_yes>), transition("b", "a", on("back")),
+                transition("a", "safe", guard<&R::if_yes>)));
+static_assert(check(plain.view()).empty());
+static_assert(resolved<plain>.view().folded, "nothing in it waits");
+
+constexpr auto refusing =
+    state_machine<R>("refusing",
+                     states(state("a", initial), state("b", precondition<&R::if_yes>, entry<&R::say<"+b">>),
+                            state("c", entry<&R::say<"+c">>), state("safe", final)),
+                     transitions(transition("a", "b", on("go"), otherwise<&R::say<"*no">>, otherwise_to("c")),
+                                 transition("b", "a", on("back")), transition("c", "a", on("back"))));
+static_assert(check(refusing.view()).empty());
+
+constexpr auto parallel = state_machine<R>(
+    "parallel",
+    states(state("out", initial), state("x"), state("l1", in("x"), region("l"), initial),
+           state("l2", in("x"), region("l"), entry<&R::say<"+l2">>),
+           state("r1", in("x"), region("r"), initial),
+           state("r2", in("x"), region("r"), entry<&R::say<"+r2">>), state("safe", final)),
+    transitions(transition("out", "x", on("go"), deep_history), transition("x", "out", on("back")),
+                transition("l1", "l2", on("swap")), transition("r1", "r2", on("swap"))));
+static_assert(check(parallel.view()).empty());
+
+template <const auto& machine> struct Running {
+    Recorder component;
+    StateMachineExecution execution;
+    std::array<StateIndex, 8> history{};
+
+    Running() {
+        StateMachineBinding binding;
+        binding.machine = resolved<machine>.view();
+        binding.component = &component;
+        binding.history = history;
+        EXPECT_TRUE(execution.bind(binding));
+        EXPECT_EQ(execution.start(at_ns(0)), StateOutcome::taken);
+    }
+    std::string send(std::size_t trigger) {
+        execution.dispatch(trigger, at_ns(1));
+        return component.heard();
+    }
+    std::string step() {
+        execution.step(at_ns(2));
+        return component.heard();
+    }
+    std::string once() {
+        execution.step_once(at_ns(3));
+        return component.heard();
+    }
+};
+
+TEST(StateMachineWords, handles_runs_when_nothing_was_taken) {
+    Running<plain> m;
+    EXPECT_EQ(m.step(), "!a ~a");
+    EXPECT_EQ(m.send(0), "~a") << "its guard refused";
+    m.component.yes = true;
+    EXPECT_EQ(m.send(0), "-a +b");
+}
+
+TEST(StateMachineWords, precondition_refuses_and_otherwise_leads_elsewhere) {
+    Running<refusing> m;
+    EXPECT_EQ(m.send(0), "*no +c");
+    m.send(1);
+    m.component.yes = true;
+    EXPECT_EQ(m.send(0), "+b");
+}
+
+TEST(StateMachineWords, region_and_history_keep_what_was_active) {
+    Running<parallel> m;
+    m.send(0);
+    EXPECT_EQ(m.send(2), "+l2 +r2");
+    m.send(1);
+    EXPECT_FALSE(m.execution.is_in(find_state(parallel.view(), "x")));
+    EXPECT_EQ(m.send(0), "+l2 +r2");
+    EXPECT_TRUE(m.execution.is_in(find_state(parallel.view(), "r2")));
+}
+
+TEST(StateMachineWords, single_steps_go_through_functions_one_by_one) {
+    Running<plain> m;
+    m.execution.pause();
+    EXPECT_EQ(m.once(), "!a");
+    EXPECT_EQ(m.once(), "") << "the condition is asked";
+    EXPECT_EQ(m.once(), "~a");
+    m.component.yes = true;
+    m.execution.dispatch(0, at_ns(4));
+    EXPECT_EQ(m.once(), "-a +b") << "an event is one";
+    m.execution.start(at_ns(5));
+    EXPECT_EQ(m.send(1), "");
+    EXPECT_EQ(m.execution.path()[0], "a");
+}
+
+} // namespace
+} // namespace tappet
