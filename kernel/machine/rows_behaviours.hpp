@@ -57,6 +57,7 @@ struct BehaviourRow {
     std::string_view component{};
     BehaviourType type{};         ///< of a C++ table; script and slot have none
     BehaviourInstance instance{}; ///< the only one of a C++ table
+    ProgramSpelling program{};    ///< of a program table: what the check names
     const ScriptUnit* script = nullptr;
     std::span<const BehaviourCode> code{}; ///< of each type; empty: the tables are walked
     Slot slot{};
@@ -193,6 +194,7 @@ constexpr BehaviourRow behaviour(std::string_view component, const ProgramTable<
     row.type.name = row.instance.name = row.type.machine.name = program.name;
     row.type.machine.component = program.component;
     row.type.tables = program.tables();
+    row.program = program.spelling();
     row.instance.image = row.type.tables.image;
     (detail::apply(row.options, options), ...);
     return row;

@@ -168,6 +168,26 @@ constexpr std::array<ProgramArcRow, sizeof...(Arcs)> arcs(const Arcs&... each) n
     return {each...};
 }
 
+/// Nodes of one program that is spelled in C++: its check keeps a mark for each.
+inline constexpr std::size_t max_program_nodes = 1024;
+
+/// A view of a program as it is spelled, and of what it became.
+struct ProgramSpelling {
+    std::string_view name{};
+    TypeId component = nullptr;
+    std::span<const ProgramNodeRow> nodes{};
+    std::span<const ProgramArcRow> arcs{};
+    ProgramTables tables{};
+
+    /// no_node: no node has this name.
+    [[nodiscard]] constexpr NodeIndex find(std::string_view node) const noexcept {
+        if (node == program_end) return end_node;
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (nodes[i].name == node) return static_cast<NodeIndex>(i);
+        return no_node;
+    }
+};
+
 /// A program as it is spelled; what it became as a flat table is in tables().
 template <std::size_t N, std::size_t A>
 struct ProgramTable {
@@ -198,12 +218,8 @@ struct ProgramTable {
             .image = image,
             .layout = {constants, constants, constants, static_cast<DataOffset>(constants + value_bytes)}};
     }
-    /// no_node: no node has this name.
-    [[nodiscard]] constexpr NodeIndex find(std::string_view node) const noexcept {
-        if (node == program_end) return end_node;
-        for (std::size_t i = 0; i < N; ++i)
-            if (spelled_nodes[i].name == node) return static_cast<NodeIndex>(i);
-        return no_node;
+    [[nodiscard]] constexpr ProgramSpelling spelling() const noexcept {
+        return {name, component, spelled_nodes, spelled_arcs, tables()};
     }
 };
 
@@ -212,10 +228,11 @@ template <class Component, std::size_t N, std::size_t A>
 constexpr ProgramTable<N, A> program(std::string_view name, const std::array<ProgramNodeRow, N>& nodes,
                                      const std::array<ProgramArcRow, A>& arcs) noexcept {
     static_assert(N > 0, "a program has a node");
-    static_assert(N < end_node && (A + 1) * data_alignment < no_data,
-                  "a program of a C++ table has some thousand arcs at most; split it");
+    static_assert(N <= max_program_nodes && (A + 1) * data_alignment < no_data,
+                  "a program of a C++ table has 1024 nodes and some thousand arcs at most; split it");
     ProgramTable<N, A> table{
         .name = name, .component = type_id<Component>, .spelled_nodes = nodes, .spelled_arcs = arcs};
+    const ProgramSpelling spelling{name, type_id<Component>, nodes, arcs, {}};
     constexpr auto answer = static_cast<DataOffset>(A * data_alignment);
     std::uint16_t placed = 0;
     for (std::size_t n = 0; n < N; ++n) {
@@ -225,7 +242,7 @@ constexpr ProgramTable<N, A> program(std::string_view name, const std::array<Pro
         row.count = spelled.action != nullptr ? 1 : 0;
         table.instructions[n].run = spelled.action;
         row.repeats = spelled.repeats, row.yields = spelled.yields;
-        if (spelled.handles_error) row.on_error = table.find(spelled.on_error);
+        if (spelled.handles_error) row.on_error = spelling.find(spelled.on_error);
         row.first_arc = placed;
         for (std::size_t a = 0; a < A; ++a) {
             if (arcs[a].from != spelled.name) continue;
@@ -236,7 +253,7 @@ constexpr ProgramTable<N, A> program(std::string_view name, const std::array<Pro
             table.conditions[a].result = answer;
             ArcRow& arc = table.arcs[placed++];
             if (arcs[a].condition != nullptr) arc.condition = static_cast<ConditionIndex>(a);
-            arc.to = table.find(arcs[a].to);
+            arc.to = spelling.find(arcs[a].to);
             if (arcs[a].after == Duration::zero()) continue;
             arc.after = static_cast<DataOffset>(a * data_alignment);
             store_value(table.image.data() + arc.after, arcs[a].after);

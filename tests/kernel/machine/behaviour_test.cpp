@@ -158,5 +158,14 @@ TEST(BehaviourChecks, a_peer_that_the_machine_does_not_have_is_named_with_the_ne
                 HasSubstr("there is no component \"doors\"; did you mean \"door\"?"));
 }
 
+TEST(BehaviourChecks, a_program_table_that_names_no_node_of_its_own_is_refused_with_the_nearest) {
+    static constexpr auto misspelt = program<Oven>("p", graph(node("heat"), node("off")),
+                                                   arcs(arc("heat", "of"), arc("off", program_end)));
+    EXPECT_THAT(
+        refusal_of(behaviour("oven", misspelt)),
+        HasSubstr("behaviour of \"oven\": program \"p\": arc 1 (\"heat\" to \"of\"): there is no node "
+                  "\"of\"; did you mean \"off\"?"));
+}
+
 } // namespace
 } // namespace tappet::bakery
