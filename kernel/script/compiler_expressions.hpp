@@ -204,7 +204,8 @@ private:
         if (inner.literal && negates &&
             (inner.type == script_int || inner.type == script_double || inner.type == script_duration) &&
             inner.whole != std::numeric_limits<std::int64_t>::min())
-            return literal_of(inner.type, -inner.whole, -inner.real);
+            return inner.type == script_int ? whole_literal(-inner.whole) // there is no -0 of integers
+                                            : literal_of(inner.type, -inner.whole, -inner.real);
         if (inner.literal && !negates && inner.type == script_bool)
             return literal_of(script_bool, inner.whole == 0, 0);
         const OperatorMatch match = find_unary(negates ? Operator::negate : Operator::invert, inner.type);

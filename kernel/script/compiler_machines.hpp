@@ -208,6 +208,7 @@ private:
 
     constexpr void parse_state(std::string_view parent, std::string_view region) {
         if (!enter()) return;
+        const std::uint16_t outer_scope = state_scope_;
         StateRow row;
         row.line = token_.line;
         row.column = token_.column;
@@ -244,11 +245,18 @@ private:
         std::uint16_t& head = state_heads_[name.hash % state_heads_.size()];
         state_next_[number] = head;
         head = static_cast<std::uint16_t>(number + 1);
-        if (ok() && !row.region.empty())
-            command_scope_ = static_cast<std::uint16_t>(hash_of(row.region) | 1u);
+        // Of one that names the state around it nobody knows yet how deep it lies.
+        state_scope_ =
+            row.parent == parent ? scope_inside(outer_scope, row.region) : scope_inside(0, row.name);
         if (need(Sign::open_brace, "\"{\"")) parse_state_body(number);
-        if (region.empty()) command_scope_ = 0;
+        state_scope_ = outer_scope;
         leave();
+    }
+    /// Of the programs of a machine those may be at work at the same time: the run programs of a state and of
+    /// the states around it, those of different regions, and one that is in hand, whose scope is 0.
+    static constexpr std::uint16_t scope_inside(std::uint16_t outer, std::string_view name) noexcept {
+        const std::uint32_t mixed = (outer * 40503u + hash_of(name)) * 2654435761u;
+        return static_cast<std::uint16_t>(mixed >> 16 | 1u);
     }
     constexpr void parse_state_body(std::uint16_t number) {
         std::array<Place, 8> preconditions{};
@@ -332,7 +340,9 @@ private:
             return fail(
                 at, {"state \"", states_[number].name, "\" has \"", at.text, "\" twice; put both into one"});
         need(Sign::open_brace, "\"{\"");
+        command_scope_ = part == &StateRow::run ? state_scope_ : std::uint16_t{0};
         const ProgramIndex program = parse_program({states_[number].name, ".", at.text});
+        command_scope_ = 0;
         need(Sign::close_brace, "\"}\"");
         if (ok() && program != no_program) states_[number].*part = ProgramRef{program};
     }
@@ -432,6 +442,7 @@ public:
 
 private:
     Token machine_name_{};
+    std::uint16_t state_scope_ = 0; // of the run program of the state in hand
     std::array<Unresolved, 192> unresolved_{};
     std::size_t unresolved_used_ = 0;
     std::array<std::uint16_t, 64> state_heads_{}; // by the hash of the name: 1 + the last such state's number

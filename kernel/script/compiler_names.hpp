@@ -154,7 +154,7 @@ protected:
             fail(at, {what, " of \"", reach_.components[component].name,
                       "\", which runs in another activity; send it a command, or connect an input"});
     }
-    /// `scope` keeps apart the commands that regions active at the same time send.
+    /// The scope keeps apart the commands of programs that may be at work at the same time.
     constexpr std::uint16_t link(std::uint16_t component, std::uint16_t facet, bool needs_slot) {
         const std::uint16_t scope = needs_slot ? command_scope_ : std::uint16_t{0};
         for (std::size_t i = 0; i < links_.count(); ++i) {

@@ -61,6 +61,8 @@ constexpr void Machines::parse_transition(const Token& at, std::uint16_t state, 
             add(transitions_, row, "transitions");
             TransitionRow other;
             other.from = row.from;
+            other.timed = row.timed; // else: when it is time and the condition does not hold
+            other.after = row.after;
             other.line = else_at.line;
             other.column = else_at.column;
             other.then = parse_branch_program(row.from, label);

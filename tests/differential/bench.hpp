@@ -1,0 +1,116 @@
+// The components that generated scripts act on: one of each kind of facet, and a diary of everything that
+// happens to them. A command with 7 fails, one below zero is rejected.
+#pragma once
+
+#include "kernel/component/component.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tappet {
+
+struct Diary {
+    std::vector<std::string> lines{};
+
+    void write(const std::string& line) { lines.push_back(line); }
+};
+
+/// How a command that takes `goal` cycles goes on.
+struct Job {
+    std::int64_t left = 0;
+    bool fails = false;
+
+    bool begin(std::int64_t goal) noexcept TAPPET_REALTIME {
+        if (goal < 0) return false;
+        left = goal;
+        fails = goal == 7;
+        return true;
+    }
+    CommandProgress progress() noexcept TAPPET_REALTIME {
+        if (left > 0) {
+            --left;
+            return CommandProgress::executing;
+        }
+        return fails ? CommandProgress::failed : CommandProgress::done;
+    }
+};
+
+/// Under the script's component and its peer in the same activity alike.
+struct Bench {
+    Diary* diary = nullptr;
+    const char* name = "";
+    Job job{};
+    Property<std::int32_t> gain{3};
+    Property<double> level{1.5};
+    Property<bool> open{false};
+    Input<double> measured;
+    Output<double> setpoint;
+    Event<> tick;
+    Event<std::int32_t, double> moved;
+    Event<bool> switched;
+
+    void log(const std::string& what) { diary->write(name + (" " + what)); }
+    std::int64_t note(std::int64_t n) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log("note " + std::to_string(n)));
+        return n / 2 + 1;
+    }
+    double mix(double a, std::int32_t b) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log("mix " + std::to_string(b)));
+        return 0.5 * a + static_cast<double>(b);
+    }
+    bool ask(std::int16_t n) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log("ask " + std::to_string(n)));
+        return (n & 1) == 0;
+    }
+    void poke(bool hard) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log(hard ? "poke hard" : "poke"));
+    }
+    bool work(std::int64_t cycles) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log("work " + std::to_string(cycles)));
+        return job.begin(cycles);
+    }
+    CommandProgress worked(std::int64_t) noexcept TAPPET_REALTIME { return job.progress(); }
+
+    static constexpr auto interface() {
+        return facets(
+            property<&Bench::gain>("gain", "", "a whole number", range(-50, 50)),
+            property<&Bench::level>("level", "", "a real one", range(-1000, 1000)),
+            property<&Bench::open>("open", "", "a truth"),
+            input<&Bench::measured>("measured", "", "comes from outside", optional),
+            output<&Bench::setpoint>("setpoint", "", "goes there"),
+            event<&Bench::tick>("tick", "without arguments"), event<&Bench::moved>("moved", "with two"),
+            event<&Bench::switched>("switched", "with one"), method<&Bench::note>("note", "writes it down"),
+            method<&Bench::mix>("mix", "of both kinds"), method<&Bench::ask>("ask", "whether it is even"),
+            operation<&Bench::poke>("poke", "does nothing"),
+            command<&Bench::work, &Bench::worked>("work", "so many cycles"));
+    }
+};
+
+/// In another activity.
+struct Arm {
+    Diary* diary = nullptr;
+    Job job{};
+
+    bool move(std::int64_t cycles) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", diary->write("arm move " + std::to_string(cycles)));
+        return job.begin(cycles);
+    }
+    CommandProgress moved(std::int64_t) noexcept TAPPET_REALTIME { return job.progress(); }
+    bool grip(double force, bool hard) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", diary->write(hard ? "arm grip hard" : "arm grip"));
+        return force >= 0;
+    }
+    std::int64_t sum(std::int64_t a, std::int32_t b) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", diary->write("arm sum " + std::to_string(b)));
+        return a / 2 + b;
+    }
+
+    static constexpr auto interface() {
+        return facets(command<&Arm::move, &Arm::moved>("move", "so many cycles"),
+                      command<&Arm::grip>("grip", "done at once"),
+                      method<&Arm::sum>("sum", "from any activity", any_thread));
+    }
+};
+
+} // namespace tappet

@@ -1,0 +1,50 @@
+// One script in both interpreters through the same day: events, requests, measurements and time at random.
+#pragma once
+
+#include "tests/differential/reference_bench.hpp"
+#include "tests/differential/reference_machine.hpp"
+#include "tests/differential/unit_bench.hpp"
+
+#include "kernel/base/random.hpp"
+
+namespace tappet {
+
+class RandomDay {
+public:
+    RandomDay(std::uint64_t seed, const std::string& text, const ScriptUnit& unit,
+              std::span<const ProgramCode> code = {}, std::span<const StateMachineFast> fast = {});
+
+    /// What differs first, and the whole diary of both; empty: nothing in so many steps.
+    std::string run(int steps);
+
+private:
+    /// A program that stands alone, in the second interpreter.
+    struct Alone {
+        reference::Scope scope{};
+        reference::ProgramRun run{};
+        std::string status{"ready"};
+        bool paused = false;
+        void start(const reference::Type& type);
+        void step(std::int64_t now);
+    };
+
+    void do_something();
+    void emit();
+    void command();
+    void command_program();
+    void step();
+    [[nodiscard]] std::string difference() const;
+    [[nodiscard]] std::string compare(const BenchPart& part, const std::string& picture,
+                                      const reference::Scope& scope) const;
+    void did(const std::string& what);
+    [[nodiscard]] reference::Machine& machine(std::size_t i) const;
+
+    Random random_;
+    reference::Script script_;
+    reference::BenchWorld world_{};
+    UnitBench bench_{};
+    std::unique_ptr<reference::Machine> root_;
+    Alone alone_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,254 @@
+// Walks the statements of a program.
+#include "tests/differential/reference_program.hpp"
+
+#include <cstdlib>
+#include <iostream>
+#include <utility>
+
+namespace tappet::reference {
+
+const Function* Scope::function(const std::string& name) const {
+    for (const auto* list : {functions, outer_functions})
+        if (list != nullptr)
+            for (const Function& each : *list)
+                if (each.name == name) return &each;
+    return nullptr;
+}
+
+std::map<std::string, std::size_t>& ProgramRun::covered() {
+    static std::map<std::string, std::size_t> counts;
+    return counts;
+}
+
+ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t& statements) {
+    while (!open_.empty()) {
+        Open& top = open_.back();
+        if (top.next == top.block->size()) {
+            const Statement* owner = top.owner;
+            const bool is_loop = owner != nullptr && owner->kind == Statement::Kind::loop;
+            if (is_loop && !top.is_increment && !owner->second.empty()) {
+                top = {.block = &owner->second, .owner = owner, .is_increment = true};
+                continue;
+            }
+            open_.pop_back(); // a loop stands where its condition is asked again
+            if (!is_loop && !open_.empty()) ++open_.back().next;
+            continue;
+        }
+        const Statement& statement = (*top.block)[top.next];
+        if (!entered_) {
+            if (statements == 0) return Result::left_over;
+            --statements;
+            entered_ = true;
+            acted_ = false;
+            entered_at_ = now;
+            line_ = statement.line;
+        }
+        switch (execute(scope, statement, now)) {
+        case Done::next:
+            ++open_.back().next;
+            entered_ = false;
+            break;
+        case Done::elsewhere: entered_ = false; break;
+        case Done::wait: ++covered()["a step ends in a program"]; return Result::waits;
+        case Done::failed:
+            if (!recover()) return Result::failed;
+            entered_ = false;
+            break;
+        }
+    }
+    return Result::ended;
+}
+
+// The innermost try around the statement goes on with its catch.
+bool ProgramRun::recover() {
+    for (std::size_t i = open_.size(); i-- > 0;) {
+        const Statement* owner = open_[i].owner;
+        if (owner == nullptr || owner->kind != Statement::Kind::guarded || open_[i].block == &owner->second)
+            continue;
+        ++covered()["failure caught"];
+        open_.resize(i + 1);
+        open_[i] = {.block = &owner->second, .owner = owner};
+        return true;
+    }
+    return false;
+}
+
+ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, std::int64_t now) {
+    const auto value_of = [&](std::size_t i) { return evaluate(scope, statement.expressions[i]); };
+    const auto truth = [](const std::optional<Value>& value) { return std::get<bool>(*value); };
+    using Kind = Statement::Kind;
+    switch (statement.kind) {
+    case Kind::declare: {
+        ++covered()["var"];
+        std::optional<Value> value = zero_of(statement.type);
+        if (!statement.expressions.empty()) value = value_of(0);
+        if (value) value = convert(*value, statement.type);
+        if (!value) return Done::failed;
+        scope.types[statement.text] = statement.type;
+        scope.values[statement.text] = *value;
+        return Done::next;
+    }
+    case Kind::assign: {
+        ++covered()["set"];
+        const auto variable = scope.values.find(statement.text);
+        std::optional<std::int64_t> index;
+        if (!statement.indices.empty()) {
+            const std::optional<Value> at = evaluate(scope, statement.indices[0]);
+            if (!at) return Done::failed;
+            index = std::get<std::int64_t>(*at);
+        }
+        std::optional<Value> value = value_of(0);
+        if (!value) return Done::failed;
+        if (variable == scope.values.end())
+            return scope.world->write(statement.text, *value) ? Done::next : Done::failed;
+        if (index) {
+            auto& vector = std::get<Vector>(variable->second);
+            if (*index < 0 || *index >= static_cast<std::int64_t>(vector.size())) return Done::failed;
+            vector[static_cast<std::size_t>(*index)] = std::get<double>(*convert(*value, "double"));
+            return Done::next;
+        }
+        value = convert(*value, scope.types[statement.text]);
+        if (!value) return Done::failed;
+        variable->second = *value;
+        return Done::next;
+    }
+    case Kind::perform: return perform(scope, statement, now);
+    case Kind::branch: {
+        ++covered()["if"];
+        const std::optional<Value> condition = value_of(0);
+        if (!condition) return Done::failed;
+        const Block& chosen = truth(condition) ? statement.first : statement.second;
+        if (!truth(condition)) ++covered()["if not"];
+        open_.push_back({.block = &chosen, .owner = &statement});
+        return Done::elsewhere;
+    }
+    case Kind::loop: {
+        ++covered()[statement.second.empty() ? "while" : "for"];
+        const std::optional<Value> condition = value_of(0);
+        if (!condition) return Done::failed;
+        if (!truth(condition)) return Done::next;
+        open_.push_back({.block = &statement.first, .owner = &statement});
+        return Done::elsewhere;
+    }
+    case Kind::leave:
+        ++covered()["return"];
+        while (!open_.empty() && !open_.back().is_call) open_.pop_back();
+        if (open_.empty()) return Done::elsewhere;
+        open_.pop_back();
+        return Done::next;
+    case Kind::pause:
+        ++covered()["break"];
+        while (open_.back().owner->kind != Kind::loop) open_.pop_back();
+        open_.pop_back();
+        return Done::next;
+    case Kind::yield:
+        if (std::exchange(acted_, true)) return Done::next;
+        ++covered()["yield"];
+        return Done::wait;
+    case Kind::wait: {
+        if (acted_) return now - entered_at_ >= time_limit_ ? Done::next : Done::wait;
+        const std::optional<Value> value = value_of(0);
+        if (!value) return Done::failed;
+        if (const auto* time = std::get_if<Span>(&*value)) {
+            ++covered()["wait for time"];
+            acted_ = true; // how long is reckoned once
+            time_limit_ = time->ns;
+            return now - entered_at_ >= time->ns ? Done::next : Done::wait;
+        }
+        ++covered()["wait for a condition"];
+        if (truth(value)) return Done::next;
+        if (!statement.has_timeout) return Done::wait;
+        const std::optional<Value> limit = evaluate(scope, statement.timeout);
+        if (now - entered_at_ < std::get<Span>(*limit).ns) return Done::wait;
+        ++covered()["time-out"];
+        return Done::failed;
+    }
+    case Kind::guarded:
+        ++covered()["try"];
+        open_.push_back({.block = &statement.first, .owner = &statement});
+        return Done::elsewhere;
+    }
+    return Done::failed;
+}
+
+ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, std::int64_t now) {
+    const Expression& call = statement.expressions[0];
+    std::vector<Value>& given = given_; // a command at work keeps its own
+    const auto arguments = [&] {
+        given.clear();
+        for (const Expression& part : call.parts) {
+            const std::optional<Value> value = evaluate(scope, part);
+            if (!value) return false;
+            given.push_back(*value);
+        }
+        return true;
+    };
+    if (const Function* function = scope.function(call.text)) {
+        ++covered()["function"];
+        if (!arguments()) return Done::failed;
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            const Variable& parameter = function->parameters[i];
+            scope.types[parameter.name] = parameter.type;
+            scope.values[parameter.name] = *convert(given[i], parameter.type);
+        }
+        open_.push_back({.block = &function->body, .is_call = true});
+        return Done::elsewhere;
+    }
+    const auto late = [&]() -> std::optional<bool> {
+        if (!statement.has_timeout) return false;
+        const std::optional<Value> limit = evaluate(scope, statement.timeout);
+        if (!limit) return std::nullopt;
+        return now - entered_at_ >= std::get<Span>(*limit).ns;
+    };
+    const auto waits_or_late = [&] {
+        const std::optional<bool> is_late = late();
+        if (!is_late || *is_late) {
+            ++covered()["time-out"];
+            return Done::failed;
+        }
+        return Done::wait;
+    };
+    switch (scope.world->kind_of(call.text)) {
+    case World::Kind::command:
+        if (!acted_) {
+            ++covered()["own command"];
+            if (!arguments()) return Done::failed;
+            if (!scope.world->begin(call.text, given)) {
+                ++covered()["command rejected"];
+                return Done::failed;
+            }
+            acted_ = true;
+        }
+        switch (scope.world->progress(call.text, given)) {
+        case Answer::yes: return Done::next;
+        case Answer::failed: ++covered()["command failed"]; return Done::failed;
+        case Answer::no: return waits_or_late();
+        }
+        break;
+    case World::Kind::sent_command:
+        if (!acted_) {
+            if (!arguments()) return Done::failed;
+            if (!scope.world->send(call.text, given)) {
+                ++covered()["command still on its way"];
+                return waits_or_late();
+            }
+            ++covered()["peer's command"];
+            acted_ = true;
+        }
+        switch (scope.world->ended(call.text)) {
+        case Answer::yes: return Done::next;
+        case Answer::failed: ++covered()["command failed"]; return Done::failed;
+        case Answer::no: return waits_or_late();
+        }
+        break;
+    default: break;
+    }
+    ++covered()["method"];
+    if (!arguments()) return Done::failed;
+    const std::optional<Value> result = scope.world->call(call.text, given);
+    if (!result) return Done::failed;
+    const bool* const answer = std::get_if<bool>(&*result); // as a statement: did it succeed?
+    return answer == nullptr || *answer ? Done::next : Done::failed;
+}
+
+} // namespace tappet::reference

@@ -1,0 +1,441 @@
+// Reads a script into its tree, by recursive descent.
+#include "tests/differential/reference_words.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+namespace tappet::reference {
+namespace {
+
+[[noreturn]] void give_up(int line, const std::string& what) {
+    std::cerr << "the reference cannot read line " << line << ": " << what << "\n";
+    std::abort();
+}
+
+class Reader {
+public:
+    explicit Reader(std::string_view text) : words_{Words{text}.all()} {}
+
+    Script script() {
+        Script script;
+        while (here().kind != Word::Kind::end) {
+            if (take("StateMachine"))
+                script.types.push_back(machine());
+            else if (take("program"))
+                script.types.push_back(program());
+            else if (take("RootStateMachine"))
+                script.roots.push_back(instance());
+            else if (take("function"))
+                script.functions.push_back(function());
+            else
+                fault("a StateMachine, program, function or RootStateMachine");
+        }
+        return script;
+    }
+
+private:
+    // ---- words
+    [[nodiscard]] const Word& here() const { return words_[at_]; }
+    [[nodiscard]] bool is(std::string_view text, std::size_t ahead = 0) const {
+        const Word& word = words_[std::min(at_ + ahead, words_.size() - 1)];
+        return word.text == text && (word.kind == Word::Kind::name || word.kind == Word::Kind::sign);
+    }
+    bool take(std::string_view text) {
+        if (!is(text)) return false;
+        ++at_;
+        return true;
+    }
+    void expect(std::string_view text) {
+        if (!take(text)) fault(std::string{text});
+    }
+    std::string name() {
+        if (here().kind != Word::Kind::name) fault("a name");
+        return words_[at_++].text;
+    }
+    std::string dotted() {
+        std::string text = name();
+        while (take(".")) text += "." + name();
+        return text;
+    }
+    [[noreturn]] void fault(const std::string& expected) const {
+        give_up(here().line, "'" + here().text + "' where " + expected + " is expected");
+    }
+    void semicolons() {
+        while (take(";")) {
+        }
+    }
+
+    // ---- what stands outside of programs
+    Instance instance() {
+        Instance made{.type = name(), .name = name()};
+        if (take("(")) made.arguments = list(")");
+        semicolons();
+        return made;
+    }
+    Variable variable(std::string kind) {
+        Variable made{.kind = std::move(kind)};
+        made.type = name();
+        made.name = name();
+        if (take("=")) {
+            made.has_initial = true;
+            made.initial = expression();
+        }
+        return made;
+    }
+    void variables(std::vector<Variable>& into, const std::string& kind) {
+        into.push_back(variable(kind));
+        const std::string type = into.back().type;
+        while (take(",")) {
+            Variable more{.name = name(), .type = type, .kind = kind};
+            if (take("=")) {
+                more.has_initial = true;
+                more.initial = expression();
+            }
+            into.push_back(more);
+        }
+        semicolons();
+    }
+    Function function() {
+        Function made;
+        made.name = name();
+        if (here().kind == Word::Kind::name) {
+            made.result = made.name;
+            made.name = name();
+        }
+        expect("(");
+        while (!take(")")) {
+            made.parameters.push_back(variable("param"));
+            static_cast<void>(take(","));
+        }
+        made.body = block();
+        return made;
+    }
+    Type program() {
+        Type made{.name = name(), .is_program = true};
+        expect("{");
+        while (is("param") || is("function")) {
+            if (take("function"))
+                made.functions.push_back(function());
+            else
+                variables(made.variables, words_[at_++].text);
+        }
+        while (!take("}")) statement(made.body);
+        semicolons();
+        return made;
+    }
+    Type machine() {
+        Type made{.name = name()};
+        expect("{");
+        while (!take("}")) {
+            if (is("var") || is("param") || is("const"))
+                variables(made.variables, words_[at_++].text);
+            else if (take("SubStateMachine"))
+                made.children.push_back(instance());
+            else if (take("function"))
+                made.functions.push_back(function());
+            else
+                state(made, "", "");
+        }
+        semicolons();
+        return made;
+    }
+    void state(Type& machine, const std::string& parent, const std::string& region) {
+        State made{.parent = parent, .region = region, .line = here().line};
+        for (;;) {
+            if (take("initial"))
+                made.initial = true;
+            else if (take("final"))
+                made.final = true;
+            else
+                break;
+        }
+        expect("state");
+        made.name = name();
+        if (take("in")) made.parent = name();
+        expect("{");
+        const std::size_t place = machine.states.size();
+        machine.states.push_back(made);
+        while (!take("}")) {
+            if (is("initial") || is("final") || is("state")) {
+                state(machine, made.name, "");
+            } else if (take("region")) {
+                const std::string name_of_region = name();
+                expect("{");
+                while (!take("}")) state(machine, made.name, name_of_region);
+            } else if (take("precondition")) {
+                expect("(");
+                made.preconditions.push_back(expression());
+                expect(")");
+            } else if (take("entry")) {
+                made.entry = block();
+            } else if (take("run")) {
+                made.run = block();
+            } else if (take("exit")) {
+                made.exit = block();
+            } else if (take("handle")) {
+                made.handle = block();
+            } else if (take("transitions")) {
+                expect("{");
+                while (!take("}")) transition(made, false);
+            } else if (take("transition")) {
+                transition(made, true);
+            } else {
+                fault("a part of a state");
+            }
+            semicolons();
+        }
+        machine.states[place] = made;
+        semicolons();
+    }
+    void transition(State& state, bool may_be_event) {
+        Transition made{.line = here().line};
+        if (is("after") && is("(", 1)) {
+            at_ += 2;
+            made.timed = true;
+            made.after = expression();
+            expect(")");
+        } else if (may_be_event && !is("if") && !is("select") && !is("{")) {
+            made.event = dotted();
+            if (take("("))
+                while (!take(")")) {
+                    made.captures.push_back(name());
+                    static_cast<void>(take(","));
+                }
+        }
+        if (take("if")) {
+            made.has_guard = true;
+            made.guard = expression();
+            static_cast<void>(take("then"));
+        }
+        if (is("{")) made.then = block();
+        target(made.to, made.enters);
+        if (take("else")) {
+            made.has_otherwise = true;
+            if (is("{")) made.otherwise = block();
+            std::string no_history;
+            target(made.otherwise_to, no_history);
+        }
+        semicolons();
+        if (made.event.empty() && made.has_otherwise) { // is the next condition, which always holds
+            made.has_otherwise = false;
+            state.transitions.push_back(made);
+            made.has_guard = false;
+            made.then = made.otherwise;
+            made.to = made.otherwise_to;
+            made.enters.clear();
+            state.transitions.push_back(made);
+            return;
+        }
+        state.transitions.push_back(made);
+    }
+    void target(std::string& to, std::string& enters) {
+        if (!take("select")) return;
+        if (take("deep")) enters = "deep ";
+        if (is("history") && is("(", 1)) {
+            at_ += 2;
+            enters += "history";
+            to = name();
+            expect(")");
+        } else {
+            to = name();
+        }
+        semicolons();
+    }
+
+    // ---- programs
+    Block block() {
+        Block made;
+        if (take("{"))
+            while (!take("}")) statement(made);
+        else
+            statement(made);
+        return made;
+    }
+    void assignment(Block& into, int line) {
+        Statement made{.kind = Statement::Kind::assign, .line = line};
+        made.text = name();
+        for (;;) {
+            if (take("["))
+                made.indices.push_back(expression()), expect("]");
+            else if (take("."))
+                made.text += "." + name();
+            else
+                break;
+        }
+        expect("=");
+        made.expressions.push_back(expression());
+        into.push_back(made);
+    }
+    void timeout(Statement& of) {
+        of.has_timeout = take("timeout");
+        if (of.has_timeout) of.timeout = expression();
+    }
+    void perform(Block& into, int line) {
+        Statement made{.kind = Statement::Kind::perform, .line = line};
+        made.expressions.push_back(postfix());
+        timeout(made);
+        into.push_back(made);
+    }
+    void statement(Block& into) {
+        const int line = here().line;
+        if (take(";")) return;
+        if (is("{")) {
+            for (Statement& each : block()) into.push_back(std::move(each));
+        } else if (is("var") || is("const")) {
+            std::vector<Variable> declared;
+            variables(declared, words_[at_++].text);
+            for (Variable& each : declared) {
+                Statement made{.kind = Statement::Kind::declare, .line = line};
+                made.text = each.name;
+                made.type = each.type;
+                if (each.has_initial) made.expressions.push_back(each.initial);
+                into.push_back(made);
+            }
+        } else if (take("set")) {
+            assignment(into, line);
+        } else if (take("do")) {
+            perform(into, line);
+        } else if (take("try")) {
+            Statement made{.kind = Statement::Kind::guarded, .line = line};
+            made.first = block();
+            semicolons();
+            if (take("catch")) made.second = block();
+            into.push_back(made);
+        } else if (take("if")) {
+            Statement made{.kind = Statement::Kind::branch, .line = line};
+            made.expressions.push_back(expression());
+            static_cast<void>(take("then"));
+            made.first = block();
+            if (take("else")) made.second = block();
+            into.push_back(made);
+        } else if (take("while")) {
+            Statement made{.kind = Statement::Kind::loop, .line = line};
+            made.expressions.push_back(expression());
+            static_cast<void>(take("do_"));
+            made.first = block();
+            into.push_back(made);
+        } else if (take("for")) {
+            loop(into, line);
+        } else if (take("return")) {
+            Statement made{.kind = Statement::Kind::leave, .line = line};
+            if (!is(";") && !is("}")) made.expressions.push_back(expression());
+            into.push_back(made);
+        } else if (take("yield")) {
+            into.push_back({.kind = Statement::Kind::yield, .line = line});
+        } else if (take("break")) {
+            into.push_back({.kind = Statement::Kind::pause, .line = line});
+        } else if (take("wait")) {
+            Statement made{.kind = Statement::Kind::wait, .line = line};
+            expect("(");
+            made.expressions.push_back(expression());
+            expect(")");
+            timeout(made);
+            into.push_back(made);
+        } else {
+            fault("a statement");
+        }
+        semicolons();
+    }
+    void loop(Block& into, int line) {
+        expect("(");
+        if (is("var")) {
+            statement(into);
+        } else if (!take(";")) {
+            static_cast<void>(take("set"));
+            assignment(into, line);
+            expect(";");
+        }
+        Statement made{.kind = Statement::Kind::loop, .line = line};
+        made.expressions.push_back(expression());
+        expect(";");
+        static_cast<void>(take("set"));
+        assignment(made.second, line);
+        expect(")");
+        made.first = block();
+        into.push_back(made);
+    }
+
+    // ---- expressions, from the weakest operator on
+    std::vector<Expression> list(std::string_view end) {
+        std::vector<Expression> made;
+        while (!take(end)) {
+            made.push_back(expression());
+            static_cast<void>(take(","));
+        }
+        return made;
+    }
+    [[nodiscard]] int strength() const {
+        constexpr std::pair<std::string_view, int> signs[] = {
+            {"||", 1}, {"or", 1}, {"&&", 2}, {"and", 2}, {"==", 3}, {"!=", 3}, {"<", 4}, {">", 4},
+            {"<=", 4}, {">=", 4}, {"+", 5},  {"-", 5},   {"*", 6},  {"/", 6},  {"%", 6}};
+        for (const auto& [sign, value] : signs)
+            if (is(sign)) return value;
+        return 0;
+    }
+    Expression expression(int at_least = 1) {
+        Expression left = unary();
+        for (int now = strength(); now >= at_least; now = strength()) {
+            Expression made{.kind = Expression::Kind::binary, .text = here().text, .line = here().line};
+            if (made.text == "or") made.text = "||";
+            if (made.text == "and") made.text = "&&";
+            ++at_;
+            Expression right = expression(now + 1);
+            made.parts.push_back(std::move(left));
+            made.parts.push_back(std::move(right));
+            left = std::move(made);
+        }
+        return left;
+    }
+    Expression unary() {
+        for (std::string_view sign : {"!", "not", "-", "+"})
+            if (is(sign)) {
+                Expression made{.kind = Expression::Kind::unary, .text = here().text, .line = here().line};
+                if (made.text == "not") made.text = "!";
+                ++at_;
+                made.parts.push_back(unary());
+                return made;
+            }
+        return postfix();
+    }
+    Expression postfix() {
+        Expression made{.line = here().line};
+        const Word word = here();
+        if (take("(")) {
+            made = expression();
+            expect(")");
+        } else if (word.kind == Word::Kind::name) {
+            if (take("true") || take("false")) {
+                made.value = word.text == "true";
+            } else {
+                made.kind = Expression::Kind::name;
+                made.text = dotted();
+                if (take("(")) {
+                    made.kind = Expression::Kind::call;
+                    made.parts = list(")");
+                }
+            }
+        } else if (word.kind == Word::Kind::end || word.kind == Word::Kind::sign) {
+            fault("a value");
+        } else {
+            made.value = word.value;
+            ++at_;
+        }
+        while (take("[")) {
+            Expression element{.kind = Expression::Kind::element, .line = made.line};
+            element.parts.push_back(std::move(made));
+            element.parts.push_back(expression());
+            expect("]");
+            made = std::move(element);
+        }
+        return made;
+    }
+
+    std::vector<Word> words_;
+    std::size_t at_ = 0;
+};
+
+} // namespace
+
+Script read(std::string_view text) { return Reader{text}.script(); }
+
+} // namespace tappet::reference

@@ -1,0 +1,128 @@
+// A second reader of the script language, to compare the first with: the text becomes a tree on the heap. It
+// shares nothing with the script compiler, and takes good scripts only: at a fault it says where and aborts.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace tappet::reference {
+
+/// Nanoseconds, apart from whole numbers.
+struct Span {
+    std::int64_t ns = 0;
+    auto operator<=>(const Span&) const = default;
+};
+using Vector = std::vector<double>;
+using Value = std::variant<std::monostate, bool, std::int64_t, double, Span, Vector, std::string>;
+
+struct Expression {
+    enum class Kind : std::uint8_t { literal, name, call, unary, binary, element };
+    Kind kind = Kind::literal;
+    Value value{};
+    std::string text{}; ///< the dotted name, or the operator
+    std::vector<Expression> parts{};
+    int line = 0;
+};
+
+struct Statement;
+using Block = std::vector<Statement>;
+
+struct Statement {
+    enum class Kind : std::uint8_t {
+        declare,
+        assign,
+        perform, ///< do
+        branch,
+        loop, ///< while and for
+        leave,
+        yield,
+        wait,
+        guarded, ///< try .. catch
+        pause    ///< break
+    };
+    Kind kind = Kind::perform;
+    std::string text{};                ///< the name that is set or declared
+    std::string type{};                ///< of a declaration
+    std::vector<Expression> indices{}; ///< of the element that is set
+    std::vector<Expression> expressions{};
+    Block first{};  ///< then, the body, what is tried, the initialisation of a for
+    Block second{}; ///< else, what is done on failure, the increment of a for
+    Expression timeout{};
+    bool has_timeout = false;
+    int line = 0;
+};
+
+struct Transition {
+    std::string event{}; ///< empty: a condition
+    bool timed = false;
+    Expression after{};
+    std::vector<std::string> captures{};
+    bool has_guard = false;
+    Expression guard{};
+    Block then{};
+    std::string to{};     ///< empty: internal
+    std::string enters{}; ///< "", "history", "deep history"
+    bool has_otherwise = false;
+    Block otherwise{};
+    std::string otherwise_to{};
+    int line = 0;
+};
+
+struct State {
+    std::string name{};
+    std::string parent{};
+    std::string region{};
+    bool initial = false;
+    bool final = false;
+    std::vector<Expression> preconditions{};
+    Block entry{}, run{}, exit{}, handle{};
+    std::vector<Transition> transitions{};
+    int line = 0;
+};
+
+struct Variable {
+    std::string name{};
+    std::string type{};
+    std::string kind{}; ///< "param", "var" or "const"
+    bool has_initial = false;
+    Expression initial{};
+};
+
+struct Instance {
+    std::string type{};
+    std::string name{};
+    std::vector<Expression> arguments{};
+};
+
+struct Function {
+    std::string name{};
+    std::string result{}; ///< empty: none
+    std::vector<Variable> parameters{};
+    Block body{};
+};
+
+/// A StateMachine, or a program: that one has a body and no states.
+struct Type {
+    std::string name{};
+    std::vector<Variable> variables{};
+    std::vector<State> states{};
+    std::vector<Instance> children{};
+    std::vector<Function> functions{};
+    bool is_program = false;
+    Block body{};
+};
+
+struct Script {
+    std::vector<Type> types{};
+    std::vector<Instance> roots{};
+    std::vector<Function> functions{};
+};
+
+Script read(std::string_view text);
+
+} // namespace tappet::reference

@@ -1,0 +1,259 @@
+// Binds a unit by hand, as a machine does from its plan.
+#include "tests/differential/unit_bench.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace tappet {
+
+namespace {
+
+std::string print(double value) {
+    std::array<char, 40> text{};
+    if (value != value) return "nan";
+    static_cast<void>(std::snprintf(text.data(), text.size(), "%.17g", value));
+    return text.data();
+}
+
+std::string print(TypeId type, const std::byte* at) {
+    const auto whole = [&](auto number) {
+        std::memcpy(&number, at, sizeof number);
+        return std::to_string(number);
+    };
+    switch (type->kind) {
+    case ValueKind::truth: return *at != std::byte{0} ? "true" : "false";
+    case ValueKind::whole: return type->size == 8 ? whole(std::int64_t{}) : whole(std::int32_t{});
+    case ValueKind::duration: return whole(std::int64_t{}) + "ns";
+    case ValueKind::real: {
+        double number = 0;
+        std::memcpy(&number, at, sizeof number);
+        return print(number);
+    }
+    case ValueKind::matrix: {
+        std::string text = "[";
+        for (std::size_t i = 0; i < type->rows * type->columns; ++i)
+            text += print(type->element, at + i * type->element->size) + " ";
+        return text + "]";
+    }
+    default: return "?";
+    }
+}
+
+} // namespace
+
+struct UnitBench::Heard {
+    UnitBench* bench = nullptr;
+    const Facet* facet = nullptr;
+    std::string name{};
+
+    void note(const std::byte* packed) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", write(packed));
+    }
+    void write(const std::byte* packed) {
+        std::string line = "event " + name;
+        const std::byte* at = packed;
+        for (TypeId type : facet->type->elements) {
+            line += " " + print(type, at);
+            at += type->size;
+        }
+        bench->diary.write(line);
+        bench->hear(name, packed);
+    }
+    template <class... A>
+    static void react(void* context, A... arguments) noexcept TAPPET_REALTIME {
+        std::array<std::byte, (std::size_t{1} + ... + sizeof(A))> packed{};
+        [[maybe_unused]] std::byte* at = packed.data();
+        ((std::memcpy(at, &arguments, sizeof arguments), at += sizeof arguments), ...);
+        static_cast<Heard*>(context)->note(packed.data());
+    }
+    template <class... A>
+    static constexpr void (*call)(void*, A...) noexcept TAPPET_REALTIME = &Heard::react<A...>;
+};
+
+std::span<const Reachable> UnitBench::reach() {
+    static constexpr std::array<Reachable, 3> list{{{"own", &component_type<Bench>, true},
+                                                    {"mate", &component_type<Bench>, true},
+                                                    {"arm", &component_type<Arm>, false}}};
+    return list;
+}
+
+UnitBench::UnitBench() {
+    own.diary = mate.diary = &diary;
+    own.name = "own";
+    mate.name = "mate";
+    arm.diary = &diary;
+    PortAccess::data<double>.link_local(&own.measured, &source);
+    for (void* output :
+         {static_cast<void*>(&source), static_cast<void*>(&own.setpoint), static_cast<void*>(&mate.setpoint)})
+        PortAccess::data<double>.set_clock(output, false, &now);
+    PortAccess::data<double>.set_clock(&own.measured, true, &now);
+    PortAccess::data<double>.set_clock(&mate.measured, true, &now);
+    source.write(0);
+    for (Bench* each : {&own, &mate})
+        for (const Facet& facet : component_type<Bench>.facets) {
+            if (facet.kind != FacetKind::event) continue;
+            void* const event = facet.at(each, facet.index);
+            subscribers_.emplace_back(facet.event->subscriber_bytes + 16);
+            facet.event->give_storage(event, subscribers_.back().data());
+            heard_.push_back(std::make_unique<Heard>(
+                this, &facet, (each == &own ? "" : "mate.") + std::string{facet.name}));
+            const void* call = facet.name == "tick" ? static_cast<const void*>(&Heard::call<>)
+                               : facet.name == "moved"
+                                   ? static_cast<const void*>(&Heard::call<std::int32_t, double>)
+                                   : static_cast<const void*>(&Heard::call<bool>);
+            facet.event->subscribe(event, call, heard_.back().get()) |= 1;
+        }
+    constexpr std::size_t places = 64;
+    mail_.resize(Mailbox::bytes_for(places) + Mailbox::alignment);
+    const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(mail_.data()) % Mailbox::alignment;
+    mailbox_ = std::make_unique<Mailbox>(
+        mail_.data() + (misaligned == 0 ? 0 : Mailbox::alignment - misaligned), places, Overflow::reject);
+    followed_.resize(places);
+    commands_.place({mailbox_.get(), 1}, followed_, places);
+}
+
+UnitBench::~UnitBench() = default;
+
+void UnitBench::bind_links(BenchPart& part) {
+    void* const components[] = {&own, &mate, &arm};
+    for (const LinkRow& row : part.type->tables.links) {
+        const ComponentType& type = *reach()[row.peer].type;
+        ProgramLink link;
+        link.component = link.place = components[row.peer];
+        link.type = &type;
+        if (row.facet != LinkRow::component_itself) {
+            const Facet& facet = type.facets[row.facet];
+            if (facet.at != nullptr) link.place = facet.at(link.component, facet.index);
+            if (row.needs_slot) {
+                CommandSlot& slot = slots_.emplace_back();
+                slot_values_.emplace_back(facet.command->value_bytes() + 1);
+                CommandSlot::Route route;
+                route.command = facet.command;
+                route.component = &arm;
+                route.receiver_state = &arm_state_;
+                route.inbox = &commands_.inbox();
+                slot.place(route, slot_values_.back().data());
+                link.slot = &slot;
+            }
+        }
+        part.links.push_back(link);
+    }
+}
+
+void UnitBench::resolve(BenchPart& part, const ProgramCode& code, const StateMachineFast& fast) {
+    const ResolvedSizes sizes = measure(part.type->machine);
+    part.plans.resize(sizes.states);
+    part.triggers.resize(sizes.triggers);
+    part.cells.resize(sizes.states * sizes.triggers);
+    part.arcs.resize(sizes.arcs);
+    part.programs.resize(sizes.programs);
+    part.regions.resize(sizes.regions);
+    part.captured.resize(sizes.triggers);
+    part.history.resize(sizes.history);
+    part.deferred.resize(sizes.captured * StateMachineExecution::max_raised_events);
+    const ResolvedRoom room{part.plans,    part.triggers, part.cells,   part.arcs,
+                            part.programs, part.regions,  part.captured};
+    StateMachineBinding binding;
+    binding.machine = resolve_into(part.type->machine, room);
+    binding.component = &own;
+    binding.code = code;
+    binding.data = part.data;
+    binding.links = part.links.data();
+    if (part.row->children != 0) binding.machines = &machines_[part.row->first_child];
+    binding.history = part.history;
+    binding.deferred = part.deferred;
+    binding.policy.statements = 100'000;
+    binding.fast = fast;
+    if (!part.machine->bind(binding)) std::abort();
+}
+
+void UnitBench::place(const ScriptUnit& unit, std::span<const ProgramCode> code,
+                      std::span<const StateMachineFast> fast) {
+    unit_ = unit;
+    machines_ = std::make_unique<StateMachineExecution[]>(unit_.instances.size());
+    for (const BehaviourInstance& row : unit_.instances) {
+        BenchPart& part = parts_.emplace_back();
+        part.row = &row;
+        part.machine = &machines_[parts_.size() - 1];
+        part.type = &unit_.types[row.type];
+        const std::size_t bytes = part.type->tables.layout.size + data_alignment;
+        part.memory = std::make_unique<std::byte[]>(bytes);
+        const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(part.memory.get()) % data_alignment;
+        part.data = part.memory.get() + (misaligned == 0 ? 0 : data_alignment - misaligned);
+        std::copy(row.image.begin(), row.image.end(), part.data);
+        bind_links(part);
+    }
+    for (BenchPart& part : parts_) {
+        const ProgramCode with = code.empty() ? interpreted(part.type->tables) : code[part.row->type];
+        if (part.is_program()) {
+            ProgramContext context;
+            context.component = &own;
+            context.data = part.data;
+            context.links = part.links.data();
+            part.program.bind(with, context, part.row->image, {.statements = 100'000});
+        } else {
+            resolve(part, with, fast.empty() ? StateMachineFast{} : fast[part.row->type]);
+        }
+    }
+}
+
+void UnitBench::start() {
+    for (BenchPart& part : parts_) {
+        if (part.row->parent != no_instance) continue;
+        if (part.is_program())
+            static_cast<void>(part.program.start());
+        else
+            static_cast<void>(part.machine->start(now));
+    }
+}
+
+void UnitBench::step() {
+    for (BenchPart& part : parts_)
+        if (part.is_program()) part.program.step(now);
+    for (BenchPart& part : parts_)
+        if (!part.is_program()) part.machine->step(now);
+}
+
+void UnitBench::step_arm() {
+    commands_.serve([this](std::uint32_t, CommandSlot& slot) noexcept
+                    TAPPET_REALTIME { static_cast<void>(commands_.take_up(slot, true)); });
+    static_cast<void>(commands_.follow([](std::uint32_t, CommandSlot& slot) noexcept
+                                       TAPPET_REALTIME { return !in_flight(slot.follow()); }));
+}
+
+void UnitBench::hear(std::string_view event, const std::byte* packed) {
+    for (BenchPart& part : parts_) {
+        if (part.is_program()) continue;
+        for (std::size_t i = 0; i < part.triggers.size(); ++i)
+            if (part.triggers[i] == event) static_cast<void>(part.machine->dispatch(i, now, packed));
+    }
+}
+
+BenchPart& UnitBench::part(std::string_view name) {
+    for (BenchPart& each : parts_)
+        if (each.row->name == name) return each;
+    std::abort();
+}
+
+std::string UnitBench::picture(const BenchPart& part) const {
+    if (part.is_program())
+        return std::string{to_text(part.program.status())} +
+               (part.program.status() == ProgramStatus::error
+                    ? " in line " + std::to_string(part.program.line())
+                    : "");
+    const StateMachineExecution& machine = *part.machine;
+    std::string text = machine.in_error() ? "error" : machine.is_active() ? "active" : "inactive";
+    if (machine.is_paused()) text += " paused";
+    if (machine.is_active() && !machine.is_automatic()) text += " reactive";
+    for (const ActiveState& each : machine.states())
+        text.append(" ").append(machine.machine().table.states[each.state].name);
+    return text;
+}
+
+std::string UnitBench::value(const BenchPart& part, const VariableRow& row) const {
+    return std::string{row.name} + "=" + print(row.type, part.data + row.at);
+}
+
+} // namespace tappet

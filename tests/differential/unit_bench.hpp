@@ -1,0 +1,95 @@
+// A compiled or loaded unit on the components of bench.hpp, without a machine around it: each instance with
+// its data, links and command slots, stepped by hand.
+#pragma once
+
+#include "tests/differential/bench.hpp"
+
+#include "kernel/activity/command_processor.hpp"
+#include "kernel/program/execution.hpp"
+#include "kernel/script/unit.hpp"
+#include "kernel/statechart/execution.hpp"
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tappet {
+
+class UnitBench;
+
+/// What "m" and "m.left" of a unit are made of.
+struct BenchPart {
+    const BehaviourInstance* row = nullptr;
+    const BehaviourType* type = nullptr;
+    StateMachineExecution* machine = nullptr; ///< of a program alone unused
+    ProgramExecution program{};
+    std::unique_ptr<std::byte[]> memory{};
+    std::byte* data = nullptr;
+    std::vector<ProgramLink> links{};
+    // Of the resolved machine.
+    std::vector<StatePlan> plans{};
+    std::vector<std::string_view> triggers{};
+    std::vector<ArcIndex> cells{};
+    std::vector<StateArc> arcs{};
+    std::vector<StateProgram> programs{};
+    std::vector<StateIndex> regions{}, history{};
+    std::vector<std::uint16_t> captured{};
+    std::vector<std::byte> deferred{};
+
+    [[nodiscard]] bool is_program() const { return type->is_program(); }
+};
+
+class UnitBench {
+public:
+    Diary diary{};
+    Bench own{};
+    Bench mate{};
+    Arm arm{};
+    Output<double> source{}; ///< of own.measured
+    Time now{};
+
+    UnitBench();
+    ~UnitBench();
+    UnitBench(const UnitBench&) = delete;
+    UnitBench& operator=(const UnitBench&) = delete;
+
+    /// One ProgramCode for each type; without: interpreted.
+    void place(const ScriptUnit& unit, std::span<const ProgramCode> code = {},
+               std::span<const StateMachineFast> fast = {});
+    void start();
+    void step();
+    /// The other activity: what was sent begins, what began goes on.
+    void step_arm();
+    void hear(std::string_view event, const std::byte* packed);
+
+    [[nodiscard]] BenchPart& part(std::string_view name);
+    [[nodiscard]] std::deque<BenchPart>& parts() { return parts_; }
+    [[nodiscard]] std::string picture(const BenchPart& part) const;
+    /// A variable by name, as the reference prints it.
+    [[nodiscard]] std::string value(const BenchPart& part, const VariableRow& row) const;
+
+    static std::span<const Reachable> reach();
+
+private:
+    struct Heard; // of one event
+    void bind_links(BenchPart& part);
+    void resolve(BenchPart& part, const ProgramCode& code, const StateMachineFast& fast);
+
+    ScriptUnit unit_{};
+    std::deque<BenchPart> parts_;
+    std::unique_ptr<StateMachineExecution[]> machines_; ///< by instance: children side by side
+    std::deque<CommandSlot> slots_;
+    std::deque<std::vector<std::byte>> slot_values_;
+    std::deque<std::vector<std::byte>> subscribers_;
+    std::vector<std::unique_ptr<Heard>> heard_;
+    std::vector<std::byte> mail_;
+    std::unique_ptr<Mailbox> mailbox_;
+    std::vector<CommandSlot*> followed_;
+    CommandProcessor commands_;
+    AtomicComponentState arm_state_{ComponentState::running};
+};
+
+} // namespace tappet
