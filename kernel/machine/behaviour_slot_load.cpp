@@ -4,7 +4,7 @@
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/instance.hpp"
-#include "kernel/script/compile.hpp"
+#include "kernel/script/load.hpp"
 
 #include <charconv>
 
@@ -60,7 +60,7 @@ Sentence BehaviourSlot::compile(std::size_t letters, std::string_view name) {
     reach.depth = row.slot.depth;
     reach.statements_per_step = row.options.statements;
     const ScriptOutcome outcome =
-        compile_into({place_.text.data(), letters}, bank.name.view(), reach, rooms_[number]);
+        compile_loaded({place_.text.data(), letters}, bank.name.view(), reach, rooms_[number]);
     if (!outcome.good()) return outcome.fault;
     if (Sentence fault = bank.unit.place(outcome.unit, {}, row.options, unit_memory_[number], place_.events,
                                          *place_.machine, place_.component);

@@ -55,9 +55,15 @@ constexpr std::span<T> lend(std::unique_ptr<T[]>& owner, std::size_t n) {
 }
 
 constexpr Measured measure_script(const ScriptSource& source, const Reach& reach) {
-    for (std::uint32_t nodes = static_cast<std::uint32_t>(source.text.size() / 24 + 64);; nodes *= 4) {
-        const ScriptSizes most =
-            script_sizes_for(nodes, 2048 + 16 * nodes, static_cast<std::uint32_t>(reach.components.size()));
+    // A room of twice the usual need: in a constant expression empty rows cost time too.
+    for (std::uint32_t nodes = static_cast<std::uint32_t>(source.text.size() / 56 + 32);; nodes *= 2) {
+        ScriptSizes most =
+            script_sizes_for(nodes, 1024 + 4 * nodes, static_cast<std::uint32_t>(reach.components.size()));
+        most.instructions = 4 * nodes;
+        most.conditions = most.programs = most.transitions = nodes / 2 + 16;
+        most.variables = most.links = most.captures = nodes / 8 + 32;
+        most.states = nodes / 3 + 8;
+        most.names = 10 * nodes + 512;
         std::unique_ptr<Instruction[]> instructions;
         std::unique_ptr<ConditionRow[]> conditions;
         std::unique_ptr<NodeRow[]> node_rows;

@@ -106,7 +106,7 @@ private:
                  outer = instances_.room[outer].parent)
                 ++depth;
             if (depth > reach_.depth)
-                return fail(at, {"child machines are nested deeper than ", Sentence{reach_.depth}.view(),
+                return fail(at, {"child machines are nested deeper than ", digits(reach_.depth),
                                  " levels, which its row allows"});
             for (std::size_t c = 0; ok() && c < children_used_; ++c) {
                 const Child& child = children_[c];
@@ -161,13 +161,12 @@ private:
                     }
         }
         if (s.command_slots > reach_.command_slots)
-            return fail(token_,
-                        {"the script sends ", Sentence{s.command_slots}.view(),
-                         " commands and its slot has room for ", Sentence{reach_.command_slots}.view(),
-                         "; send fewer or give its row more command_slots(...)"});
+            return fail(token_, {"the script sends ", digits(s.command_slots),
+                                 " commands and its slot has room for ", digits(reach_.command_slots),
+                                 "; send fewer or give its row more command_slots(...)"});
         if (s.timers > reach_.timers)
-            return fail(token_, {"the script waits for time at ", Sentence{s.timers}.view(),
-                                 " places and its slot has room for ", Sentence{reach_.timers}.view(),
+            return fail(token_, {"the script waits for time at ", digits(s.timers),
+                                 " places and its slot has room for ", digits(reach_.timers),
                                  "; wait at fewer or give its row more timers(...)"});
         if (room_.reach.size() < reach_.components.size()) return fail_room("components");
         std::copy_n(reach_.components.data(), reach_.components.size(), room_.reach.data());

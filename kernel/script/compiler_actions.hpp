@@ -207,7 +207,7 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
         if (ok() && (symbol == nullptr || symbol->fixed || symbol->kind != SymbolKind::variable))
             return fail(result,
                         {"\"", quoted(result.text), "\" is no variable; a result of a command needs one"});
-        if (ok() && result_count == results.size()) return fail_room("results of one command");
+        if (ok() && result_count == results.size()) return fail_limit("results of one command");
         if (ok()) results[result_count++] = symbol->operand;
     }
     end_arguments(all.size());

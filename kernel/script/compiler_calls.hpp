@@ -72,7 +72,7 @@ constexpr Expressions::Expansion Expressions::begin_expansion(const Token& name,
         symbol.operand = value;
         symbol.name = parameter.text; // in sight when all arguments are read: until then without its hash
         if (symbols_used_ == symbols_.size())
-            fail_room("names in sight at one place");
+            fail_limit("names in sight at one place");
         else
             symbols_[symbols_used_++] = symbol;
         if (!is(Sign::close_round)) need(Sign::comma, "\",\" or \")\"");
@@ -118,13 +118,13 @@ constexpr void Expressions::parse_argument(TypeId type, DataOffset to, std::size
     if (!ok()) return;
     const Token at = token_;
     if (is(Sign::close_round))
-        return fail(at, {"found ", Sentence{number}.view(), " arguments, expected ", Sentence{count}.view()});
+        return fail(at, {"found ", digits(number), " arguments, expected ", digits(count)});
     store(at, parse_expression(type), type, to, " as an argument");
 }
 
 constexpr void Expressions::end_arguments(std::size_t count) {
     if (!ok() || take(Sign::close_round)) return;
-    if (is(Sign::comma)) return fail(token_, {"found more arguments, expected ", Sentence{count}.view()});
+    if (is(Sign::comma)) return fail(token_, {"found more arguments, expected ", digits(count)});
     fail_expected("\")\"");
 }
 

@@ -334,6 +334,7 @@ protected:
 private:
     /// A function of the library or of a type, a conversion, or a value put together of its parts.
     constexpr Operand parse_function(const Token& name);
+    constexpr void fail_function(const Token& name, TypeId first, TypeId second);
     constexpr Operand parse_constructor(const Token& name, TypeId type);
     /// A function whose body is one return, expanded here.
     constexpr Operand call_value(const Token& name, Function& function);

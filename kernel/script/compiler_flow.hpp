@@ -41,7 +41,7 @@ protected:
     }
     /// Behind them: the node; all arcs that hang lead to it.
     constexpr NodeIndex end_action(const Token& at) {
-        if (nodes_.count() == max_script_nodes) fail_room("nodes");
+        if (nodes_.count() == max_script_nodes) fail_limit("nodes");
         const NodeIndex node =
             add(nodes_,
                 NodeRow{.first = first_instruction_,
@@ -132,7 +132,7 @@ protected:
         if (cost_ <= max_atomic_statements) return;
         if (reach_.statements_per_step == 0)
             return fail(at,
-                        {"this loop executes more than ", Sentence{max_atomic_statements}.view(),
+                        {"this loop executes more than ", digits(max_atomic_statements),
                          " statements without waiting; put yield into it, or let its row say at_most(n)"});
         may_wait_ = true;
     }

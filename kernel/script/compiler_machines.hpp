@@ -105,7 +105,7 @@ protected:
                     return 0;
                 }
                 if (arguments_used_ == arguments_.size()) {
-                    fail_room("arguments of state machines");
+                    fail_limit("arguments of state machines");
                     return 0;
                 }
                 arguments_[arguments_used_++] = {type, static_cast<std::uint16_t>(variable), value};
@@ -194,7 +194,7 @@ private:
         child.first_argument = static_cast<std::uint16_t>(arguments_used_);
         child.arguments = parse_machine_arguments(name, type);
         child.name = keep({name.text});
-        if (children_used_ == children_.size()) return fail_room("child machines");
+        if (children_used_ == children_.size()) return fail_limit("child machines");
         Symbol symbol;
         symbol.kind = SymbolKind::machine;
         symbol.fixed = true;
@@ -226,7 +226,7 @@ private:
         const Token name = need_name("the name of the state");
         if (ok() && find_state_row(name.text, name.hash) != nullptr)
             fail(name, {"state \"", quoted(name.text), "\" is there twice; rename one"});
-        if (states_.count() == max_states) fail_room("states in one machine");
+        if (states_.count() == max_states) fail_limit("states in one machine");
         if (!ok()) return;
         row.name = keep({name.text});
         if (is(Sign::k_in)) {
@@ -272,7 +272,7 @@ private:
             case Sign::k_handle: parse_state_program(number, &StateRow::handle); break;
             case Sign::k_precondition:
                 advance();
-                if (asked == preconditions.size()) fail_room("preconditions of one state");
+                if (asked == preconditions.size()) fail_limit("preconditions of one state");
                 if (!is(Sign::open_round)) fail_expected("\"(\" and the precondition");
                 if (!ok()) break;
                 preconditions[asked++] = here();

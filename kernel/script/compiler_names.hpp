@@ -71,7 +71,7 @@ protected:
         for (std::size_t i = scope_; i < symbols_used_; ++i)
             if (symbols_[i].hash == name.hash && symbols_[i].name == name.text)
                 return fail(name, {"\"", quoted(name.text), "\" is there twice; rename one"});
-        if (symbols_used_ == symbols_.size()) return fail_room("names in sight at one place");
+        if (symbols_used_ == symbols_.size()) return fail_limit("names in sight at one place");
         Symbol& symbol = symbols_[symbols_used_++];
         symbol = as;
         symbol.name = name.text;

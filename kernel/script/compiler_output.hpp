@@ -11,7 +11,7 @@
 namespace tappet {
 
 /// Expressions, statements and functions inside each other, together.
-inline constexpr std::uint32_t script_max_depth = 48;
+inline constexpr std::uint32_t script_max_depth = 32;
 /// Tokens that compiling a text of so many letters reads at most; more would be functions that multiply.
 constexpr std::uint64_t script_work(std::size_t letters) noexcept {
     return 16 * std::uint64_t{letters} + 4096;
@@ -100,6 +100,18 @@ protected:
         fail(token_,
              {"the script needs more ", what, " than there is room for; make it smaller or the room larger"});
         outcome_.out_of_room = true;
+    }
+    /// A number in a sentence; good until the second one after it.
+    constexpr std::string_view digits(std::uint64_t number) {
+        std::array<char, 20>& into = digits_[digits_used_++ % digits_.size()];
+        std::size_t at = into.size();
+        do into[--at] = static_cast<char>('0' + number % 10);
+        while ((number /= 10) != 0);
+        return {into.data() + at, into.size() - at};
+    }
+    /// Of what no room makes more.
+    constexpr void fail_limit(std::string_view what) {
+        fail(token_, {"the script needs more ", what, " than the language allows; make it smaller"});
     }
     static constexpr std::string_view quoted(std::string_view text) noexcept { return text.substr(0, 60); }
 
@@ -195,7 +207,7 @@ protected:
         std::uint32_t& used = region_used_[static_cast<std::size_t>(region)];
         const std::uint32_t at = used;
         if (size > region_bytes || at + aligned(static_cast<std::uint32_t>(size)) > region_bytes) {
-            fail_room(region == Region::constants ? "constants" : "data");
+            fail_limit(region == Region::constants ? "constants" : "data");
             return 0;
         }
         used = at + aligned(static_cast<std::uint32_t>(size));
@@ -283,7 +295,7 @@ protected:
         const std::uint32_t variables = constants + aligned(region_used(Region::variables), data_alignment);
         const std::uint32_t arguments = variables + aligned(region_used(Region::arguments), data_alignment);
         const std::uint32_t size = arguments + aligned(scratch_most_, data_alignment);
-        if (size > 0xff00) return fail_room("data");
+        if (size > 0xff00) return fail_limit("data");
         image_most_ = std::max(image_most_, image_base_ + constants + 2 * (variables - constants));
         if (image_most_ > room_.image.size()) return fail_room("bytes of initial data");
         for (const VariableRow& row : variables_.view()) {
@@ -348,6 +360,8 @@ protected:
     Lexer lexer_;
     Token token_{};
     std::uint64_t work_;
+    std::array<std::array<char, 20>, 2> digits_{};
+    std::size_t digits_used_ = 0;
     bool failed_ = false;
     Rows<Instruction> instructions_{};
     Rows<ConditionRow> conditions_{};

@@ -102,8 +102,8 @@ constexpr Operand Expressions::parse_subscript(std::size_t size) {
     if (value.type != script_int)
         fail_type(at, value.type, "an int", " as an index");
     else if (value.literal && (value.whole < 0 || value.whole >= static_cast<std::int64_t>(size)))
-        fail(at, {"found an index out of range; elements are counted from 0 on, and there are ",
-                  Sentence{size}.view()});
+        fail(at,
+             {"found an index out of range; elements are counted from 0 on, and there are ", digits(size)});
     return value;
 }
 
@@ -136,25 +136,29 @@ constexpr Operand Expressions::parse_function(const Token& name) {
     if (!ok() || !need(Sign::close_round, "\")\"")) return {};
     const OperatorMatch match = find_function(name.text, std::span{types}.first(count));
     if (!match) {
-        Nearest nearest{name.text};
-        bool is_known = false;
-        for (const std::string_view each : function_names()) {
-            is_known = is_known || each == name.text;
-            nearest.consider(each);
-        }
-        for (std::size_t i = 0; i < functions_used_; ++i) nearest.consider(functions_[i].name);
-        for (const Facet& each : facets(0))
-            if (each.kind == FacetKind::method) nearest.consider(each.name);
-        if (is_known)
-            fail(name, {"there is no ", name.text, "(", type_name(types[0]), count > 1 ? ", " : "",
-                        count > 1 ? type_name(types[1]) : "", ")"});
-        else
-            fail_unknown(name, "function", nearest, "");
+        fail_function(name, types[0], count > 1 ? types[1] : nullptr);
         return {};
     }
     const Operand a = as(name, operands[0], match.a, "");
     const Operand b = match.b != nullptr ? as(name, operands[1], match.b, "") : Operand{};
     return apply(match, a, b);
+}
+
+constexpr void Expressions::fail_function(const Token& name, TypeId first, TypeId second) {
+    Nearest nearest{name.text};
+    bool is_known = false;
+    for (const std::string_view each : function_names()) {
+        is_known = is_known || each == name.text;
+        nearest.consider(each);
+    }
+    for (std::size_t i = 0; i < functions_used_; ++i) nearest.consider(functions_[i].name);
+    for (const Facet& each : facets(0))
+        if (each.kind == FacetKind::method) nearest.consider(each.name);
+    if (is_known)
+        fail(name, {"there is no ", name.text, "(", type_name(first), second != nullptr ? ", " : "",
+                    second != nullptr ? type_name(second) : "", ")"});
+    else
+        fail_unknown(name, "function", nearest, "");
 }
 
 constexpr Operand Expressions::parse_constructor(const Token& name, TypeId type) {
@@ -217,8 +221,7 @@ constexpr Operand Expressions::parse_constructor(const Token& name, TypeId type)
     }
     if (!ok()) return {};
     if (is(Sign::comma)) {
-        fail(token_,
-             {"a ", type_name(type), " has ", Sentence{parts}.view(), " parts; leave out what is more"});
+        fail(token_, {"a ", type_name(type), " has ", digits(parts), " parts; leave out what is more"});
         return {};
     }
     static_cast<void>(name);

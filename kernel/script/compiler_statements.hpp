@@ -153,7 +153,7 @@ protected:
                 function.is_value = false;
             advance();
         }
-        if (functions_used_ == functions_.size()) fail_room("functions");
+        if (functions_used_ == functions_.size()) fail_limit("functions");
         if (!ok()) return;
         Symbol symbol;
         symbol.kind = SymbolKind::function;

@@ -158,7 +158,7 @@ constexpr void Machines::parse_captures(TransitionRow& row, const Token& event,
         const Token name = need_name("the variable that receives this argument");
         if (!ok()) return;
         if (i == types.size())
-            return fail(name, {"event \"", quoted(event.text), "\" has ", Sentence{types.size()}.view(),
+            return fail(name, {"event \"", quoted(event.text), "\" has ", digits(types.size()),
                                " arguments; leave out what is more"});
         const Symbol* const symbol = find_symbol(name);
         if (symbol == nullptr || symbol->kind != SymbolKind::variable || symbol->fixed) {

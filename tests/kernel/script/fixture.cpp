@@ -2,7 +2,7 @@
 #include "tests/kernel/script/fixture.hpp"
 
 #include "kernel/program/interpreter.hpp"
-#include "kernel/script/compile.hpp"
+#include "kernel/script/load.hpp"
 
 #include <stdexcept>
 
@@ -21,7 +21,7 @@ constexpr std::array<Reachable, 3> three{{{"own", &component_type<Cell>, true},
 
 ScriptOutcome compile(std::string_view text, std::string_view name, const Reach& reach,
                       const ScriptRoom& room) {
-    return compile_into(text, name, reach, room);
+    return compile_loaded(text, name, reach, room);
 }
 
 std::span<const Reachable> components() { return three; }
