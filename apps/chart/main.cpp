@@ -98,7 +98,7 @@ bool export_model(const std::string& what, const std::string& stem, const std::s
 }
 
 bool make(const KnownMachine& known, const Options& options) {
-    Composition all{charts_of(known.machine), known.machine, known.model};
+    Composition all{known.charts(), known.machine, known.model};
     bool good = true;
     for (const std::string& what : options.what) {
         for (const Chart& chart : all.charts) {
@@ -118,7 +118,7 @@ bool make(const KnownMachine& known, const Options& options) {
             if (what == "promela" || what == "verify")
                 good = export_model(what, stem, chart.name, to_promela(chart)) && good;
         }
-        if (what == "promela" || what == "verify")
+        if (known.script == nullptr && (what == "promela" || what == "verify"))
             good = export_model(what, options.to + "/" + identifier(known.machine.name),
                                 std::string{known.machine.name}, to_promela(all)) &&
                    good;

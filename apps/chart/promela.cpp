@@ -331,24 +331,29 @@ PromelaModel to_promela(const Chart& chart) {
     return to_promela(alone);
 }
 
+std::vector<Chart> charts_of(const ScriptUnit& unit, std::string_view component) {
+    std::vector<Chart> charts;
+    for (const BehaviourInstance& instance : unit.instances) {
+        const BehaviourType& type = unit.types[instance.type];
+        Chart chart;
+        chart.component = std::string{component};
+        chart.name = chart.component;
+        if (!instance.name.empty() && unit.instances.size() > 1)
+            chart.name += "." + std::string{instance.name};
+        chart.machine = type.machine;
+        if (!type.tables.programs.empty() || !type.tables.conditions.empty()) chart.programs = &type.tables;
+        chart.reach = unit.reach;
+        chart.image = instance.image;
+        charts.push_back(std::move(chart));
+    }
+    return charts;
+}
+
 std::vector<Chart> charts_of(const MachineView& machine) {
     std::vector<Chart> charts;
     for (const BehaviourRow& row : machine.behaviours) {
-        const ScriptUnit unit = row.unit();
-        for (const BehaviourInstance& instance : unit.instances) {
-            const BehaviourType& type = unit.types[instance.type];
-            Chart chart;
-            chart.component = std::string{row.component};
-            chart.name = instance.name.empty() || unit.instances.size() == 1
-                             ? chart.component
-                             : chart.component + "." + std::string{instance.name};
-            chart.machine = type.machine;
-            if (!type.tables.programs.empty() || !type.tables.conditions.empty())
-                chart.programs = &type.tables;
-            chart.reach = unit.reach;
-            chart.image = instance.image;
-            charts.push_back(std::move(chart));
-        }
+        const ScriptUnit unit = row.unit(); // of a C++ table a view of the row itself
+        for (Chart& each : charts_of(unit, row.component)) charts.push_back(std::move(each));
     }
     return charts;
 }

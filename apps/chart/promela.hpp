@@ -38,5 +38,7 @@ PromelaModel to_promela(const Composition& composition);
 
 /// The state machines of a table, scripts' instances among them; slots are empty until something is loaded.
 std::vector<Chart> charts_of(const MachineView& machine);
+/// Those of one script, on the component that it drives.
+std::vector<Chart> charts_of(const ScriptUnit& unit, std::string_view component);
 
 } // namespace tappet::chart

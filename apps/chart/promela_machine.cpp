@@ -371,7 +371,7 @@ std::string MachineModel::process() {
     if (regions_.orthogonal())
         for (std::size_t k = 0; k < regions_.all().size(); ++k)
             text += "bool taken" + std::to_string(k) + ";\nbyte was" + std::to_string(k) + ";\n";
-    text += "atomic {\n" + begin + m_ + "_started = true;\nCHECK;\n}\n";
+    text += "atomic {\n" + m_ + "_started = true;\n" + begin + "CHECK;\n}\n";
     text += m_ + "_loop:\natomic {\nROOM;\n"; // others may go on between two transitions
     for (std::size_t i = 0; i < names_.states(); ++i)
         text += "if\n:: " + in(static_cast<StateIndex>(i)) + " -> here = 0;" +

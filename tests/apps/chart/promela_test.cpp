@@ -2,7 +2,7 @@
 // reachable, the final state reached from everywhere, invariants kept; and seeded faults, each of which must
 // be found.
 #include "apps/carpet_loom/loom_model.hpp"
-#include "apps/chart/promela.hpp"
+#include "apps/chart/machines.hpp"
 #include "apps/chart/spin.hpp"
 #include "tests/apps/chart/sample.hpp"
 
@@ -71,6 +71,19 @@ TEST_F(Verification, of_the_loom_finds_no_deadlock_and_each_state_and_the_final_
 }
 
 TEST_F(Verification, of_regions_history_and_choices_finds_the_same) { expect_sound(press()); }
+
+TEST_F(Verification, of_the_car_tracker_s_script_finds_the_same_from_its_flat_form) {
+    const auto known = known_machines();
+    const auto found =
+        std::ranges::find_if(known, [](const KnownMachine& each) { return each.script != nullptr; });
+    ASSERT_NE(found, known.end());
+    const Chart chart = found->charts().at(0);
+    expect_sound(chart);
+    // The program runs until stopProgram, which only an event sets: the model follows that variable.
+    EXPECT_THAT(to_promela(chart).text, HasSubstr("tracking_v_stopProgram = 1;"));
+    const SpinSearch failing = searched(to_promela(chart), {"FAILURES", "STOP"});
+    EXPECT_EQ(failing.errors, 0) << failing.error << "\n" << in_words(failing.trail);
+}
 
 TEST_F(Verification, finds_a_state_that_is_never_left) {
     static constexpr std::array states{state("a", initial), state("b"), state("end", final)};
