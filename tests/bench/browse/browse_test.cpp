@@ -149,6 +149,30 @@ TEST_F(LoomBrowser, tells_the_nearest_name_for_a_misspelt_one) {
     EXPECT_THAT(outcome.text, HasSubstr("did you mean \"shaft.angle_deg\"?"));
 }
 
+/// Thesis 5.2.4: state machines are loaded into a running system.
+TEST_F(LoomBrowser, loads_a_weave_at_an_angle_refuses_a_faulty_one_and_sees_a_misbehaving_one_taken_back) {
+    const double before = value_of("weft.picks_woven");
+    const auto list = [] { return browse({"behaviour", "list", "weft"}).text; };
+    EXPECT_EQ(browse({"behaviour", "load", "/bin/twill.osd", "weft"}, an_operator).code, 1);
+    const Outcome loaded = browse({"behaviour", "load", "/bin/twill.osd", "weft", "--at", "180"});
+    EXPECT_EQ(loaded.code, 0) << loaded.text;
+    EXPECT_TRUE(soon([&] { return list().find("steady, twill.osd") != std::string::npos; })) << list();
+    constexpr std::array<double, 4> twill{0x1111, 0x2222, 0x4444, 0x8888};
+    const double lifted = value_of("weft.pattern");
+    EXPECT_THAT(twill, testing::Contains(lifted));
+    const Outcome faulty = browse({"behaviour", "load", "/bin/faulty_twill.osd", "weft", "--at", "180"});
+    EXPECT_EQ(faulty.code, 1);
+    EXPECT_THAT(faulty.text, HasSubstr("faulty_twill.osd:8:"));
+    EXPECT_THAT(faulty.text, HasSubstr("did you mean \"lift\"?"));
+    EXPECT_EQ(browse({"behaviour", "load", "/bin/running_out.osd", "weft", "--at", "shaft.beat_up"}).code, 0);
+    EXPECT_TRUE(soon([&] { return list().find("taken back: running_out.osd") != std::string::npos; }))
+        << list();
+    EXPECT_THAT(list(), HasSubstr("weft.Twill: running"));
+    EXPECT_EQ(browse({"behaviour", "unload", "weft"}).code, 0);
+    EXPECT_TRUE(soon([&] { return list().find("slot of weft: empty") != std::string::npos; })) << list();
+    EXPECT_TRUE(soon([&] { return value_of("weft.picks_woven") > before + 5; })) << "it weaves on";
+}
+
 /// An observer reads everything without a pause, another is stopped in the middle, a third is killed, a
 /// fourth asks without listening.
 TEST_F(LoomBrowser, may_flood_hang_and_die_and_the_loom_keeps_its_times) {
