@@ -290,8 +290,10 @@ std::string MachineModel::on_event(std::size_t trigger) {
     std::vector<std::size_t> order;
     for (std::size_t t = 0; t < names_.transitions(); ++t)
         if (names_.trigger[t] == trigger && names_.from[t] != no_state) order.push_back(t);
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-        return names_.depth[names_.from[a]] > names_.depth[names_.from[b]];
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+        const std::size_t inner_a = names_.depth[names_.from[a]];
+        const std::size_t inner_b = names_.depth[names_.from[b]];
+        return inner_a != inner_b ? inner_a > inner_b : a < b;
     });
     std::string text = ":: " + m_ + "_events?" + std::to_string(trigger) + " ->" +
                        mark("event " + triggers_[trigger]) + "\ntaken = 0;\n";
