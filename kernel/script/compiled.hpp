@@ -7,8 +7,6 @@
 
 #include "kernel/script/compile.hpp"
 
-#include <memory>
-
 namespace tappet {
 
 struct ScriptSource {
@@ -44,64 +42,40 @@ namespace script_detail {
 
 struct Measured {
     Sentence fault{};
+    bool out_of_room = false;
     ScriptSizes sizes{};
 };
 
-// The heap of a constant expression ends with it.
-template <class T>
-constexpr std::span<T> lend(std::unique_ptr<T[]>& owner, std::size_t n) {
-    owner = std::make_unique<T[]>(n);
-    return {owner.get(), n};
+/// Twice the usual need: in a constant expression empty rows cost time too.
+constexpr ScriptSizes measuring_room(std::uint32_t nodes, std::size_t components) noexcept {
+    ScriptSizes most = script_sizes_for(nodes, 1024 + 4 * nodes, static_cast<std::uint32_t>(components));
+    most.instructions = 4 * nodes;
+    most.conditions = most.programs = most.transitions = nodes / 2 + 16;
+    most.variables = most.links = most.captures = nodes / 8 + 32;
+    most.states = nodes / 3 + 8;
+    most.names = 10 * nodes + 512;
+    return most;
 }
-
-constexpr Measured measure_script(const ScriptSource& source, const Reach& reach) {
-    // A room of twice the usual need: in a constant expression empty rows cost time too.
-    for (std::uint32_t nodes = static_cast<std::uint32_t>(source.text.size() / 56 + 32);; nodes *= 2) {
-        ScriptSizes most =
-            script_sizes_for(nodes, 1024 + 4 * nodes, static_cast<std::uint32_t>(reach.components.size()));
-        most.instructions = 4 * nodes;
-        most.conditions = most.programs = most.transitions = nodes / 2 + 16;
-        most.variables = most.links = most.captures = nodes / 8 + 32;
-        most.states = nodes / 3 + 8;
-        most.names = 10 * nodes + 512;
-        std::unique_ptr<Instruction[]> instructions;
-        std::unique_ptr<ConditionRow[]> conditions;
-        std::unique_ptr<NodeRow[]> node_rows;
-        std::unique_ptr<ArcRow[]> arcs;
-        std::unique_ptr<ProgramRow[]> programs;
-        std::unique_ptr<VariableRow[]> variables;
-        std::unique_ptr<LinkRow[]> links;
-        std::unique_ptr<std::byte[]> image;
-        std::unique_ptr<StateRow[]> states;
-        std::unique_ptr<TransitionRow[]> transitions;
-        std::unique_ptr<CaptureRow[]> captures;
-        std::unique_ptr<BehaviourType[]> types;
-        std::unique_ptr<BehaviourInstance[]> instances;
-        std::unique_ptr<char[]> names;
-        std::unique_ptr<Reachable[]> reachables;
-        const ScriptRoom room{lend(instructions, most.instructions),
-                              lend(conditions, most.conditions),
-                              lend(node_rows, most.nodes),
-                              lend(arcs, most.arcs),
-                              lend(programs, most.programs),
-                              lend(variables, most.variables),
-                              lend(links, most.links),
-                              lend(image, most.image),
-                              lend(states, most.states),
-                              lend(transitions, most.transitions),
-                              lend(captures, most.captures),
-                              lend(types, most.types),
-                              lend(instances, most.instances),
-                              lend(names, most.names),
-                              lend(reachables, most.reach)};
-        const ScriptOutcome outcome = compile_into(source.text, source.name, reach, room);
-        if (outcome.out_of_room && nodes < 16000) continue;
-        return {outcome.fault, outcome.good() ? outcome.sizes : ScriptSizes{}};
-    }
+template <ScriptSizes room>
+consteval Measured measure_script(const ScriptSource& source, const Reach& peers) {
+    ScriptBuffer<room> buffer{};
+    const ScriptOutcome outcome = compile_into(source.text, source.name, peers, buffer.room());
+    return {outcome.fault, outcome.out_of_room, outcome.good() ? outcome.sizes : ScriptSizes{}};
+}
+/// With a room that grows until the script finds place, or is too large for any.
+template <const auto& Source, const auto& Peers, std::uint32_t nodes>
+consteval Measured measure_within() {
+    constexpr Measured measured =
+        measure_script<measuring_room(nodes, Peers.components.size())>(Source, Peers.view());
+    if constexpr (measured.out_of_room && nodes < max_script_nodes)
+        return measure_within<Source, Peers, 2 * nodes>();
+    else
+        return measured;
 }
 
 template <const auto& Source, const auto& Peers>
-inline constexpr Measured measured = measure_script(Source, Peers.view());
+inline constexpr Measured measured =
+    measure_within<Source, Peers, static_cast<std::uint32_t>(Source.text.size() / 56 + 32)>();
 
 template <ScriptSizes sizes>
 struct StoredScript {
