@@ -91,7 +91,7 @@ struct CaptureRow {
     std::uint16_t from = 0;   ///< in the packed arguments
     std::uint16_t size = 0;   ///< bytes there
     DataOffset raw = no_data; ///< where its bytes are put
-    std::uint16_t first = 0;  ///< instructions that convert and assign it from there;
+    std::uint16_t first = 0;  ///< instructions that convert and assign it from there,
     std::uint16_t count = 0;  ///< none: it lies in place
 };
 
