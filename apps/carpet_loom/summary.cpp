@@ -1,6 +1,7 @@
 // Writes the summary: activities, budgets, stops and counters, as the machine has them at the end.
 #include "apps/carpet_loom/summary.hpp"
 
+#include "kernel/machine/behaviour_slot.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/memory.hpp"
@@ -43,6 +44,14 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
     json.close(']');
 }
 
+/// Which weave the weft's slot held at the end, and what became of those before it.
+void write_weave(JsonText& json, const MachineInstance& instance) {
+    const BehaviourSlot* slot = instance.slot_of("weft");
+    if (slot == nullptr) return;
+    json.key("weave").open('{').field("script", slot->script()).field("loads", slot->loads());
+    json.field("roll_backs", slot->roll_backs()).field("news", slot->describe_roll_back().view()).close('}');
+}
+
 } // namespace
 
 std::size_t write_machine_summary(const MachineInstance& instance, const RunFacts& facts,
@@ -66,6 +75,7 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
         .field("can_restarts", facts.wires.can_restarts)
         .field("can_wrong_lengths", facts.wires.can_wrong_lengths);
     json.field("can_impostors", facts.wires.can_impostors).field("can_malformed", facts.wires.can_malformed);
+    write_weave(json, instance);
     json.field("emissions_lost", instance.lost_emissions()).field("forced_ports", instance.forced_ports());
     json.field("heap_allocations_after_arming",
                os::heap::allocations_after_seal() + os::heap::mappings_after_seal())

@@ -166,7 +166,7 @@ Sentence MachineInstance::describe_stop() const {
         if (const BehaviourUnit* unit = behaviour_of(driven);
             unit != nullptr && unit->failed_part() != nullptr)
             return text.add(unit->describe_fault());
-        const BehaviourSlot* slot = const_cast<MachineInstance*>(this)->slot_of(driven);
+        const BehaviourSlot* slot = slot_of(driven);
         return slot != nullptr && slot->active() != nullptr ? text.add(slot->active()->describe_fault())
                                                             : text;
     }

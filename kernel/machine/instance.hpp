@@ -81,6 +81,9 @@ public:
     }
     /// The slot reserved for a component; null when there is none.
     [[nodiscard]] BehaviourSlot* slot_of(std::string_view component) noexcept;
+    [[nodiscard]] const BehaviourSlot* slot_of(std::string_view component) const noexcept {
+        return const_cast<MachineInstance*>(this)->slot_of(component);
+    }
     /// Lets the slot carry out its wish in its engine; for a component that sees the machine. False: that
     /// engine has too many requests to serve. Real-time.
     [[nodiscard]] bool post_wish(BehaviourSlot& slot) noexcept TAPPET_REALTIME;

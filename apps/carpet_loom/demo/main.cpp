@@ -67,13 +67,31 @@ std::string contents_of(const std::string& path) {
     return std::move(text).str();
 }
 
+/// A new weave takes over at a shaft angle; a faulty one is refused with its line; one that misbehaves is
+/// taken back. The loom weaves on through all of it.
+std::vector<std::string> change_of_weaves() {
+    const auto load = [](const std::string& script, const std::string& moment) {
+        return "tappet-browse behaviour load /weaves/" + script + " weft --at " + moment;
+    };
+    return {"@sleep 6",
+            load(new_weave, "180"),
+            "@sleep 2",
+            "- " + load("faulty_twill.osd", "180"),
+            load("running_out.osd", "shaft.beat_up"),
+            "@sleep 3",
+            "tappet-browse behaviour list"};
+}
+
 /// Breaks by chance, one Modbus outage, and one emergency stop in the middle, so that a viewer sees each of
 /// them.
 bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folder) {
     const std::string middle = std::to_string(std::max<std::int64_t>(options.picks / 2, 1));
     bench::Scenario scenario;
     scenario.init = options.init;
-    scenario.files = {{options.firmware, "/bin/carpet_loom"}, {options.plant, "/bin/carpet-loom-plant"}};
+    scenario.files = {{options.firmware, "/bin/carpet_loom"},
+                      {options.plant, "/bin/carpet-loom-plant"},
+                      {options.browser, "/bin/tappet-browse"},
+                      {options.behaviours, "/weaves"}};
     scenario.can = {"can0"};
     scenario.gpio = {{"loom-io", 14}};
     scenario.settings = {{"/proc/sys/kernel/sched_rt_runtime_us", "-1"}};
@@ -85,10 +103,17 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
             middle + " --report " + plant_report + " &",
         "@sleep 1",
         std::string{"carpet_loom --summary "} + machine_report + " &",
+    };
+    if (options.picks >= least_picks_for_weaves) {
+        const std::vector<std::string> weaves = change_of_weaves();
+        scenario.commands.insert(scenario.commands.end(), weaves.begin(), weaves.end());
+    }
+    const std::vector<std::string> rest{
         "@wait carpet-loom-plant while carpet_loom",
         "@signal carpet_loom TERM",
         "@wait carpet_loom",
     };
+    scenario.commands.insert(scenario.commands.end(), rest.begin(), rest.end());
     scenario.collect = {{folder.file("machine.json"), machine_report},
                         {folder.file("plant.json"), plant_report}};
     scenario.timeout_s =

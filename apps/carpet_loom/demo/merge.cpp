@@ -40,7 +40,10 @@ constexpr std::array machine_keys{
     Key{"static_memory_bytes", Type::count},
     Key{"rss_bytes", Type::count},
     Key{"activities", Type::list},
+    Key{"weave", Type::object},
 };
+// Without a script its name is empty.
+constexpr std::array weave_keys{Key{"loads", Type::count}, Key{"roll_backs", Type::count}};
 constexpr std::array activity_keys{
     Key{"name", Type::text}, Key{"cycles", Type::count}, Key{"longest_busy_us", Type::number},
     Key{"longest_response_us", Type::number}, Key{"deadline_misses", Type::count}};
@@ -55,12 +58,15 @@ constexpr std::array judging_keys{
     Key{"stops", Type::list},
     Key{"cam_error_deg", Type::object},
     Key{"damage", Type::object},
+    Key{"patterns", Type::list},
 };
 constexpr std::array plant_keys{Key{"stops_total", Type::count}, Key{"time_s", Type::number}};
 constexpr std::array stop_keys{Key{"cause", Type::text}, Key{"angle_deg", Type::number},
                                Key{"error_deg", Type::number}, Key{"at_pick", Type::count}};
 constexpr std::array cam_keys{Key{"p50", Type::number}, Key{"p99", Type::number}, Key{"max", Type::number},
                               Key{"samples", Type::count}};
+constexpr std::array pattern_keys{Key{"pattern", Type::count}, Key{"picks", Type::count},
+                                  Key{"first_at_pick", Type::count}};
 constexpr std::array damage_keys{Key{"total", Type::count}};
 
 bool is(const Json& value, Type type) {
@@ -139,7 +145,9 @@ std::expected<std::string, std::string> merge(std::string_view machine_text, std
                               fault_of(*plant, plants, judging_keys), fault_of(*plant, plants, plant_keys)})
         if (!fault.empty()) return Error{fault};
     for (const auto& fault : {fault_of_each((*machine)["activities"], "an activity", activity_keys),
+                              fault_of((*machine)["weave"], "\"weave\"", weave_keys),
                               fault_of_each((*plant)["stops"], "a stop", stop_keys),
+                              fault_of_each((*plant)["patterns"], "a pattern", pattern_keys),
                               fault_of((*plant)["cam_error_deg"], "\"cam_error_deg\"", cam_keys),
                               fault_of((*plant)["damage"], "\"damage\"", damage_keys)})
         if (!fault.empty()) return Error{fault};

@@ -20,6 +20,8 @@ template <class Number> bool take(Number& to, std::string_view text, Number leas
 std::string* text_option(Options& options, std::string_view word) {
     if (word == "--firmware") return &options.firmware;
     if (word == "--plant") return &options.plant;
+    if (word == "--browser") return &options.browser;
+    if (word == "--behaviours") return &options.behaviours;
     if (word == "--init") return &options.init;
     if (word == "--summary") return &options.summary;
     return nullptr;
@@ -55,6 +57,8 @@ std::expected<Options, std::string> parse_options(int count, const char* const* 
     }
     for (const auto& [name, path] : {std::pair{"--firmware", &options.firmware},
                                      {"--plant", &options.plant},
+                                     {"--browser", &options.browser},
+                                     {"--behaviours", &options.behaviours},
                                      {"--init", &options.init},
                                      {"--summary", &options.summary}})
         if (path->empty()) return error(std::string{name} + " is missing; ci/demo gives it");
@@ -62,8 +66,8 @@ std::expected<Options, std::string> parse_options(int count, const char* const* 
 }
 
 const char* usage() {
-    return "carpet-loom-demo --firmware FILE --plant FILE --init FILE --summary FILE [--picks N] [--seed N] "
-           "[--plain]\n"
+    return "carpet-loom-demo --firmware FILE --plant FILE --browser FILE --behaviours FOLDER --init FILE "
+           "--summary FILE [--picks N] [--seed N] [--plain]\n"
            "ci/demo builds the programs and names them; ci/demo --help explains the rest\n";
 }
 

@@ -10,7 +10,9 @@ namespace tappet::demo {
 struct Options {
     std::string firmware; // stripped, as it is flashed
     std::string plant;
-    std::string init; // PID 1 of the bench
+    std::string browser;    // tappet-browse
+    std::string behaviours; // the folder of the scripts that are loaded on the way
+    std::string init;       // PID 1 of the bench
     std::string summary;
     std::int64_t picks = 200;
     std::uint64_t seed = 1;

@@ -62,6 +62,15 @@ std::string table_of(const Json& run) {
                                  count(run, "heap_allocations_after_arming"),
                                  count(run, "page_faults_after_arming"), count(run, "deadline_misses")));
     table += row("damage", format("%llu", count(run.at("damage"), "total")));
+    std::string lifted;
+    for (const Json& each : run.at("patterns"))
+        lifted += format("%s%04llx from pick %llu on", lifted.empty() ? "" : ", ", count(each, "pattern"),
+                         count(each, "first_at_pick"));
+    table += row("weave", "the harnesses were lifted to " + lifted);
+    if (const Json& weave = run.at("weave"); count(weave, "loads") != 0)
+        table += row("", format("%s at work; %llu scripts taken over, %llu taken back: %s",
+                                text(weave, "script").c_str(), count(weave, "loads"),
+                                count(weave, "roll_backs"), text(weave, "news").c_str()));
     table += row("timing", "activity   cycles   longest busy   worst response   misses");
     for (const Json& activity : run.at("activities"))
         table += row("", format("%-9s %7llu %11.0f us %13.0f us %8llu", text(activity, "name").c_str(),
@@ -90,6 +99,19 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
             faults.push_back(
                 format("the loom stopped after pick %llu (%s), and nothing had been injected for that", pick,
                        cause.c_str()));
+    }
+    if (picks_wanted >= least_picks_for_weaves) {
+        const Json& weave = run.at("weave");
+        std::uint64_t picks_of_it = 0;
+        for (const Json& each : run.at("patterns"))
+            if (count(each, "pattern") == pattern_of_new_weave) picks_of_it = count(each, "picks");
+        if (text(weave, "script") != new_weave || picks_of_it < 2)
+            faults.push_back(format(
+                "%s was loaded, and \"%s\" is at work; %llu picks were woven with its pattern", new_weave,
+                text(weave, "script").c_str(), static_cast<unsigned long long>(picks_of_it)));
+        if (count(weave, "roll_backs") != 1)
+            faults.push_back(format("one script that misbehaves was loaded, and %llu were taken back",
+                                    count(weave, "roll_backs")));
     }
     const auto none = [&](const Json& from, const char* key, const char* what) {
         if (const auto found = count(from, key); found != 0) faults.push_back(format("%llu %s", found, what));

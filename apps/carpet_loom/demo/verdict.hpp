@@ -11,6 +11,12 @@ namespace tappet::demo {
 /// The farthest a stop may be from the stop angle.
 inline constexpr double most_stop_error_deg = 10.0;
 
+/// A run of so many picks shows how its weave is changed; the script that is woven then, and the first of the
+/// patterns that it lifts.
+inline constexpr std::int64_t least_picks_for_weaves = 60;
+inline constexpr const char* new_weave = "twill.osd";
+inline constexpr std::uint64_t pattern_of_new_weave = 4369;
+
 struct Verdict {
     std::string table;               // lines of plain text
     std::vector<std::string> faults; // sentences; empty when all is well

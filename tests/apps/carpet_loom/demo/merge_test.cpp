@@ -19,7 +19,7 @@ ordered_json machine() {
         R"({"machine": "carpet-loom", "board": "bench", "world": "bench", "kernel_release": "6.1-rt", "realtime": true,
         "machine_seed": 0, "stop_reason": "asked for", "can_frames_lost": 1, "gpio_edges_lost": 2, "modbus_outages_survived": 3, "emissions_lost": 4,
         "heap_allocations_after_arming": 5, "page_faults_after_arming": 6, "deadline_misses": 7, "binary_bytes": 8, "static_memory_bytes": 9,
-        "rss_bytes": 10, "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_response_us": 2.5, "deadline_misses": 0}]})");
+        "rss_bytes": 10, "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_response_us": 2.5, "deadline_misses": 0}]})");
 }
 
 ordered_json plant() {
@@ -27,6 +27,7 @@ ordered_json plant() {
         R"({"seed": 12, "time_s": 7.5, "picks": 30, "picks_per_minute": 448.7, "weft_breaks_injected": 1,
         "warp_breaks_injected": 0, "stops_total": 1, "stops": [{"cause": "weft", "angle_deg": 316.0, "error_deg": 6.0, "at_pick": 9}],
         "cam_error_deg": {"samples": 32, "p50": 0.14, "p99": 0.47, "max": 0.47}, "frames_lost": 13, "edges_lost": 14,
+        "patterns": [{"pattern": 3, "picks": 30, "first_at_pick": 0}],
         "damage": {"total": 0, "late_wefts": 0}})");
 }
 
@@ -53,7 +54,7 @@ TEST(Merge, keeps_every_key_of_the_machine_as_it_is) {
 TEST(Merge, puts_what_the_plant_measured_of_the_machine_beside_it) {
     const auto merged = merged_of(machine(), plant());
     for (const char* key : {"seed", "picks", "picks_per_minute", "weft_breaks_injected",
-                            "warp_breaks_injected", "stops", "cam_error_deg", "damage"})
+                            "warp_breaks_injected", "stops", "cam_error_deg", "damage", "patterns"})
         EXPECT_EQ(merged.at(key), plant().at(key)) << key;
 }
 

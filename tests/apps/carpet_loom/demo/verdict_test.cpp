@@ -25,6 +25,7 @@ ordered_json good_run() {
         "weft_breaks_injected": 1, "warp_breaks_injected": 0, "stops": [{"cause": "weft", "angle_deg": 316.0, "error_deg": 6.0, "at_pick": 9},
         {"cause": "emergency", "angle_deg": 57.0, "error_deg": 107.0, "at_pick": 15}],
         "cam_error_deg": {"samples": 32, "p50": 0.14, "p99": 0.47, "max": 0.48}, "damage": {"total": 0},
+        "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "patterns": [{"pattern": 23130, "picks": 15, "first_at_pick": 1}],
         "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_response_us": 2.5, "deadline_misses": 0}],
         "plant": {"stops_total": 2, "time_s": 7.5}})");
 }
@@ -70,6 +71,20 @@ TEST(Verdict, names_everything_that_must_be_zero) {
     EXPECT_EQ(faults_of(run).size(), 1U);
 }
 
+TEST(Verdict, of_a_long_run_wants_the_new_weave_and_the_misbehaving_one_taken_back) {
+    auto run = good_run();
+    run["picks"] = 60;
+    const auto faults = [&] { return judge(run.dump(), 60).faults; };
+    EXPECT_THAT(faults(), ElementsAre(HasSubstr("twill.osd"), HasSubstr("0 were taken back")));
+    run["weave"] = {{"script", "twill.osd"}, {"loads", 2}, {"roll_backs", 1}, {"news", "line 6"}};
+    EXPECT_THAT(faults(), ElementsAre(HasSubstr("0 picks were woven with its pattern")));
+    run["patterns"].push_back({{"pattern", pattern_of_new_weave}, {"picks", 9}, {"first_at_pick", 20}});
+    EXPECT_THAT(faults(), IsEmpty());
+    EXPECT_THAT(judge(run.dump(), 60).table, AllOf(HasSubstr("1111 from pick 20 on"), HasSubstr("line 6")));
+    run["weave"]["roll_backs"] = 2;
+    EXPECT_THAT(faults(), ElementsAre(HasSubstr("2 were taken back")));
+}
+
 TEST(Verdict, tells_the_run_in_a_table) {
     EXPECT_THAT(judge(good_run().dump(), 30).table,
                 AllOf(HasSubstr("carpet-loom on board bench"), HasSubstr("6.1-rt"), HasSubstr("30 picks"),
@@ -80,7 +95,8 @@ std::expected<Options, std::string> options_of(std::vector<const char*> words) {
     words.insert(words.begin(), "carpet-loom-demo");
     return parse_options(static_cast<int>(words.size()), words.data());
 }
-const std::vector<const char*> files{"--firmware", "f", "--plant", "p", "--init", "i", "--summary", "s"};
+const std::vector<const char*> files{"--firmware",   "f", "--plant", "p", "--browser", "b",
+                                     "--behaviours", "w", "--init",  "i", "--summary", "s"};
 
 std::vector<const char*> with(std::vector<const char*> more) {
     more.insert(more.end(), files.begin(), files.end());
