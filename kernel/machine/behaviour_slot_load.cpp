@@ -2,11 +2,10 @@
 #include "kernel/machine/behaviour_slot.hpp"
 
 #include "kernel/base/nearest.hpp"
+#include "kernel/base/real_text.hpp"
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/instance.hpp"
 #include "kernel/script/load.hpp"
-
-#include <charconv>
 
 namespace tappet {
 
@@ -75,8 +74,7 @@ Sentence BehaviourSlot::parse_moment(std::string_view text, SlotMoment& moment) 
     moment = {};
     if (text == "now") return {};
     double degrees = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), degrees);
-    if (read.ec == std::errc{} && read.ptr == text.data() + text.size()) {
+    if (read_real_text(text, degrees) == RealTextFault::none) {
         if (place_.angle == nullptr)
             return Sentence{
                 "the slot of \"", place_.row->component,

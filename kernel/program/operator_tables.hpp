@@ -112,6 +112,7 @@ inline constexpr Primitive most = &primitive::binary<T, T, T, &primitive::greate
 template <class T>
 inline constexpr Primitive absolute = &primitive::unary<T, T, &primitive::absolute_whole<T>>;
 
+/// Not all of <cmath>: each inverse takes tens of kB of a firmware, and atan2 and sqrt make the others.
 inline constexpr FunctionRow function_rows[] = {
     {"abs",   script_int,      nullptr, script_int,      absolute<ScriptInt>},
     {"abs",   script_double,   nullptr, script_double,   real<&std::fabs>},
@@ -125,10 +126,6 @@ inline constexpr FunctionRow function_rows[] = {
     {"sqrt",  script_double, nullptr, script_double, real<&std::sqrt>},
     {"sin",   script_double, nullptr, script_double, real<&std::sin>},
     {"cos",   script_double, nullptr, script_double, real<&std::cos>},
-    {"tan",   script_double, nullptr, script_double, real<&std::tan>},
-    {"asin",  script_double, nullptr, script_double, real<&std::asin>},
-    {"acos",  script_double, nullptr, script_double, real<&std::acos>},
-    {"atan",  script_double, nullptr, script_double, real<&std::atan>},
     {"atan2", script_double, script_double, script_double, real2<&std::atan2>},
     {"floor", script_double, nullptr, script_double, real<&std::floor>},
     {"ceil",  script_double, nullptr, script_double, real<&std::ceil>},
@@ -141,7 +138,7 @@ inline constexpr FunctionRow function_rows[] = {
 };
 
 inline constexpr std::string_view known_functions[] = {
-    "abs",   "min", "max", "sqrt",    "sin",      "cos",  "tan", "asin",  "acos",      "atan", "atan2", "floor", "ceil",
+    "abs",   "min", "max", "sqrt",    "sin",      "cos",  "atan2", "floor", "ceil",
     "round", "exp", "log", "pow",     "seconds",  "duration", "norm", "dot", "cross", "transpose", "size", "int", "double"};
 
 inline constexpr ConversionRow conversion_rows[] = {

@@ -151,12 +151,11 @@ std::optional<std::optional<Value>> mathematics(const std::string& name, const s
         return std::nullopt;
     }
     constexpr std::pair<std::string_view, double (*)(double)> functions[] = {
-        {"abs", [](double x) { return std::fabs(x); }},  {"sqrt", [](double x) { return std::sqrt(x); }},
-        {"sin", [](double x) { return std::sin(x); }},   {"cos", [](double x) { return std::cos(x); }},
-        {"tan", [](double x) { return std::tan(x); }},   {"asin", [](double x) { return std::asin(x); }},
-        {"acos", [](double x) { return std::acos(x); }}, {"floor", [](double x) { return std::floor(x); }},
-        {"ceil", [](double x) { return std::ceil(x); }}, {"round", [](double x) { return std::round(x); }},
-        {"exp", [](double x) { return std::exp(x); }},   {"log", [](double x) { return std::log(x); }}};
+        {"abs", [](double x) { return std::fabs(x); }},    {"sqrt", [](double x) { return std::sqrt(x); }},
+        {"sin", [](double x) { return std::sin(x); }},     {"cos", [](double x) { return std::cos(x); }},
+        {"floor", [](double x) { return std::floor(x); }}, {"ceil", [](double x) { return std::ceil(x); }},
+        {"round", [](double x) { return std::round(x); }}, {"exp", [](double x) { return std::exp(x); }},
+        {"log", [](double x) { return std::log(x); }}};
     for (const auto& [known, function] : functions)
         if (known == name) return Value{function(a)};
     return std::nullopt;

@@ -99,7 +99,7 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
         "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --seed " + std::to_string(options.seed) +
             " --picks " + std::to_string(options.picks) +
             " --weft-break-one-in 40 --warp-break-one-in 150 --operator-reaction 500ms --stop-modbus-at "
-            "3s/2s --emergency-stop-at " +
+            "3s/2s --fifo 1 --emergency-stop-at " +
             middle + " --report " + plant_report + " &",
         "@sleep 1",
         std::string{"carpet_loom --summary "} + machine_report + " &",
