@@ -68,9 +68,8 @@ std::string table_of(const Json& run) {
                          count(each, "first_at_pick"));
     table += row("weave", "the harnesses were lifted to " + lifted);
     if (const Json& weave = run.at("weave"); count(weave, "loads") != 0)
-        table +=
-            row("", format("%s is at work; %llu scripts took over; %s", text(weave, "script").c_str(),
-                           count(weave, "loads"), count(weave, "roll_backs"), text(weave, "news").c_str()));
+        table += row("", format("%s is at work; %llu scripts took over; %s", text(weave, "script").c_str(),
+                                count(weave, "loads"), text(weave, "news").c_str()));
     table += row("timing", "activity   cycles   longest busy   worst response   misses");
     for (const Json& activity : run.at("activities"))
         table += row("", format("%-9s %7llu %11.0f us %13.0f us %8llu", text(activity, "name").c_str(),
