@@ -1,32 +1,49 @@
 // Looks addresses up in the running program's own symbols.
 #include "apps/chart/names.hpp"
 
-#include <cstdlib>
-#include <cxxabi.h>
+#include <algorithm>
+#include <charconv>
 #include <dlfcn.h>
-#include <memory>
 
 namespace tappet::chart {
+
+namespace {
+
+/// The last of the names that a symbol is made of (Itanium C++ ABI 5.1): of
+/// "...callIXadL_ZNS_5Press4liftEv..." the member function that is the template's argument, "lift". Not every
+/// demangler reads what clang writes.
+std::string last_name(std::string_view symbol) {
+    if (const std::size_t argument = symbol.find("XadL_Z"); argument != symbol.npos)
+        symbol.remove_prefix(argument + 6);
+    else if (symbol.starts_with("_Z"))
+        symbol.remove_prefix(2);
+    else
+        return std::string{symbol};
+    while (symbol.starts_with('N') || symbol.starts_with('K')) symbol.remove_prefix(1);
+    std::string name;
+    while (!symbol.empty()) {
+        if (symbol.front() == 'S') { // a scope that stood before: "S_", "S1_", "St"
+            const bool is_standard = symbol.starts_with("St");
+            symbol.remove_prefix(is_standard ? 2 : std::min(symbol.find('_'), symbol.size() - 1) + 1);
+            continue;
+        }
+        std::size_t length = 0;
+        const auto read = std::from_chars(symbol.data(), symbol.data() + symbol.size(), length);
+        if (read.ec != std::errc{}) break;
+        symbol.remove_prefix(static_cast<std::size_t>(read.ptr - symbol.data()));
+        name = symbol.substr(0, length);
+        symbol.remove_prefix(std::min(length, symbol.size()));
+    }
+    return name.empty() ? "c++" : name;
+}
+
+} // namespace
 
 std::string function_name(const void* function) {
     Dl_info found{};
     if (dladdr(function, &found) == 0 || found.dli_sname == nullptr || found.dli_saddr != function)
         return "c++";
-    int status = 0;
-    const std::unique_ptr<char, void (*)(void*)> plain{
-        abi::__cxa_demangle(found.dli_sname, nullptr, nullptr, &status), &std::free};
-    if (status != 0) return found.dli_sname;
-    // "void tappet::statechart::call<&tappet::carpet::Loom::enter_run_up, void>(void*)": the member inside
-    std::string name = plain.get();
-    if (const std::size_t address = name.find("<&"); address != std::string::npos) {
-        name.erase(0, address + 2);
-        name.erase(std::min(name.find_first_of(",>("), name.size()));
-    } else {
-        name.erase(std::min(name.find('('), name.size()));
-    }
-    if (const std::size_t scope = name.rfind("::"); scope != std::string::npos) name.erase(0, scope + 2);
-    while (!name.empty() && name.back() == ' ') name.pop_back();
-    return name;
+    return last_name(found.dli_sname);
 }
 
 std::string identifier(std::string_view name) {
