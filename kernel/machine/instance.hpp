@@ -188,7 +188,8 @@ public:
 
     /// Of every engine, in order: equal for two runs that did the same.
     [[nodiscard]] std::uint64_t event_log_digest() const noexcept;
-    /// Emissions that found their queue full, over all rows.
+    /// Emissions that found their queue full, over the rows that keep each one: keep_latest lets older ones
+    /// go, and who only observes is told itself what it missed.
     [[nodiscard]] std::uint64_t lost_emissions() const noexcept;
     /// Messages and synchronous reactions that met a component that did not run, over all rows.
     [[nodiscard]] std::uint64_t dropped_messages() const noexcept;

@@ -167,7 +167,10 @@ SubscriptionCounts MachineInstance::counts_of(std::size_t s) const noexcept TAPP
 
 std::uint64_t MachineInstance::lost_emissions() const noexcept {
     std::uint64_t lost = 0;
-    for (std::size_t s = 0; s < machine_.plan.subscriptions.size(); ++s) lost += counts_of(s).lost;
+    for (std::size_t s = 0; s < machine_.plan.subscriptions.size(); ++s) {
+        const Subscription& row = machine_.plan.subscriptions[s];
+        if (!row.keeps_latest && row.kind != SubscriberKind::observer) lost += counts_of(s).lost;
+    }
     return lost;
 }
 

@@ -96,6 +96,8 @@ constexpr std::array own_folders{
     std::string_view{"tests/waitfree"},           // the object code of what crosses between activities
     std::string_view{"tests/fuzz"},               // any bytes against what reads them, and the corpus of it
     std::string_view{"tests/models"},             // the algorithms as Promela, and their labels in the source
+    std::string_view{"tests/differential"},       // scripts, compiled and loaded, against a second reading of them
+    std::string_view{"tests/figures"},            // what things cost, side by side
     std::string_view{"tests/drivers/components"}, // the drivers' components inside machines
 };
 

@@ -1,1 +1,0 @@
-// Stands for the precompiled header of GoogleTest, which a target must own.
