@@ -1,6 +1,6 @@
 // Reads values from text: a walk over the type's tag, once to find what is wrong and once to store.
-#include "kernel/base/real_text.hpp"
 #include "kernel/base/nearest.hpp"
+#include "kernel/base/real_text.hpp"
 #include "kernel/base/value_bytes.hpp"
 #include "kernel/base/value_letters.hpp"
 #include "kernel/base/value_text.hpp"

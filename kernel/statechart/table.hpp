@@ -108,7 +108,7 @@ struct TransitionRow {
     TypeId component = nullptr;
     std::string_view twice{};
     EntryKind enters = EntryKind::initial;
-    ProgramRef otherwise{};          ///< run when the guard says no (thesis listing 5.4, else);
+    ProgramRef otherwise{};          ///< run when the guard says no: else of thesis listing 5.4,
     std::string_view otherwise_to{}; ///< and the state entered then; empty: none
     bool has_otherwise = false;
     std::uint16_t first_capture = 0; ///< CaptureRow

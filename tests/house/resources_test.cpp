@@ -23,7 +23,8 @@ bool is_of_the_system(std::string_view header) {
 }
 
 Findings system_headers(const Tree& files) {
-    // The sanitizer's own header, which realtime.hpp needs to let it pause; and a library of plain arithmetic.
+    // The sanitizer's own header, which realtime.hpp needs to let it pause; and a library of plain
+    // arithmetic.
     static constexpr std::string_view sanitizer = "sanitizer/rtsan_interface.h";
     static constexpr std::string_view decimals = "double-conversion/";
     Findings found;

@@ -90,14 +90,14 @@ Findings unguarded(const Tree& files) {
 
 /// Folders of tests that mirror none of the tree.
 constexpr std::array own_folders{
-    std::string_view{"tests/house"},              // holds for the whole tree
-    std::string_view{"tests/diagnostics"},        // machines that must not compile
-    std::string_view{"tests/bench"},              // what needs a booted kernel
-    std::string_view{"tests/waitfree"},           // the object code of what crosses between activities
-    std::string_view{"tests/fuzz"},               // any bytes against what reads them, and the corpus of it
-    std::string_view{"tests/models"},             // the algorithms as Promela, and their labels in the source
-    std::string_view{"tests/differential"},       // scripts, compiled and loaded, against a second reading of them
-    std::string_view{"tests/figures"},            // what things cost, side by side
+    std::string_view{"tests/house"},        // holds for the whole tree
+    std::string_view{"tests/diagnostics"},  // machines that must not compile
+    std::string_view{"tests/bench"},        // what needs a booted kernel
+    std::string_view{"tests/waitfree"},     // the object code of what crosses between activities
+    std::string_view{"tests/fuzz"},         // any bytes against what reads them, and the corpus of it
+    std::string_view{"tests/models"},       // the algorithms as Promela, and their labels in the source
+    std::string_view{"tests/differential"}, // scripts, compiled and loaded, against a second reading of them
+    std::string_view{"tests/figures"},      // what things cost, side by side
     std::string_view{"tests/drivers/components"}, // the drivers' components inside machines
 };
 
