@@ -38,7 +38,8 @@ struct Run {
     bool fresh;              ///< the node was entered in this run, not in an earlier one
 };
 
-/// Nodes in one function. A program goes from page to page by its number; within one it falls or jumps.
+/// Nodes in one function at most. A program goes from page to page by its number; within one it falls or
+/// jumps.
 inline constexpr std::size_t page_nodes = 32;
 
 template <const auto& source, std::size_t type> struct Code {
@@ -255,75 +256,145 @@ template <const auto& source, std::size_t type> struct Code {
         return static_cast<ProgramReturn>(why);
     }
 
-    template <std::size_t number>
-    [[gnu::always_inline]] static void passes(ProgramContext& context, Run& run, Next& next) noexcept
+    // ---- pieces of code: a short program that only leads on, or a page of a longer one
+
+    struct Piece {
+        NodeIndex first = 0;
+        NodeIndex end = 0;
+    };
+    // Where a piece begins: at the first node of each program, and wherever a page is full.
+    static constexpr std::array<bool, tables.nodes.size() + 1> begins_piece = [] {
+        std::array<bool, tables.nodes.size() + 1> begins{};
+        begins[0] = true;
+        for (const ProgramRow& program : tables.programs)
+            if (program.first < tables.nodes.size()) begins[program.first] = true;
+        for (std::size_t node = 0, first = 0; node < tables.nodes.size(); ++node) {
+            begins[node] = begins[node] || node - first == page_nodes;
+            if (begins[node]) first = node;
+        }
+        return begins;
+    }();
+    static constexpr std::size_t piece_count = [] {
+        std::size_t count = 0;
+        for (std::size_t node = 0; node < tables.nodes.size(); ++node) count += begins_piece[node];
+        return count;
+    }();
+    static constexpr std::array<Piece, piece_count> pieces = [] {
+        std::array<Piece, piece_count> all{};
+        for (std::size_t node = 0, used = 0; node < tables.nodes.size(); ++node) {
+            if (begins_piece[node]) all[used++].first = static_cast<NodeIndex>(node);
+            all[used - 1].end = static_cast<NodeIndex>(node + 1);
+        }
+        return all;
+    }();
+    // Its nodes lead on and never back: a node is asked for once.
+    static constexpr bool is_straight(const Piece& piece) {
+        constexpr std::size_t most = 8;
+        if (piece.end > piece.first + most) return false;
+        for (NodeIndex node = piece.first; node < piece.end; ++node) {
+            const NodeRow& row = tables.nodes[node];
+            if (row.on_error <= node && row.on_error >= piece.first) return false;
+            for (std::size_t i = 0; i < row.arcs; ++i) {
+                const NodeIndex to = tables.arcs[row.first_arc + i].to;
+                if (to <= node && to >= piece.first) return false;
+            }
+        }
+        return true;
+    }
+    static constexpr bool is_whole(const Piece& piece, const ProgramRow& program) {
+        return piece.first == program.first && piece.end == program.last && is_straight(piece);
+    }
+
+    template <std::size_t number, std::size_t end>
+    [[gnu::always_inline]] static void passes([[maybe_unused]] ProgramContext& context,
+                                              [[maybe_unused]] Run& run, [[maybe_unused]] Next& next) noexcept
         TAPPET_REALTIME {
-        if constexpr (number < tables.nodes.size())
+        if constexpr (number < end)
             if (next == number) next = node<static_cast<NodeIndex>(number)>(context, run);
+    }
+    template <std::size_t first, std::size_t end, std::size_t... i>
+    [[gnu::always_inline]] static Next straight(std::index_sequence<i...>, ProgramContext& context, Run& run,
+                                                Next next) noexcept TAPPET_REALTIME {
+        (passes<first + i, end>(context, run, next), ...);
+        return next;
     }
 
     // From the node `next` on until the program leaves the page. Each node asks whether it is meant, which
     // the compiler knows after the one before it.
-    template <std::size_t first>
-    [[gnu::always_inline]] static Next page(ProgramContext& context, Run& shared, Next next) noexcept
+    template <std::size_t first, std::size_t end>
+    [[gnu::always_inline]] static Next page(ProgramContext& context, Run& run, Next next) noexcept
         TAPPET_REALTIME {
-        Run run = shared; // in registers
 #define TAPPET_NODE(number)                                                                                  \
     [[fallthrough]];                                                                                         \
-    case number: passes<first + number>(context, run, next)
+    case number: passes<first + number, end>(context, run, next)
+#define TAPPET_FOUR_NODES(number)                                                                            \
+    TAPPET_NODE(number);                                                                                     \
+    TAPPET_NODE(number + 1);                                                                                 \
+    TAPPET_NODE(number + 2);                                                                                 \
+    TAPPET_NODE(number + 3)
         do {
             switch (next - first) {
-            default: break;
-            case 0:
-                passes<first>(context, run, next);
-                TAPPET_NODE(1);
-                TAPPET_NODE(2);
-                TAPPET_NODE(3);
-                TAPPET_NODE(4);
-                TAPPET_NODE(5);
-                TAPPET_NODE(6);
-                TAPPET_NODE(7);
-                TAPPET_NODE(8);
-                TAPPET_NODE(9);
-                TAPPET_NODE(10);
-                TAPPET_NODE(11);
-                TAPPET_NODE(12);
-                TAPPET_NODE(13);
-                TAPPET_NODE(14);
-                TAPPET_NODE(15);
-                TAPPET_NODE(16);
-                TAPPET_NODE(17);
-                TAPPET_NODE(18);
-                TAPPET_NODE(19);
-                TAPPET_NODE(20);
-                TAPPET_NODE(21);
-                TAPPET_NODE(22);
-                TAPPET_NODE(23);
-                TAPPET_NODE(24);
-                TAPPET_NODE(25);
-                TAPPET_NODE(26);
-                TAPPET_NODE(27);
-                TAPPET_NODE(28);
-                TAPPET_NODE(29);
-                TAPPET_NODE(30);
-                TAPPET_NODE(31);
+            default:
+                break;
+                TAPPET_FOUR_NODES(0);
+                TAPPET_FOUR_NODES(4);
+                TAPPET_FOUR_NODES(8);
+                TAPPET_FOUR_NODES(12);
+                TAPPET_FOUR_NODES(16);
+                TAPPET_FOUR_NODES(20);
+                TAPPET_FOUR_NODES(24);
+                TAPPET_FOUR_NODES(28);
             }
-        } while (next - first < page_nodes);
+        } while (next >= first && next < end);
+#undef TAPPET_FOUR_NODES
 #undef TAPPET_NODE
+        return next;
+    }
+
+    template <std::size_t first, std::size_t end>
+    static Next piece(ProgramContext& context, Run& shared, Next next) noexcept TAPPET_REALTIME {
+        Run run = shared; // in registers
+        if constexpr (is_straight({first, end}))
+            next = straight<first, end>(std::make_index_sequence<end - first>{}, context, run, next);
+        else
+            next = page<first, end>(context, run, next);
         shared = run;
         return next;
     }
 
-    // The page of a node, by halving: no table of functions is left.
-    template <std::size_t first, std::size_t end>
-    static Next goes_to(ProgramContext& context, Run& run, Next next) noexcept TAPPET_REALTIME {
-        constexpr std::size_t pages = (end - first + page_nodes - 1) / page_nodes;
-        if constexpr (pages <= 1) {
-            return page<first>(context, run, next);
+    // The piece of a node, by halving: no table of functions is left.
+    template <std::size_t low, std::size_t high>
+    [[gnu::always_inline]] static Next goes_to(ProgramContext& context, Run& run, Next next) noexcept
+        TAPPET_REALTIME {
+        if constexpr (high - low <= 1) {
+            return piece<pieces[low].first, pieces[low].end>(context, run, next);
         } else {
-            constexpr std::size_t middle = first + pages / 2 * page_nodes;
-            return next < middle ? goes_to<first, middle>(context, run, next)
-                                 : goes_to<middle, end>(context, run, next);
+            constexpr std::size_t middle = (low + high) / 2;
+            return next < pieces[middle].first ? goes_to<low, middle>(context, run, next)
+                                               : goes_to<middle, high>(context, run, next);
+        }
+    }
+    static Next goes_on_at(ProgramContext& context, Run& run, Next next) noexcept TAPPET_REALTIME {
+        if constexpr (piece_count != 0)
+            while (next < tables.nodes.size()) next = goes_to<0, piece_count>(context, run, next);
+        return next;
+    }
+
+    /// A program from its beginning, until it ends or halts. The shortest stand where they are called.
+    template <ProgramIndex number>
+    [[gnu::always_inline]] static Next program(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
+        constexpr ProgramRow row = tables.programs[number];
+        run.fresh = true;
+        context.position.acted = context.position.entered = false;
+        if constexpr (row.first == end_node) {
+            return end_node;
+        } else if constexpr (!is_whole({row.first, row.last}, row)) {
+            return goes_on_at(context, run, row.first);
+        } else if constexpr (row.last <= row.first + 2u) {
+            return straight<row.first, row.last>(std::make_index_sequence<row.last - row.first>{}, context,
+                                                 run, row.first);
+        } else {
+            return piece<row.first, row.last>(context, run, row.first);
         }
     }
 
@@ -384,40 +455,6 @@ template <const auto& source, std::size_t type> struct Code {
         return at;
     }
 
-    // Nodes that lead on only, and few: the whole program fits into the place where it is called.
-    static constexpr bool is_short(const ProgramRow& row) {
-        constexpr std::size_t most = 8;
-        if (row.may_wait || row.first == end_node || row.last > row.first + most) return false;
-        for (NodeIndex node = row.first; node < row.last; ++node) {
-            const NodeRow& at = tables.nodes[node];
-            if (at.on_error <= node || stands(at)) return false;
-            for (std::size_t i = 0; i < at.arcs; ++i)
-                if (tables.arcs[at.first_arc + i].to <= node) return false;
-        }
-        return true;
-    }
-    template <NodeIndex first, std::size_t... i>
-    [[gnu::always_inline]] static Next straight(std::index_sequence<i...>, ProgramContext& context,
-                                                Run& run) noexcept TAPPET_REALTIME {
-        Next next = first;
-        (passes<first + i>(context, run, next), ...);
-        return next;
-    }
-    /// A program from its beginning, until it ends or halts.
-    template <ProgramIndex number>
-    static Next program(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
-        constexpr ProgramRow row = tables.programs[number];
-        run.fresh = true;
-        context.position.acted = context.position.entered = false;
-        if constexpr (is_short(row)) {
-            return straight<row.first>(std::make_index_sequence<row.last - row.first>{}, context, run);
-        } else {
-            Next next = row.first;
-            while (next < tables.nodes.size()) next = goes_to<0, tables.nodes.size()>(context, run, next);
-            return next;
-        }
-    }
-
     static Time wakes(const ProgramTables&, const ProgramContext& context) noexcept TAPPET_REALTIME {
         return context.position.entered ? wakes_at(std::make_index_sequence<timed_nodes>{}, context) : never;
     }
@@ -426,7 +463,7 @@ template <const auto& source, std::size_t type> struct Code {
                              std::uint32_t& statements) noexcept TAPPET_REALTIME {
         Run run{context.data, statements, !context.position.entered};
         Next next = context.position.node;
-        while (next < tables.nodes.size()) next = goes_to<0, tables.nodes.size()>(context, run, next);
+        next = goes_on_at(context, run, next);
         ProgramReturn answer = ProgramReturn::ended;
         if (next >= halted)
             answer = halts(context, run, next);
