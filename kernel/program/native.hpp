@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/program/code.hpp"
+#include "kernel/program/primitives_value.hpp"
 
 #include <algorithm>
 #include <array>
@@ -380,12 +381,39 @@ template <const auto& source, std::size_t type> struct Code {
         return next;
     }
 
+    // What the instructions of a program do beside computing.
+    template <class Is> static constexpr bool any_instruction(const ProgramRow& program, const Is& is) {
+        const auto any = [&](std::size_t first, std::size_t count) {
+            return std::ranges::any_of(tables.instructions.subspan(first, count), is);
+        };
+        for (std::size_t n = program.first; n < program.last && n < tables.nodes.size(); ++n) {
+            const NodeRow& row = tables.nodes[n];
+            if (any(row.first, row.count)) return true;
+            for (std::size_t i = 0; i < row.arcs; ++i)
+                if (const ConditionIndex c = tables.arcs[row.first_arc + i].condition; c != no_condition)
+                    if (any(tables.conditions[c].first, tables.conditions[c].count)) return true;
+        }
+        return false;
+    }
+    /// It acts on nothing but its own data: nobody is called who could call back.
+    template <ProgramIndex number>
+    static constexpr bool is_private = !any_instruction(tables.programs[number], [](const Instruction& in) {
+        const bool is_silent =
+            in.run == &primitive::skip_if || in.run == &primitive::skip_unless || in.run == &primitive::fail;
+        return in.facet != nullptr || in.link != 0xffff || (in.to == no_data && !is_silent);
+    });
+    template <ProgramIndex number>
+    static constexpr bool asks_for_position =
+        tables.programs[number].may_wait ||
+        any_instruction(tables.programs[number],
+                        [](const Instruction& in) { return in.run == &primitive::elapsed; });
+
     /// A program from its beginning, until it ends or halts. The shortest stand where they are called.
     template <ProgramIndex number>
     [[gnu::always_inline]] static Next program(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
         constexpr ProgramRow row = tables.programs[number];
         run.fresh = true;
-        context.position.acted = context.position.entered = false;
+        if constexpr (asks_for_position<number>) context.position.acted = context.position.entered = false;
         if constexpr (row.first == end_node) {
             return end_node;
         } else if constexpr (!is_whole({row.first, row.last}, row)) {

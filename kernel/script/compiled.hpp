@@ -100,7 +100,8 @@ template <const auto& Source, const auto& Peers>
 struct CheckedScript {
     static constexpr const Sentence& fault = measured<Source, Peers>.fault;
 #if defined(__clang__)
-    static_assert(fault.empty(), fault);
+    static constexpr bool accepted = fault.empty();
+    static_assert(accepted, fault);
 #else
     static_assert(sizeof(script_fault<text<fault.size()>{fault.view()}>) != 0);
 #endif

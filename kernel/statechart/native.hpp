@@ -171,6 +171,15 @@ template <const auto& source, std::size_t type> struct MachineCode {
         handed    ///< the walk has gone on from where it stood, and has ended the call
     };
 
+    template <StateProgram call, ProgramIndex number> static constexpr bool is_private = [] {
+        if constexpr (call != nullptr)
+            return false;
+        else if constexpr (number != no_program)
+            return Programs::template is_private<number>;
+        else
+            return true;
+    }();
+
     // One program; `on`: it has ended. Otherwise `why` says how it stands.
     template <StateProgram call, ProgramIndex number>
     [[gnu::always_inline]] static bool performs(Execution& execution, Run& run, ProgramReturn& why) noexcept
@@ -193,7 +202,7 @@ template <const auto& source, std::size_t type> struct MachineCode {
                 return false;
             }
         }
-        if constexpr (!is_folded) return !execution.is(Execution::error);
+        if constexpr (!is_folded && !is_private<call, number>) return !execution.is(Execution::error);
         return true;
     }
 

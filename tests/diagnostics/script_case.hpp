@@ -1,0 +1,21 @@
+// What a faulty script is compiled against: one component with a method and an event.
+#pragma once
+
+#include "tests/diagnostics/small_machine.hpp"
+
+#include "kernel/script/compiled.hpp"
+
+struct ScriptedAxis {
+    tappet::Event<> mark;
+    void home(std::int32_t) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return tappet::facets(tappet::event<&ScriptedAxis::mark>("mark", "the index mark passed"),
+                              tappet::method<&ScriptedAxis::home>("home", "to the reference"));
+    }
+};
+
+inline constexpr auto axis_reach = tappet::script_reach(tappet::reachable<ScriptedAxis>("axis"));
+
+template <const auto& source> struct Compiled {
+    static constexpr tappet::ScriptUnit unit = tappet::compiled_script<source, axis_reach>;
+};

@@ -1,0 +1,84 @@
+// Counts instructions under callgrind: of an event transition, early and late in a machine's life, and
+// against a switch written by hand.
+//     behaviour_counts                started by the test: starts valgrind on itself, once for each form
+//     behaviour_counts FORM EVENTS    drives that form by so many events, of which the last two are measured
+#include "tests/figures/behaviours.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <string_view>
+
+using namespace tappet;
+using namespace tappet::figures;
+
+extern "C" {
+[[gnu::noinline]] bool measured_event(StateMachineExecution& machine, Time now) {
+    return machine.dispatch(0, now) == StateOutcome::taken;
+}
+[[gnu::noinline]] bool measured_by_hand(HandWritten& machine, Time now) { return machine.dispatch(0, now); }
+}
+
+namespace {
+
+/// Room over the switch written by hand for what an execution keeps: all active states, budgets, positions.
+constexpr double most_times = 2.2;
+
+template <class Machine, class Measured>
+int drive(Machine& machine, Measured measured, int events) {
+    bool good = true;
+    for (int i = 0; i < events - 2; ++i) static_cast<void>(machine.dispatch(0, at_ns(i)));
+    for (int i = events - 2; i < events; ++i) good &= measured(machine, at_ns(i));
+    return good ? 0 : 1;
+}
+template <std::size_t bytes>
+int drive_bound(void (*bind)(Bound<bytes>&), int events) {
+    Bound<bytes> bound;
+    bind(bound);
+    return drive(bound.machine, &measured_event, events);
+}
+int drive_form(std::string_view form, int events) {
+    if (form == "compiled") return drive_bound<swing_bytes>(&bind_compiled, events);
+    if (form == "loaded") return drive_bound<swing_bytes>(&bind_loaded, events);
+    if (form == "table") return drive_bound<16>(&bind_table, events);
+    if (form != "by_hand") return 2;
+    HandWritten machine;
+    return drive(machine, &measured_by_hand, events);
+}
+
+/// Instructions of the two measured events; 0: it did not come so far.
+long count(const std::string& self, const std::string& form, int events) {
+    const std::string out = self + "." + form;
+    const std::string command =
+        "valgrind --tool=callgrind --toggle-collect='measured_*' --callgrind-out-file='" + out + "' '" +
+        self + "' " + form + " " + std::to_string(events) + " >/dev/null 2>&1";
+    if (std::system(command.c_str()) != 0) return 0;
+    std::ifstream file{out};
+    for (std::string line; std::getline(file, line);)
+        for (const std::string_view word : {"totals: ", "summary: "})
+            if (line.starts_with(word)) return std::atol(line.c_str() + word.size());
+    return 0;
+}
+
+} // namespace
+
+int main(int words, char** word) {
+    if (words == 3) return drive_form(word[1], std::atoi(word[2]));
+    bool good = true;
+    std::array<long, 4> counts{};
+    const std::array<const char*, 4> forms{"by_hand", "table", "compiled", "loaded"};
+    for (std::size_t i = 0; i < forms.size(); ++i) {
+        const long early = count(word[0], forms[i], 4);
+        const long late = count(word[0], forms[i], 4000);
+        counts[i] = late;
+        std::printf("%-10s %5.1f instructions an event, %5.1f after 4000 events\n", forms[i],
+                    static_cast<double>(early) / 2, static_cast<double>(late) / 2);
+        good &= early > 0 && early == late;
+    }
+    const double ratio = static_cast<double>(counts[2]) / static_cast<double>(counts[0]);
+    std::printf("a compiled script takes %.2f times what the switch takes (limit %.2f)\n", ratio, most_times);
+    return good && ratio <= most_times ? 0 : 1;
+}
