@@ -3,8 +3,6 @@
 
 #include "tests/diagnostics/small_machine.hpp"
 
-#include "kernel/script/compiled.hpp"
-
 struct ScriptedAxis {
     tappet::Event<> mark;
     void home(std::int32_t) noexcept TAPPET_REALTIME {}
@@ -15,7 +13,3 @@ struct ScriptedAxis {
 };
 
 inline constexpr auto axis_reach = tappet::script_reach(tappet::reachable<ScriptedAxis>("axis"));
-
-template <const auto& source> struct Compiled {
-    static constexpr tappet::ScriptUnit unit = tappet::compiled_script<source, axis_reach>;
-};

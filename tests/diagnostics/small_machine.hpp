@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
+#include "kernel/script/compiled.hpp"
 
 namespace small {
 

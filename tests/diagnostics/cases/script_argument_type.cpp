@@ -7,4 +7,4 @@ program p {
     do home("fast");
 }
 )"};
-template struct Compiled<source>;
+constexpr const tappet::ScriptUnit& unit = tappet::compiled_script<source, axis_reach>;

@@ -10,4 +10,4 @@ program p {
     }
 }
 )"};
-template struct Compiled<source>;
+constexpr const tappet::ScriptUnit& unit = tappet::compiled_script<source, axis_reach>;

@@ -10,4 +10,4 @@ StateMachine M {
 }
 RootStateMachine M m
 )"};
-template struct Compiled<source>;
+constexpr const tappet::ScriptUnit& unit = tappet::compiled_script<source, axis_reach>;
