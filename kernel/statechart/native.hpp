@@ -270,12 +270,17 @@ template <const auto& source, std::size_t type> struct MachineCode {
                                               const std::byte* arguments, Way& way, ArcIndex& asked) noexcept
         TAPPET_REALTIME {
         constexpr bool has_otherwise = view.table.transitions[view.arcs[arc].transition].has_otherwise;
-        const ConditionResult result = may_take<arc>(execution, arguments);
-        if (result == ConditionResult::yes) {
-            way = takes<leaf, arc>(execution, run, now);
-        } else if (has_otherwise || result == ConditionResult::failed) {
+        if constexpr (has_otherwise) { // asked there, once
             way = Way::by_table;
             asked = arc;
+        } else {
+            const ConditionResult result = may_take<arc>(execution, arguments);
+            if (result == ConditionResult::yes) {
+                way = takes<leaf, arc>(execution, run, now);
+            } else if (result == ConditionResult::failed) {
+                way = Way::by_table;
+                asked = arc;
+            }
         }
         return way != Way::on;
     }
