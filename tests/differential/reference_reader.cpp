@@ -189,6 +189,7 @@ private:
     }
     void transition(State& state, bool may_be_event) {
         Transition made{.line = here().line};
+        std::string otherwise_enters;
         if (is("after") && is("(", 1)) {
             at_ += 2;
             made.timed = true;
@@ -212,8 +213,7 @@ private:
         if (take("else")) {
             made.has_otherwise = true;
             if (is("{")) made.otherwise = block();
-            std::string no_history;
-            target(made.otherwise_to, no_history);
+            target(made.otherwise_to, otherwise_enters);
         }
         semicolons();
         if (made.event.empty() && made.has_otherwise) { // is the next condition, which always holds
@@ -222,7 +222,7 @@ private:
             made.has_guard = false;
             made.then = made.otherwise;
             made.to = made.otherwise_to;
-            made.enters.clear();
+            made.enters = otherwise_enters;
             state.transitions.push_back(made);
             return;
         }
