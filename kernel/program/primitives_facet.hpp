@@ -125,14 +125,14 @@ inline ActionResult command_progress(ProgramContext& context, const Instruction&
     store_value(to, progress == CommandProgress::done);
     return progress == CommandProgress::failed ? ActionResult::failed : ActionResult::done;
 }
-/// Of another activity: `a` holds the arguments. Again while an earlier one is on its way.
+/// Of another activity: `a` holds the arguments, if there are any. Again while an earlier one is on its way.
 inline ActionResult send_command(ProgramContext& context, const Instruction& in, std::byte*,
                                  const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     CommandSlot* const slot = link_of(context, in).slot;
     if (slot == nullptr || !slot->connected()) return ActionResult::failed;
     if (!slot->is_mine()) return ActionResult::again;
     const CommandOperations& command = *in.facet->command;
-    std::memcpy(slot->values(), a, command.argument_bytes);
+    if (command.argument_bytes != 0) std::memcpy(slot->values(), a, command.argument_bytes);
     std::memset(slot->values() + command.argument_bytes, 0, command.result_bytes);
     return slot->send() ? ActionResult::done : ActionResult::failed;
 }

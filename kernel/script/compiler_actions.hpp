@@ -189,7 +189,8 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
     check_reach(name, component, facet.name, reach_.operations, "operations");
     const DataOffset packed =
         is_own ? place_in(Region::arguments, std::max<std::size_t>(command.value_bytes(), 1))
-               : scratch(std::max<std::size_t>(command.argument_bytes, 1));
+        : command.argument_bytes != 0 ? scratch(command.argument_bytes)
+                                      : no_data;
     std::array<Operand, 8> results{};
     std::size_t result_count = 0, input_at = 0, input = 0;
     if (!need(Sign::open_round, "\"(\" and the arguments")) return;
@@ -230,8 +231,10 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
     parse_timeout(node);
     if (result_count == 0 || !ok()) return;
     begin_action();
-    DataOffset from = moved(packed, command.argument_bytes);
-    if (!is_own) {
+    DataOffset from = no_data;
+    if (is_own) {
+        from = moved(packed, command.argument_bytes);
+    } else {
         Instruction fetch = command_results(facet).instruction;
         fetch.link = slot;
         fetch.to = from = scratch(command.result_bytes);
