@@ -72,6 +72,56 @@ TEST(A_loaded_state_machine, with_a_child_does_what_its_text_says) {
     compare_loaded(seed() * 4'000'000, 700, {.states = 5});
 }
 
+/// Programs that may be under way together, all in the same function: the run programs of two regions, an
+/// internal transition, an exit.
+constexpr std::string_view shared_function = R"(StateMachine Machine {
+    param int goal;
+    param double speed;
+    var int a = 1;
+    var int b = 2;
+    function helper(int n) {
+        var int twice = n + n;
+        do arm.sum(n, twice);
+        yield;
+        set a = twice - n;
+        set b = mate.note(n);
+        do note(n * 100 + twice);
+    }
+    initial state Both {
+        region east {
+            initial state East {
+                run { set goal = (goal + 1) % 50; do helper(goal); }
+                handle { do helper(30 + a % 7); }
+                transition tick() { do helper(20 + goal % 7); }
+                transition mate.tick() { do helper(a % 9); } select East
+            }
+        }
+        region west {
+            initial state West {
+                run { do helper(10 + goal % 10); }
+                exit { do helper(40 + b % 5); }
+                transitions { after 30ms { do helper(50 + a % 5); } select West }
+            }
+        }
+        transition mate.switched select Safe
+    }
+    final state Safe { }
+}
+RootStateMachine Machine m(3, 2.5)
+)";
+
+TEST(A_loaded_state_machine, keeps_apart_what_its_programs_have_in_the_same_function) {
+    const std::string text{shared_function};
+    Loaded loaded;
+    const ScriptOutcome outcome = loaded.compile(text);
+    ASSERT_TRUE(outcome.good()) << outcome.fault.view();
+    for (std::uint64_t n = seed() * 5'000'000; n < seed() * 5'000'000 + 60; ++n) {
+        RandomDay day{n, text, outcome.unit};
+        const std::string difference = day.run(60);
+        ASSERT_TRUE(difference.empty()) << "seed " << n << "\n" << difference << numbered(text);
+    }
+}
+
 /// Kinds of nodes, arcs and transitions, each counted where the second interpreter executes it.
 constexpr std::string_view kinds[] = {"var",
                                       "set",

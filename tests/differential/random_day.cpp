@@ -10,7 +10,7 @@ using reference::Value;
 
 void RandomDay::Alone::start(const reference::Type& type) {
     if (status == "running" || status.starts_with("error")) return;
-    if (status != "paused") run.start(&type.body);
+    if (status != "paused") run.start(&type.body, true);
     status = "running";
 }
 

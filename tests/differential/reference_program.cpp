@@ -15,12 +15,31 @@ const Function* Scope::function(const std::string& name) const {
     return nullptr;
 }
 
+Variables* Scope::holder(const std::string& name) {
+    if (run != nullptr)
+        if (Variables* const own = run->holder(name)) return own;
+    return values.contains(name) ? this : nullptr;
+}
+
+Variables* ProgramRun::holder(const std::string& name) {
+    for (std::size_t i = open_.size(); i-- > 0;) {
+        if (open_[i].own.values.contains(name)) return &open_[i].own;
+        if (open_[i].is_call) break;
+    }
+    return nullptr;
+}
+
 std::map<std::string, std::size_t>& ProgramRun::covered() {
     static std::map<std::string, std::size_t> counts;
     return counts;
 }
 
 ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t& statements) {
+    struct AtWork {
+        Scope& scope;
+        ProgramRun* before;
+        ~AtWork() { scope.run = before; }
+    } const at_work{scope, std::exchange(scope.run, this)};
     while (!open_.empty()) {
         Open& top = open_.back();
         if (top.next == top.block->size()) {
@@ -84,13 +103,13 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
         if (!statement.expressions.empty()) value = value_of(0);
         if (value) value = convert(*value, statement.type);
         if (!value) return Done::failed;
-        scope.types[statement.text] = statement.type;
-        scope.values[statement.text] = *value;
+        Variables& block = stands_alone_ && open_.size() == 1 ? scope : open_.back().own;
+        block.declare(statement.text, statement.type, *value);
         return Done::next;
     }
     case Kind::assign: {
         ++covered()["set"];
-        const auto variable = scope.values.find(statement.text);
+        Variables* const holder = scope.holder(statement.text);
         std::optional<std::int64_t> index;
         if (!statement.indices.empty()) {
             const std::optional<Value> at = evaluate(scope, statement.indices[0]);
@@ -99,17 +118,17 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
         }
         std::optional<Value> value = value_of(0);
         if (!value) return Done::failed;
-        if (variable == scope.values.end())
-            return scope.world->write(statement.text, *value) ? Done::next : Done::failed;
+        if (holder == nullptr) return scope.world->write(statement.text, *value) ? Done::next : Done::failed;
+        Value& variable = holder->values[statement.text];
         if (index) {
-            auto& vector = std::get<Vector>(variable->second);
+            auto& vector = std::get<Vector>(variable);
             if (*index < 0 || *index >= static_cast<std::int64_t>(vector.size())) return Done::failed;
             vector[static_cast<std::size_t>(*index)] = std::get<double>(*convert(*value, "double"));
             return Done::next;
         }
-        value = convert(*value, scope.types[statement.text]);
+        value = convert(*value, holder->types[statement.text]);
         if (!value) return Done::failed;
-        variable->second = *value;
+        variable = *value;
         return Done::next;
     }
     case Kind::perform: return perform(scope, statement, now);
@@ -186,12 +205,12 @@ ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, s
     if (const Function* function = scope.function(call.text)) {
         ++covered()["function"];
         if (!arguments()) return Done::failed;
+        Open call_of{.block = &function->body, .is_call = true};
         for (std::size_t i = 0; i < given.size(); ++i) {
             const Variable& parameter = function->parameters[i];
-            scope.types[parameter.name] = parameter.type;
-            scope.values[parameter.name] = *convert(given[i], parameter.type);
+            call_of.own.declare(parameter.name, parameter.type, *convert(given[i], parameter.type));
         }
-        open_.push_back({.block = &function->body, .is_call = true});
+        open_.push_back(call_of);
         return Done::elsewhere;
     }
     const auto late = [&]() -> std::optional<bool> {

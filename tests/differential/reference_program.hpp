@@ -39,15 +39,29 @@ public:
     virtual Answer ended(const std::string& name) = 0;
 };
 
-/// What a name means inside of one behaviour: its variables, and what stands around it.
-struct Scope {
-    World* world = nullptr;
+/// Names with their values and types.
+struct Variables {
     std::map<std::string, Value> values{};
     std::map<std::string, std::string> types{};
+
+    void declare(const std::string& name, const std::string& type, const Value& value) {
+        types[name] = type;
+        values[name] = value;
+    }
+};
+
+class ProgramRun;
+
+/// What a name means inside of one behaviour: its variables, and what stands around it.
+struct Scope : Variables {
+    World* world = nullptr;
     const std::vector<Function>* functions = nullptr;
     const std::vector<Function>* outer_functions = nullptr;
+    ProgramRun* run = nullptr; ///< at work just now; its own variables are nearer
 
     [[nodiscard]] const Function* function(const std::string& name) const;
+    /// Those among which the nearest of that name stands; null: no variable has it.
+    [[nodiscard]] Variables* holder(const std::string& name);
 };
 
 std::optional<Value> evaluate(Scope& scope, const Expression& expression);
@@ -56,19 +70,25 @@ std::optional<Value> convert(const Value& value, const std::string& type);
 Value zero_of(const std::string& type);
 std::string print(const Value& value);
 
-/// One program on its way. It may be dropped at any time.
+/// One program on its way. It may be dropped at any time. Arguments and variables of its blocks and of the
+/// functions it is in are its own: other programs that call the same function meanwhile have theirs.
 class ProgramRun {
 public:
     enum class Result : std::uint8_t { ended, waits, left_over, failed };
 
-    void start(const Block* block) {
+    /// Of a program that stands alone the outermost variables are the behaviour's: its properties.
+    void start(const Block* block, bool stands_alone = false) {
         open_.clear();
         open_.push_back({.block = block});
         entered_ = acted_ = false;
+        stands_alone_ = stands_alone;
     }
     [[nodiscard]] bool is_on() const { return !open_.empty(); }
     void drop() { open_.clear(); }
     Result run(Scope& scope, std::int64_t now, std::int64_t& statements);
+    /// Those of the blocks around the statement in hand, up to the call or the program; null: none of that
+    /// name.
+    [[nodiscard]] Variables* holder(const std::string& name);
     /// Of the statement that failed, or that waits.
     [[nodiscard]] int line() const { return line_; }
     static std::map<std::string, std::size_t>& covered();
@@ -80,7 +100,7 @@ private:
         const Statement* owner = nullptr; ///< a loop, what is tried, or a call
         bool is_increment = false;
         bool is_call = false;
-        std::string result_into{};
+        Variables own{};
     };
     enum class Done : std::uint8_t { next, elsewhere, wait, failed };
 
@@ -95,6 +115,7 @@ private:
     std::vector<Value> given_{};
     std::int64_t entered_at_ = 0;
     int line_ = 0;
+    bool stands_alone_ = false;
 };
 
 /// Notes that something was covered.

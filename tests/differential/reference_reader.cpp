@@ -190,11 +190,9 @@ private:
     void transition(State& state, bool may_be_event) {
         Transition made{.line = here().line};
         std::string otherwise_enters;
-        if (is("after") && is("(", 1)) {
-            at_ += 2;
+        if (take("after")) {
             made.timed = true;
             made.after = expression();
-            expect(")");
         } else if (may_be_event && !is("if") && !is("select") && !is("{")) {
             made.event = dotted();
             if (take("("))
@@ -210,6 +208,7 @@ private:
         }
         if (is("{")) made.then = block();
         target(made.to, made.enters);
+        if (made.event.empty() && made.to.empty()) fault("select");
         if (take("else")) {
             made.has_otherwise = true;
             if (is("{")) made.otherwise = block();

@@ -17,7 +17,8 @@ Machine::Machine(const Script& script, const Instance& instance, const std::stri
     scope_.functions = &type_->functions;
     scope_.outer_functions = &script.functions;
     std::size_t argument = 0;
-    Scope nothing{.world = &bench};
+    Scope nothing{};
+    nothing.world = &bench;
     for (const Variable& each : type_->variables) {
         Value value = zero_of(each.type);
         if (each.kind == "param" && argument < instance.arguments.size())

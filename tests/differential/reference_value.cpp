@@ -169,7 +169,7 @@ std::optional<Value> element(const Value& of, const Value& at) {
 }
 
 std::optional<Value> named(Scope& scope, const std::string& name) {
-    if (const auto found = scope.values.find(name); found != scope.values.end()) return found->second;
+    if (const Variables* const holder = scope.holder(name)) return holder->values.at(name);
     return scope.world->read(name);
 }
 
