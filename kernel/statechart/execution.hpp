@@ -33,8 +33,10 @@ struct StateMachineFast {
 
 namespace native {
 template <const auto& source, std::size_t type>
+struct TransitionCode;
+template <const auto& source, std::size_t type>
 struct MachineCode;
-}
+} // namespace native
 
 /// All that an execution works on; it outlives it.
 struct StateMachineBinding {
@@ -181,6 +183,8 @@ public:
     [[nodiscard]] std::byte* data() const noexcept TAPPET_REALTIME { return context_.data; }
 
 private:
+    template <const auto& source, std::size_t type>
+    friend struct native::TransitionCode;
     template <const auto& source, std::size_t type>
     friend struct native::MachineCode;
 
