@@ -25,7 +25,7 @@ inline constexpr auto bench_reach = [] {
 
 } // namespace tappet
 
-#include "generated_scripts.hpp"
+#include "tests/differential/generated_scripts.hpp"
 
 namespace tappet {
 namespace {

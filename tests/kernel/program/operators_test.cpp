@@ -251,11 +251,9 @@ TEST(Functions, are_found_by_name_and_operands) {
     EXPECT_EQ((compute<Duration>(find_function("duration", real), 0.25, 0)), Duration{250ms});
     EXPECT_EQ((compute<ScriptInt>(find_function("int", real), -2.75, 0)), -2);
     for (const auto& [name, expected] :
-         {std::pair{"sin", std::sin(0.5)}, std::pair{"cos", std::cos(0.5)}, std::pair{"tan", std::tan(0.5)},
-          std::pair{"asin", std::asin(0.5)}, std::pair{"acos", std::acos(0.5)},
-          std::pair{"atan", std::atan(0.5)}, std::pair{"exp", std::exp(0.5)}, std::pair{"log", std::log(0.5)},
-          std::pair{"floor", 0.0}, std::pair{"ceil", 1.0}, std::pair{"round", 1.0}, std::pair{"abs", 0.5},
-          std::pair{"sqrt", std::sqrt(0.5)}})
+         {std::pair{"sin", std::sin(0.5)}, std::pair{"cos", std::cos(0.5)}, std::pair{"exp", std::exp(0.5)},
+          std::pair{"log", std::log(0.5)}, std::pair{"floor", 0.0}, std::pair{"ceil", 1.0},
+          std::pair{"round", 1.0}, std::pair{"abs", 0.5}, std::pair{"sqrt", std::sqrt(0.5)}})
         EXPECT_EQ((compute<double>(find_function(name, real), 0.5, 0)), expected) << name;
 }
 

@@ -40,7 +40,8 @@ TEST(Access, the_board_lists_users_and_groups_and_the_highest_role_counts) {
 TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
     for (const browsing::VerbRow& row : browsing::verbs) {
         const bool looks = row.name == "hello" || row.name == "map" || row.name == "get" ||
-                           row.name == "forced" || row.name == "subscribe" || row.name == "unsubscribe";
+                           row.name == "forced" || row.name == "subscribe" || row.name == "unsubscribe" ||
+                           row.name == "behaviours";
         const bool acts = row.name == "call" || row.name == "send";
         EXPECT_EQ(row.role, looks  ? Role::observer
                             : acts ? Role::machine_operator
