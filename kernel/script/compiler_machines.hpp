@@ -246,17 +246,22 @@ private:
         state_next_[number] = head;
         head = static_cast<std::uint16_t>(number + 1);
         // Of one that names the state around it nobody knows yet how deep it lies.
-        state_scope_ =
-            row.parent == parent ? scope_inside(outer_scope, row.region) : scope_inside(0, row.name);
+        state_outer_[number] = row.parent == parent ? outer_scope : alone;
+        state_scope_ = run_scope(number);
         if (need(Sign::open_brace, "\"{\"")) parse_state_body(number);
         state_scope_ = outer_scope;
         leave();
     }
     /// Of the programs of a machine those may be at work at the same time: the run programs of a state and of
     /// the states around it, those of different regions, and one that is in hand, whose scope is 0.
-    static constexpr std::uint16_t scope_inside(std::uint16_t outer, std::string_view name) noexcept {
-        const std::uint32_t mixed = (outer * 40503u + hash_of(name)) * 2654435761u;
-        return static_cast<std::uint16_t>(mixed >> 16 | 1u);
+    /// States beside each other in one region are never active together and share theirs: that of the first.
+    [[nodiscard]] constexpr std::uint16_t run_scope(std::uint16_t number) const noexcept {
+        std::uint16_t first = number;
+        if (state_outer_[number] != alone)
+            for (first = 0; state_outer_[first] != state_outer_[number] ||
+                            states_[first].region != states_[number].region;)
+                ++first;
+        return static_cast<std::uint16_t>(first + 1);
     }
     constexpr void parse_state_body(std::uint16_t number) {
         std::array<Place, 8> preconditions{};
@@ -442,7 +447,9 @@ public:
 
 private:
     Token machine_name_{};
-    std::uint16_t state_scope_ = 0; // of the run program of the state in hand
+    static constexpr std::uint16_t alone = 0xffff;
+    std::uint16_t state_scope_ = 0;                       // of the run program of the state in hand
+    std::array<std::uint16_t, max_states> state_outer_{}; // the scope of the state around
     std::array<Unresolved, 192> unresolved_{};
     std::size_t unresolved_used_ = 0;
     std::array<std::uint16_t, 64> state_heads_{}; // by the hash of the name: 1 + the last such state's number

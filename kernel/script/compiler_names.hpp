@@ -164,7 +164,10 @@ protected:
                 return static_cast<std::uint16_t>(i);
         }
         const std::uint16_t number = add(links_, {component, facet, needs_slot}, "links to facets");
-        if (number < link_scopes_.size()) link_scopes_[number] = scope;
+        if (number < link_scopes_.size())
+            link_scopes_[number] = scope;
+        else if (needs_slot)
+            fail_limit("links to facets before a command of a peer");
         return number;
     }
 
@@ -288,7 +291,7 @@ protected:
     std::size_t children_used_ = 0;
     std::array<Argument, 48> arguments_{};
     std::size_t arguments_used_ = 0;
-    std::array<std::uint16_t, 128> link_scopes_{};
+    std::array<std::uint16_t, 256> link_scopes_{};
     std::uint16_t command_scope_ = 0;
 };
 

@@ -199,6 +199,32 @@ StateMachine M {
     EXPECT_EQ(p.own.trace, "5 10 1 2 3 6 20 30");
 }
 
+// Otherwise one of them would take the end of another's command for that of its own.
+TEST(A_command_of_a_peer, has_a_slot_for_every_run_program_that_may_be_at_work_with_others) {
+    Played p{R"(
+StateMachine M {
+    initial state Both {
+        run { do robot.go(); }
+        exit { do robot.go(); }
+        region lane109 { // the names have the same value in 16 bits of their hashes
+            initial state A { run { do robot.go(); } transition halt select B }
+            state B { run { do robot.go(); } exit { do robot.go(); } transition halt select Late }
+        }
+        region lane368 {
+            initial state C { run { do robot.go(); } initial state Inside { run { do robot.go(); } } }
+        }
+        transition seen { do robot.go(); } select Other
+    }
+    state Other { run { do robot.go(); } transition halt select Safe }
+    state Late in Both region lane109 { run { do robot.go(); } }
+    final state Safe { entry { do robot.go(); } }
+})"};
+    std::size_t slots = 0;
+    for (const LinkRow& link : p.outcome.unit.types[0].tables.links) slots += link.needs_slot ? 1 : 0;
+    const std::size_t in_hand = 1, outermost = 1, regions = 2, inside = 1, apart = 1;
+    EXPECT_EQ(slots, in_hand + outermost + regions + inside + apart);
+}
+
 TEST(A_failing_program, puts_the_machine_in_error_where_its_line_says) {
     Played p{"StateMachine M {\n initial state A {\n  entry {\n   do refuse();\n  }\n transition halt select "
              "Z }\n final state Z { } }"};
