@@ -56,39 +56,114 @@ constexpr ScriptSizes measuring_room(std::uint32_t nodes, std::size_t components
     most.names = 10 * nodes + 512;
     return most;
 }
+/// A script in a room that is larger than it needs.
 template <ScriptSizes room>
-consteval Measured measure_script(const ScriptSource& source, const Reach& peers) {
-    ScriptBuffer<room> buffer{};
-    const ScriptOutcome outcome = compile_into(source.text, source.name, peers, buffer.room());
-    return {outcome.fault, outcome.out_of_room, outcome.good() ? outcome.sizes : ScriptSizes{}};
-}
-/// With a room that grows until the script finds place, or is too large for any.
+struct DraftScript {
+    ScriptBuffer<room> rows{};
+    ScriptOutcome outcome{};
+
+    constexpr DraftScript(const ScriptSource& source, const Reach& peers)
+        : outcome{compile_into(source.text, source.name, peers, rows.room())} {}
+};
 template <const auto& Source, const auto& Peers, std::uint32_t nodes>
-consteval Measured measure_within() {
-    constexpr Measured measured =
-        measure_script<measuring_room(nodes, Peers.components.size())>(Source, Peers.view());
-    if constexpr (measured.out_of_room && nodes < max_script_nodes)
-        return measure_within<Source, Peers, 2 * nodes>();
+inline constexpr DraftScript<measuring_room(nodes, Peers.components.size())> draft{Source, Peers.view()};
+
+/// A room grows until the script finds place, or is too large for any.
+template <const auto& Source, const auto& Peers, std::uint32_t nodes>
+consteval std::uint32_t nodes_for() {
+    if constexpr (draft<Source, Peers, nodes>.outcome.out_of_room && nodes < max_script_nodes)
+        return nodes_for<Source, Peers, 2 * nodes>();
     else
-        return measured;
+        return nodes;
 }
+template <const auto& Source, const auto& Peers>
+inline constexpr const auto& fitting_draft =
+    draft<Source, Peers,
+          nodes_for<Source, Peers, static_cast<std::uint32_t>(Source.text.size() / 36 + 32)>()>;
 
 template <const auto& Source, const auto& Peers>
-inline constexpr Measured measured =
-    measure_within<Source, Peers, static_cast<std::uint32_t>(Source.text.size() / 56 + 32)>();
+inline constexpr Measured measured = [] {
+    const ScriptOutcome& outcome = fitting_draft<Source, Peers>.outcome;
+    return Measured{outcome.fault, outcome.out_of_room, outcome.good() ? outcome.sizes : ScriptSizes{}};
+}();
 
+/// A script in exactly its room: the rows of the draft, and what points to them led to their new place. The
+/// text is read once.
 template <ScriptSizes sizes>
 struct StoredScript {
     ScriptBuffer<sizes> rows{};
     ScriptUnit unit{};
 
-    constexpr StoredScript(const ScriptSource& source, const Reach& peers) {
-        unit = compile_into(source.text, source.name, peers, rows.room()).unit;
+    template <ScriptSizes room>
+    constexpr explicit StoredScript(const DraftScript<room>& draft) : unit{draft.outcome.unit} {
+        const ScriptBuffer<room>& from = draft.rows;
+        const auto copies = [](const auto& source, auto& to) {
+            for (std::size_t i = 0; i < to.size(); ++i) to[i] = source[i];
+        };
+        copies(from.instructions, rows.instructions);
+        copies(from.conditions, rows.conditions);
+        copies(from.nodes, rows.nodes);
+        copies(from.arcs, rows.arcs);
+        copies(from.programs, rows.programs);
+        copies(from.variables, rows.variables);
+        copies(from.links, rows.links);
+        copies(from.image, rows.image);
+        copies(from.states, rows.states);
+        copies(from.transitions, rows.transitions);
+        copies(from.captures, rows.captures);
+        copies(from.types, rows.types);
+        copies(from.instances, rows.instances);
+        copies(from.names, rows.names);
+        copies(from.reach, rows.reach);
+
+        const auto names = [&](std::string_view& name) {
+            if (name.empty())
+                name = {};
+            else
+                name = {rows.names.data() + (name.data() - from.names.data()), name.size()};
+        };
+        const auto leads = [](const auto& source, auto& to, auto& view) {
+            if (view.empty())
+                view = {};
+            else
+                view = {to.data() + (view.data() - source.data()), view.size()};
+        };
+        for (ProgramRow& row : rows.programs) names(row.name);
+        for (VariableRow& row : rows.variables) names(row.name);
+        for (StateRow& row : rows.states) names(row.name), names(row.parent), names(row.region);
+        for (TransitionRow& row : rows.transitions) {
+            names(row.from), names(row.to), names(row.event);
+            names(row.because), names(row.otherwise_to);
+        }
+        for (BehaviourType& type : rows.types) {
+            ProgramTables& tables = type.tables;
+            leads(from.instructions, rows.instructions, tables.instructions);
+            leads(from.conditions, rows.conditions, tables.conditions);
+            leads(from.nodes, rows.nodes, tables.nodes);
+            leads(from.arcs, rows.arcs, tables.arcs);
+            leads(from.programs, rows.programs, tables.programs);
+            leads(from.variables, rows.variables, tables.variables);
+            leads(from.links, rows.links, tables.links);
+            leads(from.image, rows.image, tables.image);
+            names(type.name), names(type.machine.name);
+            leads(from.states, rows.states, type.machine.states);
+            leads(from.transitions, rows.transitions, type.machine.transitions);
+            leads(from.captures, rows.captures, type.machine.captures);
+            if (type.machine.programs != nullptr) type.machine.programs = &tables;
+        }
+        for (BehaviourInstance& instance : rows.instances) {
+            names(instance.name);
+            leads(from.image, rows.image, instance.image);
+        }
+        names(unit.name);
+        leads(from.types, rows.types, unit.types);
+        leads(from.instances, rows.instances, unit.instances);
+        leads(from.reach, rows.reach, unit.reach);
     }
 };
 
 template <const auto& Source, const auto& Peers>
-inline constexpr StoredScript<measured<Source, Peers>.sizes> stored{Source, Peers.view()};
+inline constexpr StoredScript<measured<Source, Peers>.sizes> stored{fitting_draft<Source, Peers>};
 
 /// Not defined: a compiler that prints no message objects prints the sentence as the argument of this name.
 template <text sentence>
