@@ -68,25 +68,21 @@ template <const auto& source, std::size_t type> struct NodeCode {
     // One by one: an array of all would stay in the program for the few primitives that are not inlined.
     template <std::size_t number> static constexpr Instruction instruction_of = tables.instructions[number];
 
-    template <std::size_t number>
-    [[gnu::always_inline]] static ActionResult instruction(ProgramContext& context, std::byte* data,
-                                                           std::byte* scratch) noexcept TAPPET_REALTIME {
-        constexpr Instruction in = tables.instructions[number];
-        constexpr Primitive primitive = in.run;
-        return primitive(context, instruction_of<number>, write<in.to>(data, scratch),
-                         read<in.a>(data, scratch), read<in.b>(data, scratch));
-    }
-
-    // `next` is the first instruction that is not left out.
-    template <std::size_t first, std::size_t i>
+    // `next` is the first instruction that is not left out. Few functions: a compiler spends most of its time
+    // on their number.
+    template <std::size_t number, std::size_t i>
     [[gnu::always_inline]] static bool goes_on(ProgramContext& context, std::byte* data, std::byte* scratch,
                                                std::size_t& next, ActionResult& result) noexcept
         TAPPET_REALTIME {
         if (next > i) return true;
-        result = instruction<first + i>(context, data, scratch);
+        constexpr const Instruction& in = instruction_of<number>;
+        constexpr Primitive primitive = in.run;
+        result = primitive(context, in, write<in.to>(data, scratch), read<in.a>(data, scratch),
+                           read<in.b>(data, scratch));
         if (result == ActionResult::done) return true;
         if (result != ActionResult::skip) return false;
-        next = i + 1 + tables.instructions[first + i].size;
+        constexpr std::size_t behind = i + 1 + in.size;
+        next = behind;
         result = ActionResult::done;
         return true;
     }
@@ -96,7 +92,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
                  [[maybe_unused]] std::byte* scratch) noexcept TAPPET_REALTIME {
         [[maybe_unused]] std::size_t next = 0;
         ActionResult result = ActionResult::done;
-        static_cast<void>((goes_on<first, i>(context, data, scratch, next, result) && ...));
+        static_cast<void>((goes_on<first + i, i>(context, data, scratch, next, result) && ...));
         return result;
     }
 
@@ -132,25 +128,21 @@ template <const auto& source, std::size_t type> struct NodeCode {
             if (node >= program.first && node < program.last) return program.may_wait;
         return true;
     }
-    template <NodeIndex number>
+    template <bool has_stood, bool is_resumed>
     [[gnu::always_inline]] static void leaves_node(ProgramContext& context, Run& run) noexcept
         TAPPET_REALTIME {
-        if constexpr (stands(tables.nodes[number]))
+        if constexpr (has_stood)
             context.position.acted = context.position.entered = false;
-        else if constexpr (is_resumed(number))
+        else if constexpr (is_resumed)
             if (!run.fresh) context.position.entered = false;
-        if constexpr (is_resumed(number)) run.fresh = true;
+        if constexpr (is_resumed) run.fresh = true;
     }
-
-    template <NodeIndex number>
-    [[gnu::always_inline]] static Next failed(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
-        constexpr NodeRow row = tables.nodes[number];
-        if constexpr (row.on_error != no_node) {
-            leaves_node<number>(context, run);
-            return row.on_error;
-        } else {
-            return halts_at(number, Halt::failed);
-        }
+    template <bool has_stood, bool is_resumed>
+    [[gnu::always_inline]] static Next failed(ProgramContext& context, Run& run, NodeIndex number,
+                                              NodeIndex on_error) noexcept TAPPET_REALTIME {
+        if (on_error == no_node) return halts_at(number, Halt::failed);
+        leaves_node<has_stood, is_resumed>(context, run);
+        return on_error;
     }
 
     // Answers whether the arc was taken or the program failed; then `next` is set.
@@ -158,6 +150,8 @@ template <const auto& source, std::size_t type> struct NodeCode {
     [[gnu::always_inline]] static bool takes(ProgramContext& context, Run& run, std::byte* scratch,
                                              Next& next) noexcept TAPPET_REALTIME {
         constexpr ArcRow row = tables.arcs[arc];
+        constexpr NodeRow from = tables.nodes[number];
+        constexpr bool has_stood = stands(from), is_left = is_resumed(number);
         if constexpr (row.after != no_data) {
             static_assert(row.after < layout.arguments, "a time-out outlives the step");
             Duration after{};
@@ -168,14 +162,14 @@ template <const auto& source, std::size_t type> struct NodeCode {
             const ConditionResult result = condition<row.condition>(context, run.data, scratch);
             if (result == ConditionResult::no) return false;
             if (result == ConditionResult::failed) [[unlikely]] {
-                next = failed<number>(context, run);
+                next = failed<has_stood, is_left>(context, run, number, from.on_error);
                 return true;
             }
         }
         if constexpr (row.to == no_node) {
-            next = failed<number>(context, run);
+            next = failed<has_stood, is_left>(context, run, number, from.on_error);
         } else {
-            leaves_node<number>(context, run);
+            leaves_node<has_stood, is_left>(context, run);
             next = row.to;
         }
         return true;
@@ -203,11 +197,12 @@ template <const auto& source, std::size_t type> struct NodeCode {
     template <NodeIndex number>
     [[gnu::always_inline]] static Next node(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
         constexpr NodeRow row = tables.nodes[number];
+        constexpr bool has_stood = stands(row);
         alignas(data_alignment) std::byte scratch[scratch_bytes];
-        if (!stands(row) || !context.position.acted) {
+        if (!has_stood || !context.position.acted) {
             if (--run.statements < 0) [[unlikely]]
                 return halts_at(number, Halt::left_over);
-            if constexpr (stands(row)) {
+            if constexpr (has_stood) {
                 if (run.fresh) context.position.entered_at = context.now;
                 context.position.entered = true;
                 run.fresh = false;
@@ -215,15 +210,16 @@ template <const auto& source, std::size_t type> struct NodeCode {
             const ActionResult result =
                 instructions<row.first>(std::make_index_sequence<row.count>{}, context, run.data, scratch);
             if (result == ActionResult::failed) [[unlikely]]
-                return failed<number>(context, run);
+                return failed<has_stood, is_resumed(number)>(context, run, number, row.on_error);
             if (result != ActionResult::done) [[unlikely]] {
                 Next next = end_node;
-                if (time_outs<number, row.first_arc>(std::make_index_sequence<row.arcs>{}, context, run,
-                                                     scratch, next))
-                    return next;
+                if constexpr (is_timed(row))
+                    if (time_outs<number, row.first_arc>(std::make_index_sequence<row.arcs>{}, context, run,
+                                                         scratch, next))
+                        return next;
                 return halts_at(number, Halt::again);
             }
-            if constexpr (stands(row)) context.position.acted = true;
+            if constexpr (has_stood) context.position.acted = true;
             if constexpr (row.yields) return halts_at(number, Halt::waits);
         }
         Next next = end_node;
