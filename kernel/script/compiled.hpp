@@ -62,8 +62,9 @@ struct DraftScript {
     ScriptBuffer<room> rows{};
     ScriptOutcome outcome{};
 
-    constexpr DraftScript(const ScriptSource& source, const Reach& peers)
-        : outcome{compile_into(source.text, source.name, peers, rows.room())} {}
+    // A machine's own constants may be called `source` or `peers`, which a parameter would shadow.
+    constexpr DraftScript(const ScriptSource& script_read, const Reach& script_peers)
+        : outcome{compile_into(script_read.text, script_read.name, script_peers, rows.room())} {}
 };
 template <const auto& Source, const auto& Peers, std::uint32_t nodes>
 inline constexpr DraftScript<measuring_room(nodes, Peers.components.size())> draft{Source, Peers.view()};
@@ -95,10 +96,10 @@ struct StoredScript {
     ScriptUnit unit{};
 
     template <ScriptSizes room>
-    constexpr explicit StoredScript(const DraftScript<room>& draft) : unit{draft.outcome.unit} {
-        const ScriptBuffer<room>& from = draft.rows;
-        const auto copies = [](const auto& source, auto& to) {
-            for (std::size_t i = 0; i < to.size(); ++i) to[i] = source[i];
+    constexpr explicit StoredScript(const DraftScript<room>& script_read) : unit{script_read.outcome.unit} {
+        const ScriptBuffer<room>& from = script_read.rows;
+        const auto copies = [](const auto& rows_read, auto& to) {
+            for (std::size_t i = 0; i < to.size(); ++i) to[i] = rows_read[i];
         };
         copies(from.instructions, rows.instructions);
         copies(from.conditions, rows.conditions);
@@ -122,11 +123,11 @@ struct StoredScript {
             else
                 name = {rows.names.data() + (name.data() - from.names.data()), name.size()};
         };
-        const auto leads = [](const auto& source, auto& to, auto& view) {
+        const auto leads = [](const auto& rows_read, auto& to, auto& view) {
             if (view.empty())
                 view = {};
             else
-                view = {to.data() + (view.data() - source.data()), view.size()};
+                view = {to.data() + (view.data() - rows_read.data()), view.size()};
         };
         for (ProgramRow& row : rows.programs) names(row.name);
         for (VariableRow& row : rows.variables) names(row.name);

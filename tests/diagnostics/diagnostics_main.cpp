@@ -26,7 +26,7 @@ namespace {
 /// Everything a compiler may print for one faulty table, the sentence and its surroundings included.
 constexpr std::size_t most_lines = 9;
 /// Of a script: the sentence comes first, the way through which it was compiled behind it.
-constexpr std::size_t most_script_lines = 26;
+constexpr std::size_t most_script_lines = 13;
 constexpr unsigned at_a_time = 2;
 constexpr std::size_t most_told = 10;
 
