@@ -21,6 +21,11 @@ struct CompiledBehaviour {
 
 namespace native {
 
+/// Of a state machine with more transitions only the programs and guards are native, and its states are
+/// walked: to fold a switch over all of them takes the C++ compiler as long as everything else that it does
+/// for that machine.
+inline constexpr std::size_t most_folded_transitions = 128;
+
 /// A script without its instructions, and its code.
 template <const auto& source> struct CompiledUnit {
     static constexpr std::size_t count = source.types.size();
@@ -33,7 +38,8 @@ template <const auto& source> struct CompiledUnit {
         return row;
     }
     template <std::size_t type> static constexpr BehaviourCode code_of() {
-        if constexpr (source.types[type].is_program())
+        if constexpr (source.types[type].is_program() ||
+                      source.types[type].machine.transitions.size() > most_folded_transitions)
             return {native_code<source, type>, {}};
         else
             return {native_code<source, type>, native_machine<source, type>};
