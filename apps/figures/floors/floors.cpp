@@ -1,0 +1,73 @@
+// The floors by themselves: what no framework can beat, measured first so that a reader knows the machine.
+#include "apps/figures/measure/candidates.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+namespace {
+
+using namespace tappet::figures;
+
+template <std::size_t bytes>
+struct Packet {
+    std::array<std::byte, bytes> content{};
+};
+template <std::size_t bytes>
+Packet<bytes> from{};
+template <std::size_t bytes>
+Packet<bytes> into{};
+
+template <std::size_t bytes>
+void struct_copy(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) {
+        keep(from<bytes>);
+        into<bytes> = from<bytes>;
+        keep(into<bytes>);
+    }
+}
+
+std::uint64_t plain = 0;
+std::atomic<std::uint64_t> word{0};
+void release_store(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) word.store(i, std::memory_order_release);
+}
+void exchange(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) plain += word.exchange(i, std::memory_order_acq_rel);
+    keep(plain);
+}
+void atomic_or(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) word.fetch_or(i, std::memory_order_release);
+}
+
+[[gnu::noinline]] void callee(void* context) { ++*static_cast<std::uint64_t*>(context); }
+void (*volatile pointer)(void*) = &callee;
+void function_pointer_call(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) pointer(&plain);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const Options options = read_options(argc, argv);
+    Result result{.program = "floors"};
+    std::vector<Group> groups;
+    groups.push_back({"floors.copy",
+                      "copy of a struct",
+                      "",
+                      64,
+                      {{"8 bytes", Role::floor, &struct_copy<8>},
+                       {"160 bytes", Role::floor, &struct_copy<160>},
+                       {"4096 bytes", Role::floor, &struct_copy<4096>}}});
+    groups.push_back({"floors.word",
+                      "one word, one core",
+                      "",
+                      64,
+                      {{"release store", Role::floor, &release_store},
+                       {"exchange", Role::floor, &exchange},
+                       {"fetch_or, result unused", Role::floor, &atomic_or},
+                       {"call through a function pointer", Role::floor, &function_pointer_call}}});
+    run_candidates(options, argv, groups, {}, result);
+    return finish(options, result);
+}
