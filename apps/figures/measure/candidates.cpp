@@ -93,14 +93,15 @@ Options read_options(int argc, char** argv) {
             options.json = argv[++i];
         else if (word == "--only" && follows)
             options.only = argv[++i];
-        else if (word == "--long" || word == "--smoke")
+        else if (word == "--long" || word == "--brief" || word == "--smoke")
             options.setting = word.substr(2);
         else if (word == "--no-counts")
             options.counts = false;
         else {
-            std::cerr << argv[0] << ": '" << word
-                      << "' is no option, or lacks its value; there are --json FILE, --long, --smoke, "
-                      << "--only TEXT, --no-counts\n";
+            std::cerr
+                << argv[0] << ": '" << word
+                << "' is no option, or lacks its value; there are --json FILE, --long, --brief, --smoke, "
+                << "--only TEXT, --no-counts\n";
             std::exit(2);
         }
     }

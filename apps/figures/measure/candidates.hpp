@@ -50,14 +50,16 @@ inline void clobber() noexcept { asm volatile("" : : : "memory"); }
 
 /// What a program is told:
 ///     --json FILE   --long   --smoke (a tenth of a second, for tests)   --only TEXT (groups whose id has it)
-///     --no-counts
+///     --brief (a fifth of the short setting, for the rounds in which two commits alternate)   --no-counts
 struct Options {
     std::string json = {};
     std::string only = {};
-    std::string setting = "short"; ///< short, long, smoke
+    std::string setting = "short"; ///< short, long, brief, smoke
     bool counts = true;
     /// So many times what the short setting does.
-    [[nodiscard]] double scale() const { return setting == "long" ? 10 : setting == "smoke" ? 0.02 : 1; }
+    [[nodiscard]] double scale() const {
+        return setting == "long" ? 10 : setting == "brief" ? 0.2 : setting == "smoke" ? 0.02 : 1;
+    }
 };
 /// Exits with 2 and a sentence when a word is wrong.
 Options read_options(int argc, char** argv);

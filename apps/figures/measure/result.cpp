@@ -55,17 +55,20 @@ json list(const std::vector<T>& values) {
 
 } // namespace
 
+std::string Result::text() const {
+    return json{{"program", program},
+                {"setting", setting},
+                {"figures", list(figures)},
+                {"goals", list(goals)},
+                {"statements", list(statements)},
+                {"plots", list(plots)},
+                {"notes", notes}}
+        .dump(1, ' ', false, json::error_handler_t::replace);
+}
+
 std::string Result::write(const std::string& path) const {
     std::ofstream file{path};
-    file << json{{"program", program},
-                 {"setting", setting},
-                 {"figures", list(figures)},
-                 {"goals", list(goals)},
-                 {"statements", list(statements)},
-                 {"plots", list(plots)},
-                 {"notes", notes}}
-                .dump(1)
-         << '\n';
+    file << text() << '\n';
     return file.flush() ? std::string{} : "cannot write " + path + "; is the directory there?";
 }
 

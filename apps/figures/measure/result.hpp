@@ -74,6 +74,8 @@ struct Result {
     std::vector<Plot> plots = {};
     std::vector<std::string> notes = {}; ///< what could not be measured here, and why
 
+    /// As JSON; read_result.hpp reads it.
+    [[nodiscard]] std::string text() const;
     /// Empty: written. Otherwise why not.
     [[nodiscard]] std::string write(const std::string& path) const;
     /// As tables, with the ratio of each row to the first of ours.
