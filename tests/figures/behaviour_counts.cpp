@@ -2,7 +2,8 @@
 // against a switch written by hand.
 //     behaviour_counts                started by the test: starts valgrind on itself, once for each form
 //     behaviour_counts FORM EVENTS    drives that form by so many events, of which the last two are measured
-#include "tests/figures/behaviours.hpp"
+#include "apps/figures/behaviour/by_hand.hpp"
+#include "apps/figures/behaviour/steps.hpp"
 
 #include <array>
 #include <cstdio>
@@ -19,7 +20,7 @@ extern "C" {
 [[gnu::noinline]] bool measured_event(StateMachineExecution& machine, Time now) {
     return machine.dispatch(0, now) == StateOutcome::taken;
 }
-[[gnu::noinline]] bool measured_by_hand(HandWritten& machine, Time now) { return machine.dispatch(0, now); }
+[[gnu::noinline]] bool measured_by_hand(HandSwing& machine, Time now) { return machine.dispatch(0, now); }
 }
 
 namespace {
@@ -34,18 +35,17 @@ int drive(Machine& machine, Measured measured, int events) {
     for (int i = events - 2; i < events; ++i) good &= measured(machine, at_ns(i));
     return good ? 0 : 1;
 }
-template <std::size_t bytes>
-int drive_bound(void (*bind)(Bound<bytes>&), int events) {
-    Bound<bytes> bound;
-    bind(bound);
+template <const auto& source, Form form>
+int drive_bound(int events) {
+    Bound<Swing, source, form> bound;
     return drive(bound.machine, &measured_event, events);
 }
 int drive_form(std::string_view form, int events) {
-    if (form == "compiled") return drive_bound<swing_bytes>(&bind_compiled, events);
-    if (form == "loaded") return drive_bound<swing_bytes>(&bind_loaded, events);
-    if (form == "table") return drive_bound<16>(&bind_table, events);
+    if (form == "compiled") return drive_bound<swing_script, Form::compiled>(events);
+    if (form == "loaded") return drive_bound<swing_script, Form::loaded>(events);
+    if (form == "table") return drive_bound<swing_table, Form::compiled>(events);
     if (form != "by_hand") return 2;
-    HandWritten machine;
+    HandSwing machine;
     return drive(machine, &measured_by_hand, events);
 }
 
