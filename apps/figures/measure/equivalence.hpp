@@ -1,0 +1,44 @@
+// Whether two things take the same time, within a stated margin: not that no difference was seen, which too
+// few samples show of anything, but that a difference larger than the margin would have been.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tappet::figures {
+
+/// Samples of both, taken side by side in time: whatever the machine did then met both of them. Samples of
+/// one pair may depend on each other; pairs are taken to be independent.
+struct PairOfBlocks {
+    std::vector<double> ours{};
+    std::vector<double> theirs{};
+};
+
+enum class Verdict : std::uint8_t {
+    equivalent, ///< the interval lies within the margin
+    different,  ///< it lies outside of it
+    undecided   ///< it reaches over an edge: there were too few samples, or they scatter too much
+};
+[[nodiscard]] const char* to_text(Verdict verdict) noexcept;
+
+/// Ours by theirs.
+struct Comparison {
+    double ratio = 0;
+    double low = 0, high = 0; ///< two-sided 90 % interval: each side is left with 5 %
+    double margin = 0;
+    std::size_t pairs = 0;
+
+    /// How far from 1 the ratio may be as far as this is known, as a factor of at least 1: the interval's
+    /// further edge.
+    [[nodiscard]] double worst() const noexcept;
+    [[nodiscard]] Verdict verdict() const noexcept;
+};
+
+/// Compares the quantile `q` of all of ours with that of all of theirs. Two one-sided tests (Schuirmann,
+/// 1987) at 5 % by the percentile bootstrap (Efron, 1979) over pairs. `margin`: 0.05 allows ratios from 1
+/// / 1.05 to 1.05. Same seed, same result. Without samples, or when theirs is 0: a ratio of 0, undecided.
+[[nodiscard]] Comparison compare(const std::vector<PairOfBlocks>& pairs, double q, double margin,
+                                 std::size_t resamples = 1000, std::uint64_t seed = 1);
+
+} // namespace tappet::figures
