@@ -1,0 +1,51 @@
+// Formatting without a locale.
+#include "apps/figures/report/text.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace tappet::figures {
+
+std::string escaped(const std::string& text) {
+    std::string safe;
+    for (const char letter : text) switch (letter) {
+        case '&': safe += "&amp;"; break;
+        case '<': safe += "&lt;"; break;
+        case '>': safe += "&gt;"; break;
+        case '"': safe += "&quot;"; break;
+        case '\'': safe += "&#39;"; break;
+        default: safe += letter;
+        }
+    return safe;
+}
+
+std::string number_text(double value) {
+    if (!std::isfinite(value)) return "-";
+    const double size = std::abs(value);
+    std::array<char, 64> text{};
+    if (size != 0 && size < 0.01)
+        std::snprintf(text.data(), text.size(), "%.2g", value);
+    else
+        std::snprintf(text.data(), text.size(), "%.*f", size < 10 ? 2 : size < 100 ? 1 : 0, value);
+    std::string number = text.data();
+    if (size >= 1000) // in groups of three
+        for (auto at = static_cast<std::ptrdiff_t>(number.size()) - 3; at > (value < 0 ? 1 : 0); at -= 3)
+            number.insert(static_cast<std::size_t>(at), " ");
+    return number;
+}
+
+std::string quantity(double value, const std::string& unit) {
+    return number_text(value) + (unit.empty() ? "" : " " + unit);
+}
+
+std::vector<Beside> beside(const Figure& figure, const Row& row) {
+    std::vector<Beside> all;
+    if (row.role != Role::ours) return all;
+    for (const Row& other : figure.rows)
+        if (other.role != Role::ours && other.summary.median > 0)
+            all.push_back({other.name, other.role, row.summary.median / other.summary.median});
+    return all;
+}
+
+} // namespace tappet::figures
