@@ -7,10 +7,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include <condition_variable>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <map>
+#include <mutex>
+#include <thread>
 
 namespace tappet::figures {
 
@@ -29,12 +32,17 @@ constexpr double longest_round_ns = 20e6; ///< of a candidate that is slow
 
 void measure(benchmark::State& state, Rounds& rounds) {
     const std::size_t batch = rounds.batch;
+    const auto prepare = [&] {
+        if (rounds.candidate->prepare != nullptr) rounds.candidate->prepare(batch);
+    };
+    prepare();
     rounds.candidate->run(batch); // caches
     Samples samples;
     samples.reserve(samples_of_round);
     const double reading = ticks_of_reading();
     double spent = 0;
     while (state.KeepRunning()) {
+        prepare();
         const std::uint64_t first = ticks();
         rounds.candidate->run(batch);
         const std::uint64_t last = ticks();
@@ -74,6 +82,33 @@ Goal judge(const RatioGoal& plan, const Measured& measured) {
     for (std::size_t i = 0; i < plan.of.size(); ++i) goal.detail += (i == 0 ? "" : " + ") + plan.of[i];
     return goal;
 }
+
+/// As long as a process has one thread, the C library takes locks without atomic operations; a machine has
+/// several.
+class SecondThread {
+public:
+    SecondThread()
+        : sleeps_{[this] {
+              std::unique_lock<std::mutex> locked{mutex_};
+              ended_.wait(locked, [this] { return is_over_; });
+          }} {}
+    ~SecondThread() {
+        {
+            const std::lock_guard<std::mutex> locked{mutex_};
+            is_over_ = true;
+        }
+        ended_.notify_one();
+        sleeps_.join();
+    }
+    SecondThread(const SecondThread&) = delete;
+    SecondThread& operator=(const SecondThread&) = delete;
+
+private:
+    std::mutex mutex_{};
+    std::condition_variable ended_{};
+    bool is_over_ = false;
+    std::thread sleeps_;
+};
 
 /// The program's own tables say everything.
 class Silent : public benchmark::BenchmarkReporter {
@@ -115,6 +150,7 @@ void run_candidates(const Options& options, char** argv, const std::vector<Group
     for (const Group& group : groups)
         if (options.only.empty() || group.id.find(options.only) != std::string::npos)
             wanted.push_back(&group);
+    const SecondThread second;
     leave_if_counting(wanted);
 
     const int rounds = std::max(3, static_cast<int>(rounds_of_short * std::min(3.0, options.scale())));

@@ -17,6 +17,8 @@ struct Candidate {
     std::string name;
     Role role = Role::ours;
     void (*run)(std::size_t times) = nullptr;
+    /// Before each sample of `times`, neither timed nor counted: it takes back what run() did. Null: nothing.
+    void (*prepare)(std::size_t times) = nullptr;
 };
 
 /// Candidates that do the same.

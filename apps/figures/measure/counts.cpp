@@ -24,10 +24,20 @@ void leave_if_counting(const std::vector<const Group*>& groups) {
     for (const Group* group : groups)
         for (const Candidate& candidate : group->candidates) {
             const std::string name = group->id + "/" + candidate.name;
-            candidate.run(group->batch);
+            const std::size_t times = candidate.prepare == nullptr ? operations : group->batch;
+            const std::size_t rounds = operations / times;
+            if (candidate.prepare != nullptr) candidate.prepare(times);
+            candidate.run(times);
             CALLGRIND_ZERO_STATS;
-            candidate.run(operations);
-            CALLGRIND_DUMP_STATS_AT(name.c_str());
+            for (std::size_t round = 0; round < rounds; ++round) {
+                if (candidate.prepare != nullptr) {
+                    CALLGRIND_TOGGLE_COLLECT;
+                    candidate.prepare(times);
+                    CALLGRIND_TOGGLE_COLLECT;
+                }
+                candidate.run(times);
+            }
+            CALLGRIND_DUMP_STATS_AT((std::to_string(rounds * times) + " " + name).c_str());
         }
     std::_Exit(0);
 }
@@ -49,11 +59,14 @@ std::map<std::string, double> count_instructions(const char* program, const std:
             std::ifstream file{entry.path()};
             constexpr std::string_view trigger = "desc: Trigger: Client Request: ", totals = "totals: ";
             std::string name;
+            double counted = 1;
             for (std::string line; std::getline(file, line);)
-                if (line.starts_with(trigger))
-                    name = line.substr(trigger.size());
-                else if (line.starts_with(totals) && !name.empty())
-                    counts[name] = std::atof(line.c_str() + totals.size()) / static_cast<double>(operations);
+                if (line.starts_with(trigger)) {
+                    counted = std::atof(line.c_str() + trigger.size());
+                    name = line.substr(line.find(' ', trigger.size()) + 1);
+                } else if (line.starts_with(totals) && !name.empty()) {
+                    counts[name] = std::atof(line.c_str() + totals.size()) / counted;
+                }
         }
     std::filesystem::remove_all(place);
     return counts;
