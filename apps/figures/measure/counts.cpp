@@ -23,9 +23,9 @@ void leave_if_counting(const std::vector<const Group*>& groups) {
     if (std::getenv(told_to_count) == nullptr) return;
     for (const Group* group : groups)
         for (const Candidate& candidate : group->candidates) {
-            const std::string name = group->id + "/" + candidate.name;
             const std::size_t times = candidate.prepare == nullptr ? operations : group->batch;
             const std::size_t rounds = operations / times;
+            const std::string name = std::to_string(rounds * times) + " " + group->id + "/" + candidate.name;
             if (candidate.prepare != nullptr) candidate.prepare(times);
             candidate.run(times);
             CALLGRIND_ZERO_STATS;
@@ -37,7 +37,7 @@ void leave_if_counting(const std::vector<const Group*>& groups) {
                 }
                 candidate.run(times);
             }
-            CALLGRIND_DUMP_STATS_AT((std::to_string(rounds * times) + " " + name).c_str());
+            CALLGRIND_DUMP_STATS_AT(name.c_str());
         }
     std::_Exit(0);
 }
