@@ -6,6 +6,7 @@
 #include <boost/signals2.hpp>
 
 #include <atomic>
+#include <cstring>
 #include <functional>
 #include <vector>
 
@@ -111,13 +112,14 @@ boost::lockfree::spsc_queue<Parcel, boost::lockfree::capacity<256>> parcels;
 std::atomic<std::uint64_t> bits{0};
 template <std::size_t n>
 void push_parcels(std::size_t times) {
+    double value = 1.0;
+    keep(value);
     for (std::size_t i = 0; i < times; ++i)
         for (std::size_t k = 0; k < n; ++k) {
-            Parcel parcel;
-            parcel.run = nullptr;
-            parcel.object = &parcels;
-            keep(parcel);
-            static_cast<void>(parcels.push(parcel));
+            Parcel parcel{nullptr, &parcels, {}};
+            std::memcpy(parcel.arguments.data(), &value, sizeof value);
+            bool pushed = parcels.push(parcel);
+            keep(pushed);
             bits.fetch_or(1, std::memory_order_release);
         }
 }
