@@ -134,6 +134,24 @@ void predict_rows(std::size_t times) {
     for (std::size_t i = 0; i < times; i += cam_rows)
         turning.schedule.update(turning.estimator, turning.now());
 }
+struct Line {
+    double position, velocity;
+    std::array<double, cam_rows> angles, due;
+};
+/// The time at which an even motion reaches each angle.
+void predict_line(std::size_t times) {
+    static Line line{5.0, 3600.0, {}, {}};
+    for (std::size_t i = 0; i < times; i += cam_rows) {
+        keep(line);
+        double next = 1e9;
+        for (std::size_t row = 0; row < cam_rows; ++row) {
+            line.due[row] = (line.angles[row] - line.position) / line.velocity;
+            next = std::min(next, line.due[row]);
+        }
+        keep(next);
+        keep(line);
+    }
+}
 /// Fires what is due: at this speed every sixth sample has a row.
 void next_sample(std::size_t) {
     Shaft& turning = shaft();
@@ -186,7 +204,8 @@ void add_calls(std::vector<Group>& groups) {
                       "a cam row predicted anew upon a sample of the shaft, one of 16",
                       "thesis 3.1, 5.2",
                       cam_rows,
-                      {{"update", Role::ours, &predict_rows, &estimate}}});
+                      {{"update", Role::ours, &predict_rows, &estimate},
+                       {"angle over an even speed, and the least", Role::floor, &predict_line}}});
     groups.push_back({"dispatch.cam.fire",
                       "a cam row of 16 fired when it is due",
                       "thesis 3.1, 5.2",

@@ -106,16 +106,24 @@ void carry_out_notices() {
         job.state.store(doing(job) ? 2 : 3, std::memory_order_release);
     }
 }
+void push_jobs() {
+    for (std::size_t i = 0; i < senders; ++i) {
+        Job& job = jobs[i];
+        job.listener = measured().listener[i];
+        job.value = 1.0;
+        job.state.store(1, std::memory_order_relaxed);
+        static_cast<void>(notices.push({&job, i}));
+        pending.fetch_or(1, std::memory_order_release);
+    }
+}
+void prepare_jobs(std::size_t) {
+    take_notices(senders);
+    push_jobs();
+}
+void execute_bare(std::size_t) { carry_out_notices(); }
 void whole_bare(std::size_t times) {
     for (std::size_t done = 0; done < times; done += senders) {
-        for (std::size_t i = 0; i < senders; ++i) {
-            Job& job = jobs[i];
-            job.listener = measured().listener[i];
-            job.value = 1.0;
-            job.state.store(1, std::memory_order_relaxed);
-            static_cast<void>(notices.push({&job, i}));
-            pending.fetch_or(1, std::memory_order_release);
-        }
+        push_jobs();
         carry_out_notices();
         for (Job& job : jobs) {
             bool ended = job.state.load(std::memory_order_acquire) == 2;
@@ -146,7 +154,9 @@ void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       "a command carried out by its engine, one of 32 in a cycle, time stamps excluded",
                       "thesis 4.5.2",
                       senders,
-                      {{"engine step", Role::ours, &run_receiver, &send_all}}});
+                      {{"engine step", Role::ours, &run_receiver, &send_all},
+                       {"boost spsc_queue pop, call through a function pointer, store", Role::floor,
+                        &execute_bare, &prepare_jobs}}});
     groups.push_back({"dispatch.command.whole",
                       "a command sent, carried out and asked for its end, time stamps excluded",
                       "thesis 4.5.2",
