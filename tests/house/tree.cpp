@@ -114,7 +114,8 @@ Tree read(const fs::path& root) {
             if (path.starts_with('.') || path == "build") entry.disable_recursion_pending();
             continue;
         }
-        if (!entry->is_regular_file() || !is_text(entry->path()) || path == "LICENSE") continue;
+        if (!entry->is_regular_file() || !is_text(entry->path()) || path == "LICENSE" || path == ".git")
+            continue;
         std::ifstream stream(entry->path(), std::ios::binary);
         files.push_back(file(path, std::string(std::istreambuf_iterator<char>(stream), {})));
     }

@@ -101,8 +101,12 @@ std::string table(const Figure& figure) {
         if (others.empty()) continue;
         std::string line;
         for (const Beside& other : others)
-            line +=
-                element("span", element("b", number_text(other.ratio) + " x") + " " + escaped(other.name));
+            line += element(
+                "span",
+                element("b", number_text(other.median) + " x") + " " + escaped(other.name) + " (p99 " +
+                    number_text(other.p99) + " x" +
+                    (other.instructions ? ", instructions " + number_text(*other.instructions) + " x" : "") +
+                    ")");
         rows += element("tr", element("td", line, "colspan=\"8\""), "class=\"beside\"");
     }
     return element("h3", escaped(figure.title), "id=\"" + escaped(figure.id) + "\"") +

@@ -85,7 +85,7 @@ std::string gnuplot_script(const Plot& plot, const std::string& name, const std:
            << quoted(name) << " font 'system-ui,sans-serif,13'\nset output " << quoted(file)
            << "\nset termoption noenhanced\n"
            << "set border 3 lw 0.8\nset tics nomirror out\nset grid lc rgb '#999999' lw 0.3\n"
-           << "set key below center horizontal noenhanced maxcols 3\n"
+           << "set key outside top left horizontal Left reverse noenhanced maxcols 3\n"
            << "set xlabel " << quoted(plot.x) << " noenhanced\nset ylabel " << quoted(plot.y)
            << " noenhanced\nset format x '%.10g'\nset format y '%.10g'\n";
     if (plot.log_x) script << "set logscale x\n";

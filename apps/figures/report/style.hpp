@@ -33,7 +33,7 @@ th { text-align: right; font-weight: 600; color: var(--soft); padding: .25rem .6
 td { text-align: right; padding: .28rem .6rem; border-bottom: 1px solid var(--line); white-space: nowrap; vertical-align: top; }
 th:first-child, td:first-child, td.words, th.words { text-align: left; }
 td.words, td:first-child { white-space: normal; }
-td:first-child { padding-left: 0; min-width: 12rem; }
+td:first-child { padding-left: 0; min-width: 12rem; } td.held, td.missed { min-width: 0; width: 4.5rem; }
 tr.ours td { font-weight: 600; background: var(--shade); } tr.ours td:first-child { padding-left: .4rem; }
 tr.beside td { text-align: left; padding: 0 0 .4rem 1.6rem; font-size: .83rem; color: var(--soft); background: var(--shade); white-space: normal; }
 tr.joined td { border-bottom: 0; }

@@ -42,9 +42,13 @@ std::string quantity(double value, const std::string& unit) {
 std::vector<Beside> beside(const Figure& figure, const Row& row) {
     std::vector<Beside> all;
     if (row.role != Role::ours) return all;
-    for (const Row& other : figure.rows)
-        if (other.role != Role::ours && other.summary.median > 0)
-            all.push_back({other.name, other.role, row.summary.median / other.summary.median});
+    for (const Row& other : figure.rows) {
+        if (other.role == Role::ours || !(other.summary.median > 0)) continue;
+        all.push_back({other.name, other.role, row.summary.median / other.summary.median,
+                       row.summary.p99 / other.summary.p99});
+        if (row.instructions && other.instructions && *other.instructions > 0)
+            all.back().instructions = *row.instructions / *other.instructions;
+    }
     return all;
 }
 

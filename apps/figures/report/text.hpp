@@ -3,6 +3,7 @@
 
 #include "apps/figures/measure/result.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ std::string quantity(double value, const std::string& unit);
 struct Beside {
     std::string name;
     Role role;
-    double ratio; ///< ours / the other, of the medians
+    double median, p99; ///< ours / the other
+    std::optional<double> instructions = {};
 };
 /// Of the figure's floors and peers, in its order; none when the row is not ours.
 std::vector<Beside> beside(const Figure& figure, const Row& row);
