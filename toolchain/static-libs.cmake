@@ -3,6 +3,7 @@
 #   tappet::libgpiod   Debian's own libgpiod.a, version 2
 #   tappet::libedit    Debian's own libedit.a with what it stands on; not for a firmware, but for tappet-browse beside it
 #   tappet::double_conversion  Debian's own libdouble-conversion.a
+#   tappet::mathematics  sine and its kin out of Debian's libc.a of musl: one routine for every processor
 #   tappet::libmodbus, tappet::pugixml  built here from Debian's source packages (with their security patches): no
 #                      package has the archive of the one, and that of the other has parts that nobody here needs
 include_guard(GLOBAL)
@@ -49,6 +50,35 @@ endif()
 add_library(tappet_double_conversion STATIC IMPORTED GLOBAL)
 set_target_properties(tappet_double_conversion PROPERTIES IMPORTED_LOCATION "${TAPPET_DOUBLE_CONVERSION_ARCHIVE}")
 add_library(tappet::double_conversion ALIAS tappet_double_conversion)
+
+# --- mathematics --------------------------------------------------------------------------------------------------
+# glibc takes another routine on a processor with fused multiply-add, so that one seed gave one run on one kind of box
+# only; and a static binary holds four of each. Of musl's, all of what one routine needs becomes one object that shows
+# the routines alone: its tables bear names that glibc uses too.
+set(tappet_routines sin cos tan asin acos atan atan2 exp log pow sqrt fabs floor ceil round nearbyint rint fmod)
+set(tappet_routine_parts ${tappet_routines} scalbn __sin __cos __tan __rem_pio2 __rem_pio2_large __math_divzero __math_invalid
+    __math_oflow __math_uflow __math_xflow exp_data log_data pow_data)
+find_file(TAPPET_MUSL_ARCHIVE libc.a PATHS /usr/lib/x86_64-linux-musl NO_DEFAULT_PATH)
+if(NOT TAPPET_MUSL_ARCHIVE)
+    message(FATAL_ERROR "musl's libc.a is not installed; run ci/setup once as root")
+endif()
+set(tappet_mathematics "${CMAKE_BINARY_DIR}/mathematics")
+file(MAKE_DIRECTORY "${tappet_mathematics}")
+list(TRANSFORM tappet_routines PREPEND "--keep-global-symbol=" OUTPUT_VARIABLE tappet_shown)
+list(TRANSFORM tappet_routine_parts APPEND ".lo" OUTPUT_VARIABLE tappet_members)
+add_custom_command(
+    OUTPUT "${tappet_mathematics}/routines.o"
+    COMMAND "${CMAKE_AR}" x "${TAPPET_MUSL_ARCHIVE}" ${tappet_members}
+    COMMAND "${CMAKE_LINKER}" -r -o all.o ${tappet_members}
+    COMMAND "${CMAKE_OBJCOPY}" ${tappet_shown} all.o routines.o
+    WORKING_DIRECTORY "${tappet_mathematics}"
+    DEPENDS "${TAPPET_MUSL_ARCHIVE}"
+    COMMENT "sine and its kin, the same on every processor"
+    VERBATIM)
+set_source_files_properties("${tappet_mathematics}/routines.o" PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
+add_library(tappet_mathematics STATIC "${tappet_mathematics}/routines.o")
+set_target_properties(tappet_mathematics PROPERTIES LINKER_LANGUAGE C)
+add_library(tappet::mathematics ALIAS tappet_mathematics)
 
 # --- pugixml ------------------------------------------------------------------------------------------------------
 set(tappet_pugixml_source "${TAPPET_CACHE}/pugixml/src")

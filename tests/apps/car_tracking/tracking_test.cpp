@@ -177,7 +177,7 @@ struct Golden {
     std::uint64_t seed;
     std::uint64_t digest;
 };
-constexpr Golden golden[] = {{1, 0xe9c472d4d990903e}, {2, 0xbe5ca191898eb1e7}, {3, 0xecc123b061e7c3c5}};
+constexpr Golden golden[] = {{1, 0x5a616bccff93025a}, {2, 0x4cc16e67a843326d}, {3, 0x4f2629ed841f7194}};
 
 TEST(CarTracking, is_the_same_with_both_compilers) {
     for (const Golden& each : golden)
