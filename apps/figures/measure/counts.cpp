@@ -19,8 +19,10 @@ constexpr std::size_t operations = 2000;
 
 } // namespace
 
+bool counting() { return std::getenv(told_to_count) != nullptr; }
+
 void leave_if_counting(const std::vector<const Group*>& groups) {
-    if (std::getenv(told_to_count) == nullptr) return;
+    if (!counting()) return;
     for (const Group* group : groups)
         for (const Candidate& candidate : group->candidates) {
             const std::size_t times = candidate.prepare == nullptr ? operations : group->batch;

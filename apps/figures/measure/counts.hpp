@@ -9,6 +9,8 @@
 
 namespace tappet::figures {
 
+/// Whether this process is the one under callgrind.
+bool counting();
 /// When this process is the one under callgrind: runs each candidate, has it counted, and ends the process.
 void leave_if_counting(const std::vector<const Group*>& groups);
 
