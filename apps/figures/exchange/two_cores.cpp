@@ -179,7 +179,7 @@ void judge(const Findings& found, std::size_t rounds, Result& result) {
          [&](std::size_t r) { return stream[r].stream / boosts[r].stream; });
 }
 
-void show(const Findings& found, Result& result) {
+void show(const Findings& found, const Clocks& clocks, Result& result) {
     constexpr const char* paced = "one packet at a time, the other side polls without a pause";
     constexpr const char* busy = "both sides without a pause, each operation timed that did its work";
     const auto add = [&](const char* id, const char* title, bool queue, Way way, Part part, const char* how) {
@@ -188,6 +188,8 @@ void show(const Findings& found, Result& result) {
                                               how));
     };
     add("data.seen", "data: write to value seen", false, Way::paced, &Meeting::seen, paced);
+    result.figures.back().rows.push_back(
+        {"a line written in turns, one way", Role::floor, clocks.one_way_ns.summary()});
     add("data.write_alone", "data: write, undisturbed", false, Way::alone, &Meeting::give,
         "one write each microsecond");
     add("data.write_polled", "data: write while a reader polls", false, Way::paced, &Meeting::give, paced);
@@ -224,13 +226,6 @@ void measure_two_cores(const Options& options, bool with_iceoryx, Result& result
         "taken off",
         clocks.ahead_ticks * ns_per_tick());
     result.notes.emplace_back(note);
-    result.figures.push_back({"exchange.two_cores.line",
-                              "a line that two cores write in turns, one way",
-                              "ns",
-                              "",
-                              "half of a round trip",
-                              {{"cache line", Role::floor, clocks.one_way_ns.summary()}}});
-
     std::vector<Entry> entries = subjects(with_iceoryx);
     std::vector<Entry*> turns;
     for (Entry& entry : entries) turns.push_back(&entry);
@@ -240,7 +235,7 @@ void measure_two_cores(const Options& options, bool with_iceoryx, Result& result
         for (Entry* entry : turns) entry->rounds.push_back(entry->run(plan, clocks.ahead_ticks));
     }
     const Findings found{entries};
-    show(found, result);
+    show(found, clocks, result);
     judge(found, rounds, result);
 }
 

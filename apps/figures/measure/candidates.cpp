@@ -176,12 +176,13 @@ void run_candidates(const Options& options, char** argv, const std::vector<Group
         const Undisturbed quiet{0};
         if (!quiet.refused().empty()) result.notes.push_back("the system refused: " + quiet.refused());
         Silent silent;
-        benchmark::RunSpecifiedBenchmarks(&silent);
+        if (!wanted.empty()) benchmark::RunSpecifiedBenchmarks(&silent);
         benchmark::ClearRegisteredBenchmarks();
     }
 
-    const std::map<std::string, double> counts =
-        options.counts ? count_instructions(argv[0], options.only) : std::map<std::string, double>{};
+    const std::map<std::string, double> counts = options.counts && !wanted.empty()
+                                                     ? count_instructions(argv[0], options.only)
+                                                     : std::map<std::string, double>{};
     result.setting = options.setting;
     for (const Group* group : wanted) {
         Figure figure{group->id,
