@@ -1,10 +1,16 @@
 // The floors by themselves: what no framework can beat, measured first so that a reader knows the machine.
+#include "apps/figures/floors/two_threads.hpp"
 #include "apps/figures/measure/candidates.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
+#include <mutex>
+
+#include <sys/syscall.h>
+#include <unistd.h>
 
 namespace {
 
@@ -40,6 +46,32 @@ void exchange(std::size_t times) {
 void atomic_or(std::size_t times) {
     for (std::size_t i = 0; i < times; ++i) word.fetch_or(i, std::memory_order_release);
 }
+void ordered_store(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) word.store(i, std::memory_order_seq_cst);
+}
+void compare_exchange(std::size_t times) {
+    std::uint64_t expected = word.load(std::memory_order_relaxed);
+    for (std::size_t i = 0; i < times; ++i)
+        if (word.compare_exchange_strong(expected, expected + 1, std::memory_order_acq_rel)) ++expected;
+}
+std::mutex mutex;
+void lock_and_unlock(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) {
+        const std::lock_guard lock{mutex};
+        ++plain;
+    }
+}
+
+void read_clock(std::size_t times) {
+    timespec now{};
+    for (std::size_t i = 0; i < times; ++i) {
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        keep(now);
+    }
+}
+void system_call(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) syscall(SYS_getppid);
+}
 
 [[gnu::noinline]] void callee(void* context) { ++*static_cast<std::uint64_t*>(context); }
 void (*volatile pointer)(void*) = &callee;
@@ -65,9 +97,19 @@ int main(int argc, char** argv) {
                       "",
                       64,
                       {{"release store", Role::floor, &release_store},
+                       {"seq_cst store", Role::floor, &ordered_store},
                        {"exchange", Role::floor, &exchange},
+                       {"compare_exchange", Role::floor, &compare_exchange},
                        {"fetch_or, result unused", Role::floor, &atomic_or},
+                       {"std::mutex, lock and unlock, nobody else there", Role::floor, &lock_and_unlock},
                        {"call through a function pointer", Role::floor, &function_pointer_call}}});
+    groups.push_back({"floors.system",
+                      "the operating system, one thread",
+                      "",
+                      16,
+                      {{"clock_gettime(CLOCK_MONOTONIC)", Role::floor, &read_clock},
+                       {"shortest system call (getppid)", Role::floor, &system_call}}});
     run_candidates(options, argv, groups, {}, result);
+    measure_two_threads(options, result);
     return finish(options, result);
 }

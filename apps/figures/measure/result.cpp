@@ -88,7 +88,10 @@ void Result::print() const {
                 std::printf("%9.1f", *row.instructions);
             else
                 std::printf("%9s", "-");
-            std::printf(" %7.2f\n", ours > 0 ? s.median / ours : 0.0);
+            if (ours > 0)
+                std::printf(" %7.2f\n", s.median / ours);
+            else
+                std::printf(" %7s\n", "-");
         }
     }
     if (!goals.empty()) std::printf("\ngoals\n");

@@ -26,8 +26,9 @@ std::string cell(double value) { return element("td", number_text(value)); }
 std::vector<const ProgramRun*> in_order(const Run& run) {
     std::vector<const ProgramRun*> programs;
     for (const ProgramRun& program : run.programs) programs.push_back(&program);
-    std::ranges::stable_sort(programs, {}, [](const ProgramRun* program) {
-        return std::ranges::find(sections, program->name, &Section::program) - sections.begin();
+    std::ranges::sort(programs, {}, [](const ProgramRun* program) {
+        return std::pair{std::ranges::find(sections, program->name, &Section::program) - sections.begin(),
+                         program};
     });
     return programs;
 }
