@@ -30,6 +30,8 @@ constexpr auto table = std::to_array<Command>({
     {"restart", "restart COMPONENT|ACTIVITY",              "stops and starts it (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"behaviour", "behaviour [list [NAME] | watch [NAME] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
                                                            "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour},
+    {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
+                                                           "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
 });
 // clang-format on
 

@@ -77,5 +77,6 @@ Result<void> run_send(Work& work);
 Result<void> run_force(Work& work);
 Result<void> run_plain_request(Work& work);
 Result<void> run_behaviour(Work& work);
+Result<void> run_scope(Work& work);
 
 } // namespace tappet::browser

@@ -10,8 +10,9 @@ namespace tappet::browser {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> names{"--json", "--follow", "--help",    "--count",    "--every",
-                                                "--at",   "--socket", "--timeout", "--directory"};
+constexpr std::array<std::string_view, 11> names{"--json",      "--follow", "--help",   "--count",
+                                                 "--every",     "--at",     "--socket", "--timeout",
+                                                 "--directory", "--for",    "--to"};
 
 bool is_number(std::string_view text) {
     const std::string_view rest = text.substr(
@@ -69,6 +70,8 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
         const std::string& value = words[++i];
         if (word == "--at") {
             line.at = value;
+        } else if (word == "--to") {
+            line.to = value;
         } else if (word == "--socket" || word == "--directory") {
             (word == "--socket" ? line.socket : line.directory) = value;
         } else if (word == "--count") {
@@ -78,7 +81,7 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
         } else {
             const auto time = parse_time(value);
             if (!time) return std::unexpected(word + ": " + time.error());
-            (word == "--every" ? line.every : line.patience) = *time;
+            (word == "--every" ? line.every : word == "--for" ? line.length : line.patience) = *time;
         }
     }
     return line;

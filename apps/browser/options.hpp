@@ -18,6 +18,8 @@ struct Line {
     bool follow = false;              ///< send: until the command has come to its end
     bool help = false;
     std::string at{};                     ///< behaviour load: an event or an angle; empty: at once
+    std::string to{};                     ///< scope: the file that is written; empty: none
+    std::chrono::milliseconds length{};   ///< scope record: so long; 0: as usual
     long count = 0;                       ///< of pictures or events; 0: without end
     std::chrono::milliseconds every{200}; ///< between two pictures
     std::chrono::milliseconds patience{3000};

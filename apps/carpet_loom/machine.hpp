@@ -14,6 +14,7 @@
 #include "drivers/can/keeper.hpp"
 #include "kernel/machine/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/scope/thread_scope.hpp"
 #include "kernel/services/time/timed_event.hpp"
 #include "kernel/services/time/watchdog.hpp"
 
@@ -36,6 +37,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<TimedEvent>("new_shift"),
         component<WeftRecord>("record"),                     // when the wefts arrived in this shift
         component<Console>("console"),
+        component<ThreadScope>("scope"),                     // the worst cycles of the last hour: tappet-browse scope
         component<BrowserService>("browser")),               // who looks in from outside: see tappet-browse
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
         activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
@@ -47,7 +49,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
-        activity("browser", every(20ms),      runs("browser"), not_real_time, stack(256 * 1024))),
+        activity("browser", every(20ms),      runs("scope", "browser"), not_real_time, stack(256 * 1024))),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
         data("shaft.speed_rpm",           "warp.shaft_speed"),

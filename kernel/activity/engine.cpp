@@ -47,6 +47,8 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     cycle_.release = release;
     worst_excess_ = Duration::zero();
     worst_function_ = Miss::nobody;
+    tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
+    if (tape_ != nullptr) tape_->begin();
     watch_wakes();
     if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
     if (awaiting_ != 0) start_awaiting();
@@ -57,6 +59,7 @@ void Engine::run(bool woken) noexcept TAPPET_REALTIME {
     run_behaviours(due || acted); // what ran may have changed a condition
     watch_inputs();
     account();
+    if (tape_ != nullptr) tape_->end(to_ns(cycle_.release), to_ns(cycle_.now), to_ns(lap_));
     end_change(begun);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/activity/command_processor.hpp"
+#include "kernel/activity/cycle_tape.hpp"
 #include "kernel/activity/timing.hpp"
 #include "kernel/base/digest.hpp"
 #include "kernel/component/component.hpp"
@@ -130,6 +131,9 @@ public:
     }
     void on_stop(StopCall call, void* context) noexcept { stop_call_ = call, stop_context_ = context; }
 
+    /// Before start: its cycles are recorded there, whenever that tape is on. It outlives the engine.
+    void record_to(CycleTape* tape) noexcept { recorded_ = tape; }
+
     /// On the starter's thread, while the engine does not run: initialises the components; those that had
     /// been before one refused are finalised again. Empty: all are ready. Not real-time.
     [[nodiscard]] Sentence initialise();
@@ -212,6 +216,7 @@ private:
             worst_usual_ = timing.usual();
         timing.add(took);
         lap_ = end;
+        if (tape_ != nullptr) tape_->mark(index, (end - cycle_.now).count());
     }
     [[nodiscard]] Time due_at(const EngineTimer& timer) const noexcept TAPPET_REALTIME {
         return is_running(plan_.parts[timer.part].state) ? timer.timer->when() : never;
@@ -256,6 +261,8 @@ private:
     Duration worst_took_{};
     Duration worst_usual_{};
     std::uint32_t worst_function_ = Miss::nobody;
+    CycleTape* recorded_ = nullptr;
+    CycleTape* tape_ = nullptr; ///< of this cycle; null: it is not recorded
     std::array<Time, max_wakes_watched> wakes_{};
     std::uint64_t wake_count_ = 0;
     StopCall stop_call_ = nullptr;

@@ -39,9 +39,10 @@ struct ComponentType {
     std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
     bool shares_device = false; ///< it may stand beside the device's driver; what it calls is safe there
     bool behaviour_required = false;
-    bool sees_machine = false;  ///< it is given the machine: a service that shows, stores or changes it
-    bool watches_life = false;  ///< its row names an activity or an output with watches(...)
-    bool slot_required = false; ///< room for a behaviour that is loaded later
+    bool sees_machine = false;   ///< it is given the machine: a service that shows, stores or changes it
+    bool records_cycles = false; ///< it is given the tapes of all activities
+    bool watches_life = false;   ///< its row names an activity or an output with watches(...)
+    bool slot_required = false;  ///< room for a behaviour that is loaded later
     void (*construct)(void* memory) = nullptr;
     Sentence (*configure)(void* component, Setup&) = nullptr;
     Sentence (*initialise)(void* component) = nullptr;
@@ -73,6 +74,7 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
     if constexpr (requires { T::shares_device; }) type.shares_device = T::shares_device;
     if constexpr (requires { T::sees_machine; }) type.sees_machine = T::sees_machine;
+    if constexpr (requires { T::records_cycles; }) type.records_cycles = T::records_cycles;
     if constexpr (requires { T::watches_life; }) type.watches_life = T::watches_life;
     if constexpr (requires { T::slot_required; }) type.slot_required = T::slot_required;
     if constexpr (requires { T::behaviour_required; }) type.behaviour_required = T::behaviour_required;

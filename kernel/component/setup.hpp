@@ -14,6 +14,9 @@
 namespace tappet {
 
 class MachineInstance;
+namespace scope {
+struct Directory;
+} // namespace scope
 
 /// A device as this world has it: the real one, or its twin. `type` is the abstract device class.
 struct ProvidedDevice {
@@ -30,6 +33,7 @@ struct Setup {
     os::Waiter* waiter = nullptr;
     LifeSign watched{};                 ///< only for a type that says `watches_life = true`
     MachineInstance* machine = nullptr; ///< only for a type that says `sees_machine = true`
+    scope::Directory* scope = nullptr;  ///< only for a type that says `records_cycles = true`
 
     /// The row's device, or null when this world has none of that name and class.
     template <class Device>

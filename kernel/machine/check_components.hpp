@@ -25,6 +25,19 @@ constexpr Sentence check_interface(const ComponentRow& row) {
     return {};
 }
 
+/// The tapes have one reader that keeps the worst cycles in the one place for them.
+constexpr Sentence check_recorders(const MachineView& m) {
+    const ComponentRow* first = nullptr;
+    for (const ComponentRow& row : m.components) {
+        if (!row.type->records_cycles) continue;
+        if (first != nullptr)
+            return of_component(row.name, " records the machine's cycles as \"", first->name,
+                                "\" does already; remove one of them");
+        first = &row;
+    }
+    return {};
+}
+
 /// Fills the list by name.
 constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
     if (m.components.empty())
@@ -43,6 +56,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         if (row.type->device_kind.empty() && !row.device.empty())
             return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
     }
+    if (Sentence fault = check_recorders(m); !fault.empty()) return fault;
     sort_by_name(m, r.by_name);
     for (std::size_t i = 1; i < r.by_name.size(); ++i)
         if (const std::string_view name = m.components[r.by_name[i]].name;

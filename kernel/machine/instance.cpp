@@ -9,6 +9,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     if (auto shared = share_memory(); !shared) return shared;
     construct();
     place_engines();
+    place_scope();
     connect_clocks();
     connect_data();
     place_needed_inputs();
@@ -29,7 +30,8 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
                     clock_,
                     &engines()[machine_.index.activity[c]].waiter(),
                     life_sign_of(row.watched),
-                    row.type->sees_machine ? this : nullptr};
+                    row.type->sees_machine ? this : nullptr,
+                    row.type->records_cycles ? at<scope::Directory>(machine_.plan.scope_at) : nullptr};
         if (const Sentence refusal = row.type->configure(component(c), setup); !refusal.empty())
             return std::unexpected(refusal);
     }
@@ -103,6 +105,29 @@ void MachineInstance::place_engines() {
             TAPPET_REALTIME { static_cast<MachineInstance*>(self)->ask_stop(reason, detail, &from); },
             this);
     }
+}
+
+void MachineInstance::place_scope() {
+    if (machine_.plan.scope_at == 0) return;
+    const MachineView& table = machine_.table;
+    const auto behind = [this](std::size_t place) { return place - machine_.plan.scope_at; };
+    auto* directory = new (at<scope::Directory>(machine_.plan.scope_at)) scope::Directory;
+    directory->tapes_at = sizeof(scope::Directory);
+    directory->tapes = static_cast<std::uint32_t>(table.activities.size());
+    directory->recordings_at = behind(machine_.plan.recordings_at);
+    directory->recordings = static_cast<std::uint32_t>(machine_.plan.recordings);
+    directory->recording_stride = scope::recording_bytes;
+    directory->bytes = directory->recordings_at + directory->recordings * directory->recording_stride;
+    for (std::size_t a = 0; a < table.activities.size(); ++a) {
+        const ActivityPlan& plan = machine_.plan.activities[a];
+        new (&scope::tapes(*directory)[a]) scope::Tape{behind(plan.tape_at), table.activities[a].real_time};
+        engines()[a].record_to(new (at<CycleTape>(plan.tape_at)) CycleTape{plan.tape_words});
+    }
+    for (std::size_t i = 0; i < directory->recordings; ++i)
+        new (&scope::recording(*directory, i)) scope::Recording;
+    for (std::size_t c = 0; c < table.components.size(); ++c)
+        if (table.components[c].type->records_cycles)
+            directory->owner = static_cast<std::uint32_t>(machine_.index.activity[c]);
 }
 
 void MachineInstance::connect_clocks() {

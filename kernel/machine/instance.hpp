@@ -217,6 +217,7 @@ private:
     void construct();
     [[nodiscard]] Sentence configure_properties(std::size_t component);
     void place_engines();
+    void place_scope();
     void connect_clocks();
     void connect_data();
     void place_needed_inputs();

@@ -43,6 +43,7 @@ void MachineInstance::place_map() {
     header.block_bytes = machine_.plan.shared_bytes;
     header.process = os::own_process();
     header.forced_at = machine_.plan.observed_at;
+    header.scope_at = machine_.plan.scope_at;
     const os::BuildId build = os::build_id();
     static_assert(sizeof build.digits < sizeof header.build_id);
     std::memcpy(header.build_id.data(), build.digits.data(), build.length);

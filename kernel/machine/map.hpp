@@ -139,6 +139,7 @@ constexpr void Cartographer::draw_components() {
         record.type = text(row.type->tag->name);
         record.device = text(row.device);
         record.activity = static_cast<std::uint32_t>(r_.activity[c]);
+        record.position = static_cast<std::uint32_t>(r_.position[c]);
         record.first_facet = static_cast<std::uint32_t>(n_.facets);
         record.facet_count = static_cast<std::uint32_t>(row.type->facets.size());
         record.bytes = row.type->size;

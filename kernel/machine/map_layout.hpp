@@ -18,7 +18,7 @@
 namespace tappet::map {
 
 inline constexpr std::array<char, 8> magic{'T', 'A', 'P', 'P', 'E', 'T', 'M', 'P'};
-inline constexpr std::uint32_t layout_version = 1;
+inline constexpr std::uint32_t layout_version = 2;
 /// Of an index: there is none.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
@@ -60,6 +60,8 @@ struct Header {
     Section enumerators;
     Section figures;
     Section texts; ///< its stride is 1
+    /// scope::Directory of kernel/machine/scope_layout.hpp: what the machine records of its own cycles.
+    std::uint64_t scope_at = 0;
 };
 
 struct Component {
@@ -69,7 +71,7 @@ struct Component {
     std::uint32_t activity = none;
     std::uint32_t first_facet = 0;
     std::uint32_t facet_count = 0;
-    std::uint32_t reserved = 0;
+    std::uint32_t position = 0; ///< among the components of its activity: the order in which they run
     std::uint64_t place_at = 0;
     std::uint64_t bytes = 0;
 };
@@ -226,7 +228,7 @@ inline constexpr bool is_plain =
 static_assert(is_plain<Header> && is_plain<Component> && is_plain<Facet> && is_plain<Activity> &&
               is_plain<Connection> && is_plain<Reaction> && is_plain<Behaviour> && is_plain<Type> &&
               is_plain<Field> && is_plain<Enumerator> && is_plain<Figure>);
-static_assert(sizeof(Header) == 304 && sizeof(Component) == 56 && sizeof(Facet) == 104 &&
+static_assert(sizeof(Header) == 312 && sizeof(Component) == 56 && sizeof(Facet) == 104 &&
                   sizeof(Activity) == 80 && sizeof(Connection) == 40 && sizeof(Reaction) == 32 &&
                   sizeof(Behaviour) == 24 && sizeof(Type) == 56 && sizeof(Field) == 24 &&
                   sizeof(Enumerator) == 16 && sizeof(Figure) == 48,

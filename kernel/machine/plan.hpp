@@ -5,6 +5,7 @@
 #include "kernel/activity/engine.hpp"
 #include "kernel/machine/behaviour_slot.hpp"
 #include "kernel/machine/plan_operations.hpp"
+#include "kernel/machine/plan_scope.hpp"
 #include "kernel/machine/subscription.hpp"
 
 #include <algorithm>
@@ -33,6 +34,8 @@ struct ActivityPlan {
     std::size_t command_sender_count = 0;
     std::size_t followed_at = 0;
     std::size_t followed_count = 0; ///< commands that may be at work at once
+    std::size_t tape_at = nowhere;  ///< CycleTape, where a component records the machine's cycles
+    std::size_t tape_words = 0;
     std::size_t stack_at = 0;
     std::size_t stack_bytes = 0;
     int priority = 0; ///< SCHED_FIFO; 0: not real-time
@@ -91,7 +94,10 @@ struct PlanView {
     std::span<MailPlan> command_mail;     ///< as mail, of commands alone
     std::span<MailPlan> command_requests; ///< as requests, of commands alone
     std::size_t engines_at = 0;
-    std::size_t observed_at = 0;  ///< Observed
+    std::size_t observed_at = 0; ///< Observed
+    std::size_t scope_at = 0;    ///< scope::Directory; 0: nothing records the machine's cycles
+    std::size_t recordings_at = 0;
+    std::size_t recordings = 0;
     std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
     std::size_t bytes = 0;        ///< of everything below
     std::size_t stack_bytes = 0;  ///< of these, stacks
@@ -301,6 +307,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const TableIn
     detail::plan_commands(m, r, p, ground);
     detail::plan_behaviours(m, r, p, ground);
     p.engines_at = ground.take<Engine>(m.activities.size());
+    detail::plan_scope(m, p, ground);
     const std::size_t before_stacks = ground.used();
     constexpr std::size_t page = 4096;
     p.shared_bytes = (before_stacks + page - 1) / page * page;
@@ -332,18 +339,23 @@ struct Plan {
     std::array<MailPlan, A> command_requests{};
     std::size_t engines_at = 0;
     std::size_t observed_at = 0;
+    std::size_t scope_at = 0;
+    std::size_t recordings_at = 0;
+    std::size_t recordings = 0;
     std::size_t shared_bytes = 0;
     std::size_t bytes = 0;
     std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
-        return {component_at, part_of,      activities, connections,  subscriptions,    subscription_at,
-                behaviours,   mail,         requests,   command_mail, command_requests, engines_at,
-                observed_at,  shared_bytes, bytes,      stack_bytes};
+        return {component_at,     part_of,      activities,  connections, subscriptions,
+                subscription_at,  behaviours,   mail,        requests,    command_mail,
+                command_requests, engines_at,   observed_at, scope_at,    recordings_at,
+                recordings,       shared_bytes, bytes,       stack_bytes};
     }
     constexpr void take_sizes(const PlanView& v) noexcept {
         engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;
         observed_at = v.observed_at, shared_bytes = v.shared_bytes;
+        scope_at = v.scope_at, recordings_at = v.recordings_at, recordings = v.recordings;
     }
 };
 

@@ -49,6 +49,7 @@ const std::vector<Row> house{
 
     // A browser meets a machine at its memory and its socket only.
     {"apps/browser",      {"kernel/base", "kernel/machine/map_layout.hpp", "kernel/machine/map_view.hpp",
+                           "kernel/machine/scope_layout.hpp", "kernel/activity/cycle_tape.hpp",
                            "kernel/services/browsing/protocol.hpp"}},
 
     {"tests",             {"apps", "apps/browser", "apps/carpet_loom/plant"}},
