@@ -65,6 +65,7 @@ public:
 private:
     struct OfActivity {
         std::size_t runs = 0, due = 0;
+        std::int64_t last_end = 0;
         std::map<std::uint32_t, std::size_t> functions{};
     };
 
@@ -100,8 +101,11 @@ private:
         changes_.push_back({std::max(end, waves_.from), wire, false});
     }
     void change(const WaveCycle& cycle) {
-        const OfActivity& wires = of_[cycle.activity];
-        if (cycle.release < cycle.begin) pulse(wires.due, cycle.release, cycle.begin);
+        OfActivity& wires = of_[cycle.activity];
+        // What was due while the cycle before it ran waited for that one's end.
+        if (const std::int64_t due = std::max(cycle.release, wires.last_end); due < cycle.begin)
+            pulse(wires.due, due, cycle.begin);
+        wires.last_end = cycle.end;
         pulse(wires.runs, cycle.begin, cycle.end);
         for (const Block& block : cycle.blocks)
             pulse(wires.functions.at(block.function), block.begin, block.end);

@@ -1,6 +1,7 @@
 // Each operation that is claimed to be wait-free as a function of its own, so that its object code can be
 // looked at: the containers (thesis 4.4), emission, posting and waking (thesis 4.6, 4.2.3).
 #include "kernel/activity/command_processor.hpp"
+#include "kernel/activity/cycle_tape.hpp"
 #include "kernel/component/buffer_port.hpp"
 #include "kernel/component/command.hpp"
 #include "kernel/component/event.hpp"
@@ -85,6 +86,14 @@ CommandState command_take_up(CommandProcessor& processor, CommandSlot& slot) noe
 }
 void command_fail_all(CommandProcessor& processor) noexcept { processor.fail(0); }
 void command_reject_all(CommandProcessor& processor) noexcept { processor.reject_sent(); }
+
+void tape_mark(CycleTape& tape, std::uint32_t function, std::int64_t end) noexcept {
+    tape.mark(function, end);
+}
+void tape_end(CycleTape& tape, std::int64_t begin, std::int64_t end) noexcept { tape.end(begin, begin, end); }
+bool tape_read(const CycleTape& tape, std::uint64_t behind, TapeCycle& cycle) noexcept {
+    return tape.cycle_before(behind, cycle);
+}
 
 std::uint32_t life_ask(LifeRequests& requests) noexcept { return requests.ask(LifeChange::stop).number; }
 bool life_take(LifeRequests& requests, LifeTicket& ticket, LifeChange& change) noexcept {

@@ -65,6 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         Claim{"inbox_post", plain},               Claim{"inbox_pending", plain},         Claim{"inbox_serve", calling},
         Claim{"latest_put", plain},               Claim{"latest_take", plain},
         Claim{"waiter_wake", waking},             Claim{"waiter_take", plain},
+        Claim{"tape_mark", plain},                Claim{"tape_end", plain},              Claim{"tape_read", plain},
         Claim{"output_write", calling},           Claim{"input_read", plain},
         Claim{"buffer_push", calling},            Claim{"buffer_pop", plain},
         Claim{"event_emit", calling},             Claim{"event_post", calling},

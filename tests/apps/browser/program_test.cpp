@@ -53,6 +53,12 @@ TEST_F(Program, lists_components_and_their_facets) {
                 HasSubstr(R"("name": "shaft.angle", "kind": "output")"));
 }
 
+TEST_F(Program, says_that_a_machine_records_no_cycles_and_the_cure) {
+    const Outcome scope = run({"scope", "worst"});
+    EXPECT_EQ(scope.code, 1);
+    EXPECT_THAT(scope.errors, HasSubstr("component<ThreadScope>"));
+}
+
 TEST_F(Program, gets_values_for_people_and_for_programs) {
     machine.write("shaft.angle", 12.5, 77);
     EXPECT_EQ(run({"get", "shaft.angle"}).out, "shaft.angle = 12.5 deg\n");
