@@ -1,0 +1,34 @@
+// What all experiments together found out, as figures, plots and statements.
+#pragma once
+
+#include "apps/figures/experiments/run.hpp"
+#include "apps/figures/measure/result.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace tappet::experiments {
+
+class Findings {
+public:
+    /// The experiment of that name and setting, made when it is not there yet.
+    Experiment& at(std::string_view application, Setting setting);
+    /// Null: it was not run, or has no such task.
+    [[nodiscard]] const Experiment* find(std::string_view application, Setting setting) const;
+    [[nodiscard]] const TaskResult* find(std::string_view application, Setting setting,
+                                         std::string_view task) const;
+    [[nodiscard]] const std::vector<Experiment>& all() const { return experiments_; }
+
+private:
+    std::vector<Experiment> experiments_{};
+};
+
+/// Periods, latencies, exchanges, sends and serving: tables of every application.
+std::vector<figures::Figure> figures_of(const Findings& findings);
+/// The histograms of the thesis: 4.9 and 4.10, 4.14 to 4.23, 4.34 and 4.35, 4.42 and 4.43.
+std::vector<figures::Plot> plots_of(const Findings& findings);
+/// What the thesis draws from them, true or false as measured. Of experiments that were not run there is
+/// none.
+std::vector<figures::Statement> statements_of(const Findings& findings);
+
+} // namespace tappet::experiments

@@ -1,0 +1,281 @@
+// The thesis' statements on its experiments, each with what decides it.
+#include "apps/figures/experiments/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+namespace tappet::experiments {
+
+using figures::Samples;
+using figures::Statement;
+
+namespace {
+
+constexpr const char* application_names[] = {"minimal", "small", "concurrent", "large"};
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, std::abs(value) < 10 ? "%.2f" : "%.0f", value);
+    return text;
+}
+
+/// p99 of how far a period is from what the row says.
+double jitter_us(const TaskResult& task) {
+    Samples deviations;
+    for (const double period : task.periods.values()) deviations.add(std::abs(period - task.period_us));
+    return deviations.quantile(0.99);
+}
+
+double share_near(const Samples& samples, double centre, double tolerance) {
+    if (samples.empty()) return 0;
+    const auto near = std::ranges::count_if(
+        samples.values(), [&](double value) { return std::abs(value - centre) <= tolerance; });
+    return static_cast<double>(near) / static_cast<double>(samples.count());
+}
+
+/// Collects what each application shows; a statement is true when it holds for all that were run.
+class Verdict {
+public:
+    explicit Verdict(std::string text) : text_{std::move(text)} {}
+    void add(bool holds, const std::string& seen) {
+        held_ &= holds;
+        measured_ += (measured_.empty() ? "" : "; ") + seen;
+    }
+    void conclude(std::vector<Statement>& into) const {
+        if (!measured_.empty()) into.push_back({text_, held_, measured_});
+    }
+
+private:
+    std::string text_;
+    bool held_ = true;
+    std::string measured_{};
+};
+
+using Of = const TaskResult&;
+/// For each application in which this task ran in this setting.
+void each_application(const Findings& findings, Setting setting, std::string_view task,
+                      const std::function<void(const std::string&, Of)>& look) {
+    for (const char* application : application_names)
+        if (const TaskResult* found = findings.find(application, setting, task)) look(application, *found);
+}
+
+void judge_periods(const Findings& findings, std::vector<Statement>& into) {
+    Verdict stable{"4.2.3: as lower priorities are added, the period of the highest remains stable (99 % of "
+                   "its deviations at most half as large again as in the minimal application)"};
+    if (const TaskResult* minimal = findings.find("minimal", Setting::none, "high"))
+        each_application(findings, Setting::none, "high", [&](const std::string& name, Of task) {
+            stable.add(jitter_us(task) <= 1.5 * jitter_us(*minimal),
+                       name + " " + number(jitter_us(task)) + " us");
+        });
+    stable.conclude(into);
+
+    Verdict grows{
+        "4.2.3: the lower the priority, the larger the jitter of the period, by preemption (99 % of "
+        "the deviations)"};
+    for (const char* application : application_names) {
+        const Experiment* experiment = findings.find(application, Setting::none);
+        if (experiment == nullptr) continue;
+        double before = 0;
+        std::string seen = application;
+        bool rises = true;
+        std::size_t tasks = 0;
+        for (const TaskResult& task : experiment->tasks) {
+            if (!task.real_time) continue;
+            rises &= tasks++ == 0 || jitter_us(task) > before;
+            before = jitter_us(task);
+            seen += " " + task.name + " " + number(before) + " us";
+        }
+        if (tasks > 1) grows.add(rises, seen);
+    }
+    grows.conclude(into);
+}
+
+void judge_latencies(const Findings& findings, std::vector<Statement>& into) {
+    Verdict steady{
+        "4.2.3: without preemption latencies are highly deterministic: of the highest priority p99.9 "
+        "is at most 1.1 times the median"};
+    each_application(findings, Setting::none, "high", [&](const std::string& name, Of task) {
+        const double ratio = task.latencies.quantile(0.999) / task.latencies.median();
+        steady.add(ratio <= 1.1, name + " " + number(ratio));
+    });
+    steady.conclude(into);
+
+    if (const TaskResult* low = findings.find("small", Setting::none, "low")) {
+        const auto near = [&](double us) { return share_near(low->latencies, us, 0.05 * us); };
+        const double half = near(500), one = near(1000), one_and_half = near(1500);
+        const std::string seen = "within 5 % of 0.5 ms " + number(100 * half) + " %, of 1 ms " +
+                                 number(100 * one) + " %, of 1.5 ms " + number(100 * one_and_half) + " %";
+        into.push_back(
+            {"4.2.3: in the small application the latency of the low priority has two peaks, at 1 ms "
+             "and at 1.5 ms (each at least 5 %, together 90 %)",
+             one >= 0.05 && one_and_half >= 0.05 && one + one_and_half >= 0.9, seen});
+        into.push_back({"4.2.3: what lies between the peaks of the low priority's latency is one load of the "
+                        "highest, 0.5 ms (two neighbouring peaks of at least 5 %, together 90 %)",
+                        (half >= 0.05 && one >= 0.05 && half + one >= 0.9) ||
+                            (one >= 0.05 && one_and_half >= 0.05 && one + one_and_half >= 0.9),
+                        seen});
+    }
+
+    Verdict met{"4.2.3: the loads are schedulable: no real-time activity missed a deadline in any setting"};
+    for (const Experiment& experiment : findings.all())
+        for (const TaskResult& task : experiment.tasks)
+            if (task.real_time && task.misses != 0)
+                met.add(false, experiment.application + ", " +
+                                   std::string{setting_names[static_cast<std::size_t>(experiment.setting)]} +
+                                   ", " + task.name + ": " + std::to_string(task.misses));
+    std::uint64_t executions = 0;
+    for (const Experiment& experiment : findings.all())
+        for (const TaskResult& task : experiment.tasks) executions += task.real_time ? task.executions : 0;
+    if (executions != 0) met.add(true, "of " + std::to_string(executions) + " executions");
+    met.conclude(into);
+}
+
+using Look = std::function<double(const Samples&)>;
+/// Ours against the mutex, of one task in one application.
+void compare(Verdict& verdict, const Findings& findings, const char* application, const char* task,
+             const Look& look, double factor) {
+    const TaskResult* ours = findings.find(application, Setting::data, task);
+    const TaskResult* locked = findings.find(application, Setting::locked, task);
+    if (ours == nullptr || locked == nullptr || ours->exchanges.empty() || locked->exchanges.empty()) return;
+    const double a = look(ours->exchanges), b = look(locked->exchanges);
+    verdict.add(a * factor <= b, std::string{application} + " " + task + " " + number(a) + " ns, locks " +
+                                     number(b) + " ns (p99.9 " + number(ours->exchanges.quantile(0.999)) +
+                                     " and " + number(locked->exchanges.quantile(0.999)) + ")");
+}
+const Look mean = [](const Samples& samples) { return samples.mean(); };
+const Look worst = [](const Samples& samples) { return samples.max(); };
+
+void judge_exchange(const Findings& findings, std::vector<Statement>& into) {
+    const auto one = [&](const char* text, const char* application, const char* task, const Look& look,
+                         double factor) {
+        Verdict verdict{text};
+        compare(verdict, findings, application, task, look, factor);
+        verdict.conclude(into);
+    };
+    one("4.4.4: in the minimal application the exchange without locks is faster on average", "minimal",
+        "high", mean, 1);
+    one("4.4.4: in the minimal application the exchange without locks is about three times as fast on "
+        "average "
+        "(at least 2.5)",
+        "minimal", "high", mean, 2.5);
+    one("4.4.4: in the concurrent application the medium priority exchanges faster on average without locks",
+        "concurrent", "medium", mean, 1);
+    one("4.4.4: in the concurrent application the medium priority has a better worst case without locks",
+        "concurrent", "medium", worst, 1);
+    one("4.4.4: in the concurrent application the low priority's worst case is no longer without locks (10 "
+        "%)",
+        "concurrent", "low", worst, 1 / 1.1);
+
+    Verdict faster{
+        "4.4.4: exchange without locks is faster on average, for every priority in every application"};
+    Verdict bounded{"4.4.4: exchange without locks has the better worst case for the highest priority"};
+    for (const char* application : application_names) {
+        for (const char* task : {"high", "medium", "low", "very_low"})
+            compare(faster, findings, application, task, mean, 1);
+        compare(bounded, findings, application, "high", worst, 1);
+    }
+    faster.conclude(into);
+    bounded.conclude(into);
+}
+
+void judge_waiting(const Findings& findings, std::vector<Statement>& into) {
+    Verdict never{
+        "4.4.4: without locks the highest priority never waits: it gives the processor away at the end "
+        "of its cycle only"};
+    each_application(findings, Setting::data, "high", [&](const std::string& name, Of task) {
+        never.add(task.blocked == 0, name + " " + std::to_string(task.blocked) + " times in " +
+                                         std::to_string(task.executions) + " executions");
+    });
+    never.conclude(into);
+
+    Verdict sometimes{"4.4.4: with locks the highest priority waits for lower ones"};
+    Verdict oftener{"4.4.4: with each lower priority that is added the odds grow that it waits"};
+    double before = -1;
+    std::uint64_t waits = 0;
+    int applications = 0;
+    std::string seen;
+    each_application(findings, Setting::locked, "high", [&](const std::string& name, Of task) {
+        const auto waited = static_cast<double>(task.waited_for_locks);
+        const double odds = 1e6 * waited / static_cast<double>(std::max<std::uint64_t>(1, task.executions));
+        oftener.add(odds > before, name + " " + number(odds) + " in a million executions");
+        before = odds;
+        ++applications;
+        waits += task.waited_for_locks;
+        seen += (seen.empty() ? "" : "; ") + name + " " + std::to_string(task.waited_for_locks) +
+                " times in " + std::to_string(task.executions);
+    });
+    if (!seen.empty()) sometimes.add(waits != 0, seen);
+    sometimes.conclude(into);
+    if (applications > 1) oftener.conclude(into);
+}
+
+/// The concurrent application's three priorities.
+std::vector<const TaskResult*> concurrent_tasks(const Findings& findings, Setting setting) {
+    std::vector<const TaskResult*> tasks;
+    for (const char* name : {"high", "medium", "low"})
+        if (const TaskResult* task = findings.find("concurrent", setting, name)) tasks.push_back(task);
+    return tasks;
+}
+
+void judge_messages(const Findings& findings, Setting setting, std::vector<Statement>& into) {
+    const bool commands = setting == Setting::commands;
+    const std::vector<const TaskResult*> tasks = concurrent_tasks(findings, setting);
+    if (tasks.empty()) return;
+    const std::string section = commands ? "4.5.4: " : "4.6.4: ";
+    const std::string deed = commands ? "sending a command" : "emitting an event";
+
+    Verdict order{section + deed +
+                  " takes the highest priority least on average, the others more by preemption"};
+    double least = 0;
+    for (const TaskResult* task : tasks) {
+        if (task->sends.empty()) continue;
+        if (task == tasks.front()) least = task->sends.mean();
+        order.add(task->sends.mean() >= least, task->name + " " + number(task->sends.mean()) + " ns");
+    }
+    order.conclude(into);
+
+    if (const Samples& sends = tasks.front()->sends; !sends.empty())
+        into.push_back(
+            {section + deed +
+                 " is very deterministic: of the highest priority p99.9 is at most 3 times the median",
+             sends.quantile(0.999) <= 3 * sends.median(),
+             "median " + number(sends.median()) + " ns, p99.9 " + number(sends.quantile(0.999)) +
+                 " ns, worst " + number(sends.max()) + " ns"});
+
+    Verdict load{section + "serving one or two takes 10 or 20 % of the load (medians, within 5 % of it)"};
+    for (const TaskResult* task : tasks)
+        for (const auto& [samples, times] :
+             {std::pair{&task->one_served, 1}, std::pair{&task->two_served, 2}}) {
+            if (samples->empty()) continue;
+            const double ideal = task->load_us * 100 * times; // ns
+            load.add(std::abs(samples->median() - ideal) <= 0.05 * ideal,
+                     task->name + " " + std::to_string(times) + ": " + number(samples->median() / 1e3) +
+                         " of " + number(ideal / 1e3) + " us");
+        }
+    load.conclude(into);
+
+    if (const Samples& one = tasks.front()->one_served; !one.empty())
+        into.push_back(
+            {section + "the engine's processor adds no significant jitter: serving one, p99.9 of the highest "
+                       "priority is at most 1.2 times the median",
+             one.quantile(0.999) <= 1.2 * one.median(),
+             "median " + number(one.median() / 1e3) + " us, p99.9 " + number(one.quantile(0.999) / 1e3) +
+                 " us"});
+}
+
+} // namespace
+
+std::vector<Statement> statements_of(const Findings& findings) {
+    std::vector<Statement> statements;
+    judge_periods(findings, statements);
+    judge_latencies(findings, statements);
+    judge_exchange(findings, statements);
+    judge_waiting(findings, statements);
+    judge_messages(findings, Setting::commands, statements);
+    judge_messages(findings, Setting::events, statements);
+    return statements;
+}
+
+} // namespace tappet::experiments
