@@ -3,6 +3,7 @@
 //     --seconds S            of each application in each setting; the thesis: 300
 //     --application NAME     one of minimal, small, concurrent, large
 //     --setting NAME         one of none, locked, data, commands, events
+#include "apps/figures/experiments/bare.hpp"
 #include "apps/figures/experiments/disturbance.hpp"
 #include "apps/figures/experiments/findings.hpp"
 #include "apps/figures/measure/candidates.hpp"
@@ -114,26 +115,37 @@ int main(int argc, char** argv) {
     figures::Result result{.program = "experiments", .setting = options.setting};
     const int processor = take_one_processor();
     Circumstances circumstances;
-    {
+    // Anew before each run: what else goes on changes how fast a processor is.
+    const auto calibrate = [&] {
         const figures::Undisturbed quiet{processor};
-        if (!quiet.refused().empty()) result.notes.push_back("the system refused: " + quiet.refused());
         circumstances.ns_per_tick = figures::ns_per_tick();
         circumstances.ticks_of_stamps = static_cast<std::uint64_t>(figures::ticks_of_reading());
         circumstances.turns_per_ns = calibrate_load();
-    }
-    stay_on(processor);
+        return quiet.refused();
+    };
+    if (const std::string refused = calibrate(); !refused.empty())
+        result.notes.push_back("the system refused: " + refused);
 
     // In rounds, so that whatever the computer does meanwhile meets all settings alike.
     const double rounds = std::clamp(std::round(seconds), 1.0, 10.0);
+    const auto check = [](const Application& application, const std::string& why_not) {
+        if (!why_not.empty()) refuse(std::string{application.name} + ": " + why_not);
+    };
     Findings findings;
     for (int round = 0; round < static_cast<int>(rounds); ++round)
         for (const Part& part : parts) {
+            const Application& application = *part.application;
+            static_cast<void>(calibrate());
+            stay_on(processor);
             Disturbance disturbance{static_cast<std::uint64_t>(round)};
             if (const auto started = disturbance.start(); !started)
                 refuse(std::string{started.error().view()});
-            const std::string why_not = run_experiment(*part.application, circumstances, seconds / rounds,
-                                                       findings.at(part.application->name, part.setting));
-            if (!why_not.empty()) refuse(std::string{part.application->name} + ": " + why_not);
+            check(application, run_experiment(application, circumstances, seconds / rounds,
+                                              findings.at(application.name, part.setting)));
+            if (part.setting != Setting::none) continue;
+            const Highest highest = highest_of(application);
+            check(application, run_bare(highest.period, highest.load, circumstances, seconds / rounds,
+                                        findings.bare(application.name)));
         }
 
     result.figures = figures_of(findings);

@@ -31,6 +31,13 @@ const TaskResult* Findings::find(std::string_view application, Setting setting, 
     return found == experiment->tasks.end() ? nullptr : &*found;
 }
 
+TaskResult& Findings::bare(std::string_view application) { return bare_[std::string{application}]; }
+
+const TaskResult* Findings::find_bare(std::string_view application) const {
+    const auto found = bare_.find(application);
+    return found == bare_.end() ? nullptr : &found->second;
+}
+
 namespace {
 
 const char* application_names[] = {"minimal", "small", "concurrent", "large"};
@@ -50,7 +57,7 @@ void add(std::vector<Figure>& figures, Figure figure) {
     if (has_ours) figures.push_back(std::move(figure));
 }
 
-void add_times(std::vector<Figure>& figures, const Experiment& experiment) {
+void add_times(std::vector<Figure>& figures, const Experiment& experiment, const TaskResult* bare) {
     const std::string id = "experiments." + experiment.application;
     Figure periods{id + ".period", experiment.application + ": periods, no communication", "us",
                    "thesis 4.2.3, figure 4.9", "from the beginning of one execution to that of the next"};
@@ -62,6 +69,10 @@ void add_times(std::vector<Figure>& figures, const Experiment& experiment) {
         periods.rows.push_back(stated(task.name + ", as its row says", task.period_us));
         latencies.rows.push_back(row_of(task.name, Role::ours, task.latencies));
         latencies.rows.push_back(stated(task.name + ", its load", task.load_us));
+    }
+    if (bare != nullptr) {
+        periods.rows.push_back(row_of("high, a bare thread alone", Role::floor, bare->periods));
+        latencies.rows.push_back(row_of("high, a bare thread alone", Role::floor, bare->latencies));
     }
     add(figures, std::move(periods));
     add(figures, std::move(latencies));
@@ -169,7 +180,8 @@ void add_exchange_plot(std::vector<Plot>& plots, const Findings& findings, const
 std::vector<Figure> figures_of(const Findings& findings) {
     std::vector<Figure> figures;
     for (const std::string application : application_names) {
-        if (const Experiment* none = findings.find(application, Setting::none)) add_times(figures, *none);
+        if (const Experiment* none = findings.find(application, Setting::none))
+            add_times(figures, *none, findings.find_bare(application));
         add_exchanges(figures, findings, application);
         for (const Setting setting : {Setting::commands, Setting::events})
             if (const Experiment* each = findings.find(application, setting)) add_messages(figures, *each);

@@ -4,6 +4,8 @@
 #include "apps/figures/experiments/run.hpp"
 #include "apps/figures/measure/result.hpp"
 
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,7 +15,10 @@ class Findings {
 public:
     /// The experiment of that name and setting, made when it is not there yet.
     Experiment& at(std::string_view application, Setting setting);
+    /// The highest priority of an application as a bare thread, made when it is not there yet.
+    TaskResult& bare(std::string_view application);
     /// Null: it was not run, or has no such task.
+    [[nodiscard]] const TaskResult* find_bare(std::string_view application) const;
     [[nodiscard]] const Experiment* find(std::string_view application, Setting setting) const;
     [[nodiscard]] const TaskResult* find(std::string_view application, Setting setting,
                                          std::string_view task) const;
@@ -21,6 +26,7 @@ public:
 
 private:
     std::vector<Experiment> experiments_{};
+    std::map<std::string, TaskResult, std::less<>> bare_{};
 };
 
 /// Periods, latencies, exchanges, sends and serving: tables of every application.

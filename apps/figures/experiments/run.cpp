@@ -16,8 +16,6 @@ namespace tappet::experiments {
 
 namespace {
 
-constexpr Duration longest_warming = 50ms; // caches, page faults, the start of the others
-
 /// How often a thread has given the processor away by itself; -1 when the system does not say.
 std::int64_t voluntary_switches(int thread) {
     std::ifstream file{"/proc/self/task/" + std::to_string(thread) + "/status"};
@@ -121,7 +119,7 @@ std::string run_experiment(const Application& application, const Circumstances& 
         return "the machine refuses to arm; the reasons stand on standard error";
     }
     const Duration whole{static_cast<std::int64_t>(seconds * 1e9)};
-    const Duration warming = std::min(longest_warming, whole / 2);
+    const Duration warming = warming_of(whole);
     if (!world->start()) return std::string{world->refusal().view()};
     static_cast<void>(world->supervise(warming));
     for (Blocking& each : blocking) each.begin();

@@ -4,6 +4,7 @@
 #include "apps/figures/experiments/applications.hpp"
 #include "apps/figures/measure/samples.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -45,6 +46,9 @@ struct Circumstances {
 /// Runs it for `seconds` and adds to `into`. Empty: done; else why not.
 std::string run_experiment(const Application& application, const Circumstances& circumstances, double seconds,
                            Experiment& into);
+
+/// What is left out at the beginning of a run of that length: caches, page faults, the start of the others.
+constexpr Duration warming_of(Duration whole) { return std::min<Duration>(50ms, whole / 2); }
 
 /// What a task recorded, as samples; the first `warming` ticks are left out.
 void evaluate(std::span<const Execution> executions, Setting setting, double ns_per_tick,

@@ -4,6 +4,7 @@
 
 #include "apps/figures/experiments/load.hpp"
 #include "apps/figures/experiments/locked.hpp"
+#include "apps/figures/experiments/setting.hpp"
 #include "apps/figures/measure/ticks.hpp"
 #include "kernel/activity/timing.hpp"
 #include "kernel/component/component.hpp"
@@ -12,14 +13,8 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 namespace tappet::experiments {
-
-/// How the activities communicate.
-enum class Setting : std::uint8_t { none, locked, data, commands, events };
-inline constexpr std::array<std::string_view, 5> setting_names{"none", "locked", "data", "commands",
-                                                               "events"};
 
 /// 160 bytes: enough to steer 20 degrees of freedom.
 using Packet = std::array<double, 20>;
@@ -135,6 +130,3 @@ private:
 };
 
 } // namespace tappet::experiments
-
-template <>
-inline constexpr auto tappet::names_of<tappet::experiments::Setting> = tappet::experiments::setting_names;

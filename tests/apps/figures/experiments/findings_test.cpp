@@ -153,14 +153,31 @@ TEST(Statements, odds_to_wait_must_grow_with_each_application) {
 TEST(Statements, peaks_of_the_latency_are_where_they_are) {
     const auto judge = [](double one, double other) {
         Findings findings;
+        task(findings, "small", Setting::none, "high").latencies = always(510);
         task(findings, "small", Setting::none, "low").latencies = mixed(one, other);
-        return std::pair{stated(findings, "at 1 ms and at 1.5 ms").held,
-                         stated(findings, "one load of the").held};
+        return std::pair{stated(findings, "preempted once (1 ms) and twice").held,
+                         stated(findings, "one load of the highest apart").held};
     };
-    EXPECT_EQ(judge(1000, 1500), (std::pair{true, true}));
-    EXPECT_EQ(judge(500, 1000), (std::pair{false, true}));
-    EXPECT_EQ(judge(500, 1500), (std::pair{false, false}));
-    EXPECT_EQ(judge(1000, 1000), (std::pair{false, false}));
+    EXPECT_EQ(judge(1020, 1530), (std::pair{true, true}));
+    EXPECT_EQ(judge(510, 1020), (std::pair{false, true}));
+    EXPECT_EQ(judge(510, 1530), (std::pair{false, false}));
+    EXPECT_EQ(judge(1020, 1020), (std::pair{false, false}));
+}
+
+TEST(Statements, the_highest_priority_is_as_steady_as_a_bare_thread_or_not) {
+    for (const double worst : {501.0, 700.0}) {
+        Findings findings;
+        TaskResult& high = task(findings, "large", Setting::none, "high");
+        high.latencies = mixed(500, worst);
+        high.period_us = 1000;
+        high.periods = mixed(1000, 500 + worst);
+        TaskResult& bare = findings.bare("large");
+        bare.latencies = mixed(500, 501);
+        bare.period_us = 1000;
+        bare.periods = mixed(1000, 1001);
+        EXPECT_EQ(stated(findings, "latencies are highly deterministic").held, worst == 501);
+        EXPECT_EQ(stated(findings, "the period of the highest remains stable").held, worst == 501);
+    }
 }
 
 TEST(Statements, serving_takes_its_share_of_the_load_or_more) {

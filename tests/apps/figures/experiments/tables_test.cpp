@@ -1,6 +1,7 @@
 // The four applications are the thesis': periods that drift, loads, priorities, and who talks to whom.
 #include "apps/figures/experiments/applications.hpp"
 #include "apps/figures/experiments/wiring.hpp"
+#include "kernel/machine/instance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
