@@ -20,6 +20,7 @@ struct Loop {
     std::uint64_t turns = 0;
     std::uint64_t ticks_of_stamps = 0;
     std::span<Execution> record{};
+    std::uint64_t misses = 0;
     alignas(4096) std::array<std::byte, 64 * 1024> stack{};
 
     static void live(void* self) noexcept { static_cast<Loop*>(self)->repeat(); }
@@ -34,6 +35,10 @@ struct Loop {
             turn(turns);
             const std::uint64_t passed = figures::ticks() - now.begin;
             now.busy = static_cast<std::uint32_t>(passed > ticks_of_stamps ? passed - ticks_of_stamps : 0);
+            timespec end{};
+            clock_gettime(CLOCK_MONOTONIC, &end);
+            misses +=
+                Duration{(end.tv_sec - next.tv_sec) * 1'000'000'000 + end.tv_nsec - next.tv_nsec} > period;
         }
     }
 };
@@ -57,6 +62,7 @@ std::string run_bare(Duration period, Duration load, const Circumstances& circum
     os::Thread thread;
     if (const auto started = thread.start(plan); !started) return std::string{started.error().view()};
     thread.join();
+    into.misses += loop->misses;
     into.name = "high";
     into.period_us = to_seconds(period) * 1e6;
     into.load_us = to_seconds(load) * 1e6;

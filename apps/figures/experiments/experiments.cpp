@@ -89,14 +89,29 @@ struct Part {
     Setting setting;
 };
 
+/// Whether figures whose id has `only` need that application in that setting.
+bool shows_in(const Application& application, Setting setting, const std::string& only) {
+    const std::string id = "experiments." + std::string{application.name} + ".";
+    const auto meets = [&](const char* what) {
+        return (id + what).contains(only) || only.contains(id + what);
+    };
+    switch (setting) {
+    case Setting::none: return meets("period") || meets("latency") || meets("exchange");
+    case Setting::locked:
+    case Setting::data: return meets("exchange") || meets("latency.high");
+    case Setting::commands: return meets("command");
+    case Setting::events: return meets("event");
+    }
+    return false;
+}
+
 std::vector<Part> parts_of(const Wanted& wanted, const std::string& only) {
     std::vector<Part> parts;
     for (const Application& application : applications())
         for (std::size_t s = 0; s < setting_names.size(); ++s) {
-            const std::string name = std::string{application.name} + "." + std::string{setting_names[s]};
             const bool is_wanted = (wanted.application.empty() || wanted.application == application.name) &&
                                    (wanted.setting.empty() || wanted.setting == setting_names[s]) &&
-                                   name.find(only) != std::string::npos;
+                                   shows_in(application, static_cast<Setting>(s), only);
             if (is_wanted) parts.push_back({&application, static_cast<Setting>(s)});
         }
     return parts;
@@ -111,6 +126,8 @@ int main(int argc, char** argv) {
     constexpr double short_seconds = 2;
     const double seconds = wanted.seconds > 0 ? wanted.seconds : short_seconds * options.scale();
     const std::vector<Part> parts = parts_of(wanted, options.only);
+    if (parts.empty())
+        refuse("no figure has \"" + options.only + "\" in its id; they begin with experiments.");
 
     figures::Result result{.program = "experiments", .setting = options.setting};
     const int processor = take_one_processor();
@@ -149,6 +166,8 @@ int main(int argc, char** argv) {
         }
 
     result.figures = figures_of(findings);
+    std::erase_if(result.figures,
+                  [&](const figures::Figure& each) { return !each.id.contains(options.only); });
     result.plots = plots_of(findings);
     result.statements = statements_of(findings);
     result.notes.push_back("each application ran " + std::to_string(seconds) +

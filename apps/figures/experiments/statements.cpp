@@ -106,19 +106,19 @@ void judge_peaks(const Findings& findings, std::vector<Statement>& into) {
     std::string seen = "load " + number(step) + " us";
     for (std::size_t i = 0; i < share.size(); ++i) {
         const double peak = static_cast<double>(i + 1) * step;
-        share[i] = share_near(low->latencies, peak, 0.1 * step);
+        share[i] = share_near(low->latencies, peak, step / 4);
         seen += ", near " + number(peak) + " us " + number(100 * share[i]) + " %";
     }
     const auto two_peaks = [&](std::size_t first) {
-        return std::min(share[first], share[first + 1]) >= 0.05 && share[first] + share[first + 1] >= 0.8;
+        return std::min(share[first], share[first + 1]) >= 0.05 && share[first] + share[first + 1] >= 0.9;
     };
     into.push_back(
         {"4.2.3: in the small application the latency of the low priority has two peaks, where it was "
-         "preempted once (1 ms) and twice (1.5 ms); each at least 5 %, together 80 %",
+         "preempted once (1 ms) and twice (1.5 ms); each at least 5 %, together 90 %",
          two_peaks(1), seen});
     into.push_back(
         {"4.2.3: preemption shows as two peaks of the low priority's latency that are one load of the "
-         "highest apart; each at least 5 %, together 80 %",
+         "highest apart; each at least 5 %, together 90 %",
          two_peaks(0) || two_peaks(1) || two_peaks(2), seen});
 }
 
@@ -138,16 +138,22 @@ void judge_latencies(const Findings& findings, std::vector<Statement>& into) {
     judge_peaks(findings, into);
 
     Verdict met{"4.2.3: the loads are schedulable: no real-time activity missed a deadline in any setting"};
-    for (const Experiment& experiment : findings.all())
-        for (const TaskResult& task : experiment.tasks)
-            if (task.real_time && task.misses != 0)
-                met.add(false, experiment.application + ", " +
-                                   std::string{setting_names[static_cast<std::size_t>(experiment.setting)]} +
-                                   ", " + task.name + ": " + std::to_string(task.misses));
-    std::uint64_t executions = 0;
-    for (const Experiment& experiment : findings.all())
-        for (const TaskResult& task : experiment.tasks) executions += task.real_time ? task.executions : 0;
-    if (executions != 0) met.add(true, "of " + std::to_string(executions) + " executions");
+    for (const char* application : application_names) {
+        std::uint64_t misses = 0, here = 0;
+        for (const Experiment& experiment : findings.all())
+            for (const TaskResult& task : experiment.tasks) {
+                if (experiment.application != application || !task.real_time) continue;
+                misses += task.misses;
+                here += task.executions;
+            }
+        if (here == 0) continue;
+        std::string seen =
+            std::string{application} + " " + std::to_string(misses) + " of " + std::to_string(here);
+        if (const TaskResult* bare = findings.find_bare(application))
+            seen += " (a bare thread alone " + std::to_string(bare->misses) + " of " +
+                    std::to_string(bare->executions) + ")";
+        met.add(misses == 0, seen);
+    }
     met.conclude(into);
 }
 
@@ -164,6 +170,7 @@ void compare(Verdict& verdict, const Findings& findings, const char* application
                                      " and " + number(locked->exchanges.quantile(0.999)) + ")");
 }
 const Look mean = [](const Samples& samples) { return samples.mean(); };
+const Look all_but_one_in_a_thousand = [](const Samples& samples) { return samples.quantile(0.999); };
 const Look worst = [](const Samples& samples) { return samples.max(); };
 
 void judge_exchange(const Findings& findings, std::vector<Statement>& into) {
@@ -189,13 +196,16 @@ void judge_exchange(const Findings& findings, std::vector<Statement>& into) {
 
     Verdict faster{
         "4.4.4: exchange without locks is faster on average, for every priority in every application"};
+    Verdict mostly{"4.4.4: exchange without locks has the better p99.9 for the highest priority"};
     Verdict bounded{"4.4.4: exchange without locks has the better worst case for the highest priority"};
     for (const char* application : application_names) {
         for (const char* task : {"high", "medium", "low", "very_low"})
             compare(faster, findings, application, task, mean, 1);
+        compare(mostly, findings, application, "high", all_but_one_in_a_thousand, 1);
         compare(bounded, findings, application, "high", worst, 1);
     }
     faster.conclude(into);
+    mostly.conclude(into);
     bounded.conclude(into);
 }
 

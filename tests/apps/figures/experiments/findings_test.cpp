@@ -191,12 +191,12 @@ TEST(Statements, serving_takes_its_share_of_the_load_or_more) {
     }
 }
 
-TEST(Statements, a_missed_deadline_is_named) {
+TEST(Statements, a_missed_deadline_counts_against_its_application) {
     Findings findings;
     task(findings, "large", Setting::events, "low").misses = 3;
     const Statement met = stated(findings, "no real-time activity missed a deadline");
     EXPECT_FALSE(met.held);
-    EXPECT_THAT(met.measured, HasSubstr("large, events, low: 3"));
+    EXPECT_THAT(met.measured, HasSubstr("large 3 of 1000"));
 }
 
 } // namespace
