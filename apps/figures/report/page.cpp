@@ -4,6 +4,7 @@
 #include "apps/figures/report/plots.hpp"
 #include "apps/figures/report/sections.hpp"
 #include "apps/figures/report/style.hpp"
+#include "apps/figures/report/tables.hpp"
 #include "apps/figures/report/text.hpp"
 
 #include <algorithm>
@@ -16,11 +17,6 @@ namespace {
 
 /// A machine of which more than this of fixed work's time varies is called restless.
 constexpr double quiet_percent = 2;
-
-std::string element(const std::string& name, const std::string& inside, const std::string& attributes = {}) {
-    return "<" + name + (attributes.empty() ? "" : " " + attributes) + ">" + inside + "</" + name + ">";
-}
-std::string cell(double value) { return element("td", number_text(value)); }
 
 /// Programs in the order of the sections; what has none comes last.
 std::vector<const ProgramRun*> in_order(const Run& run) {
@@ -37,112 +33,16 @@ std::string title_of(const std::string& program) {
     return found == sections.end() ? program : std::string{found->title};
 }
 
-std::string bar(const Goal& goal) {
-    const double share = goal.limit > 0 && std::isfinite(goal.measured) ? goal.measured / goal.limit : 2;
-    const double width = std::clamp(share, 0.0, 2.0) * 50;
-    return "<span class=\"bar" + std::string{goal.held() ? "" : " over"} +
-           "\"><i style=\"width:" + std::to_string(static_cast<int>(width)) + "%\"></i><u></u></span>";
-}
-std::string goal_row(const Goal& goal) {
-    return element(
-        "tr",
-        element("td", goal.held() ? "held" : "missed", goal.held() ? "class=\"held\"" : "class=\"missed\"") +
-            element("td", escaped(goal.text) + element("span", escaped(goal.detail), "class=\"detail\""),
-                    "class=\"words\"") +
-            element("td", element("b", escaped(quantity(goal.measured, goal.unit)))) +
-            element("td", escaped(quantity(goal.limit, goal.unit))) + element("td", bar(goal)));
-}
 std::string goals(const Run& run) {
     std::string held, missed;
     for (const ProgramRun* program : in_order(run))
-        for (const Goal& goal : program->result.goals) (goal.held() ? held : missed) += goal_row(goal);
+        for (const Goal& goal : program->result.goals) (goal.held() ? held : missed) += goal_row(goal, run);
     if (held.empty() && missed.empty()) return {};
     return "<h2 id=\"goals\">Goals</h2><p class=\"soft\">Ratios of one run on one machine, the missed ones "
            "first. The mark in a "
            "bar's middle is the limit; the bar ends at twice of it.</p><div class=\"wide\"><table><tr><th>"
            "</th><th class=\"words\">goal</th><th>measured</th><th>at most</th><th></th></tr>" +
            missed + held + "</table></div>";
-}
-
-std::string statements(const Result& result) {
-    if (result.statements.empty()) return {};
-    std::string rows;
-    for (const Statement& each : result.statements)
-        rows += element("tr", element("td", each.held ? "true" : "false",
-                                      each.held ? "class=\"held\"" : "class=\"missed\"") +
-                                  element("td", escaped(each.text), "class=\"words\"") +
-                                  element("td", escaped(each.measured), "class=\"words\""));
-    return "<h3>Statements, as measured</h3><div class=\"wide\"><table><tr><th></th><th "
-           "class=\"words\">statement</th>"
-           "<th class=\"words\">what was measured</th></tr>" +
-           rows + "</table></div>";
-}
-
-constexpr const char* class_of(Role role) {
-    return role == Role::ours ? "ours" : role == Role::floor ? "floor" : "peer";
-}
-
-std::string table(const Figure& figure) {
-    const auto first = std::ranges::find(figure.rows, Role::ours, &Row::role);
-    const bool counted =
-        std::ranges::any_of(figure.rows, [](const Row& row) { return row.instructions.has_value(); });
-    std::string rows;
-    for (const Row& row : figure.rows) {
-        const Summary& s = row.summary;
-        const auto others = beside(figure, row);
-        std::string cells = element("td", "<span class=\"role " + std::string{class_of(row.role)} +
-                                              "\"></span>" + escaped(row.name)) +
-                            element("td", class_of(row.role)) + cell(s.median) + cell(s.p99) + cell(s.p999) +
-                            cell(s.max);
-        if (counted) cells += row.instructions ? cell(*row.instructions) : element("td", "-");
-        if (first != figure.rows.end())
-            cells += element("td", number_text(s.median / first->summary.median) + " x");
-        rows += element("tr", cells,
-                        "class=\"" + std::string{class_of(row.role)} + (others.empty() ? "\"" : " joined\""));
-        if (others.empty()) continue;
-        std::string line;
-        for (const Beside& other : others)
-            line += element(
-                "span",
-                element("b", number_text(other.median) + " x") + " " + escaped(other.name) + " (p99 " +
-                    number_text(other.p99) + " x" +
-                    (other.instructions ? ", instructions " + number_text(*other.instructions) + " x" : "") +
-                    ")");
-        rows += element("tr", element("td", line, "colspan=\"8\""), "class=\"beside\"");
-    }
-    return element("h3", escaped(figure.title), "id=\"" + escaped(figure.id) + "\"") +
-           "<p class=\"how\"><code>" + escaped(figure.id) + "</code>, " + escaped(figure.unit) +
-           (figure.how.empty() ? "" : "; " + escaped(figure.how)) +
-           (figure.source.empty() ? "" : "; " + escaped(figure.source)) +
-           "</p><div "
-           "class=\"wide\"><table><tr><th></th><th>role</th><th>median</th><th>p99</th><th>p99.9</"
-           "th><th>max</th>" +
-           (counted ? "<th>instructions</th>" : "") + (first != figure.rows.end() ? "<th>of ours</th>" : "") +
-           "</tr>" + rows + "</table></div>";
-}
-
-/// The drawn plots of a program; many of them fold by what their ids begin with.
-std::string plots(const Result& result, const std::map<const Plot*, std::string>& drawn) {
-    std::vector<std::pair<std::string, std::string>> groups;
-    for (const Plot& plot : result.plots) {
-        const auto found = drawn.find(&plot);
-        if (found == drawn.end() || found->second.empty()) continue;
-        const std::string group = plot.id.substr(0, plot.id.rfind('.'));
-        if (groups.empty() || groups.back().first != group) groups.emplace_back(group, "");
-        groups.back().second += element("figure", element("figcaption", escaped(plot.title)) + found->second);
-    }
-    std::string all;
-    constexpr std::size_t open = 12;
-    if (result.plots.size() <= open) {
-        for (const auto& [group, figures] : groups) all += figures;
-        return all.empty() ? "" : element("div", all, "class=\"plots\"");
-    }
-    for (const auto& [group, figures] : groups)
-        all += element("details",
-                       element("summary", "Plots: " + escaped(group)) +
-                           element("div", figures, "class=\"plots\""),
-                       all.empty() ? "open" : "");
-    return all;
 }
 
 std::string failure(const ProgramRun& program) {
@@ -155,6 +55,14 @@ std::string failure(const ProgramRun& program) {
         "class=\"failure\"");
 }
 
+std::string plots(const Result& result, const std::map<const Plot*, std::string>& drawn) {
+    std::string all;
+    for (const Plot& plot : result.plots)
+        if (const auto found = drawn.find(&plot); found != drawn.end() && !found->second.empty())
+            all += element("figure", element("figcaption", escaped(plot.title)) + found->second);
+    return all.empty() ? "" : element("div", all, "class=\"plots\"");
+}
+
 std::string notes(const Result& result) {
     std::string all;
     for (const std::string& note : result.notes) all += element("li", escaped(note));
@@ -165,9 +73,8 @@ std::string section(const ProgramRun& program, const std::map<const Plot*, std::
     const auto found = std::ranges::find(sections, program.name, &Section::program);
     std::string text = element("h2", escaped(title_of(program.name)), "id=\"" + escaped(program.name) + "\"");
     if (found != sections.end()) text += element("p", std::string{found->about});
-    text += failure(program) + statements(program.result);
-    for (const Figure& figure : program.result.figures) text += table(figure);
-    return text + plots(program.result, drawn) + notes(program.result);
+    return text + failure(program) + statements(program.result) + plots(program.result, drawn) +
+           tables(program.result) + notes(program.result);
 }
 
 std::string noise_row(const std::string& when, const Noise& noise, const Usage* usage) {

@@ -55,6 +55,15 @@ std::vector<std::pair<double, double>> drawable(const Plot& plot, const Series& 
     return points;
 }
 
+/// Large numbers as 1.5k and 2.0M: their digits would run into each other.
+const char* format_of(const Plot& plot, int axis) {
+    constexpr double many_digits = 1e5;
+    for (const Series& series : plot.series)
+        for (const auto& [x, y] : series.points)
+            if (std::abs(axis == 0 ? x : y) >= many_digits) return "'%.1s%c'";
+    return "'%.10g'";
+}
+
 } // namespace
 
 std::string gnuplot_script(const Plot& plot, const std::string& name, const std::string& file) {
@@ -87,7 +96,8 @@ std::string gnuplot_script(const Plot& plot, const std::string& name, const std:
            << "set border 3 lw 0.8\nset tics nomirror out\nset grid lc rgb '#999999' lw 0.3\n"
            << "set key outside top left horizontal Left reverse noenhanced maxcols 3\n"
            << "set xlabel " << quoted(plot.x) << " noenhanced\nset ylabel " << quoted(plot.y)
-           << " noenhanced\nset format x '%.10g'\nset format y '%.10g'\n";
+           << " noenhanced\nset format x " << format_of(plot, 0) << "\nset format y " << format_of(plot, 1)
+           << '\n';
     if (plot.log_x) script << "set logscale x\n";
     if (plot.log_y) script << "set logscale y\n";
     if (plot.histogram) script << (plot.log_y ? "set yrange [0.5:*]\n" : "set yrange [0:*]\n");

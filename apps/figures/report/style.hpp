@@ -35,7 +35,8 @@ th:first-child, td:first-child, td.words, th.words { text-align: left; }
 td.words, td:first-child { white-space: normal; }
 td:first-child { padding-left: 0; min-width: 12rem; } td.held, td.missed { min-width: 0; width: 4.5rem; }
 tr.ours td { font-weight: 600; background: var(--shade); } tr.ours td:first-child { padding-left: .4rem; }
-tr.beside td { text-align: left; padding: 0 0 .4rem 1.6rem; font-size: .83rem; color: var(--soft); background: var(--shade); white-space: normal; }
+tr.beside td { max-width: 0; text-align: left; padding: 0 0 .4rem 1.6rem; font-size: .83rem; color: var(--soft); background: var(--shade); white-space: normal; }
+.words + .words { min-width: 18rem; } td.held + .words, td.missed + .words { min-width: 18rem; }
 tr.joined td { border-bottom: 0; }
 tr.beside b { color: var(--ink); font-weight: 600; } tr.beside span { white-space: nowrap; margin-right: 1.1rem; }
 .role { display: inline-block; width: .62rem; height: .62rem; border-radius: 50%; margin-right: .5rem; }
@@ -50,7 +51,7 @@ pre { overflow-x: auto; font-size: .8rem; margin: .3rem 0; white-space: pre-wrap
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(28rem, 100%), 1fr)); gap: 1rem 1.5rem; margin: 1rem 0; }
 figure { margin: 0; } figcaption { font-size: .88rem; font-weight: 600; margin-bottom: .2rem; }
 figure svg { width: 100%; height: auto; display: block; color: var(--ink); }
-details { margin: 1rem 0; } summary { cursor: pointer; font-weight: 600; }
+details { margin: 1rem 0; } summary { cursor: pointer; font-weight: 600; padding: .4rem 0; border-bottom: 1px solid var(--line); }
 ul.notes li { max-width: 46rem; }
 footer { margin: 4rem auto 2rem; max-width: 68rem; padding: 0 1.25rem; color: var(--soft); font-size: .85rem; }
 @media print { nav { display: none; } h2 { break-after: avoid; } table, figure { break-inside: avoid; } }

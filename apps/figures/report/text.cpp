@@ -39,11 +39,32 @@ std::string quantity(double value, const std::string& unit) {
     return number_text(value) + (unit.empty() ? "" : " " + unit);
 }
 
+namespace {
+
+/// What stands before the first comma.
+std::string key_of(const Row& row) { return row.name.substr(0, row.name.find(',')); }
+
+} // namespace
+
+const Row& ours_beside(const Figure& figure, const Row& other) {
+    const Row* first = &figure.rows.front();
+    bool found = false;
+    for (const Row& row : figure.rows) {
+        if (row.role != Role::ours) continue;
+        if (key_of(row) == key_of(other)) return row;
+        if (!found) first = &row;
+        found = true;
+    }
+    return *first;
+}
+
 std::vector<Beside> beside(const Figure& figure, const Row& row) {
     std::vector<Beside> all;
     if (row.role != Role::ours) return all;
     for (const Row& other : figure.rows) {
         if (other.role == Role::ours || !(other.summary.median > 0)) continue;
+        const std::string key = key_of(ours_beside(figure, other));
+        if (key == key_of(other) && key != key_of(row)) continue;
         all.push_back({other.name, other.role, row.summary.median / other.summary.median,
                        row.summary.p99 / other.summary.p99});
         if (row.instructions && other.instructions && *other.instructions > 0)

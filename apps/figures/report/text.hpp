@@ -24,7 +24,10 @@ struct Beside {
     double median, p99; ///< ours / the other
     std::optional<double> instructions = {};
 };
-/// Of the figure's floors and peers, in its order; none when the row is not ours.
+/// Of the figure's floors and peers, in its order; none when the row is not ours. Where several of ours are
+/// called "high, one" and "low", a floor called "high, its load" stands beside the first alone.
 std::vector<Beside> beside(const Figure& figure, const Row& row);
+/// The row of ours that a floor or a peer stands beside; the figure has one of ours.
+const Row& ours_beside(const Figure& figure, const Row& other);
 
 } // namespace tappet::figures

@@ -115,6 +115,49 @@ TEST(Text, numbers_have_the_digits_that_mean_something) {
     EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "-");
 }
 
+TEST(Text, a_floor_of_one_row_of_ours_stands_beside_that_alone) {
+    const Figure figure{"f",
+                        "t",
+                        "us",
+                        "",
+                        "",
+                        {row("high, one", Role::ours, 20), row("high, its load", Role::floor, 10),
+                         row("low", Role::ours, 60), row("low, its load", Role::floor, 30),
+                         row("mutex", Role::peer, 40)}};
+    const auto names = [&](std::size_t i) {
+        std::vector<std::string> all;
+        for (const Beside& other : beside(figure, figure.rows[i])) all.push_back(other.name);
+        return all;
+    };
+    EXPECT_THAT(names(0), testing::ElementsAre("high, its load", "mutex"));
+    EXPECT_THAT(names(2), testing::ElementsAre("low, its load", "mutex"));
+    EXPECT_THAT(names(1), testing::IsEmpty());
+    EXPECT_EQ(ours_beside(figure, figure.rows[3]).name, "low");
+    EXPECT_EQ(ours_beside(figure, figure.rows[4]).name, "high, one") << "the first of ours";
+}
+
+TEST_F(Page, a_goal_leads_to_its_figure) {
+    Result told = result("exchange", 12);
+    told.goals = {{"is short", 1.2, 1.1, "x", "exchange.write: port / copy"}};
+    run.programs.push_back(ran(told));
+    EXPECT_THAT(text(), HasSubstr("<a href=\"#exchange.write\">exchange.write</a>: port / copy"));
+}
+
+TEST_F(Page, many_figures_are_folded_by_what_their_ids_begin_with) {
+    Result told{"experiments"};
+    for (int i = 0; i < 30; ++i) {
+        Figure figure = result("x", 12).figures[0];
+        figure.id = std::string{i % 2 == 0 ? "experiments.small." : "experiments.large."} + std::to_string(i);
+        told.figures.push_back(figure);
+    }
+    run.programs.push_back(ran(told));
+    const std::string html = text();
+    std::size_t folds = 0;
+    for (auto at = html.find("<details>"); at != html.npos; at = html.find("<details>", at + 1)) ++folds;
+    EXPECT_EQ(folds, 2u);
+    for (const Figure& figure : told.figures) EXPECT_THAT(html, HasSubstr("id=\"" + figure.id + "\""));
+}
+
 TEST(Merged, a_run_comes_back_from_its_json_as_it_was) {
     figures::Run run{"abc", "today", "long"};
     run.machine = {{"processor", "fast"}};

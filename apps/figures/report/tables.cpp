@@ -1,0 +1,120 @@
+// Goals, statements and figures as tables.
+#include "apps/figures/report/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tappet::figures {
+
+namespace {
+
+std::string bar(const Goal& goal) {
+    const double share = goal.limit > 0 && std::isfinite(goal.measured) ? goal.measured / goal.limit : 2;
+    const double width = std::clamp(share, 0.0, 2.0) * 50;
+    return "<span class=\"bar" + std::string{goal.held() ? "" : " over"} +
+           "\"><i style=\"width:" + std::to_string(static_cast<int>(width)) + "%\"></i><u></u></span>";
+}
+/// What a goal was calculated of; the figure's id that it begins with leads there.
+std::string linked(const std::string& detail, const Run& run) {
+    for (const ProgramRun& program : run.programs)
+        for (const Figure& figure : program.result.figures)
+            if (detail.starts_with(figure.id) &&
+                (detail.size() == figure.id.size() || std::string{":;/ "}.contains(detail[figure.id.size()])))
+                return element("a", escaped(figure.id), "href=\"#" + escaped(figure.id) + "\"") +
+                       escaped(detail.substr(figure.id.size()));
+    return escaped(detail);
+}
+constexpr const char* class_of(Role role) {
+    return role == Role::ours ? "ours" : role == Role::floor ? "floor" : "peer";
+}
+
+std::string table(const Figure& figure) {
+    const auto first = std::ranges::find(figure.rows, Role::ours, &Row::role);
+    const bool counted =
+        std::ranges::any_of(figure.rows, [](const Row& row) { return row.instructions.has_value(); });
+    std::string rows;
+    for (const Row& row : figure.rows) {
+        const Summary& s = row.summary;
+        const auto others = beside(figure, row);
+        std::string cells = element("td", "<span class=\"role " + std::string{class_of(row.role)} +
+                                              "\"></span>" + escaped(row.name)) +
+                            element("td", class_of(row.role)) + cell(s.median) + cell(s.p99) + cell(s.p999) +
+                            cell(s.max);
+        if (counted) cells += row.instructions ? cell(*row.instructions) : element("td", "-");
+        if (first != figure.rows.end())
+            cells +=
+                element("td", row.role == Role::ours
+                                  ? ""
+                                  : number_text(s.median / ours_beside(figure, row).summary.median) + " x");
+        rows += element("tr", cells,
+                        "class=\"" + std::string{class_of(row.role)} + (others.empty() ? "\"" : " joined\""));
+        if (others.empty()) continue;
+        std::string line;
+        for (const Beside& other : others)
+            line += element("span", element("b", number_text(other.median) + " x") + " " +
+                                        escaped(other.name) + " (p99 " + number_text(other.p99) + " x" +
+                                        (other.instructions
+                                             ? ", instructions " + number_text(*other.instructions) + " x"
+                                             : "") +
+                                        ")") +
+                    " "; // where a line may break
+        rows += element("tr", element("td", line, "colspan=\"8\""), "class=\"beside\"");
+    }
+    return element("h3", escaped(figure.title), "id=\"" + escaped(figure.id) + "\"") +
+           "<p class=\"how\"><code>" + escaped(figure.id) + "</code>, " + escaped(figure.unit) +
+           (figure.how.empty() ? "" : "; " + escaped(figure.how)) +
+           (figure.source.empty() ? "" : "; " + escaped(figure.source)) +
+           "</p><div "
+           "class=\"wide\"><table><tr><th></th><th>role</th><th>median</th><th>p99</th><th>p99.9</"
+           "th><th>max</th>" +
+           (counted ? "<th>instructions</th>" : "") + (first != figure.rows.end() ? "<th>of ours</th>" : "") +
+           "</tr>" + rows + "</table></div>";
+}
+
+/// "experiments.small" of "experiments.small.latency".
+std::string group_of(const std::string& id) {
+    const auto first = id.find('.');
+    return first == id.npos ? id : id.substr(0, id.find('.', first + 1));
+}
+
+} // namespace
+
+std::string goal_row(const Goal& goal, const Run& run) {
+    return element(
+        "tr",
+        element("td", goal.held() ? "held" : "missed", goal.held() ? "class=\"held\"" : "class=\"missed\"") +
+            element("td", escaped(goal.text) + element("span", linked(goal.detail, run), "class=\"detail\""),
+                    "class=\"words\"") +
+            element("td", element("b", escaped(quantity(goal.measured, goal.unit)))) +
+            element("td", escaped(quantity(goal.limit, goal.unit))) + element("td", bar(goal)));
+}
+std::string statements(const Result& result) {
+    if (result.statements.empty()) return {};
+    std::string rows;
+    for (const Statement& each : result.statements)
+        rows += element("tr", element("td", each.held ? "true" : "false",
+                                      each.held ? "class=\"held\"" : "class=\"missed\"") +
+                                  element("td", escaped(each.text), "class=\"words\"") +
+                                  element("td", escaped(each.measured), "class=\"words\""));
+    return "<h3>Statements, as measured</h3><div class=\"wide\"><table><tr><th></th><th "
+           "class=\"words\">statement</th>"
+           "<th class=\"words\">what was measured</th></tr>" +
+           rows + "</table></div>";
+}
+
+std::string tables(const Result& result) {
+    constexpr std::size_t at_once = 24;
+    std::vector<std::pair<std::string, std::string>> groups;
+    for (const Figure& figure : result.figures) {
+        const std::string group = result.figures.size() > at_once ? group_of(figure.id) : "";
+        auto found = std::ranges::find(groups, group, &std::pair<std::string, std::string>::first);
+        if (found == groups.end()) found = groups.insert(groups.end(), {group, ""});
+        found->second += table(figure);
+    }
+    std::string all;
+    for (const auto& [group, inside] : groups)
+        all += group.empty() ? inside : element("details", element("summary", escaped(group)) + inside);
+    return all;
+}
+
+} // namespace tappet::figures
