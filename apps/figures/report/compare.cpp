@@ -125,13 +125,21 @@ std::string comparison_text(const Comparison& comparison, const std::string& bef
         rounds = std::max(rounds, change.rounds);
     }
     std::string counted;
-    for (const Change& change : comparison.changes)
-        if (change.verdict == Verdict::same && change.role == Role::ours && change.instructions_before &&
-            change.instructions_after && *change.instructions_after != *change.instructions_before)
-            counted += "  " + number_text(*change.instructions_before) + " -> " +
-                       number_text(*change.instructions_after) + "  " + change.figure + ": " + change.row +
-                       "\n";
+    constexpr double least = 0.005; // of the instructions; less is the loop's own rest
+    for (const Change& change : comparison.changes) {
+        if (change.verdict != Verdict::same || change.role != Role::ours) continue;
+        if (!change.instructions_before || !change.instructions_after) continue;
+        const double before_it = *change.instructions_before, after_it = *change.instructions_after;
+        if (std::abs(after_it - before_it) > least * before_it)
+            counted += "  " + number_text(before_it) + " -> " + number_text(after_it) + "  " + change.figure +
+                       ": " + change.row + "\n";
+    }
     if (!counted.empty()) text += "\nother instructions, no other time\n" + counted;
+    std::string restless;
+    for (const Change& change : comparison.changes)
+        if (change.role != Role::ours && std::abs(std::log(change.ratio)) > std::log1p(comparison.margin))
+            restless += "  " + number_text(change.ratio) + " x  " + change.figure + ": " + change.row + "\n";
+    if (!restless.empty()) text += "\nfloors and peers that differ, the same code in both\n" + restless;
     for (const std::string& row : comparison.only_one) text += row + "\n";
     text +=
         "\n" + std::to_string(slower) + " slower, " + std::to_string(faster) + " faster, " +

@@ -107,8 +107,8 @@ int compare_builds(const ReportOptions& options, const std::vector<Program>& now
         }
         for (std::size_t i = 0; i < rounds.size(); ++i) {
             // Instructions do not vary: they are counted once.
-            std::vector<std::string> words{"--brief"};
-            if (!options.counts || i != 0) words.emplace_back("--no-counts");
+            std::vector<std::string> words = arguments(options);
+            if (options.counts && i != 0) words.emplace_back("--no-counts");
             const auto run_one = [&](const Program& which, const char* name, std::vector<Result>& into) {
                 const std::string place = options.output + "/" + which.name + "." + name;
                 ProgramRun run =

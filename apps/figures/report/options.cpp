@@ -35,7 +35,7 @@ std::expected<ReportOptions, std::string> read_report_options(const std::vector<
     };
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
-        if (word == "--long" || word == "--smoke") {
+        if (word == "--long" || word == "--brief" || word == "--smoke") {
             options.setting = word.substr(2);
             continue;
         }
@@ -65,9 +65,6 @@ std::expected<ReportOptions, std::string> read_report_options(const std::vector<
     if (options.output.empty()) return std::unexpected("--output DIR is missing: where the report goes");
     if (options.programs.empty() && options.from.empty())
         return std::unexpected("--programs DIR is missing: the build's folder of figures");
-    if (!options.against.empty() && options.setting != "short")
-        return std::unexpected("--" + options.setting +
-                               " and --against exclude each other: a comparison has rounds of its own");
     return options;
 }
 

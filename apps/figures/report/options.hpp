@@ -15,7 +15,7 @@ struct ReportOptions {
     std::string against = {};      ///< --against DIR: the other build's apps/figures
     std::string against_name = {}; ///< --against-name TEXT
     std::vector<std::string> only = {};
-    std::string setting = "short"; ///< --long, --smoke
+    std::string setting = "short"; ///< --long, --brief, --smoke
     bool counts = true;            ///< --no-counts
     double limit = 0;              ///< --limit SECONDS of each program; 0: as the setting has it
     std::size_t rounds = 6;        ///< --rounds N

@@ -66,7 +66,8 @@ TEST(Compare, floors_and_peers_say_how_much_is_noise) {
     EXPECT_NEAR(comparison.threshold(), 0.3, 0.01);
     EXPECT_EQ(ours(comparison).verdict, Verdict::same);
     EXPECT_THAT(comparison_text(comparison, "old", "new"),
-                HasSubstr("floors and peers, the same code in both"));
+                AllOf(HasSubstr("floors and peers, the same code in both"),
+                      HasSubstr("1.30 x  exchange.write: floor 7")));
 }
 
 TEST(Compare, one_that_is_only_in_one_commit_is_told_and_not_judged) {

@@ -122,7 +122,6 @@ TEST(ReportOptions, wrong_words_are_named) {
     EXPECT_THAT(refused({"--rounds", "2"}), HasSubstr("from 3 to 1000"));
     EXPECT_THAT(refused({"--rounds", "4.5"}), HasSubstr("whole number"));
     EXPECT_THAT(refused({"--limit", "-1"}), HasSubstr("takes a number"));
-    EXPECT_THAT(refused({"--against", "x", "--long"}), HasSubstr("exclude each other"));
     EXPECT_THAT(read_report_options({}).error(), HasSubstr("--output DIR is missing"));
     EXPECT_THAT(read_report_options({"--output", "o"}).error(), HasSubstr("--programs DIR is missing"));
 }
