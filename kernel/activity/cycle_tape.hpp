@@ -92,8 +92,12 @@ public:
     CycleTape& operator=(const CycleTape&) = delete;
 
     /// Whether cycles are recorded; any thread, at any time: it holds from the next cycle on.
-    void turn(bool on) noexcept TAPPET_REALTIME { on_.store(on, std::memory_order_relaxed); }
-    [[nodiscard]] bool is_on() const noexcept TAPPET_REALTIME { return on_.load(std::memory_order_relaxed); }
+    void turn(bool on) noexcept TAPPET_REALTIME {
+        on_.store(on, std::memory_order_relaxed); // no step: it holds from the next cycle on
+    }
+    [[nodiscard]] bool is_on() const noexcept TAPPET_REALTIME {
+        return on_.load(std::memory_order_relaxed); // no step: it holds from the next cycle on
+    }
 
     /// The engine's, in this order. Real-time.
     void begin() noexcept TAPPET_REALTIME { marks_ = left_out_ = 0; }
@@ -114,11 +118,13 @@ public:
         put(at + 1, static_cast<std::uint64_t>(begin));
         put(at + 2, summary);
         position_ = at + TapeCycle::words_beside_marks;
-        head_.store(position_, std::memory_order_release);
+        head_.store(position_, std::memory_order_release); // tape.head
     }
 
     /// Behind the last complete cycle; any thread, any process.
-    [[nodiscard]] std::uint64_t head() const noexcept { return head_.load(std::memory_order_acquire); }
+    [[nodiscard]] std::uint64_t head() const noexcept {
+        return head_.load(std::memory_order_acquire); // tape.look
+    }
     [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
     /// Of one cycle.
     [[nodiscard]] std::size_t most_words() const noexcept {
@@ -126,7 +132,7 @@ public:
     }
     /// What was read from `at` on was not overwritten meanwhile; asked after reading.
     [[nodiscard]] bool holds(std::uint64_t at) const noexcept {
-        return at + capacity_ >= head() + most_words();
+        return at + capacity_ >= head() + most_words(); // tape.check
     }
     /// The cycle that ends where `behind` says: head(), or the `at` of the cycle behind it. False: there is
     /// none, or it is overwritten.
@@ -153,7 +159,7 @@ private:
         first()[at & (capacity_ - 1)].store(word, std::memory_order_release); // tape.word
     }
     [[nodiscard]] std::uint64_t get(std::uint64_t at) const noexcept {
-        return first()[at & (capacity_ - 1)].load(std::memory_order_acquire);
+        return first()[at & (capacity_ - 1)].load(std::memory_order_acquire); // tape.take
     }
 
     std::uint64_t capacity_;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include <grp.h>
@@ -117,6 +118,25 @@ TEST_F(LoomBrowser, tells_each_beat_up) {
     EXPECT_EQ(events.code, 0) << events.text;
     EXPECT_THAT(events.text, HasSubstr("shaft.beat_up"));
     EXPECT_EQ(std::ranges::count(events.text, '\n'), 3) << events.text;
+}
+
+TEST_F(LoomBrowser, shows_the_worst_cycle_and_what_ran_in_it_while_the_loom_weaves) {
+    const Outcome all = browse({"scope"}, an_observer);
+    EXPECT_EQ(all.code, 0) << all.text;
+    EXPECT_THAT(all.text, HasSubstr("a stamp costs "));
+    ASSERT_TRUE(soon([] { return browse({"scope", "worst", "motion"}).code == 0; })) << all.text;
+    const Outcome worst = browse({"scope", "worst", "motion", "--to", "/tmp/worst.json"});
+    EXPECT_EQ(worst.code, 0) << worst.text;
+    for (const char* step :
+         {"motion: ", "network.step", "main.step", "warp.step", "written to /tmp/worst.json"})
+        EXPECT_THAT(worst.text, HasSubstr(step));
+    const Outcome waves = browse({"scope", "record", "--for", "200ms", "--to", "/tmp/waves.vcd"});
+    EXPECT_EQ(waves.code, 0) << waves.text;
+    std::ifstream file{"/tmp/waves.vcd"};
+    const std::string vcd{std::istreambuf_iterator<char>{file}, {}};
+    EXPECT_THAT(vcd, HasSubstr("$enddefinitions $end"));
+    EXPECT_GT(std::ranges::count(vcd, '#'), 400) << "two hundred cycles of motion alone rise and fall";
+    EXPECT_EQ(browse({"scope", "worst", "motoin"}).code, 2);
 }
 
 TEST_F(LoomBrowser, forces_a_lamp_and_shows_that_it_is_forced) {
