@@ -65,17 +65,19 @@ struct TapeMark {
 }
 
 /// Written by one engine, wait-free: one store for each function, four for each cycle, no load of what
-/// another wrote. It overwrites its oldest cycles without asking; a reader finds out afterwards whether what
-/// it read still stood there. Its words lie behind it.
+/// another wrote, and no line that a reader polls. It overwrites its oldest cycles without asking; a reader
+/// finds out afterwards whether what it read still stood there. Its words lie behind it.
 ///
 /// Proof that no torn cycle is handed out: all words are stored with release and loaded with acquire. A
 /// reader that loads a word of a later round than it meant therefore sees in head() at least the position at
 /// which that later cycle began, which is less than most_words() before the word; holds() is then false.
-class alignas(64) CycleTape {
+class CycleTape {
+    static constexpr std::size_t apart = 128; // two lines: the processor fetches them in pairs
+
 public:
     static constexpr std::size_t fewest_words = 64;
     static constexpr std::uint32_t most_marks_ever = 4095;
-    static constexpr std::size_t alignment = 64;
+    static constexpr std::size_t alignment = apart;
 
     [[nodiscard]] static constexpr std::size_t bytes_for(std::size_t words) noexcept {
         return sizeof(CycleTape) + words * sizeof(std::uint64_t);
@@ -162,15 +164,18 @@ private:
         return first()[at & (capacity_ - 1)].load(std::memory_order_acquire); // tape.take
     }
 
-    std::uint64_t capacity_;
+    // Read by everybody, written as good as never.
+    alignas(apart) std::uint64_t capacity_;
     std::uint32_t most_marks_;
     std::atomic<bool> on_{true};
-    std::atomic<std::uint64_t> head_{0};
+    // What readers poll.
+    alignas(apart) std::atomic<std::uint64_t> head_{0};
     // The engine's own.
-    std::uint64_t position_ = 0;
+    alignas(apart) std::uint64_t position_ = 0;
     std::uint32_t marks_ = 0;
     std::uint32_t left_out_ = 0;
 };
-static_assert(sizeof(CycleTape) == 64 && std::atomic<std::uint64_t>::is_always_lock_free);
+static_assert(sizeof(CycleTape) == 3 * CycleTape::alignment &&
+              std::atomic<std::uint64_t>::is_always_lock_free);
 
 } // namespace tappet

@@ -1,26 +1,15 @@
 // What recording every cycle costs: an engine's step with the thread scope on, switched off and not in the
 // table at all, beside the time stamps that the engine takes anyway (thesis A.2.1).
-#include "apps/figures/measure/candidates.hpp"
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance.hpp"
-#include "kernel/services/scope/thread_scope.hpp"
+#include "apps/figures/scope/machine.hpp"
 
 #include <array>
-#include <cstdlib>
-#include <iostream>
+#include <cstdio>
 
 namespace tappet::figures {
 
 namespace {
 
 constexpr auto origin = "thesis A.2.1";
-
-/// As little as can be seen.
-struct Idle {
-    std::uint64_t steps = 0;
-    void step(const Cycle&) noexcept TAPPET_REALTIME { ++steps; }
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
 
 // clang-format off
 constexpr auto one_bare = machine("one",
@@ -47,30 +36,7 @@ constexpr auto ten_off = ten_scoped;
 constexpr auto one_timeless = one_bare;
 constexpr auto one_timeless_scoped = one_scoped;
 constexpr auto looked_at = ten_scoped;
-constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
-
-struct World {
-    os::Clock clock;
-    MachineInstance instance;
-    World(os::Clock::Kind kind, const AcceptedMachine& machine) : clock{kind}, instance{machine, clock} {
-        if (const auto configured = instance.configure({}); !configured) {
-            std::cerr << configured.error().view() << '\n';
-            std::exit(2);
-        }
-        for (Engine& engine : instance.engines()) {
-            if (const Sentence refusal = engine.initialise(); !refusal.empty()) {
-                std::cerr << refusal.view() << '\n';
-                std::exit(2);
-            }
-            engine.start(clock.now());
-        }
-    }
-    [[nodiscard]] scope::Directory& directory() {
-        const AcceptedMachine& machine = instance.machine();
-        return *reinterpret_cast<scope::Directory*>(machine.memory.data() + machine.plan.scope_at);
-    }
-};
 
 /// As its activity does it each time that it is woken.
 template <const auto& table, os::Clock::Kind kind, bool off = false>
@@ -226,6 +192,7 @@ int main(int argc, char** argv) {
     const Options options = read_options(argc, argv);
     Result result{.program = "scope", .setting = options.setting};
     run_candidates(options, argv, groups(), {}, result);
+    if (std::string_view{"scope.followed"}.contains(options.only)) add_followed(options, result);
     add_statements(result);
     return finish(options, result);
 }
