@@ -108,7 +108,7 @@ void add_exchanges(std::vector<Figure>& figures, const Findings& findings, const
     add(figures, std::move(latency));
 }
 
-void add_messages(std::vector<Figure>& figures, const Experiment& experiment) {
+void add_messages(std::vector<Figure>& figures, const Findings& findings, const Experiment& experiment) {
     const bool commands = experiment.setting == Setting::commands;
     const std::string id = "experiments." + experiment.application + (commands ? ".command" : ".event");
     const std::string what = experiment.application + (commands ? ": commands, " : ": events, ");
@@ -117,6 +117,7 @@ void add_messages(std::vector<Figure>& figures, const Experiment& experiment) {
                 source, "of one, preemptions included"};
     Figure served{id + ".serve", what + "serving them behind the execution", "us", source,
                   "from the end of the execution, taking them out of their queue included"};
+    const Experiment* const none = findings.find(experiment.application, Setting::none);
     for (const TaskResult& task : experiment.tasks) {
         sent.rows.push_back(row_of(task.name, Role::ours, task.sends));
         if (!task.real_time) continue;
@@ -128,22 +129,49 @@ void add_messages(std::vector<Figure>& figures, const Experiment& experiment) {
         served.rows.push_back(row_of(task.name + ", one", Role::ours, in_us(task.one_served)));
         served.rows.push_back(row_of(task.name + ", two", Role::ours, in_us(task.two_served)));
         served.rows.push_back(stated(task.name + ", the load of one", task.load_us / 10));
+        served.rows.push_back(stated(task.name + ", the load of two", task.load_us / 5));
     }
+    if (none != nullptr)
+        for (const TaskResult& task : none->tasks)
+            sent.rows.push_back(row_of(task.name + (commands ? ", one bare message" : ", two bare messages"),
+                                       Role::floor, commands ? task.one_message : task.two_messages));
     add(figures, std::move(sent));
     add(figures, std::move(served));
 }
 
-constexpr std::size_t bins = 120;
-constexpr double shown = 0.999; ///< of the samples; the rest stands in the last bin
+using Select = Samples TaskResult::*;
 
 /// One series for each real-time task of an experiment.
 void add_plot(std::vector<Plot>& plots, const Experiment* experiment, std::string id, std::string title,
-              std::string x, const Samples TaskResult::* samples) {
+              std::string x, Select samples) {
     if (experiment == nullptr) return;
-    Plot plot{std::move(id), std::move(title), std::move(x), "executions", true, false, true, {}};
+    Plot plot{std::move(id), std::move(title), std::move(x), "executions", true, true, true, {}};
     for (const TaskResult& task : experiment->tasks)
         if (task.real_time && !(task.*samples).empty())
-            plot.series.push_back(figures::histogram(task.name, Role::ours, task.*samples, bins, shown));
+            plot.series.push_back(figures::log_histogram(task.name, Role::ours, task.*samples));
+    if (!plot.series.empty()) plots.push_back(std::move(plot));
+}
+
+/// How far periods were from what the rows say: on one axis, whatever their length.
+void add_period_plot(std::vector<Plot>& plots, const Findings& findings, const std::string& application) {
+    const Experiment* experiment = findings.find(application, Setting::none);
+    if (experiment == nullptr) return;
+    Plot plot{"experiments.figure.4.9." + application,
+              "Figure 4.9: " + application + ", execution periods",
+              "us from the period of the row, 99 % of the executions",
+              "executions",
+              true,
+              false,
+              true,
+              {}};
+    for (const TaskResult& task : experiment->tasks) {
+        if (!task.real_time || task.periods.empty()) continue;
+        const double from = task.periods.quantile(0.005), to = task.periods.quantile(0.995);
+        Samples shown;
+        for (const double period : task.periods.values())
+            if (period >= from && period <= to) shown.add(period - task.period_us);
+        plot.series.push_back(figures::histogram(task.name, Role::ours, shown));
+    }
     if (!plot.series.empty()) plots.push_back(std::move(plot));
 }
 
@@ -162,17 +190,17 @@ void add_exchange_plot(std::vector<Plot>& plots, const Findings& findings, const
     const TaskResult* ours = findings.find(wanted.application, Setting::data, wanted.task);
     const TaskResult* locked = findings.find(wanted.application, Setting::locked, wanted.task);
     if (ours == nullptr || locked == nullptr) return;
-    plots.push_back({std::string{"experiments.figure."} + wanted.number,
-                     std::string{"Figure "} + wanted.number + ": " + wanted.application +
-                         ", communication of the task \"" + wanted.task + "\"",
-                     "ns in one execution",
-                     "executions",
-                     true,
-                     false,
-                     true,
-                     {figures::histogram("connectors", Role::ours, ours->exchanges, bins, shown),
-                      figures::histogram("mutex with priority inheritance", Role::peer, locked->exchanges,
-                                         bins, shown)}});
+    plots.push_back(
+        {std::string{"experiments.figure."} + wanted.number,
+         std::string{"Figure "} + wanted.number + ": " + wanted.application +
+             ", communication of the task \"" + wanted.task + "\"",
+         "ns in one execution",
+         "executions",
+         true,
+         true,
+         true,
+         {figures::log_histogram("connectors", Role::ours, ours->exchanges),
+          figures::log_histogram("mutex with priority inheritance", Role::peer, locked->exchanges)}});
 }
 
 } // namespace
@@ -184,7 +212,8 @@ std::vector<Figure> figures_of(const Findings& findings) {
             add_times(figures, *none, findings.find_bare(application));
         add_exchanges(figures, findings, application);
         for (const Setting setting : {Setting::commands, Setting::events})
-            if (const Experiment* each = findings.find(application, setting)) add_messages(figures, *each);
+            if (const Experiment* each = findings.find(application, setting))
+                add_messages(figures, findings, *each);
     }
     return figures;
 }
@@ -193,8 +222,7 @@ std::vector<Plot> plots_of(const Findings& findings) {
     std::vector<Plot> plots;
     for (const std::string application : application_names) {
         const Experiment* none = findings.find(application, Setting::none);
-        add_plot(plots, none, "experiments.figure.4.9." + application,
-                 "Figure 4.9: " + application + ", execution periods", "us", &TaskResult::periods);
+        add_period_plot(plots, findings, application);
         add_plot(plots, none, "experiments.figure.4.10." + application,
                  "Figure 4.10: " + application + ", latencies", "us", &TaskResult::latencies);
     }

@@ -67,7 +67,11 @@ void evaluate(std::span<const Execution> executions, Setting setting, double ns_
         into.latencies.add(ns(now.busy) / 1e3);
         if (i + 1 == executions.size()) break; // what followed it was not seen
         into.periods.add(ns(executions[i + 1].begin - now.begin) / 1e3);
-        if (setting == Setting::none) into.copies.add(ns(now.copies));
+        if (setting == Setting::none) {
+            into.copies.add(ns(now.copies));
+            if (now.one_message != 0) into.one_message.add(ns(now.one_message));
+            if (now.two_messages != 0) into.two_messages.add(ns(now.two_messages));
+        }
         if (setting == Setting::locked || setting == Setting::data) into.exchanges.add(ns(now.exchange));
         if (now.sent != 0) into.sends.add(ns(now.sent));
         const auto serving = static_cast<double>(now.serving);

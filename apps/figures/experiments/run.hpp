@@ -17,11 +17,13 @@ struct TaskResult {
     double period_us = 0; ///< as the table says
     double load_us = 0;
     bool real_time = false;
-    figures::Samples periods{};   ///< from begin to begin
-    figures::Samples latencies{}; ///< from begin to end
-    figures::Samples exchanges{}; ///< in each execution, around data flow
-    figures::Samples copies{};    ///< the same packets, copied by one thread
-    figures::Samples sends{};     ///< of one command, or of one event
+    figures::Samples periods{};      ///< from begin to begin
+    figures::Samples latencies{};    ///< from begin to end
+    figures::Samples exchanges{};    ///< in each execution, around data flow
+    figures::Samples copies{};       ///< the same packets, copied by one thread
+    figures::Samples one_message{};  ///< stored in place, and announced by an atomic OR
+    figures::Samples two_messages{}; ///< in two places
+    figures::Samples sends{};        ///< of one command, or of one event
     figures::Samples one_served{};
     figures::Samples two_served{}; ///< behind one execution
     figures::Samples served{};     ///< any number but none

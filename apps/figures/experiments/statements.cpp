@@ -110,15 +110,15 @@ void judge_peaks(const Findings& findings, std::vector<Statement>& into) {
         seen += ", near " + number(peak) + " us " + number(100 * share[i]) + " %";
     }
     const auto two_peaks = [&](std::size_t first) {
-        return std::min(share[first], share[first + 1]) >= 0.05 && share[first] + share[first + 1] >= 0.9;
+        return std::min(share[first], share[first + 1]) >= 0.01 && share[first] + share[first + 1] >= 0.9;
     };
     into.push_back(
         {"4.2.3: in the small application the latency of the low priority has two peaks, where it was "
-         "preempted once (1 ms) and twice (1.5 ms); each at least 5 %, together 90 %",
+         "preempted once (1 ms) and twice (1.5 ms); each at least 1 %, together 90 %",
          two_peaks(1), seen});
     into.push_back(
         {"4.2.3: preemption shows as two peaks of the low priority's latency that are one load of the "
-         "highest apart; each at least 5 %, together 90 %",
+         "highest apart; each at least 1 %, together 90 %",
          two_peaks(0) || two_peaks(1) || two_peaks(2), seen});
 }
 
@@ -165,11 +165,15 @@ void compare(Verdict& verdict, const Findings& findings, const char* application
     const TaskResult* locked = findings.find(application, Setting::locked, task);
     if (ours == nullptr || locked == nullptr || ours->exchanges.empty() || locked->exchanges.empty()) return;
     const double a = look(ours->exchanges), b = look(locked->exchanges);
-    verdict.add(a * factor <= b, std::string{application} + " " + task + " " + number(a) + " ns, locks " +
-                                     number(b) + " ns (p99.9 " + number(ours->exchanges.quantile(0.999)) +
-                                     " and " + number(locked->exchanges.quantile(0.999)) + ")");
+    std::string seen =
+        std::string{application} + " " + task + " " + number(a) + " ns, locks " + number(b) + " ns";
+    const TaskResult* bare = findings.find(application, Setting::none, task);
+    if (bare != nullptr && !bare->copies.empty())
+        seen += ", bare copies " + number(look(bare->copies)) + " ns";
+    verdict.add(a * factor <= b, seen);
 }
 const Look mean = [](const Samples& samples) { return samples.mean(); };
+const Look median = [](const Samples& samples) { return samples.median(); };
 const Look all_but_one_in_a_thousand = [](const Samples& samples) { return samples.quantile(0.999); };
 const Look worst = [](const Samples& samples) { return samples.max(); };
 
@@ -186,6 +190,8 @@ void judge_exchange(const Findings& findings, std::vector<Statement>& into) {
         "average "
         "(at least 2.5)",
         "minimal", "high", mean, 2.5);
+    one("4.4.4: in the minimal application the exchange without locks is faster in the median", "minimal",
+        "high", median, 1);
     one("4.4.4: in the concurrent application the medium priority exchanges faster on average without locks",
         "concurrent", "medium", mean, 1);
     one("4.4.4: in the concurrent application the medium priority has a better worst case without locks",
@@ -196,15 +202,19 @@ void judge_exchange(const Findings& findings, std::vector<Statement>& into) {
 
     Verdict faster{
         "4.4.4: exchange without locks is faster on average, for every priority in every application"};
+    Verdict usually{
+        "4.4.4: exchange without locks is faster in the median, for every priority in every application"};
     Verdict mostly{"4.4.4: exchange without locks has the better p99.9 for the highest priority"};
     Verdict bounded{"4.4.4: exchange without locks has the better worst case for the highest priority"};
     for (const char* application : application_names) {
         for (const char* task : {"high", "medium", "low", "very_low"})
-            compare(faster, findings, application, task, mean, 1);
+            compare(faster, findings, application, task, mean, 1),
+                compare(usually, findings, application, task, median, 1);
         compare(mostly, findings, application, "high", all_but_one_in_a_thousand, 1);
         compare(bounded, findings, application, "high", worst, 1);
     }
     faster.conclude(into);
+    usually.conclude(into);
     mostly.conclude(into);
     bounded.conclude(into);
 }

@@ -8,6 +8,7 @@
 #include "apps/figures/measure/ticks.hpp"
 #include "kernel/activity/timing.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/exchange/mailbox.hpp"
 
 #include <array>
 #include <atomic>
@@ -23,12 +24,14 @@ static_assert(sizeof(Packet) == 160);
 /// What is known of one execution of a task. Times in ticks of the time stamp counter, the stamps' own cost
 /// taken off.
 struct Execution {
-    std::uint64_t begin = 0;    ///< as read
-    std::uint32_t busy = 0;     ///< from begin to the end of the step
-    std::uint32_t exchange = 0; ///< of it, around data flow
-    std::uint32_t sent = 0;     ///< of it, around sending commands or emitting events
-    std::uint32_t copies = 0;   ///< as many bare copies of packets as data ports are connected
-    std::uint32_t served = 0;   ///< commands or events between this execution and the next
+    std::uint64_t begin = 0;        ///< as read
+    std::uint32_t busy = 0;         ///< from begin to the end of the step
+    std::uint32_t exchange = 0;     ///< of it, around data flow
+    std::uint32_t sent = 0;         ///< of it, around sending commands or emitting events
+    std::uint32_t copies = 0;       ///< as many bare copies of packets as data ports are connected
+    std::uint32_t one_message = 0;  ///< a message stored in place, and announced by an atomic OR
+    std::uint32_t two_messages = 0; ///< two of them, in two places
+    std::uint32_t served = 0;       ///< commands or events between this execution and the next
     std::uint64_t serving = 0; ///< ns: what they took together, from the end of the step or of the one before
 };
 
@@ -112,6 +115,7 @@ private:
     void send(Execution& now) noexcept TAPPET_REALTIME;
     void emit(Execution& now) noexcept TAPPET_REALTIME;
     [[nodiscard]] std::uint32_t copy_bare() noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::uint32_t post_bare(std::size_t messages) noexcept TAPPET_REALTIME;
     void serve() noexcept TAPPET_REALTIME { turn(turns_of_service_); }
 
     Assignment assignment_{};
@@ -126,6 +130,8 @@ private:
     Packet own_{};
     Packet seen_{};
     std::array<Packet, 4> bare_{};
+    std::array<Message, 2> messages_{};
+    std::array<std::atomic<std::uint64_t>, 2> announced_{};
     std::atomic<int> thread_{0};
 };
 

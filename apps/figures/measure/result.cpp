@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <map>
 
 namespace tappet::figures {
 
@@ -116,6 +118,23 @@ Series histogram(std::string name, Role role, const Samples& samples, std::size_
     for (const double value : samples.values()) {
         const auto bin = static_cast<std::size_t>(std::max(0.0, (value - from) / width));
         ++series.points[std::min(bin, bins - 1)].second;
+    }
+    return series;
+}
+
+Series log_histogram(std::string name, Role role, const Samples& samples, int in_a_decade) {
+    Series series{std::move(name), role, {}};
+    const auto bin_of = [&](double value) {
+        return static_cast<int>(std::floor(std::log10(value) * in_a_decade));
+    };
+    std::map<int, double> bins;
+    for (const double value : samples.values())
+        if (value > 0) ++bins[bin_of(value)];
+    if (bins.empty()) return series;
+    for (int bin = bins.begin()->first; bin <= bins.rbegin()->first; ++bin) {
+        const auto found = bins.find(bin);
+        series.points.emplace_back(std::pow(10, static_cast<double>(bin) / in_a_decade),
+                                   found == bins.end() ? 0 : found->second);
     }
     return series;
 }

@@ -87,4 +87,8 @@ struct Result {
 Series histogram(std::string name, Role role, const Samples& samples, std::size_t bins = 100,
                  double upto = 1);
 
+/// As above, of positive samples, over all of them: each bin is so wide that `in_a_decade` of them make a
+/// factor of ten, so that a peak and a worst case far away from it are both seen. For a plot with log_x.
+Series log_histogram(std::string name, Role role, const Samples& samples, int in_a_decade = 40);
+
 } // namespace tappet::figures

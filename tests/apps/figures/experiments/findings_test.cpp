@@ -97,6 +97,30 @@ TEST(Plots, show_both_ways_of_exchange_in_the_figure_of_the_thesis) {
     EXPECT_EQ(plots[0].series.size(), 2u);
 }
 
+TEST(Plots, show_a_peak_and_a_worst_case_far_away_alike) {
+    Samples samples = always(101);
+    samples.add(20'100);
+    const auto series = figures::log_histogram("", Role::ours, samples, 10);
+    ASSERT_EQ(series.points.size(), 24u) << "ten bins for each factor of ten";
+    EXPECT_DOUBLE_EQ(series.points.front().first, 100);
+    EXPECT_EQ(series.points.front().second, 1000);
+    EXPECT_LE(series.points.back().first, 20'100);
+    EXPECT_EQ(series.points.back().second, 1);
+    EXPECT_EQ(series.points[10].second, 0);
+    EXPECT_TRUE(figures::log_histogram("", Role::ours, {}).points.empty());
+}
+
+TEST(Plots, show_periods_by_what_they_differ_from_the_row) {
+    Findings findings;
+    TaskResult& low = task(findings, "large", Setting::none, "low");
+    low.period_us = 10'000;
+    low.periods = mixed(9'990, 10'020);
+    const auto plots = plots_of(findings);
+    ASSERT_EQ(plots.size(), 1u);
+    EXPECT_EQ(plots[0].id, "experiments.figure.4.9.large");
+    EXPECT_EQ(plots[0].series.at(0).points.front().first, -10);
+}
+
 TEST(Statements, of_what_was_not_run_nothing_is_said) { EXPECT_TRUE(statements_of(Findings{}).empty()); }
 
 TEST(Statements, exchange_without_locks_is_faster_or_not) {
@@ -125,7 +149,7 @@ TEST(Statements, one_application_in_which_it_is_slower_refutes_it_for_all) {
         task(findings, name, Setting::data, "high").exchanges = always(name[0] == 'm' ? 100 : 400);
         task(findings, name, Setting::locked, "high").exchanges = always(300);
     }
-    const Statement all = stated(findings, "for every priority");
+    const Statement all = stated(findings, "on average, for every priority");
     EXPECT_FALSE(all.held);
     EXPECT_THAT(all.measured, HasSubstr("small high 400 ns, locks 300 ns"));
 }
