@@ -86,7 +86,8 @@ Result<std::vector<Kept>> worst_of(const ScopeReader& scope, const std::string& 
         return static_cast<double>(each.of.rank_ns) / static_cast<double>(deadline > 0 ? deadline : 1);
     };
     if (activity.empty())
-        std::ranges::stable_sort(*kept, [&](const Kept& a, const Kept& b) { return share(a) > share(b); });
+        std::ranges::sort(*kept, {},
+                          [&](const Kept& each) { return std::pair{-share(each), each.of.serial}; });
     return std::move(*kept);
 }
 

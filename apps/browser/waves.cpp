@@ -135,7 +135,8 @@ std::optional<std::vector<Kept>> ScopeReader::worst() const {
         whole = copy_worst(found);
     }
     if (!whole) return std::nullopt;
-    std::ranges::stable_sort(found, [](const Kept& a, const Kept& b) { return a.of.rank_ns > b.of.rank_ns; });
+    std::ranges::sort(found, {},
+                      [](const Kept& kept) { return std::pair{-kept.of.rank_ns, kept.of.serial}; });
     return found;
 }
 

@@ -33,6 +33,7 @@ struct Change {
     std::int64_t time = 0;
     std::size_t wire = 0;
     bool value = false;
+    std::size_t nth = 0; ///< of two at one time the first comes first
 };
 
 /// The wires of one activity, and what becomes of them.
@@ -43,7 +44,7 @@ public:
     }
     [[nodiscard]] std::string write() {
         for (const WaveCycle& cycle : waves_.cycles) change(cycle);
-        std::ranges::stable_sort(changes_, {}, &Change::time);
+        std::ranges::sort(changes_, {}, [](const Change& each) { return std::pair{each.time, each.nth}; });
         std::string text = "$version tappet-browse scope $end\n$comment time 0 is " +
                            std::to_string(waves_.from) + " ns of the machine's clock; each stamp cost " +
                            std::to_string(waves_.stamp_ns) +
@@ -97,8 +98,8 @@ private:
         return wires_++;
     }
     void pulse(std::size_t wire, std::int64_t begin, std::int64_t end) {
-        changes_.push_back({std::max(begin, waves_.from), wire, true});
-        changes_.push_back({std::max(end, waves_.from), wire, false});
+        changes_.push_back({std::max(begin, waves_.from), wire, true, changes_.size()});
+        changes_.push_back({std::max(end, waves_.from), wire, false, changes_.size()});
     }
     void change(const WaveCycle& cycle) {
         OfActivity& wires = of_[cycle.activity];
