@@ -28,47 +28,67 @@ constexpr const char* class_of(Role role) {
     return role == Role::ours ? "ours" : role == Role::floor ? "floor" : "peer";
 }
 
+/// Which columns a figure has.
+struct Columns {
+    bool spread;  ///< more was measured than one value
+    bool counted; ///< instructions
+    bool ours;    ///< something to stand beside
+    explicit Columns(const Figure& figure)
+        : spread{std::ranges::any_of(figure.rows, [](const Row& row) { return row.summary.count > 1; })},
+          counted{
+              std::ranges::any_of(figure.rows, [](const Row& row) { return row.instructions.has_value(); })},
+          ours{std::ranges::find(figure.rows, Role::ours, &Row::role) != figure.rows.end()} {}
+
+    [[nodiscard]] std::string head() const {
+        return std::string{"<tr><th></th><th>role</th>"} +
+               (spread ? "<th>median</th><th>p99</th><th>p99.9</th><th>max</th><th>samples</th>"
+                       : "<th>value</th>") +
+               (counted ? "<th>instructions</th>" : "") + (ours ? "<th>of ours</th>" : "") + "</tr>";
+    }
+};
+
+/// The line below a row of ours: what it takes beside each floor and each peer.
+std::string ratios(const std::vector<Beside>& others, const Columns& columns) {
+    std::string line;
+    for (const Beside& other : others) {
+        std::string more = columns.spread ? "p99 " + number_text(other.p99) + " x" : "";
+        if (other.instructions)
+            more += (more.empty() ? "" : ", ") + std::string{"instructions "} +
+                    number_text(*other.instructions) + " x";
+        line += element("span", element("b", number_text(other.median) + " x") + " " + escaped(other.name) +
+                                    (more.empty() ? "" : " (" + more + ")")) +
+                " "; // where a line may break
+    }
+    return element("tr", element("td", line, "colspan=\"9\""), "class=\"beside\"");
+}
+
 std::string table(const Figure& figure) {
-    const auto first = std::ranges::find(figure.rows, Role::ours, &Row::role);
-    const bool counted =
-        std::ranges::any_of(figure.rows, [](const Row& row) { return row.instructions.has_value(); });
+    const Columns columns{figure};
     std::string rows;
     for (const Row& row : figure.rows) {
         const Summary& s = row.summary;
+        const std::string role = class_of(row.role);
         const auto others = beside(figure, row);
-        std::string cells = element("td", "<span class=\"role " + std::string{class_of(row.role)} +
-                                              "\"></span>" + escaped(row.name)) +
-                            element("td", class_of(row.role)) + cell(s.median) + cell(s.p99) + cell(s.p999) +
-                            cell(s.max);
-        if (counted) cells += row.instructions ? cell(*row.instructions) : element("td", "-");
-        if (first != figure.rows.end())
+        std::string cells =
+            element("td", element("span", "", "class=\"role " + role + "\"") + escaped(row.name)) +
+            element("td", role) + cell(s.median);
+        if (columns.spread)
+            cells += cell(s.p99) + cell(s.p999) + cell(s.max) +
+                     element("td", std::to_string(s.count), "class=\"soft\"");
+        if (columns.counted) cells += row.instructions ? cell(*row.instructions) : element("td", "-");
+        if (columns.ours)
             cells +=
                 element("td", row.role == Role::ours
                                   ? ""
                                   : number_text(s.median / ours_beside(figure, row).summary.median) + " x");
-        rows += element("tr", cells,
-                        "class=\"" + std::string{class_of(row.role)} + (others.empty() ? "\"" : " joined\""));
-        if (others.empty()) continue;
-        std::string line;
-        for (const Beside& other : others)
-            line += element("span", element("b", number_text(other.median) + " x") + " " +
-                                        escaped(other.name) + " (p99 " + number_text(other.p99) + " x" +
-                                        (other.instructions
-                                             ? ", instructions " + number_text(*other.instructions) + " x"
-                                             : "") +
-                                        ")") +
-                    " "; // where a line may break
-        rows += element("tr", element("td", line, "colspan=\"8\""), "class=\"beside\"");
+        rows += element("tr", cells, "class=\"" + role + (others.empty() ? "\"" : " joined\""));
+        if (!others.empty()) rows += ratios(others, columns);
     }
     return element("h3", escaped(figure.title), "id=\"" + escaped(figure.id) + "\"") +
            "<p class=\"how\"><code>" + escaped(figure.id) + "</code>, " + escaped(figure.unit) +
            (figure.how.empty() ? "" : "; " + escaped(figure.how)) +
-           (figure.source.empty() ? "" : "; " + escaped(figure.source)) +
-           "</p><div "
-           "class=\"wide\"><table><tr><th></th><th>role</th><th>median</th><th>p99</th><th>p99.9</"
-           "th><th>max</th>" +
-           (counted ? "<th>instructions</th>" : "") + (first != figure.rows.end() ? "<th>of ours</th>" : "") +
-           "</tr>" + rows + "</table></div>";
+           (figure.source.empty() ? "" : "; " + escaped(figure.source)) + "</p><div class=\"wide\"><table>" +
+           columns.head() + rows + "</table></div>";
 }
 
 /// "experiments.small" of "experiments.small.latency".

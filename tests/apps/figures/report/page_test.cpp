@@ -136,6 +136,14 @@ TEST(Text, a_floor_of_one_row_of_ours_stands_beside_that_alone) {
     EXPECT_EQ(ours_beside(figure, figure.rows[4]).name, "high, one") << "the first of ours";
 }
 
+TEST_F(Page, what_was_measured_once_has_no_quantiles) {
+    Result told = result("firmware", 12);
+    for (Row& each : told.figures[0].rows) each.summary.count = 1;
+    run.programs.push_back(ran(told));
+    EXPECT_THAT(text(), AllOf(HasSubstr("<th>value</th>"), Not(HasSubstr("p99.9</th>")),
+                              HasSubstr("<b>1.20 x</b> copy</span>")));
+}
+
 TEST_F(Page, a_goal_leads_to_its_figure) {
     Result told = result("exchange", 12);
     told.goals = {{"is short", 1.2, 1.1, "x", "exchange.write: port / copy"}};
