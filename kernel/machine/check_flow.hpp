@@ -112,7 +112,8 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
     }
     if (!row.buffered) return {};
     std::size_t rows_here = 0;
-    for (std::size_t j = 0; j < x; ++j)
+    for (std::size_t j = r.connections_from.first[link.from.component]; j != nowhere;
+         j = r.connections_from.next[j])
         if (m.connections[j].buffered && r.connections[j].from == link.from) ++rows_here;
     if (rows_here >= max_buffer_rows || rows_there >= max_buffer_rows)
         return of_connection(row, " is one more than the ", max_buffer_rows,
@@ -123,6 +124,7 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
 /// Fills the ends of each connection.
 constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
     r.connections_into.clear();
+    r.connections_from.clear();
     for (std::size_t x = 0; x < m.connections.size(); ++x) {
         const ConnectionRow& row = m.connections[x];
         Link& link = r.connections[x];
@@ -140,6 +142,7 @@ constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
             return fault;
         if (Sentence fault = check_writers(m, r, x); !fault.empty()) return fault;
         r.connections_into.add(x, link.to.component);
+        r.connections_from.add(x, link.from.component);
     }
     for (std::size_t c = 0; c < m.components.size(); ++c)
         for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
@@ -165,61 +168,69 @@ class DataFlowOrder {
 public:
     constexpr DataFlowOrder(const MachineView& m, const TableIndexView& r) noexcept : m_{m}, r_{r} {}
 
-    constexpr Sentence order(std::size_t activity) {
+    /// `begin`: where the activity's components stand in r.in_order.
+    constexpr Sentence order(std::size_t activity, std::size_t begin) {
+        activity_ = activity;
         members_.used = 0;
         for (const auto& name : m_.activities[activity].runs)
             static_cast<void>(members_.push(find_component(m_, r_.by_name, name)));
-        waits_for_.used = members_.size();
-        for (auto& each : waits_for_) each = 0;
+        for (const std::size_t c : members_) r_.waits_for[c] = 0;
         if (Sentence fault = check_own_outputs(); !fault.empty()) return fault;
-        for (Edge edge = first_edge(); edge.exists(); edge = next_edge(edge)) ++waits_for_[edge.after];
+        for (const std::size_t reader : members_)
+            for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))
+                ++r_.waits_for[after(row)];
         for (std::size_t placed = 0; placed < members_.size(); ++placed) {
+            // Of those that may run now, the first one of the activity's row.
             std::size_t next = 0;
-            while (next < members_.size() && (!waits(next) || waits_for_[next] != 0)) ++next;
-            if (next == members_.size()) return cycle(activity);
+            while (next < members_.size() && (!waits(members_[next]) || r_.waits_for[members_[next]] != 0))
+                ++next;
+            if (next == members_.size()) return cycle();
             r_.position[members_[next]] = placed;
-            for (Edge edge = first_edge(); edge.exists(); edge = next_edge(edge))
-                if (edge.before == next) --waits_for_[edge.after];
+            r_.in_order[begin + placed] = members_[next];
+            release_those_behind(members_[next]);
         }
         return {};
     }
 
 private:
-    /// A row that orders two members.
-    struct Edge {
-        std::size_t row = nowhere;
-        std::size_t before = nowhere;
-        std::size_t after = nowhere;
-        std::size_t reader = 0; ///< the member whose rows are being listed
-        [[nodiscard]] constexpr bool exists() const noexcept { return row != nowhere; }
-    };
-
-    [[nodiscard]] constexpr std::size_t place_of(std::size_t component) const noexcept {
-        for (std::size_t i = 0; i < members_.size(); ++i)
-            if (members_[i] == component) return i;
-        return nowhere;
-    }
-    [[nodiscard]] constexpr bool waits(std::size_t member) const noexcept {
-        return r_.position[members_[member]] == nowhere;
+    [[nodiscard]] constexpr bool waits(std::size_t component) const noexcept {
+        return r_.position[component] == nowhere;
     }
 
-    [[nodiscard]] constexpr Edge first_edge() const noexcept {
-        return members_.empty() ? Edge{} : edge_from(0, r_.connections_into.first[members_[0]]);
+    // A row between two components of the activity orders them.
+    [[nodiscard]] constexpr std::size_t writer(std::size_t row) const noexcept {
+        return r_.connections[row].from.component;
     }
-    [[nodiscard]] constexpr Edge next_edge(const Edge& edge) const noexcept {
-        return edge_from(edge.reader, r_.connections_into.next[edge.row]);
+    [[nodiscard]] constexpr std::size_t reader(std::size_t row) const noexcept {
+        return r_.connections[row].to.component;
     }
-    [[nodiscard]] constexpr Edge edge_from(std::size_t reader, std::size_t row) const noexcept {
-        while (true) {
-            for (; row != nowhere; row = r_.connections_into.next[row]) {
-                const std::size_t writer = place_of(r_.connections[row].from.component);
-                if (writer == nowhere || writer == reader) continue;
-                return m_.connections[row].delayed_step ? Edge{row, reader, writer, reader}
-                                                        : Edge{row, writer, reader, reader};
-            }
-            if (++reader == members_.size()) return {};
-            row = r_.connections_into.first[members_[reader]];
-        }
+    [[nodiscard]] constexpr std::size_t before(std::size_t row) const noexcept {
+        return m_.connections[row].delayed_step ? reader(row) : writer(row);
+    }
+    [[nodiscard]] constexpr std::size_t after(std::size_t row) const noexcept {
+        return m_.connections[row].delayed_step ? writer(row) : reader(row);
+    }
+    [[nodiscard]] constexpr bool orders(std::size_t row) const noexcept {
+        return writer(row) != reader(row) && r_.activity[writer(row)] == activity_ &&
+               r_.activity[reader(row)] == activity_;
+    }
+    /// The rows that order the reader and another, one by one.
+    [[nodiscard]] constexpr std::size_t first_row(std::size_t reader) const noexcept {
+        return ordering(r_.connections_into.first[reader], r_.connections_into);
+    }
+    [[nodiscard]] constexpr std::size_t next_row(std::size_t row) const noexcept {
+        return ordering(r_.connections_into.next[row], r_.connections_into);
+    }
+    [[nodiscard]] constexpr std::size_t ordering(std::size_t row,
+                                                 const RowsByComponent& rows) const noexcept {
+        while (row != nowhere && !orders(row)) row = rows.next[row];
+        return row;
+    }
+
+    constexpr void release_those_behind(std::size_t component) const noexcept {
+        for (const RowsByComponent* rows : {&r_.connections_into, &r_.connections_from})
+            for (std::size_t row = rows->first[component]; row != nowhere; row = rows->next[row])
+                if (orders(row) && before(row) == component) --r_.waits_for[after(row)];
     }
 
     [[nodiscard]] constexpr Sentence check_own_outputs() const {
@@ -236,42 +247,48 @@ private:
 
     /// Walks against the flow from a member that waits until it meets itself: every row on the way is one of
     /// the cycle.
-    [[nodiscard]] constexpr Sentence cycle(std::size_t activity) const {
-        std::size_t at = 0;
-        while (!waits(at)) ++at;
+    [[nodiscard]] constexpr Sentence cycle() const {
+        std::size_t first = 0;
+        while (!waits(members_[first])) ++first;
+        std::size_t at = members_[first];
         // After as many steps as there are members the walk is inside a cycle, whatever led to it.
-        for (std::size_t steps = 0; steps < members_.size(); ++steps) at = edge_into(at).before;
+        for (std::size_t steps = 0; steps < members_.size(); ++steps) at = before(row_into(at));
         const std::size_t met = at;
-        Edge last = edge_into(at);
-        for (at = last.before; at != met; at = edge_into(at).before)
-            if (edge_into(at).row > last.row) last = edge_into(at);
-        at = last.after;
-        Sentence way{m_.components[members_[at]].name};
+        std::size_t last = row_into(at);
+        for (at = before(last); at != met; at = before(row_into(at)))
+            if (row_into(at) > last) last = row_into(at);
+        at = after(last);
+        Sentence way{m_.components[at].name};
         do {
-            at = edge_into(at).before;
-            way = Sentence{m_.components[members_[at]].name, " -> ", way};
-        } while (at != last.after);
-        return of_connection(m_.connections[last.row], " closes a data-flow cycle inside activity \"",
-                             m_.activities[activity].name, "\" (", way,
+            at = before(row_into(at));
+            way = Sentence{m_.components[at].name, " -> ", way};
+        } while (at != after(last));
+        return of_connection(m_.connections[last], " closes a data-flow cycle inside activity \"",
+                             m_.activities[activity_].name, "\" (", way,
                              "); add delayed to the row whose reader shall see the last cycle's value");
     }
-    [[nodiscard]] constexpr Edge edge_into(std::size_t member) const noexcept {
-        Edge edge = first_edge();
-        while (edge.after != member || !waits(edge.before)) edge = next_edge(edge);
-        return edge;
+    /// A row behind which the component waits for one that waits too.
+    [[nodiscard]] constexpr std::size_t row_into(std::size_t component) const noexcept {
+        for (const std::size_t reader : members_)
+            for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))
+                if (after(row) == component && waits(before(row))) return row;
+        return nowhere;
     }
 
     const MachineView& m_;
     const TableIndexView& r_;
-    Bounded<std::size_t, ActivityRow::max_runs> members_{};
-    Bounded<std::size_t, ActivityRow::max_runs> waits_for_{}; ///< how many members must run before each
+    std::size_t activity_ = nowhere;
+    Bounded<std::size_t, ActivityRow::max_runs> members_{}; ///< in the order of the activity's row
 };
 
 constexpr Sentence order_components(const MachineView& m, const TableIndexView& r) {
     for (auto& each : r.position) each = nowhere;
     DataFlowOrder flow{m, r};
-    for (std::size_t a = 0; a < m.activities.size(); ++a)
-        if (Sentence fault = flow.order(a); !fault.empty()) return fault;
+    std::size_t begin = 0;
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        if (Sentence fault = flow.order(a, begin); !fault.empty()) return fault;
+        begin += m.activities[a].runs.size();
+    }
     return {};
 }
 

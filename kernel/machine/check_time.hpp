@@ -21,7 +21,8 @@ constexpr int processor_of(const Board& board, std::string_view activity) noexce
 /// A number of nanoseconds as an engineer reads it.
 constexpr Sentence in_us(std::int64_t ns) { return Sentence{ns / 1000, " us"}; }
 
-/// Fills the ranks: the shortest deadline first, then the order of the table; what is not real-time last.
+/// Fills the ranks and their order: the shortest deadline first, then the order of the table; what is not
+/// real-time last.
 constexpr void rank_activities(const MachineView& m, TableIndexView r) {
     const auto more_urgent = [&m](std::size_t a, std::size_t b) {
         const ActivityRow& x = m.activities[a];
@@ -34,6 +35,7 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
         r.rank[a] = 0;
         for (std::size_t b = 0; b < m.activities.size(); ++b)
             if (a != b && more_urgent(b, a)) ++r.rank[a];
+        r.by_rank[r.rank[a]] = a;
     }
 }
 
@@ -58,33 +60,33 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
                                "; correct its placement");
     }
     rank_activities(m, r);
+    std::array<int, max_activities> processors{};
+    for (std::size_t a = 0; a < m.activities.size(); ++a)
+        processors[a] = processor_of(board, m.activities[a].name);
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         r.worst_response_ns[a] = 0;
         const ActivityRow& row = m.activities[a];
         if (!row.real_time) continue;
         std::array<TaskTiming, max_activities> tasks{};
         std::size_t count = 0;
-        for (std::size_t rank = 0; rank <= r.rank[a]; ++rank)
-            for (std::size_t b = 0; b < m.activities.size(); ++b) {
-                if (r.rank[b] != rank ||
-                    processor_of(board, m.activities[b].name) != processor_of(board, row.name))
-                    continue;
-                // n wakes in a window may come together: they count as one job of n budgets.
-                const ActivityRow& other = m.activities[b];
-                const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
-                tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
-                                  other.deadline().count()};
-            }
+        for (const std::size_t b : r.by_rank.first(r.rank[a] + 1)) {
+            if (processors[b] != processors[a]) continue;
+            // n wakes in a window may come together: they count as one job of n budgets.
+            const ActivityRow& other = m.activities[b];
+            const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
+            tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
+                              other.deadline().count()};
+        }
         const Response response = response_time(std::span{tasks}.first(count), count - 1);
         if (!response.bounded)
-            return of_activity(row.name, " is not schedulable on processor ", processor_of(board, row.name),
-                               " of board \"", board.name,
+            return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
+                               board.name,
                                "\": the activities there take more than all of its time; lower budgets, "
                                "lengthen periods, or place it elsewhere");
         if (!response.within(row.deadline().count()))
-            return of_activity(row.name, " is not schedulable on processor ", processor_of(board, row.name),
-                               " of board \"", board.name, "\": its worst response is ",
-                               in_us(response.worst_ns), ", its deadline ", in_us(row.deadline().count()),
+            return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
+                               board.name, "\": its worst response is ", in_us(response.worst_ns),
+                               ", its deadline ", in_us(row.deadline().count()),
                                "; lower the budget of it or of a more urgent activity, lengthen its "
                                "deadline, or place it elsewhere");
         r.worst_response_ns[a] = response.worst_ns;

@@ -125,7 +125,7 @@ template <const auto& table, const Board& board>
 struct Instance<table, board, true> {
     using From = Planned<table, board, true>;
     // Start-up reads these through spans of mutable elements and does not write them.
-    static inline constinit auto index = From::verdict.index;
+    static inline constinit auto index = From::verdict.index.kept;
     static inline constinit auto plan = From::plan;
     [[gnu::section(".bss.tappet_instance")]] alignas(
         4096) static inline constinit std::byte memory[From::plan.bytes]{};

@@ -108,9 +108,10 @@ private:
     static constexpr std::uint32_t flag(bool set, std::uint32_t bit) { return set ? bit : 0; }
     constexpr std::uint32_t type(TypeId id) { return id == nullptr ? none : types_.of(id); }
     [[nodiscard]] constexpr std::uint32_t facet_index(End end) const {
-        std::size_t index = end.facet;
-        for (std::size_t c = 0; c < end.component; ++c) index += m_.components[c].type->facets.size();
-        return static_cast<std::uint32_t>(index);
+        // The components are drawn first; who only counts needs no index.
+        return room_.components.empty() ? 0
+                                        : room_.components[end.component].first_facet +
+                                              static_cast<std::uint32_t>(end.facet);
     }
 
     constexpr void draw_components();

@@ -163,18 +163,18 @@ private:
 
 constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
     // Activity by activity, so that what runs together lies together, each on lines of its own.
+    std::size_t begin = 0;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& activity = p.activities[a];
         ground.take(0, line_pair_bytes);
-        for (std::size_t position = 0; position < m.activities[a].runs.size(); ++position)
-            for (std::size_t c = 0; c < m.components.size(); ++c) {
-                if (r.activity[c] != a || r.position[c] != position) continue;
-                p.component_at[c] = ground.take(m.components[c].type->size, m.components[c].type->align);
-                p.part_of[c] = static_cast<std::uint32_t>(position);
-                for (const auto& facet : m.components[c].type->facets)
-                    activity.timer_count += facet.kind == FacetKind::timer;
-            }
         activity.part_count = m.activities[a].runs.size();
+        for (const std::size_t c : r.in_order.subspan(begin, activity.part_count)) {
+            p.component_at[c] = ground.take(m.components[c].type->size, m.components[c].type->align);
+            p.part_of[c] = static_cast<std::uint32_t>(r.position[c]);
+            for (const auto& facet : m.components[c].type->facets)
+                activity.timer_count += facet.kind == FacetKind::timer;
+        }
+        begin += activity.part_count;
         activity.parts_at = ground.take<EnginePart>(activity.part_count);
         activity.functions_at = ground.take<FunctionTiming>(activity.part_count * functions_per_part);
         activity.timers_at = ground.take<EngineTimer>(activity.timer_count);
@@ -194,7 +194,9 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
             const auto& buffer = *from.buffer;
             plan.memory_at = ground.take(buffer.ring_bytes(row.capacity, plan.shared), buffer.ring_align);
         } else if (plan.shared) {
-            for (std::size_t j = 0; j < x; ++j)
+            // Rows of one output share one object; the chain leads from this row to those before it.
+            for (std::size_t j = r.connections_from.next[x]; j != nowhere && plan.first_of_output;
+                 j = r.connections_from.next[j])
                 if (r.connections[j].from == link.from && p.connections[j].shared)
                     plan.memory_at = p.connections[j].memory_at, plan.first_of_output = false;
             const auto& port = *from.port;
@@ -250,13 +252,12 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
     for (const ComponentRow& row : m.components) seen |= row.type->sees_machine;
     for (std::size_t receiver = 0; receiver < n; ++receiver) {
         ActivityPlan& activity = p.activities[receiver];
-        for (std::size_t rank = 0; rank < n; ++rank)
-            for (std::size_t sender = 0; sender < n; ++sender) {
-                MailPlan& mail = p.mail[sender * n + receiver];
-                if (r.rank[sender] != rank || mail.capacity == 0) continue;
-                mail.sender_index = activity.sender_count++;
-                mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
-            }
+        for (const std::size_t sender : r.by_rank) {
+            MailPlan& mail = p.mail[sender * n + receiver];
+            if (mail.capacity == 0) continue;
+            mail.sender_index = activity.sender_count++;
+            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+        }
         // Behind them all stand the requests: what only watches the machine delays nobody's message.
         if (seen) {
             MailPlan& mail = p.requests[receiver];

@@ -66,11 +66,8 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
             mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
         };
         // Senders in order of their urgency; what only watches the machine stands behind them all.
-        for (std::size_t rank = 0; rank < n; ++rank)
-            for (std::size_t sender = 0; sender < n; ++sender)
-                if (auto& mail = p.command_mail[sender * n + receiver];
-                    r.rank[sender] == rank && mail.capacity != 0)
-                    place(mail);
+        for (const std::size_t sender : r.by_rank)
+            if (auto& mail = p.command_mail[sender * n + receiver]; mail.capacity != 0) place(mail);
         if (seen) {
             p.command_requests[receiver].capacity = requests_waiting;
             place(p.command_requests[receiver]);

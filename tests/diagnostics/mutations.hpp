@@ -38,25 +38,32 @@ struct Copy {
 
 /// What the check says of a table; empty: it is accepted.
 inline std::string refusal_of(const MachineView& m, const Board& board) {
-    std::vector<std::size_t> by_name(m.components.size()), activity(m.components.size()),
-        position(m.components.size());
+    const std::size_t components = m.components.size();
+    std::vector<std::size_t> by_name(components), activity(components), position(components),
+        in_order(components), waits_for(components);
     std::vector<Link> connections(m.connections.size()), reactions(m.reactions.size());
-    std::vector<std::size_t> first_connection(m.components.size()), next_connection(m.connections.size());
-    std::vector<std::size_t> first_reaction(m.components.size()), next_reaction(m.reactions.size());
-    std::vector<std::uint64_t> reach(m.components.size());
-    std::vector<std::size_t> rank(m.activities.size());
+    std::vector<std::size_t> first_into(components), next_into(m.connections.size());
+    std::vector<std::size_t> first_from(components), next_from(m.connections.size());
+    std::vector<std::size_t> first_reaction(components), next_reaction(m.reactions.size());
+    std::vector<std::uint64_t> reach(components);
+    std::vector<std::size_t> rank(m.activities.size()), by_rank(m.activities.size());
     std::vector<std::int64_t> worst(m.activities.size());
-    const TableIndexView index{by_name,
-                               activity,
-                               position,
-                               connections,
-                               reactions,
-                               {first_connection, next_connection},
-                               {first_reaction, next_reaction},
-                               reach,
-                               rank,
-                               worst};
-    return std::string{check(m, board, index).view()};
+    return std::string{check(m, board,
+                             {.by_name = by_name,
+                              .activity = activity,
+                              .position = position,
+                              .connections = connections,
+                              .reactions = reactions,
+                              .rank = rank,
+                              .by_rank = by_rank,
+                              .in_order = in_order,
+                              .waits_for = waits_for,
+                              .connections_into = {first_into, next_into},
+                              .connections_from = {first_from, next_from},
+                              .reactions_into = {first_reaction, next_reaction},
+                              .reach = reach,
+                              .worst_response_ns = worst})
+                           .view()};
 }
 
 /// How the check calls a row.

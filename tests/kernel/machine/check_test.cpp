@@ -113,7 +113,8 @@ TEST(Check, orders_the_components_of_an_activity_by_data_flow_whatever_their_ord
     ASSERT_EQ(checks::check_connections(table, index.view()).view(), "");
     ASSERT_EQ(checks::order_components(table, index.view()).view(), "");
     // last, middle, first; the delayed row lets its reader run first.
-    EXPECT_THAT(index.position, testing::ElementsAre(2, 1, 0));
+    EXPECT_THAT(index.kept.position, testing::ElementsAre(2, 1, 0));
+    EXPECT_THAT(index.in_order, testing::ElementsAre(2, 1, 0));
 }
 
 } // namespace
