@@ -15,7 +15,7 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-/// The tapes hold 100 ms at least: looked at so often, none is overwritten unseen.
+/// A tape holds some 100 ms: looked at so often, nothing is overwritten unseen unless the box is too busy.
 constexpr std::chrono::milliseconds between_looks{10};
 constexpr std::chrono::milliseconds usual_length{1000};
 

@@ -22,8 +22,8 @@ namespace detail {
 /// A tape holds what its activity does within this time at most, as far as it may be so long: whoever looks
 /// that often sees every cycle.
 inline constexpr Duration tape_span = 100ms;
-inline constexpr std::size_t most_tape_words = 4096;
-inline constexpr std::size_t fewest_tape_words = 1024;
+inline constexpr std::size_t most_tape_words = 2048;
+inline constexpr std::size_t fewest_tape_words = 256;
 
 constexpr std::size_t tape_words(const ActivityRow& row) noexcept {
     const Duration each = row.periodic() ? row.period : row.at_most_per;

@@ -14,11 +14,11 @@ namespace tappet::scope {
 
 /// The span is parted into so many generations less one; the oldest gives its places to the one that begins.
 /// So the worst cycles of at least the whole span are there at any time.
-inline constexpr std::uint32_t generations = 5;
+inline constexpr std::uint32_t generations = 4;
 /// The worst so many of each generation are kept, of each activity that is ranked.
 inline constexpr std::uint32_t kept = 2;
 /// What one of them may take with everything around it.
-inline constexpr std::uint32_t recording_words = 320;
+inline constexpr std::uint32_t recording_words = 224;
 
 struct Tape {
     std::uint64_t at = 0;     ///< CycleTape
@@ -31,7 +31,7 @@ struct Tape {
 /// of activity << 48 and the number of words that follow, which are its cycles, oldest first, as on its tape.
 struct Recording {
     std::uint64_t serial = 0;     ///< of the place's contents; 0: it is empty
-    std::uint64_t generation = 0; ///< so many quarters of the span since the clock's zero
+    std::uint64_t generation = 0; ///< so many parts of the span since the clock's zero
     std::uint32_t activity = 0;
     std::uint32_t words = 0;
     std::int64_t rank_ns = 0; ///< its response or its busy time: what it is kept for

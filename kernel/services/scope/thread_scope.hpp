@@ -7,8 +7,8 @@
 
 namespace tappet {
 
-/// In an activity that is not_real_time and looks several times in 100 ms, which is what the tapes hold at
-/// least:
+/// In an activity that is not_real_time and looks several times in 100 ms: so long a tape holds what its
+/// activity's row promises, and that of a very busy one a part of it; what was overwritten first is counted.
 ///     component<ThreadScope>("scope") ... activity("browser", every(20ms), not_real_time, runs("scope"))
 /// The engines write their tapes themselves, wait-free, a mark for each function from the stamps they take
 /// anyway, and publish a cycle when its last stamp has been taken. Without this row in the table, or while
