@@ -118,12 +118,13 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
 
     template <std::size_t first, std::size_t end>
     static Next piece(ProgramContext& context, Run& shared, Next next) noexcept TAPPET_REALTIME {
-        Run run = shared; // in registers
+        Run run{shared.data, shared.statements, shared.fresh}; // in registers
         if constexpr (is_straight({first, end}))
             next = straight<first, end>(std::make_index_sequence<end - first>{}, context, run, next);
         else
             next = page<first, end>(context, run, next);
-        shared = run;
+        shared.statements = run.statements;
+        shared.fresh = run.fresh;
         return next;
     }
 
@@ -145,39 +146,57 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         return next;
     }
 
-    // What the instructions of a program do beside computing.
+    // ---- what is known of a program or a condition before it runs
+
+    template <class Is>
+    static constexpr bool any_instruction(std::size_t first, std::size_t count, const Is& is) {
+        return std::ranges::any_of(tables.instructions.subspan(first, count), is);
+    }
     template <class Is> static constexpr bool any_instruction(const ProgramRow& program, const Is& is) {
-        const auto any = [&](std::size_t first, std::size_t count) {
-            return std::ranges::any_of(tables.instructions.subspan(first, count), is);
-        };
         for (std::size_t n = program.first; n < program.last && n < tables.nodes.size(); ++n) {
             const NodeRow& row = tables.nodes[n];
-            if (any(row.first, row.count)) return true;
+            if (any_instruction(row.first, row.count, is)) return true;
             for (std::size_t i = 0; i < row.arcs; ++i)
                 if (const ConditionIndex c = tables.arcs[row.first_arc + i].condition; c != no_condition)
-                    if (any(tables.conditions[c].first, tables.conditions[c].count)) return true;
+                    if (any_instruction(tables.conditions[c].first, tables.conditions[c].count, is))
+                        return true;
         }
         return false;
     }
-    /// It acts on nothing but its own data: nobody is called who could call back.
-    template <ProgramIndex number>
-    static constexpr bool is_private = !any_instruction(tables.programs[number], [](const Instruction& in) {
-        const bool is_silent =
-            in.run == &primitive::skip_if || in.run == &primitive::skip_unless || in.run == &primitive::fail;
-        return in.facet != nullptr || in.link != 0xffff || (in.to == no_data && !is_silent);
-    });
-    template <ProgramIndex number>
-    static constexpr bool asks_for_position =
-        tables.programs[number].may_wait ||
-        any_instruction(tables.programs[number],
-                        [](const Instruction& in) { return in.run == &primitive::elapsed; });
+    static constexpr bool is_public(const Instruction& in) { return !Node::is_private(in); }
+    static constexpr bool asks_position(const Instruction& in) { return in.run == &primitive::elapsed; }
+
+    static constexpr std::uint32_t unbounded = 0xffffffff;
+    struct Facts {
+        bool is_private = false;              ///< nobody is called who could call back
+        bool asks_for_position = false;       ///< the context's
+        std::uint32_t statements = unbounded; ///< at most so many
+    };
+    static constexpr auto facts = [] {
+        std::array<Facts, tables.programs.size() + 1> all{};
+        for (std::size_t i = 0; i < tables.programs.size(); ++i) {
+            const ProgramRow& row = tables.programs[i];
+            all[i].is_private = !any_instruction(row, is_public);
+            all[i].asks_for_position = row.may_wait || any_instruction(row, asks_position);
+            if (row.first == end_node)
+                all[i].statements = 0;
+            else if (is_whole({row.first, row.last}, row))
+                all[i].statements = row.last - row.first;
+        }
+        return all;
+    }();
+    static constexpr bool is_private_condition(ConditionIndex number) {
+        return number == no_condition ||
+               !any_instruction(tables.conditions[number].first, tables.conditions[number].count, is_public);
+    }
 
     /// A program from its beginning, until it ends or halts. The shortest stand where they are called.
     template <ProgramIndex number>
     [[gnu::always_inline]] static Next program(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
         constexpr ProgramRow row = tables.programs[number];
         run.fresh = true;
-        if constexpr (asks_for_position<number>) context.position.acted = context.position.entered = false;
+        if constexpr (facts[number].asks_for_position)
+            context.position.acted = context.position.entered = false;
         if constexpr (row.first == end_node) {
             return end_node;
         } else if constexpr (!is_whole({row.first, row.last}, row)) {

@@ -36,6 +36,7 @@ struct Run {
     std::byte* data;
     std::int64_t statements; ///< that it may still execute; below 0: it may not
     bool fresh;              ///< the node was entered in this run, not in an earlier one
+    bool counted = true;     ///< statements may not suffice
 };
 
 template <const auto& source, std::size_t type> struct NodeCode {
@@ -122,11 +123,19 @@ template <const auto& source, std::size_t type> struct NodeCode {
         return !open || row.repeats || row.yields || is_timed(row);
     }
 
-    // The nodes of an atomic program are never resumed.
+    // It acts on nothing but the program's own data, at once.
+    static constexpr bool is_private(const Instruction& in) {
+        const bool is_silent =
+            in.run == &primitive::skip_if || in.run == &primitive::skip_unless || in.run == &primitive::fail;
+        return in.facet == nullptr && in.link == 0xffff && (in.to != no_data || is_silent);
+    }
+    // A later step goes on behind its entry: of a node that does not stand, because it could not act yet.
     static constexpr bool is_resumed(NodeIndex node) {
         for (const ProgramRow& program : tables.programs)
-            if (node >= program.first && node < program.last) return program.may_wait;
-        return true;
+            if (node >= program.first && node < program.last && !program.may_wait) return false;
+        const NodeRow& row = tables.nodes[node];
+        return stands(row) || !std::ranges::all_of(tables.instructions.subspan(row.first, row.count),
+                                                   [](const Instruction& in) { return is_private(in); });
     }
     template <bool has_stood, bool is_resumed>
     [[gnu::always_inline]] static void leaves_node(ProgramContext& context, Run& run) noexcept
@@ -200,7 +209,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
         constexpr bool has_stood = stands(row);
         alignas(data_alignment) std::byte scratch[scratch_bytes];
         if (!has_stood || !context.position.acted) {
-            if (--run.statements < 0) [[unlikely]]
+            if (--run.statements < 0 && run.counted) [[unlikely]]
                 return halts_at(number, Halt::left_over);
             if constexpr (has_stood) {
                 if (run.fresh) context.position.entered_at = context.now;

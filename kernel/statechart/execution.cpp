@@ -20,6 +20,10 @@ bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TA
     context_.links = binding.links;
     context_.machines = binding.machines;
     fast_ = binding.fast;
+    dispatch_ = fast_.dispatch != nullptr ? fast_.dispatch
+                : machine_.folded         ? &dispatch_folded
+                                          : &dispatch_walked;
+    step_ = fast_.step != nullptr ? fast_.step : &step_walked;
     policy_ = binding.policy;
     parent_ = binding.parent;
     history_ = binding.history;
@@ -126,15 +130,27 @@ void StateMachineExecution::handle_raised(Time now) noexcept TAPPET_REALTIME {
     raised_first_ = static_cast<std::uint8_t>((place + 1) % max_raised_events);
     --raised_count_;
     if (machine_.folded) {
-        static_cast<void>(take_first(machine_.cells[first_cell_ + trigger], now));
+        static_cast<void>(take_first(machine_.cells[cell_of(trigger)], now));
         return;
     }
     static_cast<void>(react(trigger, deferred_.data() + place * machine_.sizes.captured, now));
     if (!single_) static_cast<void>(go_on(now));
 }
 
+StateOutcome StateMachineExecution::dispatch_folded(StateMachineExecution& execution, std::size_t trigger,
+                                                    Time now, const std::byte*) noexcept TAPPET_REALTIME {
+    if (trigger >= execution.machine_.triggers.size()) return StateOutcome::ignored;
+    execution.mode_ = busy;
+    const bool taken = execution.take_first(execution.machine_.cells[execution.cell_of(trigger)], now);
+    execution.clear(busy);
+    if (execution.mode_ != ready) [[unlikely]]
+        execution.finish(now);
+    return taken ? StateOutcome::taken : StateOutcome::ignored;
+}
+
 StateOutcome StateMachineExecution::dispatch_generally(std::size_t trigger, Time now,
                                                        const std::byte* arguments) noexcept TAPPET_REALTIME {
+    if (trigger >= machine_.triggers.size()) return StateOutcome::ignored;
     if (is(inactive) || is(error) || is_leaving()) return StateOutcome::ignored;
     if (machine_.captured[trigger] != 0 && arguments == nullptr) return StateOutcome::ignored;
     if ((mode_ & (busy | in_hand | waiting | paused | final_wanted)) != 0)
@@ -142,7 +158,7 @@ StateOutcome StateMachineExecution::dispatch_generally(std::size_t trigger, Time
     open(now);
     bool taken = false;
     if (machine_.folded)
-        taken = take_first(machine_.cells[first_cell_ + trigger], now);
+        taken = take_first(machine_.cells[cell_of(trigger)], now);
     else {
         taken = react(trigger, arguments, now);
         static_cast<void>(go_on(now));
@@ -196,13 +212,11 @@ StateOutcome StateMachineExecution::pause() noexcept TAPPET_REALTIME {
     return StateOutcome::taken;
 }
 
-void StateMachineExecution::step(Time now) noexcept TAPPET_REALTIME {
+void StateMachineExecution::step_slowly(Time now) noexcept TAPPET_REALTIME {
     if ((mode_ & (inactive | busy | paused | error)) != 0) return;
     stepped_at_ = now;
     conditions_left_ = false;
-    if (fast_.step != nullptr && automatic_ && mode_ == ready)
-        fast_.step(*this, now);
-    else if (machine_.folded && automatic_ && (mode_ & (in_hand | mid_round)) == 0)
+    if (machine_.folded && automatic_ && (mode_ & (in_hand | mid_round)) == 0)
         step_folded(now);
     else
         step_generally(now);

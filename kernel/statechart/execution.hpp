@@ -35,6 +35,8 @@ namespace native {
 template <const auto& source, std::size_t type>
 struct TransitionCode;
 template <const auto& source, std::size_t type>
+struct StepCode;
+template <const auto& source, std::size_t type>
 struct MachineCode;
 } // namespace native
 
@@ -97,14 +99,24 @@ public:
     /// From here on single steps only; programs stand where they are, events wait.
     StateOutcome pause() noexcept TAPPET_REALTIME;
     /// One step of the engine.
-    void step(Time now) noexcept TAPPET_REALTIME;
+    void step(Time now) noexcept TAPPET_REALTIME {
+        if (mode_ != ready || !automatic_) [[unlikely]]
+            return step_slowly(now);
+        stepped_at_ = now;
+        conditions_left_ = false;
+        step_(*this, now);
+    }
     /// Of a paused machine: one statement of the program in hand, or one transition is asked (5.2.3).
     /// False: there was nothing to do.
     bool step_once(Time now) noexcept TAPPET_REALTIME;
     /// An event. `trigger` is an index into machine().triggers; out of range it is ignored. `arguments` as
     /// packed by its event; they are copied. Without those that a transition takes it is ignored.
     StateOutcome dispatch(std::size_t trigger, Time now, const std::byte* arguments = nullptr) noexcept
-        TAPPET_REALTIME;
+        TAPPET_REALTIME {
+        if (mode_ != ready) [[unlikely]]
+            return dispatch_generally(trigger, now, arguments);
+        return dispatch_(*this, trigger, now, arguments);
+    }
     /// Takes the first condition transition to that state whose guard holds; the final state and, from it,
     /// the initial one are always valid; in that state already it does nothing. `run_once`: in reactive mode
     /// the run programs of the active states are run once, then.
@@ -186,6 +198,8 @@ private:
     template <const auto& source, std::size_t type>
     friend struct native::TransitionCode;
     template <const auto& source, std::size_t type>
+    friend struct native::StepCode;
+    template <const auto& source, std::size_t type>
     friend struct native::MachineCode;
 
     // What keeps a call from taking the quick path; 0: nothing.
@@ -208,8 +222,8 @@ private:
     };
     enum class Answer : std::uint8_t { no, yes, otherwise, failed };
 
-    void set(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<std::uint8_t>(mode_ | bit); }
-    void clear(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<std::uint8_t>(mode_ & ~bit); }
+    void set(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<Mode>(mode_ | bit); }
+    void clear(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<Mode>(mode_ & ~bit); }
     [[nodiscard]] bool is(Mode bit) const noexcept TAPPET_REALTIME { return (mode_ & bit) != 0; }
 
     // ---- the quick path: a plain machine of C++ functions
@@ -221,6 +235,19 @@ private:
     void take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
     void arrive(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
     bool take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME;
+    static StateOutcome dispatch_folded(StateMachineExecution& execution, std::size_t trigger, Time now,
+                                        const std::byte* arguments) noexcept TAPPET_REALTIME;
+    static StateOutcome dispatch_walked(StateMachineExecution& execution, std::size_t trigger, Time now,
+                                        const std::byte* arguments) noexcept TAPPET_REALTIME {
+        return execution.dispatch_generally(trigger, now, arguments);
+    }
+    static void step_walked(StateMachineExecution& execution, Time now) noexcept TAPPET_REALTIME {
+        execution.machine_.folded ? execution.step_folded(now) : execution.step_generally(now);
+    }
+    [[nodiscard]] std::size_t cell_of(std::size_t trigger) const noexcept TAPPET_REALTIME {
+        return status_.active * machine_.triggers.size() + trigger;
+    }
+    void step_slowly(Time now) noexcept TAPPET_REALTIME;
     void step_folded(Time now) noexcept TAPPET_REALTIME;
     void step_generally(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] const StateArc* folded_condition(std::uint8_t held, Time now) const noexcept
@@ -269,14 +296,28 @@ private:
     [[nodiscard]] StatePart part_in_hand() const noexcept TAPPET_REALTIME;
 
     // ---- where native code hands over. The position of a program that did not end is in the context.
+
+    /// How far a step has come: what is left of its statements, whose run programs are due (by level), which
+    /// were entered again after they had run, and how many transitions it has taken.
+    struct Round {
+        std::int64_t statements = 0;
+        std::uint8_t due = 0xff;
+        std::uint8_t held = 0;
+        std::uint8_t taken = 0;
+    };
+    void tell(StateIndex from, StateIndex to, TransitionIndex transition, Time now) noexcept TAPPET_REALTIME;
+    StateOutcome finish_with(StateOutcome outcome, std::int64_t statements, Time now) noexcept
+        TAPPET_REALTIME;
     void resume_transition(ArcIndex arc, std::size_t part, ProgramReturn why, Time now) noexcept
         TAPPET_REALTIME;
     StateOutcome resume_event(std::size_t trigger, Time now, const std::byte* arguments,
                               ArcIndex from) noexcept TAPPET_REALTIME;
-    void resume_run(std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
-    void resume_handle(std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
-    void resume_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME;
-    void note_round() noexcept TAPPET_REALTIME;
+    void resume_run(const Round& round, std::size_t level, ProgramReturn why, Time now) noexcept
+        TAPPET_REALTIME;
+    void resume_handle(const Round& round, std::size_t level, ProgramReturn why, Time now) noexcept
+        TAPPET_REALTIME;
+    void resume_round(const Round& round, std::size_t levels, Time now) noexcept TAPPET_REALTIME;
+    void note_round(const Round& round, std::size_t levels) noexcept TAPPET_REALTIME;
     void go_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME;
     void hand_over(std::size_t part, ProgramReturn why) noexcept TAPPET_REALTIME;
     ProgramReturn take_over(const ProgramRef& program) noexcept TAPPET_REALTIME;
@@ -312,14 +353,16 @@ private:
     ProgramContext context_;
     ProgramCode code_;
     StateMachineFast fast_;
-    std::uint8_t mode_ = inactive;
+    StateOutcome (*dispatch_)(StateMachineExecution&, std::size_t trigger, Time now,
+                              const std::byte* arguments) noexcept TAPPET_REALTIME = &dispatch_walked;
+    void (*step_)(StateMachineExecution&, Time now) noexcept TAPPET_REALTIME = &step_walked;
+    Mode mode_ = inactive;
     bool automatic_ = false;
     bool conditions_left_ = false;
     bool statements_left_ = false;
-    bool single_ = false;          // a single step: questions count as statements
-    bool run_once_ = false;        // asked for by request_state()
-    bool program_begun_ = false;   // position_ holds
-    std::uint16_t first_cell_ = 0; // of the active leaf of a plain machine
+    bool single_ = false;        // a single step: questions count as statements
+    bool run_once_ = false;      // asked for by request_state()
+    bool program_begun_ = false; // position_ holds
 
     struct {
         Job phase = Job::none;
@@ -383,7 +426,6 @@ inline void StateMachineExecution::arrive(const StateArc& arc, Time now) noexcep
     const StateIndex from = status_.active;
     status_.active = arc.target;
     status_.last_transition = arc.transition;
-    first_cell_ = arc.first_cell;
     ++status_.transitions;
     if (trace_ != nullptr) trace_(trace_context_, from, arc.target, arc.transition, now);
 }
@@ -409,21 +451,6 @@ inline bool StateMachineExecution::take_first(ArcIndex first, Time now) noexcept
         if (handle.call != nullptr) handle.call(context_.component);
     }
     return false;
-}
-
-inline StateOutcome StateMachineExecution::dispatch(std::size_t trigger, Time now,
-                                                    const std::byte* arguments) noexcept TAPPET_REALTIME {
-    if (trigger >= machine_.triggers.size()) return StateOutcome::ignored;
-    if (mode_ == ready && fast_.dispatch != nullptr) [[likely]]
-        return fast_.dispatch(*this, trigger, now, arguments);
-    if (mode_ != ready || !machine_.folded) [[unlikely]]
-        return dispatch_generally(trigger, now, arguments);
-    mode_ = busy;
-    const bool taken = take_first(machine_.cells[first_cell_ + trigger], now);
-    mode_ = static_cast<std::uint8_t>(mode_ & ~busy);
-    if (mode_ != ready) [[unlikely]]
-        finish(now);
-    return taken ? StateOutcome::taken : StateOutcome::ignored;
 }
 
 } // namespace tappet

@@ -34,6 +34,7 @@ StateOutcome StateMachineExecution::resume_event(std::size_t trigger, Time now, 
 
 void StateMachineExecution::resume_transition(ArcIndex arc, std::size_t part, ProgramReturn why,
                                               Time now) noexcept TAPPET_REALTIME {
+    set(busy);
     StateArc rest = machine_.arcs[arc];
     rest.gives_reason = false; // it was given
     begin(rest, false, now);
@@ -42,29 +43,42 @@ void StateMachineExecution::resume_transition(ArcIndex arc, std::size_t part, Pr
     finish(now);
 }
 
-// All run programs have ended.
-void StateMachineExecution::note_round() noexcept TAPPET_REALTIME {
+// Behind the last transition of an event or a step whose code keeps nothing of it itself.
+void StateMachineExecution::tell(StateIndex from, StateIndex to, TransitionIndex transition,
+                                 Time now) noexcept TAPPET_REALTIME {
+    set(busy);
+    trace_(trace_context_, from, to, transition, now);
+}
+
+// The end of an outer call, with something to serve.
+StateOutcome StateMachineExecution::finish_with(StateOutcome outcome, std::int64_t statements,
+                                                Time now) noexcept TAPPET_REALTIME {
+    statements_ = static_cast<std::uint32_t>(statements);
+    finish(now);
+    return outcome;
+}
+
+// The run programs of so many levels have ended or are held.
+void StateMachineExecution::note_round(const Round& round, std::size_t levels) noexcept TAPPET_REALTIME {
+    set(busy);
     set(mid_round);
     asked_ = 0;
-    ran_ = {};
-    for (ActiveState& active : status_.states) {
-        active.run = RunPhase::ran;
-        note_run(active.state);
+    if (round.taken == 0) ran_ = {};
+    for (std::size_t i = 0; i < status_.states.size(); ++i) {
+        ActiveState& active = status_.states[i];
+        const bool is_held = (round.held >> i & 1u) != 0;
+        active.run = i >= levels ? RunPhase::fresh : is_held ? RunPhase::held : RunPhase::ran;
+        if (i < levels) note_run(active.state);
     }
 }
 
-void StateMachineExecution::resume_run(std::size_t level, ProgramReturn why, Time now) noexcept
-    TAPPET_REALTIME {
-    note_round();
+void StateMachineExecution::resume_run(const Round& round, std::size_t level, ProgramReturn why,
+                                       Time now) noexcept TAPPET_REALTIME {
     ActiveState& at = status_.states[level];
     const bool is_function = row(at.state).run.call != nullptr;
     const bool has_begun =
         why != ProgramReturn::left_over || (!is_function && context_.position.node != no_node);
-    for (std::size_t i = has_begun ? level + 1 : level; i < status_.states.size(); ++i) {
-        ActiveState& active = status_.states[i];
-        active.run = RunPhase::fresh;
-        ran_[active.state / 64u] &= ~(std::uint64_t{1} << (active.state % 64u));
-    }
+    note_round(round, has_begun ? level + 1 : level);
     if (!is_function && has_begun) at.position = context_.position;
     switch (why) {
     case ProgramReturn::ended: break;
@@ -78,21 +92,25 @@ void StateMachineExecution::resume_run(std::size_t level, ProgramReturn why, Tim
         fail(StatePart::run, at.state, at.position.node, now);
         break;
     }
-    if (why == ProgramReturn::waits && !is(error)) go_round(0, now);
+    if (why == ProgramReturn::waits && !is(error)) go_round(round.taken, now);
     finish(now);
 }
 
-void StateMachineExecution::resume_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME {
-    if (taken != 0 && is(final_wanted)) serve_final(now);
-    if ((mode_ & (in_hand | error)) == 0) go_round(taken, now);
-    finish(now);
-}
-
-void StateMachineExecution::resume_handle(std::size_t level, ProgramReturn why, Time now) noexcept
+void StateMachineExecution::resume_round(const Round& round, std::size_t levels, Time now) noexcept
     TAPPET_REALTIME {
-    note_round();
+    note_round(round, levels);
+    statements_ = machine_.folded ? policy_.statements : static_cast<std::uint32_t>(round.statements);
+    if (round.taken != 0 && is(final_wanted)) serve_final(now);
+    if ((mode_ & (in_hand | error)) == 0) go_round(round.taken, now);
+    finish(now);
+}
+
+void StateMachineExecution::resume_handle(const Round& round, std::size_t level, ProgramReturn why,
+                                          Time now) noexcept TAPPET_REALTIME {
+    note_round(round, status_.states.size());
     for (std::size_t i = 0; i < status_.states.size(); ++i)
-        status_.states[i].run = i <= level ? RunPhase::done : RunPhase::asked;
+        if (status_.states[i].run == RunPhase::ran)
+            status_.states[i].run = i <= level ? RunPhase::done : RunPhase::asked;
     begin_handle(status_.states[level].state);
     hand_over(0, why);
     static_cast<void>(go_on(now));

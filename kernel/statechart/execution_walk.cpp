@@ -60,8 +60,6 @@ void StateMachineExecution::find_active() noexcept TAPPET_REALTIME {
         status_.active = each.state;
         if (machine_.plans[each.state].regions == 0) break;
     }
-    if (status_.active != no_state)
-        first_cell_ = static_cast<std::uint16_t>(status_.active * machine_.triggers.size());
 }
 
 StateIndex StateMachineExecution::child_to_enter(StateIndex state, std::size_t region, StateIndex target,
@@ -410,7 +408,7 @@ void StateMachineExecution::depart(Time now) noexcept TAPPET_REALTIME {
     job_ = {};
     selected_.clear();
     drop_waiting();
-    mode_ = static_cast<std::uint8_t>(inactive | busy);
+    mode_ = static_cast<Mode>(inactive | busy);
     automatic_ = false;
     status_.last_transition = leaving_transition;
     ++status_.transitions;

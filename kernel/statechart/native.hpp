@@ -2,7 +2,7 @@
 // event is a switch, and so is a step.
 #pragma once
 
-#include "kernel/statechart/native_transition.hpp"
+#include "kernel/statechart/native_step.hpp"
 
 namespace tappet {
 
@@ -20,17 +20,14 @@ template <const auto& source, std::size_t type> struct MachineCode {
     using Programs = Code<source, type>;
     using Execution = StateMachineExecution;
     using Way = Transition::Way;
+    using Extent = Transition::Extent;
+    using Round = Execution::Round;
+    using Step = StepCode<source, type>;
     static constexpr const ResolvedView& view = Transition::view;
     static constexpr bool is_folded = Transition::is_folded;
 
     // ---- what is known of the table
 
-    static constexpr std::size_t count_arcs(ArcIndex first) {
-        if (first == no_arc) return 0;
-        std::size_t count = 1;
-        while (!view.arcs[first + count - 1].last) ++count;
-        return count;
-    }
     static constexpr std::size_t cell_count = [] {
         std::size_t count = 0;
         for (std::size_t i = 0; i < view.sizes.states * view.sizes.triggers; ++i)
@@ -45,19 +42,35 @@ template <const auto& source, std::size_t type> struct MachineCode {
                                static_cast<TriggerIndex>(i % view.sizes.triggers), view.cells[i]};
         return all;
     }();
-    static constexpr std::size_t leaf_count = [] {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < view.sizes.states; ++i) count += view.plans[i].regions == 0;
-        return count;
-    }();
-    static constexpr std::array<StateIndex, leaf_count> leaves = [] {
-        std::array<StateIndex, leaf_count> all{};
-        for (std::size_t i = 0, used = 0; i < view.sizes.states; ++i)
-            if (view.plans[i].regions == 0) all[used++] = static_cast<StateIndex>(i);
-        return all;
-    }();
-
     // ---- an event
+
+    // Behind an arc's programs; the trace may turn to this machine, and is the last to do so.
+    [[gnu::noinline, gnu::cold]] static void tells(Execution& execution, std::int64_t statements,
+                                                   StateIndex from, ArcIndex arc, Time now) noexcept
+        TAPPET_REALTIME {
+        execution.tell(from, view.arcs[arc].target, view.arcs[arc].transition, now);
+        execution.clear(Execution::busy);
+        if (execution.mode_ != Execution::ready)
+            static_cast<void>(execution.finish_with(StateOutcome::taken, statements, now));
+    }
+    template <StateIndex leaf, ArcIndex arc>
+    [[gnu::always_inline]] static Way takes(Execution& execution, Run& run, Time now) noexcept
+        TAPPET_REALTIME {
+        Transition::template gives_reason<arc>(execution, now);
+        Next next = end_node;
+        std::size_t part = 0;
+        if (!Transition::template performs_parts<leaf, arc>(
+                std::make_index_sequence<Transition::template parts<leaf, arc>.count>{}, execution, run, next,
+                part)) [[unlikely]] {
+            Transition::breaks_off_at(execution, run.statements, run.fresh, next, arc, part, now);
+            return Way::handed;
+        }
+        Transition::template arrives<leaf, arc>(execution, now);
+        if (execution.trace_ == nullptr) [[likely]]
+            return Way::taken;
+        tells(execution, run.statements, leaf, arc, now);
+        return Way::handed;
+    }
 
     // True when the arcs behind it are not asked.
     template <StateIndex leaf, ArcIndex arc>
@@ -71,7 +84,7 @@ template <const auto& source, std::size_t type> struct MachineCode {
         } else {
             const ConditionResult result = Transition::template may_take<arc>(execution, arguments);
             if (result == ConditionResult::yes) {
-                way = Transition::template takes<leaf, arc>(execution, run, now);
+                way = takes<leaf, arc>(execution, run, now);
             } else if (result == ConditionResult::failed) {
                 way = Way::by_table;
                 asked = arc;
@@ -89,14 +102,25 @@ template <const auto& source, std::size_t type> struct MachineCode {
     }
 
     template <std::size_t number>
+    static constexpr ProgramRef handle_of = view.table.states[view.arcs[cells[number].first].source].handle;
+    template <std::size_t number>
+    static constexpr Extent extent_of =
+        Transition::extent_of(cells[number].leaf, cells[number].first, handle_of<number>);
+
+    template <std::size_t number>
     static StateOutcome cell(Execution& execution, Time now, const std::byte* arguments) noexcept
         TAPPET_REALTIME {
         constexpr Cell at = cells[number];
-        constexpr std::size_t arcs = count_arcs(at.first);
-        constexpr ProgramRef handle = view.table.states[view.arcs[at.first].source].handle;
+        constexpr std::size_t arcs = Step::count_arcs(at.first);
+        constexpr ProgramRef handle = handle_of<number>;
+        constexpr const Extent& extent = extent_of<number>;
         if constexpr (view.captured[at.trigger] != 0)
             if (arguments == nullptr) return StateOutcome::ignored;
-        Run run = begins(execution, now);
+        if constexpr (!is_folded && extent.is_bounded())
+            if (execution.policy_.statements < extent.statements) [[unlikely]]
+                return execution.resume_event(at.trigger, now, arguments, at.first);
+        Run run = Step::template begins<extent.calls, !extent.is_bounded()>(execution, now,
+                                                                            execution.policy_.statements);
         ArcIndex asked = at.first + arcs;
         Way way = reacts<at.leaf, at.first>(std::make_index_sequence<arcs>{}, execution, run, now, arguments,
                                             asked);
@@ -111,140 +135,10 @@ template <const auto& source, std::size_t type> struct MachineCode {
             }
         if (way == Way::by_table) [[unlikely]]
             return execution.resume_event(at.trigger, now, arguments, asked);
-        ends(execution, run, now);
-        return way == Way::taken ? StateOutcome::taken : StateOutcome::ignored;
-    }
-
-    [[gnu::always_inline]] static Run begins(Execution& execution, Time now) noexcept TAPPET_REALTIME {
-        execution.mode_ = Execution::busy;
-        if constexpr (!is_folded) {
-            execution.context_.now = now;
-            execution.statements_left_ = false;
-            return {execution.context_.data, execution.policy_.statements, true};
-        } else {
-            static_cast<void>(now);
-            return {nullptr, 0, true};
-        }
-    }
-    [[gnu::always_inline]] static void ends(Execution& execution, const Run& run, Time now) noexcept
-        TAPPET_REALTIME {
-        execution.mode_ = static_cast<std::uint8_t>(execution.mode_ & ~Execution::busy);
-        if (execution.mode_ != Execution::ready) [[unlikely]] {
-            execution.statements_ = static_cast<std::uint32_t>(run.statements);
-            execution.finish(now);
-        }
-    }
-
-    // ---- a step
-
-    template <StateIndex leaf, std::size_t level>
-    static constexpr StateRow row_at = view.table.states[Transition::ancestor(leaf, level + 1)];
-
-    template <StateIndex leaf, std::size_t level>
-    [[gnu::always_inline]] static bool runs_level(Execution& execution, Run& run, Time now) noexcept
-        TAPPET_REALTIME {
-        constexpr ProgramRef program = row_at<leaf, level>.run;
-        if constexpr (program.empty()) return true;
-        ProgramReturn why{};
-        if (Transition::template performs<program.call, program.program>(execution, run, why)) [[likely]]
-            return true;
-        execution.statements_ = static_cast<std::uint32_t>(run.statements);
-        execution.resume_run(level, why, now);
-        return false;
-    }
-    template <StateIndex leaf, std::size_t level>
-    [[gnu::always_inline]] static bool handles_level(Execution& execution, Run& run, Time now) noexcept
-        TAPPET_REALTIME {
-        constexpr ProgramRef program = row_at<leaf, level>.handle;
-        if constexpr (program.empty()) return true;
-        ProgramReturn why{};
-        if (Transition::template performs<program.call, program.program>(execution, run, why)) [[likely]]
-            return true;
-        execution.statements_ = static_cast<std::uint32_t>(run.statements);
-        execution.resume_handle(level, why, now);
-        return false;
-    }
-
-    // True when the conditions behind it are not asked.
-    template <StateIndex leaf, ArcIndex arc>
-    [[gnu::always_inline]] static bool holds(Execution& execution, Run& run, Time now, Way& way) noexcept
-        TAPPET_REALTIME {
-        constexpr StateArc row = view.arcs[arc];
-        if constexpr (row.after != Duration{})
-            if (now < Execution::due(row, execution.status_.states[row.source_level].entered_at))
-                return false;
-        const ConditionResult result = Transition::template may_take<arc>(execution, nullptr);
-        if (result == ConditionResult::no) return false;
-        execution.note_round();
-        way = result == ConditionResult::yes ? Transition::template takes<leaf, arc>(execution, run, now)
-                                             : Way::by_table;
-        return true;
-    }
-    template <StateIndex leaf, ArcIndex first, std::size_t... i>
-    [[gnu::always_inline]] static Way conditions(std::index_sequence<i...>, Execution& execution,
-                                                 [[maybe_unused]] Run& run,
-                                                 [[maybe_unused]] Time now) noexcept TAPPET_REALTIME {
-        static_cast<void>(execution);
-        Way way = Way::on;
-        static_cast<void>((holds<leaf, first + i>(execution, run, now, way) || ...));
-        return way;
-    }
-
-    template <StateIndex leaf, std::size_t... level>
-    [[gnu::always_inline]] static bool runs(std::index_sequence<level...>, Execution& execution, Run& run,
-                                            Time now) noexcept TAPPET_REALTIME {
-        return (runs_level<leaf, level>(execution, run, now) && ...);
-    }
-    template <StateIndex leaf, std::size_t... level>
-    [[gnu::always_inline]] static bool handles(std::index_sequence<level...>, Execution& execution, Run& run,
-                                               Time now) noexcept TAPPET_REALTIME {
-        return (handles_level<leaf, level>(execution, run, now) && ...);
-    }
-
-    // Its run program waits since an earlier step.
-    template <StateIndex leaf, std::size_t level>
-    [[gnu::always_inline]] static bool waits_at(const Execution& execution) noexcept TAPPET_REALTIME {
-        constexpr ProgramIndex program = row_at<leaf, level>.run.program;
-        if constexpr (program == no_program)
-            return false;
-        else if constexpr (!Programs::tables.programs[program].may_wait)
-            return false;
-        else
-            return execution.status_.states[level].run == RunPhase::waits;
-    }
-    template <StateIndex leaf, std::size_t... level>
-    [[gnu::always_inline]] static bool waits(std::index_sequence<level...>,
-                                             const Execution& execution) noexcept TAPPET_REALTIME {
-        static_cast<void>(execution);
-        return (waits_at<leaf, level>(execution) || ...);
-    }
-
-    template <std::size_t number>
-    static void state(Execution& execution, Time now) noexcept TAPPET_REALTIME {
-        constexpr StateIndex leaf = leaves[number];
-        constexpr StatePlan plan = view.plans[leaf];
-        constexpr auto levels = std::make_index_sequence<plan.depth>{};
-        if (waits<leaf>(levels, execution)) return execution.step_generally(now);
-        Run run = begins(execution, now);
-        if (!runs<leaf>(levels, execution, run, now)) [[unlikely]]
-            return;
-        Way way = Way::by_table;
-        if ((execution.mode_ & Execution::final_wanted) == 0) [[likely]]
-            way = conditions<leaf, plan.conditions>(std::make_index_sequence<count_arcs(plan.conditions)>{},
-                                                    execution, run, now);
-        else
-            execution.note_round();
-        if (way == Way::handed) [[unlikely]]
-            return;
-        if (way != Way::on) {
-            execution.statements_ =
-                is_folded ? execution.policy_.statements : static_cast<std::uint32_t>(run.statements);
-            execution.resume_round(way == Way::taken ? 1 : 0, now);
-            return;
-        }
-        if (!handles<leaf>(levels, execution, run, now)) [[unlikely]]
-            return;
-        ends(execution, run, now);
+        const StateOutcome outcome = way == Way::taken ? StateOutcome::taken : StateOutcome::ignored;
+        return Step::template ends<extent.calls>(execution)
+                   ? outcome
+                   : execution.finish_with(outcome, run.statements, now);
     }
 
     // ---- the switches
@@ -255,7 +149,8 @@ template <const auto& source, std::size_t type> struct MachineCode {
         return static_cast<std::uint32_t>(cells[number].leaf * view.sizes.triggers + cells[number].trigger);
     }
     static constexpr std::uint32_t leaf_key(std::size_t number) {
-        return number < leaf_count ? leaves[number] : static_cast<std::uint32_t>(0x10000 + number);
+        return number < Step::leaf_count ? Step::leaves[number]
+                                         : static_cast<std::uint32_t>(0x10000 + number);
     }
 
     template <std::size_t number>
@@ -268,8 +163,9 @@ template <const auto& source, std::size_t type> struct MachineCode {
             return StateOutcome::ignored;
     }
     template <std::size_t number>
-    [[gnu::always_inline]] static void steps_in(Execution& execution, Time now) noexcept TAPPET_REALTIME {
-        if constexpr (number < leaf_count) state<number>(execution, now);
+    [[gnu::always_inline]] static void steps_in(Execution& execution, Time now, Round round) noexcept
+        TAPPET_REALTIME {
+        if constexpr (number < Step::leaf_count) Step::template state<number>(execution, now, round);
     }
 
 #define TAPPET_EIGHT(number)                                                                                 \
@@ -304,16 +200,16 @@ template <const auto& source, std::size_t type> struct MachineCode {
         }
     }
     template <std::size_t first, std::size_t end>
-    [[gnu::always_inline]] static void step_in(std::uint32_t key, Execution& execution, Time now) noexcept
-        TAPPET_REALTIME {
+    [[gnu::always_inline]] static void step_in(std::uint32_t key, Execution& execution, Time now,
+                                               Round round) noexcept TAPPET_REALTIME {
         constexpr std::size_t pages = (end - first + page_cells - 1) / page_cells;
         if constexpr (pages > 1) {
             constexpr std::size_t middle = first + pages / 2 * page_cells;
-            key < leaf_key(middle) ? step_in<first, middle>(key, execution, now)
-                                   : step_in<middle, end>(key, execution, now);
+            key < leaf_key(middle) ? step_in<first, middle>(key, execution, now, round)
+                                   : step_in<middle, end>(key, execution, now, round);
         } else {
 #define TAPPET_ONE(number)                                                                                   \
-    case leaf_key(first + number): return steps_in<first + number>(execution, now)
+    case leaf_key(first + number): return steps_in<first + number>(execution, now, round)
             switch (key) {
                 TAPPET_EIGHT(0);
                 TAPPET_EIGHT(8);
@@ -329,8 +225,11 @@ template <const auto& source, std::size_t type> struct MachineCode {
     // Of an execution that is ready: nothing waits, nothing is under way.
     static StateOutcome dispatch(Execution& execution, std::size_t trigger, Time now,
                                  const std::byte* arguments) noexcept TAPPET_REALTIME {
-        return react_in<0, cell_count>(static_cast<std::uint32_t>(execution.first_cell_ + trigger), execution,
-                                       now, arguments);
+        if (trigger >= view.sizes.triggers) [[unlikely]]
+            return StateOutcome::ignored;
+        return react_in<0, cell_count>(
+            static_cast<std::uint32_t>(execution.status_.active * view.sizes.triggers + trigger), execution,
+            now, arguments);
     }
     static bool capture(Execution& execution, TransitionIndex transition, const std::byte* arguments) noexcept
         TAPPET_REALTIME {
@@ -338,7 +237,8 @@ template <const auto& source, std::size_t type> struct MachineCode {
                                        execution, arguments);
     }
     static void step(Execution& execution, Time now) noexcept TAPPET_REALTIME {
-        step_in<0, leaf_count>(execution.status_.active, execution, now);
+        step_in<0, Step::leaf_count>(execution.status_.active, execution, now,
+                                     {.statements = execution.policy_.statements});
     }
 };
 

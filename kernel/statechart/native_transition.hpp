@@ -131,95 +131,162 @@ template <const auto& source, std::size_t type> struct TransitionCode {
         handed    ///< the walk has gone on from where it stood, and has ended the call
     };
 
-    template <StateProgram call, ProgramIndex number> static constexpr bool is_private = [] {
-        if constexpr (call != nullptr)
-            return false;
-        else if constexpr (number != no_program)
-            return Programs::template is_private<number>;
-        else
-            return true;
+    // ---- what is known of what may run
+
+    /// Of all that one call may run: how many statements at most, and whether it calls anybody, who could
+    /// turn to this machine again.
+    struct Extent {
+        std::uint32_t statements = 0;
+        bool calls = false;
+
+        constexpr void add(std::uint32_t more) {
+            const bool is_unbounded = statements == Programs::unbounded || more == Programs::unbounded;
+            statements = is_unbounded ? Programs::unbounded : statements + more;
+        }
+        constexpr void add(const ProgramRef& program) {
+            if (program.call != nullptr) {
+                add(1);
+                calls = true;
+            } else if (program.program != no_program) {
+                add(Programs::facts[program.program].statements);
+                calls = calls || !Programs::facts[program.program].is_private;
+            }
+        }
+        constexpr void ask(const ConditionRef& condition) {
+            calls =
+                calls || condition.call != nullptr || !Programs::is_private_condition(condition.condition);
+        }
+        [[nodiscard]] constexpr bool is_bounded() const { return statements != Programs::unbounded; }
+    };
+    // Asked and taken.
+    static constexpr Extent extent_of(StateIndex leaf, const StateArc& arc) {
+        const TransitionRow& transition = view.table.transitions[arc.transition];
+        Extent extent;
+        extent.ask(transition.guard);
+        extent.calls = extent.calls || transition.captures != 0;
+        const Parts parts = parts_of(leaf, arc);
+        for (std::size_t i = 0; i < parts.count; ++i) extent.add(parts.list[i]);
+        if (view.preconditions)
+            for (std::size_t level = arc.kept_levels + 1u; level <= arc.target_levels; ++level)
+                extent.ask(view.table.states[ancestor(arc.target, level)].precondition);
+        return extent;
+    }
+    // At most one of them is taken, then `otherwise` is not run.
+    static constexpr Extent extent_of(StateIndex leaf, ArcIndex first, const ProgramRef& otherwise) {
+        Extent all;
+        all.add(otherwise);
+        if (first == no_arc) return all;
+        for (ArcIndex arc = first;; ++arc) {
+            const Extent one = extent_of(leaf, view.arcs[arc]);
+            all.statements = std::max(all.statements, one.statements);
+            all.calls = all.calls || one.calls;
+            if (view.arcs[arc].last) return all;
+        }
+    }
+    /// Some run program may last longer than a step: then its phase outlives the step.
+    static constexpr bool runs_on = [] {
+        for (const StateRow& row : view.table.states)
+            if (row.run.program != no_program && Programs::tables.programs[row.run.program].may_wait)
+                return true;
+        return false;
     }();
 
-    // One program; `on`: it has ended. Otherwise `why` says how it stands.
+    // ---- programs
+
+    // True when it has ended. Otherwise `next` says how it stands; end_node: it has ended, but an error came
+    // from elsewhere.
     template <StateProgram call, ProgramIndex number>
-    [[gnu::always_inline]] static bool performs(Execution& execution, Run& run, ProgramReturn& why) noexcept
+    [[gnu::always_inline]] static bool performs(Execution& execution, Run& run, Next& next) noexcept
         TAPPET_REALTIME {
-        why = ProgramReturn::ended;
+        next = end_node;
         if constexpr (call != nullptr) {
             if constexpr (!is_folded)
-                if (--run.statements < 0) [[unlikely]] {
-                    run.statements = 0;
-                    why = ProgramReturn::left_over;
+                if (--run.statements < 0 && run.counted) [[unlikely]] {
+                    next = halts_at(no_node, Halt::left_over);
                     return false;
                 }
             call(execution.context_.component);
+            if constexpr (!is_folded) return !execution.is(Execution::error);
         } else if constexpr (number != no_program) {
-            const bool none_left = run.statements == 0;
-            const Next next = Programs::template program<number>(execution.context_, run);
+            const bool none_left = run.counted && run.statements == 0;
+            next = Programs::template program<number>(execution.context_, run);
             if (next >= halted) [[unlikely]] {
-                why = Programs::halts(execution.context_, run, next);
-                if (none_left) execution.context_.position.node = no_node; // it has not begun
+                if (none_left) next = halts_at(no_node, Halt::left_over); // it has not begun
                 return false;
             }
+            if constexpr (!Programs::facts[number].is_private) return !execution.is(Execution::error);
         }
-        if constexpr (!is_folded && !is_private<call, number>) return !execution.is(Execution::error);
         return true;
+    }
+    // How a program stands that has not ended, or no program behind it may run.
+    static ProgramReturn breaks_off(Execution& execution, std::int64_t statements, bool fresh,
+                                    Next next) noexcept TAPPET_REALTIME {
+        Run run{execution.context_.data, statements, fresh};
+        const ProgramReturn why = Programs::halts(execution.context_, run, next);
+        execution.statements_ = static_cast<std::uint32_t>(run.statements);
+        return why;
     }
 
     // ---- one transition
 
-    template <StateIndex leaf, ArcIndex arc, std::size_t part>
-    [[gnu::always_inline]] static bool performs_part(Execution& execution, Run& run, Time now) noexcept
+    [[gnu::noinline, gnu::cold]] static void breaks_off_at(Execution& execution, std::int64_t statements,
+                                                           bool fresh, Next next, ArcIndex arc,
+                                                           std::size_t part, Time now) noexcept
         TAPPET_REALTIME {
+        execution.resume_transition(arc, part, breaks_off(execution, statements, fresh, next), now);
+    }
+    template <StateIndex leaf, ArcIndex arc, std::size_t part>
+    [[gnu::always_inline]] static bool performs_part(Execution& execution, Run& run, Next& next,
+                                                     std::size_t& at) noexcept TAPPET_REALTIME {
         constexpr ProgramRef program = parts<leaf, arc>.list[part];
-        ProgramReturn why{};
-        if (performs<program.call, program.program>(execution, run, why)) [[likely]]
+        if (performs<program.call, program.program>(execution, run, next)) [[likely]]
             return true;
-        execution.statements_ = static_cast<std::uint32_t>(run.statements);
-        execution.resume_transition(arc, part, why, now);
+        at = part;
         return false;
     }
+    // True when all have ended, otherwise it is the program of that part which has not.
     template <StateIndex leaf, ArcIndex arc, std::size_t... part>
     [[gnu::always_inline]] static bool performs_parts(std::index_sequence<part...>, Execution& execution,
-                                                      [[maybe_unused]] Run& run,
-                                                      [[maybe_unused]] Time now) noexcept TAPPET_REALTIME {
-        static_cast<void>(execution);
-        return (performs_part<leaf, arc, part>(execution, run, now) && ...);
+                                                      Run& run, Next& next, std::size_t& at) noexcept
+        TAPPET_REALTIME {
+        static_cast<void>(execution), static_cast<void>(run), static_cast<void>(next), static_cast<void>(at);
+        return (performs_part<leaf, arc, part>(execution, run, next, at) && ...);
+    }
+    // Only what changes is written.
+    template <StateIndex leaf, ArcIndex arc, std::size_t level>
+    [[gnu::always_inline]] static void enters_level(ActiveState& at, Time now) noexcept TAPPET_REALTIME {
+        constexpr StateIndex entered = ancestor(view.arcs[arc].target, level + 1);
+        constexpr bool was_another = level >= view.plans[leaf].depth || ancestor(leaf, level + 1) != entered;
+        if constexpr (was_another) at.state = entered;
+        if constexpr (runs_on) at.run = RunPhase::fresh;
+        at.entered_at = now;
     }
     template <StateIndex leaf, ArcIndex arc, std::size_t... level>
     [[gnu::always_inline]] static void enters(std::index_sequence<level...>, Execution& execution,
-                                              Time now) noexcept TAPPET_REALTIME {
+                                              [[maybe_unused]] Time now) noexcept TAPPET_REALTIME {
         constexpr StateArc row = view.arcs[arc];
         auto& states = execution.status_.states;
-        [[maybe_unused]] const auto enter = [&](std::size_t at, StateIndex state) noexcept TAPPET_REALTIME {
-            states[at].state = state;
-            states[at].run = RunPhase::fresh;
-            states[at].entered_at = now;
-        };
-        (enter(row.kept_levels + level, ancestor(row.target, row.kept_levels + level + 1)), ...);
-        states.used = row.target_levels;
+        (enters_level<leaf, arc, row.kept_levels + level>(states[row.kept_levels + level], now), ...);
+        if constexpr (view.plans[leaf].depth != row.target_levels) states.used = row.target_levels;
     }
-
-    // `taken` or `handed`.
+    // Behind its programs.
     template <StateIndex leaf, ArcIndex arc>
-    [[gnu::always_inline]] static Way takes(Execution& execution, Run& run, Time now) noexcept
-        TAPPET_REALTIME {
+    [[gnu::always_inline]] static void arrives(Execution& execution, Time now) noexcept TAPPET_REALTIME {
         constexpr StateArc row = view.arcs[arc];
-        if constexpr (row.gives_reason)
-            execution.give_reason(row.transition, view.table.transitions[row.transition].because, now);
-        if (!performs_parts<leaf, arc>(std::make_index_sequence<parts<leaf, arc>.count>{}, execution, run,
-                                       now)) [[unlikely]]
-            return Way::handed;
         enters<leaf, arc>(std::make_index_sequence<std::size_t{row.target_levels} - row.kept_levels>{},
                           execution, now);
         StateMachineStatus& status = execution.status_;
-        status.active = row.target;
+        if constexpr (row.target != leaf) status.active = row.target;
         status.last_transition = row.transition;
-        execution.first_cell_ = row.first_cell;
         ++status.transitions;
-        if (execution.trace_ != nullptr)
-            execution.trace_(execution.trace_context_, leaf, row.target, row.transition, now);
-        return Way::taken;
+    }
+    template <ArcIndex arc>
+    [[gnu::always_inline]] static void gives_reason(Execution& execution, Time now) noexcept TAPPET_REALTIME {
+        constexpr StateArc row = view.arcs[arc];
+        if constexpr (row.gives_reason)
+            execution.give_reason(row.transition, view.table.transitions[row.transition].because, now);
+        else
+            static_cast<void>(execution), static_cast<void>(now);
     }
 
     // ---- arguments of an event that is taken by the walk

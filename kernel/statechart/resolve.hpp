@@ -33,7 +33,6 @@ struct StateArc {
     StateIndex otherwise = no_state; ///< likewise, when the guard says no
     StateIndex target = no_state;    ///< the leaf that is active afterwards, in a plain machine
     TransitionIndex transition = 0;
-    std::uint16_t first_cell = 0;    ///< of `target`
     std::uint8_t source_level = 0;   ///< depth of `source` - 1
     std::uint8_t kept_levels = 0;    ///< states that are neither left nor entered, from the outside
     std::uint8_t otherwise_kept = 0; ///< likewise, on the way to `otherwise`
@@ -243,7 +242,6 @@ private:
         for (std::size_t level = kept + 1; level <= names_.depth[target]; ++level)
             add(row_of(names_.ancestor(target, level)).entry, arc.programs);
         arc.target = target;
-        arc.first_cell = static_cast<std::uint16_t>(target * names_.triggers);
         arc.kept_levels = static_cast<std::uint8_t>(kept);
         arc.target_levels = names_.depth[target];
         if (arcs_ < room_.arcs.size()) room_.arcs[arcs_] = arc;
