@@ -3,9 +3,12 @@
 //     --seconds S            of each application in each setting; the thesis: 300
 //     --application NAME     one of minimal, small, concurrent, large
 //     --setting NAME         one of none, locked, data, commands, events
+//     --histograms DIRECTORY one file for each task of each application in each setting, as the thesis kept
+//     them
 #include "apps/figures/experiments/bare.hpp"
 #include "apps/figures/experiments/disturbance.hpp"
 #include "apps/figures/experiments/findings.hpp"
+#include "apps/figures/experiments/histogram_files.hpp"
 #include "apps/figures/measure/candidates.hpp"
 #include "apps/figures/measure/ticks.hpp"
 #include "apps/figures/measure/undisturbed.hpp"
@@ -26,6 +29,7 @@ struct Wanted {
     double seconds = 0; ///< 0: by the setting
     std::string application = {};
     std::string setting = {};
+    std::string histograms = {};
 };
 
 [[noreturn]] void refuse(const std::string& sentence) {
@@ -38,7 +42,7 @@ Wanted take_own_words(std::vector<char*>& words) {
     Wanted wanted;
     for (std::size_t i = 1; i < words.size();) {
         const std::string word = words[i];
-        if (word != "--seconds" && word != "--application" && word != "--setting") {
+        if (word != "--seconds" && word != "--application" && word != "--setting" && word != "--histograms") {
             ++i;
             continue;
         }
@@ -50,6 +54,8 @@ Wanted take_own_words(std::vector<char*>& words) {
             wanted.seconds = std::atof(value.c_str());
             if (!(wanted.seconds > 0 && wanted.seconds <= 3600))
                 refuse("--seconds " + value + " is no time between 0 and 3600 s");
+        } else if (word == "--histograms") {
+            wanted.histograms = value;
         } else if (word == "--application") {
             const auto all = applications();
             if (std::ranges::find(all, value, &Application::name) == all.end())
@@ -96,11 +102,13 @@ bool shows_in(const Application& application, Setting setting, const std::string
         return (id + what).contains(only) || only.contains(id + what);
     };
     switch (setting) {
-    case Setting::none: return meets("period") || meets("latency") || meets("exchange");
+    case Setting::none:
+        return meets("period") || meets("latency") || meets("exchange") || meets("command.send") ||
+               meets("event.send");
     case Setting::locked:
-    case Setting::data: return meets("exchange") || meets("latency.high");
-    case Setting::commands: return meets("command");
-    case Setting::events: return meets("event");
+    case Setting::data: return meets("exchange") || meets("period.data") || meets("latency.data");
+    case Setting::commands: return meets("command") || meets("period.commands");
+    case Setting::events: return meets("event") || meets("period.events");
     }
     return false;
 }
@@ -165,6 +173,9 @@ int main(int argc, char** argv) {
                                         findings.bare(application.name)));
         }
 
+    if (!wanted.histograms.empty())
+        if (const std::string why_not = write_histograms(findings, wanted.histograms); !why_not.empty())
+            refuse(why_not);
     result.figures = figures_of(findings);
     std::erase_if(result.figures,
                   [&](const figures::Figure& each) { return !each.id.contains(options.only); });

@@ -46,6 +46,8 @@ Row row_of(std::string name, Role role, const Samples& samples) {
     return {std::move(name), role, samples.summary()};
 }
 
+using Select = Samples TaskResult::*;
+
 /// What is known without measuring.
 Row stated(std::string name, double value) {
     return {std::move(name), Role::floor, {value, value, value, value, value, 1}};
@@ -78,6 +80,35 @@ void add_times(std::vector<Figure>& figures, const Experiment& experiment, const
     add(figures, std::move(latencies));
 }
 
+/// Periods or latencies of all priorities with communication, beside those without.
+void add_with_communication(std::vector<Figure>& figures, const Findings& findings,
+                            const std::string& application, Setting setting, Select samples) {
+    const Experiment* const experiment = findings.find(application, setting);
+    if (experiment == nullptr) return;
+    const bool periods = samples == &TaskResult::periods;
+    const std::string name{setting_names[static_cast<std::size_t>(setting)]};
+    Figure figure{"experiments." + application + (periods ? ".period." : ".latency.") + name,
+                  application + (periods ? ": periods with " : ": latencies with ") +
+                      (setting == Setting::data ? "data flow" : name),
+                  "us",
+                  setting == Setting::data       ? "thesis 4.4.4"
+                  : setting == Setting::commands ? "thesis 4.5.4"
+                                                 : "thesis 4.6.4",
+                  periods ? "from the beginning of one execution to that of the next"
+                          : "from the beginning of an execution to its end"};
+    for (const TaskResult& task : experiment->tasks) {
+        if (!task.real_time) continue;
+        figure.rows.push_back(row_of(task.name, Role::ours, task.*samples));
+        if (setting == Setting::data)
+            if (const TaskResult* locked = findings.find(application, Setting::locked, task.name))
+                figure.rows.push_back(
+                    row_of(task.name + ", mutex with priority inheritance", Role::peer, locked->*samples));
+        if (const TaskResult* none = findings.find(application, Setting::none, task.name))
+            figure.rows.push_back(row_of(task.name + ", no communication", Role::floor, none->*samples));
+    }
+    add(figures, std::move(figure));
+}
+
 void add_exchanges(std::vector<Figure>& figures, const Findings& findings, const std::string& application) {
     const Experiment* const ours = findings.find(application, Setting::data);
     if (ours == nullptr) return;
@@ -94,18 +125,6 @@ void add_exchanges(std::vector<Figure>& figures, const Findings& findings, const
                 row_of("the same packets, copied by one thread", Role::floor, none->copies));
         add(figures, std::move(figure));
     }
-    Figure latency{"experiments." + application + ".latency.high",
-                   application + ": latency of the highest priority with data flow", "us", "thesis 4.4.4",
-                   "from the beginning of an execution to its end"};
-    const std::pair<Setting, Role> settings[] = {
-        {Setting::data, Role::ours}, {Setting::locked, Role::peer}, {Setting::none, Role::floor}};
-    for (const auto& [setting, role] : settings)
-        if (const TaskResult* task = findings.find(application, setting, "high"))
-            latency.rows.push_back(row_of(setting == Setting::data     ? "connectors"
-                                          : setting == Setting::locked ? "mutex with priority inheritance"
-                                                                       : "no communication",
-                                          role, task->latencies));
-    add(figures, std::move(latency));
 }
 
 void add_messages(std::vector<Figure>& figures, const Findings& findings, const Experiment& experiment) {
@@ -126,10 +145,10 @@ void add_messages(std::vector<Figure>& figures, const Findings& findings, const 
             for (const double value : ns.values()) us.add(value / 1e3);
             return us;
         };
-        served.rows.push_back(row_of(task.name + ", one", Role::ours, in_us(task.one_served)));
-        served.rows.push_back(row_of(task.name + ", two", Role::ours, in_us(task.two_served)));
-        served.rows.push_back(stated(task.name + ", the load of one", task.load_us / 10));
-        served.rows.push_back(stated(task.name + ", the load of two", task.load_us / 5));
+        served.rows.push_back(row_of(task.name + ": one", Role::ours, in_us(task.one_served)));
+        served.rows.push_back(row_of(task.name + ": two", Role::ours, in_us(task.two_served)));
+        served.rows.push_back(stated(task.name + ": one, its load", task.load_us / 10));
+        served.rows.push_back(stated(task.name + ": two, their load", task.load_us / 5));
     }
     if (none != nullptr)
         for (const TaskResult& task : none->tasks)
@@ -138,8 +157,6 @@ void add_messages(std::vector<Figure>& figures, const Findings& findings, const 
     add(figures, std::move(sent));
     add(figures, std::move(served));
 }
-
-using Select = Samples TaskResult::*;
 
 /// One series for each real-time task of an experiment.
 void add_plot(std::vector<Plot>& plots, const Experiment* experiment, std::string id, std::string title,
@@ -211,6 +228,10 @@ std::vector<Figure> figures_of(const Findings& findings) {
         if (const Experiment* none = findings.find(application, Setting::none))
             add_times(figures, *none, findings.find_bare(application));
         add_exchanges(figures, findings, application);
+        for (const Setting setting : {Setting::data, Setting::commands, Setting::events})
+            add_with_communication(figures, findings, application, setting, &TaskResult::periods);
+        // Commands and events run without the load: their latencies have nothing to stand beside.
+        add_with_communication(figures, findings, application, Setting::data, &TaskResult::latencies);
         for (const Setting setting : {Setting::commands, Setting::events})
             if (const Experiment* each = findings.find(application, setting))
                 add_messages(figures, findings, *each);

@@ -77,15 +77,15 @@ std::string Result::write(const std::string& path) const {
 void Result::print() const {
     for (const Figure& figure : figures) {
         std::printf("\n%s [%s] %s\n", figure.title.c_str(), figure.unit.c_str(), figure.how.c_str());
-        std::printf("  %-44s %-6s %10s %10s %10s %12s %9s %7s\n", "", "", "median", "p99", "p99.9", "max",
-                    "instr.", "ratio");
+        std::printf("  %-44s %-6s %10s %10s %10s %10s %12s %9s %7s\n", "", "", "median", "mean", "p99",
+                    "p99.9", "max", "instr.", "ratio");
         double ours = 0;
         for (const Row& row : figure.rows)
             if (row.role == Role::ours && ours == 0) ours = row.summary.median;
         for (const Row& row : figure.rows) {
             const Summary& s = row.summary;
-            std::printf("  %-44s %-6s %10.2f %10.2f %10.2f %12.1f ", row.name.c_str(), word(row.role),
-                        s.median, s.p99, s.p999, s.max);
+            std::printf("  %-44s %-6s %10.2f %10.2f %10.2f %10.2f %12.1f ", row.name.c_str(), word(row.role),
+                        s.median, s.mean, s.p99, s.p999, s.max);
             if (row.instructions)
                 std::printf("%9.1f", *row.instructions);
             else

@@ -41,7 +41,7 @@ struct Columns {
 
     [[nodiscard]] std::string head() const {
         return std::string{"<tr><th></th><th>role</th>"} +
-               (spread ? "<th>median</th><th>p99</th><th>p99.9</th><th>max</th><th>samples</th>"
+               (spread ? "<th>median</th><th>mean</th><th>p99</th><th>p99.9</th><th>max</th><th>samples</th>"
                        : "<th>value</th>") +
                (counted ? "<th>instructions</th>" : "") + (ours ? "<th>of ours</th>" : "") + "</tr>";
     }
@@ -59,7 +59,7 @@ std::string ratios(const std::vector<Beside>& others, const Columns& columns) {
                                     (more.empty() ? "" : " (" + more + ")")) +
                 " "; // where a line may break
     }
-    return element("tr", element("td", line, "colspan=\"9\""), "class=\"beside\"");
+    return element("tr", element("td", line, "colspan=\"10\""), "class=\"beside\"");
 }
 
 std::string table(const Figure& figure) {
@@ -73,7 +73,7 @@ std::string table(const Figure& figure) {
             element("td", element("span", "", "class=\"role " + role + "\"") + escaped(row.name)) +
             element("td", role) + cell(s.median);
         if (columns.spread)
-            cells += cell(s.p99) + cell(s.p999) + cell(s.max) +
+            cells += cell(s.mean) + cell(s.p99) + cell(s.p999) + cell(s.max) +
                      element("td", std::to_string(s.count), "class=\"soft\"");
         if (columns.counted) cells += row.instructions ? cell(*row.instructions) : element("td", "-");
         if (columns.ours)

@@ -10,8 +10,9 @@ TEST(ExperimentFigures, run_every_application_in_every_setting) {
     const Result result = run_smoke(TAPPET_PROGRAM);
     expect_sound(result);
     for (const std::string application : {"minimal", "small", "concurrent", "large"})
-        for (const char* what : {".period", ".latency", ".latency.high", ".exchange.high", ".command.send",
-                                 ".command.serve", ".event.send", ".event.serve"})
+        for (const char* what :
+             {".period", ".period.data", ".period.events", ".latency", ".latency.data", ".exchange.high",
+              ".command.send", ".command.serve", ".event.send", ".event.serve"})
             EXPECT_NE(std::ranges::find(result.figures, "experiments." + application + what, &Figure::id),
                       result.figures.end())
                 << application << what;

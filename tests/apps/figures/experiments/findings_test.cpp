@@ -1,10 +1,15 @@
 // What is made of the records of experiments, and that each statement can be found true and false.
 #include "apps/figures/experiments/findings.hpp"
+#include "apps/figures/experiments/histogram_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
 
 namespace tappet::experiments {
 namespace {
@@ -119,6 +124,31 @@ TEST(Plots, show_periods_by_what_they_differ_from_the_row) {
     ASSERT_EQ(plots.size(), 1u);
     EXPECT_EQ(plots[0].id, "experiments.figure.4.9.large");
     EXPECT_EQ(plots[0].series.at(0).points.front().first, -10);
+}
+
+TEST(HistogramFiles, hold_every_sample_of_a_task_once) {
+    Findings findings;
+    TaskResult& high = task(findings, "large", Setting::events, "high");
+    high.periods = mixed(999, 1001);
+    high.sends = always(120);
+    const std::string directory = testing::TempDir() + "histograms-" + std::to_string(::getpid());
+    EXPECT_EQ(write_histograms(findings, directory), "");
+    std::ifstream file{directory + "/large-events-high.txt"};
+    std::vector<double> counts; // of each block
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with('#'))
+            counts.push_back(0);
+        else if (!line.empty())
+            counts.back() += std::stod(line.substr(line.find(' ')));
+    EXPECT_THAT(counts, ElementsAre(2000, 1000));
+    std::filesystem::remove_all(directory);
+}
+
+TEST(HistogramFiles, say_why_they_were_not_written) {
+    Findings findings;
+    task(findings, "large", Setting::events, "high").periods = always(1);
+    EXPECT_THAT(write_histograms(findings, "/dev/null/nowhere"),
+                HasSubstr("cannot write /dev/null/nowhere/"));
 }
 
 TEST(Statements, of_what_was_not_run_nothing_is_said) { EXPECT_TRUE(statements_of(Findings{}).empty()); }
