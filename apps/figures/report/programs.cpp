@@ -126,7 +126,7 @@ ProgramRun run_program(const Program& program, const std::vector<std::string>& a
     const Meter meter;
     run.failure = failure_of(run_child(std::move(words), log, seconds_at_most), seconds_at_most);
     run.usage = meter.usage();
-    if (!run.failure.empty()) run.failure += "; the last it said:" + end_of(log);
+    if (!run.failure.empty()) run.failure += end_of(log);
     auto result = read_result(json);
     if (result)
         run.result = std::move(*result);

@@ -32,7 +32,8 @@ struct Noise {
 /// One program's run.
 struct ProgramRun {
     std::string name;
-    std::string failure = {}; ///< empty: it ran to its end; otherwise what happened, and the last it said
+    std::string failure =
+        {}; ///< empty: it ran to its end; otherwise what happened, and below it the last lines it said
     Result result = {};
     Usage usage = {};
     Noise after = {};

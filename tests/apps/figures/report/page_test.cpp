@@ -49,7 +49,7 @@ TEST_F(Page, a_goal_that_has_no_number_is_missed) {
 }
 
 TEST_F(Page, says_which_program_failed_and_what_it_said_last) {
-    run.programs.push_back({"scale", "ended with exit code 3; the last it said:\nno <compiler>"});
+    run.programs.push_back({"scale", "ended with exit code 3\nno <compiler>"});
     EXPECT_THAT(text(), AllOf(HasSubstr("figures-scale ended with exit code 3"),
                               HasSubstr("no &lt;compiler&gt;"), HasSubstr("<b>0 of 1</b>programs ran")));
     EXPECT_THAT(summary_text(run), HasSubstr("FAILED  figures-scale ended with exit code 3"));
