@@ -71,6 +71,7 @@ void Activity::enter(void* self) noexcept { static_cast<Activity*>(self)->live()
 
 void Activity::live() noexcept {
     current_activity = this;
+    const RunsActivity here{engine_->plan().activity};
     while (!ended_.load(std::memory_order_acquire)) {
         if (released_.load(std::memory_order_acquire)) {
             run_once();

@@ -13,7 +13,7 @@ class CommandProcessor {
 public:
     /// Before the first cycle. `followed` has a place for each command that may be at work, `requests` of
     /// them for those that no row of the table plans; both outlive the processor.
-    void place(std::span<Mailbox> mailboxes, std::span<CommandSlot*> followed,
+    void place(std::span<CommandMailbox> mailboxes, std::span<CommandSlot*> followed,
                std::size_t requests) noexcept {
         inbox_.place(mailboxes);
         followed_ = followed;
@@ -21,15 +21,17 @@ public:
         count_ = 0;
         requests_at_work_ = 0;
     }
-    [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
+    [[nodiscard]] CommandInbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
     [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME { return inbox_.pending(); }
+    /// Whether one was sent or is at work.
+    [[nodiscard]] bool has_work() const noexcept TAPPET_REALTIME { return count_ != 0 || pending(); }
 
     /// Hands each sent command, with the part it is for, to visit(part, slot), which calls take_up(). Returns
     /// how many.
     template <class Visit>
     std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
-        return inbox_.serve([&visit](const Message& message) noexcept TAPPET_REALTIME {
-            visit(message.id, *static_cast<CommandSlot*>(message.object));
+        return inbox_.serve([&visit](const CommandNotice& sent) noexcept TAPPET_REALTIME {
+            visit(static_cast<std::uint32_t>(sent.part), *static_cast<CommandSlot*>(sent.slot));
         });
     }
     /// Runs the action; an accepted command is followed from now on. Returns how it stands.
@@ -64,7 +66,7 @@ public:
     [[nodiscard]] std::size_t at_work() const noexcept TAPPET_REALTIME { return count_; }
 
 private:
-    Inbox inbox_{};
+    CommandInbox inbox_{};
     std::span<CommandSlot*> followed_{};
     std::size_t count_ = 0;
     std::size_t requests_ = 0;

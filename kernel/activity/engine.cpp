@@ -16,7 +16,18 @@ void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
 
 } // namespace
 
-Time Engine::next_wake() const noexcept TAPPET_REALTIME {
+void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
+    plan_ = plan;
+    clock_ = &clock;
+    cycle_.period = plan.period;
+    has_deadline_ = plan.real_time && plan.deadline > Duration::zero();
+    least_excess_ = has_deadline_ ? Duration::zero() : Duration::max();
+    steps_only_ = plan.timers.empty() && plan.behaviours.empty() && plan.guarded.empty() &&
+                  (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr;
+    for (EnginePart& part : plan_.parts) part.step = part.type->step;
+}
+
+Time Engine::earliest_wake() const noexcept TAPPET_REALTIME {
     Time next = next_release_;
     for (const EngineTimer& each : plan_.timers) next = std::min(next, due_at(each));
     for (const Behaviour& each : plan_.behaviours)
@@ -25,43 +36,65 @@ Time Engine::next_wake() const noexcept TAPPET_REALTIME {
     return next;
 }
 
-bool Engine::begin_change() noexcept TAPPET_REALTIME {
-    if (generation() % 2 != 0) return false;
-    generation_.fetch_add(1, std::memory_order_acq_rel); // observe.begin
-    return true;
+[[gnu::always_inline]] inline void Engine::run_components() noexcept TAPPET_REALTIME {
+    FunctionTiming* timing = plan_.functions.data();
+    for (const EnginePart& part : plan_.parts) {
+        FunctionTiming& step = *timing;
+        timing += functions_per_part;
+        if (!is_running(part.state)) continue;
+        if (part.step != nullptr)
+            timed(step, [&]() noexcept TAPPET_REALTIME { part.step(part.component, cycle_); });
+        else if (part.type->work != nullptr)
+            timed(step, [&]() noexcept TAPPET_REALTIME { work(part, cycle_); });
+    }
+}
+static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's functions");
+
+[[gnu::always_inline]] inline void Engine::end_period() noexcept TAPPET_REALTIME {
+    next_release_ += plan_.period;
+    if (next_release_ > lap_) return;
+    // Whole periods were lost: they are counted, not made up for.
+    const auto lost = (lap_ - next_release_) / plan_.period + 1;
+    statistics_.skipped_periods += static_cast<std::uint64_t>(lost);
+    next_release_ += lost * plan_.period;
 }
 
-void Engine::end_change(bool begun) noexcept TAPPET_REALTIME {
-    if (begun) generation_.fetch_add(1, std::memory_order_release); // observe.end
-}
-
-void Engine::run(bool woken) noexcept TAPPET_REALTIME {
-    const RunsActivity here{plan_.activity};
+template <bool steps_only>
+void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     const Time now = clock_->now();
-    Time release = now;
     const bool due = plan_.periodic ? now >= next_release_ : woken;
-    if (due && plan_.periodic) release = next_release_;
-    for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
-    const bool begun = begin_change();
+    Time release = due && plan_.periodic ? next_release_ : now;
+    if constexpr (!steps_only)
+        for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
+    const std::uint64_t generation = begin_change();
     cycle_.now = lap_ = now;
     cycle_.release = release;
-    worst_excess_ = Duration::zero();
-    worst_function_ = Miss::nobody;
-    tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
-    if (tape_ != nullptr) tape_->begin();
-    watch_wakes();
+    worst_excess_ = least_excess_;
+    if constexpr (!steps_only) {
+        tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
+        if (tape_ != nullptr) tape_->begin();
+        watch_wakes();
+    }
     if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
     if (awaiting_ != 0) start_awaiting();
-    bool acted = run_timers();
+    bool acted = false;
+    if constexpr (!steps_only) acted = run_timers();
     if (due) run_components();
-    acted |= run_commands();
-    acted |= run_messages();
-    run_behaviours(due || acted); // what ran may have changed a condition
-    watch_inputs();
-    account();
-    if (tape_ != nullptr) tape_->end(to_ns(cycle_.release), to_ns(cycle_.now), to_ns(lap_));
-    end_change(begun);
+    if (commands_.has_work()) acted |= run_commands();
+    if (inbox_.pending()) acted |= run_messages();
+    if constexpr (!steps_only) {
+        run_behaviours(due || acted); // what ran may have changed a condition
+        watch_inputs();
+    }
+    ++statistics_.cycles;
+    if (const Duration response = lap_ - cycle_.release; response > quiet_response_) note_response(response);
+    if (due && plan_.periodic) end_period();
+    if constexpr (!steps_only)
+        if (tape_ != nullptr) tape_->end(to_ns(cycle_.release), to_ns(cycle_.now), to_ns(lap_));
+    end_change(generation);
 }
+template void Engine::cycle_as<true>(bool) noexcept TAPPET_REALTIME;
+template void Engine::cycle_as<false>(bool) noexcept TAPPET_REALTIME;
 
 bool Engine::run_timers() noexcept TAPPET_REALTIME {
     bool acted = false;
@@ -77,18 +110,6 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
         acted = true;
     }
     return acted;
-}
-
-void Engine::run_components() noexcept TAPPET_REALTIME {
-    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
-        const EnginePart& part = plan_.parts[i];
-        if (!is_running(part.state)) continue;
-        if (part.type->step != nullptr)
-            timed(i, FunctionKind::step,
-                  [&]() noexcept TAPPET_REALTIME { part.type->step(part.component, cycle_); });
-        else if (part.type->work != nullptr)
-            timed(i, FunctionKind::step, [&]() noexcept TAPPET_REALTIME { work(part, cycle_); });
-    }
 }
 
 bool Engine::run_commands() noexcept TAPPET_REALTIME {
@@ -111,7 +132,6 @@ bool Engine::run_commands() noexcept TAPPET_REALTIME {
 }
 
 bool Engine::run_messages() noexcept TAPPET_REALTIME {
-    if (!inbox_.pending()) return false;
     const std::size_t served = inbox_.serve([this](const Message& message) noexcept TAPPET_REALTIME {
         note(message.id, cycle_.now);
         for (std::size_t at = 0; at < message.arguments.size(); at += sizeof(std::uint64_t)) {
@@ -157,41 +177,45 @@ void Engine::watch_inputs() noexcept TAPPET_REALTIME {
 void Engine::watch_wakes() noexcept TAPPET_REALTIME {
     if (plan_.periodic || plan_.at_most_per <= Duration::zero()) return;
     const auto n = static_cast<std::uint64_t>(plan_.at_most_n);
-    Time& oldest = wakes_[wake_count_ % n];
+    Time& oldest = wakes_[oldest_wake_];
     if (wake_count_ >= n && cycle_.now - oldest < plan_.at_most_per) ++statistics_.wakes_too_many;
     oldest = cycle_.now;
+    oldest_wake_ = oldest_wake_ + 1 == n ? 0 : oldest_wake_ + 1;
     ++wake_count_;
 }
 
-void Engine::account() noexcept TAPPET_REALTIME {
-    const Time end = lap_;
-    const Duration response = end - cycle_.release;
+void Engine::note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME {
+    worst_usual_ = function.usual();
+    worst_excess_ = took - worst_usual_;
+    worst_function_ = index_of(function);
+    worst_took_ = took;
+}
+
+void Engine::note_miss(Duration response) noexcept TAPPET_REALTIME {
     const Duration lateness = cycle_.now - cycle_.release;
-    ++statistics_.cycles;
-    if (statistics_.cycles > 1) { // the first cycle warms caches: it is run, and counted as no maximum
-        statistics_.longest_response = std::max(statistics_.longest_response, response);
-        statistics_.longest_lateness = std::max(statistics_.longest_lateness, lateness);
-        statistics_.longest_busy = std::max(statistics_.longest_busy, end - cycle_.now);
+    Miss miss{worst_function_, cycle_.release, response, worst_took_, worst_usual_};
+    // Begun later than any function exceeded its usual time: the delay is the culprit, no function is.
+    if (worst_excess_ == least_excess_ || lateness > worst_excess_)
+        miss = {Miss::nobody, cycle_.release, response, lateness, Duration::zero()};
+    else
+        ++plan_.functions[worst_function_].blamed;
+    statistics_.recent_misses[statistics_.misses % statistics_.recent_misses.size()] = miss;
+    ++statistics_.misses;
+    if (plan_.stop_when_late) ask_stop(StopReason::missed_deadline, miss.function);
+}
+
+// A response that neither exceeds the longest lateness nor the longest busy time is no new maximum of either,
+// which are parts of it, nor of their sum.
+void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
+    EngineStatistics& seen = statistics_;
+    if (seen.cycles > 1) { // the first cycle warms caches: it is run, and counted as no maximum
+        seen.longest_response = std::max(seen.longest_response, response);
+        seen.longest_lateness = std::max(seen.longest_lateness, cycle_.now - cycle_.release);
+        seen.longest_busy = std::max(seen.longest_busy, lap_ - cycle_.now);
+        quiet_response_ = std::min(seen.longest_lateness, seen.longest_busy);
+        if (has_deadline_) quiet_response_ = std::min(quiet_response_, plan_.deadline);
     }
-    if (plan_.real_time && plan_.deadline > Duration::zero() && response > plan_.deadline) {
-        Miss miss{worst_function_, cycle_.release, response, worst_took_, worst_usual_};
-        // Begun later than any function exceeded its usual time: the delay is the culprit, no function is.
-        if (worst_function_ == Miss::nobody || lateness > worst_excess_)
-            miss = {Miss::nobody, cycle_.release, response, lateness, Duration::zero()};
-        else
-            ++plan_.functions[worst_function_].blamed;
-        statistics_.recent_misses[statistics_.misses % statistics_.recent_misses.size()] = miss;
-        ++statistics_.misses;
-        if (plan_.stop_when_late) ask_stop(StopReason::missed_deadline, miss.function);
-    }
-    if (!plan_.periodic) return;
-    if (cycle_.now < next_release_) return;
-    next_release_ += plan_.period;
-    if (next_release_ <= end) { // whole periods were lost: they are counted, not made up for
-        const auto lost = (end - next_release_) / plan_.period + 1;
-        statistics_.skipped_periods += static_cast<std::uint64_t>(lost);
-        next_release_ += lost * plan_.period;
-    }
+    if (has_deadline_ && response > plan_.deadline) note_miss(response);
 }
 
 } // namespace tappet

@@ -37,13 +37,11 @@ struct Behaviour {
 enum class FunctionKind : std::uint8_t { step, timers, reactions, behaviour };
 inline constexpr std::uint32_t functions_per_part = 4;
 
-/// A component in its engine.
-struct EnginePart {
-    std::string_view name{};
-    void* component = nullptr;
+/// A component in its engine; what a step needs stands in front.
+struct EnginePart : GatedComponent {
+    void (*step)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr; ///< of its type
     const ComponentType* type = nullptr;
-    AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
-    GatedComponent gate{};                                ///< for synchronous reactions
+    std::string_view name{};
     LifeRequests requests{};
 };
 
@@ -124,15 +122,14 @@ public:
         TAPPET_REALTIME;
 
     /// Before start. Spans outlive the engine.
-    void place(const EnginePlan& plan, os::Clock& clock) noexcept {
-        plan_ = plan;
-        clock_ = &clock;
-        cycle_.period = plan.period;
-    }
+    void place(const EnginePlan& plan, os::Clock& clock) noexcept;
     void on_stop(StopCall call, void* context) noexcept { stop_call_ = call, stop_context_ = context; }
 
     /// Before start: its cycles are recorded there, whenever that tape is on. It outlives the engine.
-    void record_to(CycleTape* tape) noexcept { recorded_ = tape; }
+    void record_to(CycleTape* tape) noexcept {
+        recorded_ = tape;
+        steps_only_ = steps_only_ && tape == nullptr;
+    }
 
     /// On the starter's thread, while the engine does not run: initialises the components; those that had
     /// been before one refused are finalised again. Empty: all are ready. Not real-time.
@@ -144,7 +141,11 @@ public:
     /// valid_to_start inputs have no valid value yet stays `starting` and follows when they have.
     void start(Time now) noexcept TAPPET_REALTIME;
     /// One cycle. `woken`: by a message, a connection or the device; otherwise by time.
-    void run(bool woken) noexcept TAPPET_REALTIME;
+    void run(bool woken) noexcept TAPPET_REALTIME {
+        if (running_activity() == plan_.activity) return cycle(woken); // in its own thread always
+        const RunsActivity here{plan_.activity};
+        cycle(woken);
+    }
     /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values,
     /// in data-flow order, so that what a source writes last reaches the driver behind it.
     void stop(Time now) noexcept TAPPET_REALTIME;
@@ -158,7 +159,7 @@ public:
     [[nodiscard]] LifeAnswer answer_to(std::uint32_t part, LifeTicket ticket) const noexcept TAPPET_REALTIME;
     /// Whether it is between start() and stop(). Real-time, any thread.
     [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME {
-        return active_.load(std::memory_order_acquire);
+        return active_.load(std::memory_order_acquire); // no step: asked by whoever wants to know
     }
     /// Why it could not start while the rest of the machine runs: an input that another activity writes has
     /// no valid value. Only while the engine does not run.
@@ -174,7 +175,9 @@ public:
     [[nodiscard]] bool heeds_devices() const noexcept TAPPET_REALTIME;
 
     /// When it wants to run although nothing wakes it.
-    [[nodiscard]] Time next_wake() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Time next_wake() const noexcept TAPPET_REALTIME {
+        return steps_only_ && awaiting_ == 0 ? next_release_ : earliest_wake();
+    }
 
     [[nodiscard]] std::string_view name() const noexcept TAPPET_REALTIME { return plan_.name; }
     [[nodiscard]] const EnginePlan& plan() const noexcept TAPPET_REALTIME { return plan_; }
@@ -195,36 +198,52 @@ public:
     /// Odd while a cycle runs: an observer whose two readings differ, or are odd, reads again.
     [[nodiscard]] const void* generation_address() const noexcept { return &generation_; }
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
-        return generation_.load(std::memory_order_acquire);
+        return generation_.load(std::memory_order_acquire); // no step: observers look by map_view.hpp
     }
 
 private:
     [[nodiscard]] FunctionTiming& function(std::uint32_t part, FunctionKind kind) noexcept TAPPET_REALTIME {
         return plan_.functions[part * functions_per_part + static_cast<std::uint32_t>(kind)];
     }
+    [[nodiscard]] std::uint32_t index_of(const FunctionTiming& timing) const noexcept TAPPET_REALTIME {
+        return static_cast<std::uint32_t>(&timing - plan_.functions.data());
+    }
     /// Runs one function and times it. The end of one is the beginning of the next: one clock reading each.
     template <class F>
     void timed(std::uint32_t part, FunctionKind kind, F&& body) noexcept TAPPET_REALTIME {
+        timed(function(part, kind), body);
+    }
+    template <class F>
+    void timed(FunctionTiming& timing, F&& body) noexcept TAPPET_REALTIME {
         body();
         const Time end = clock_->now();
-        const std::uint32_t index = part * functions_per_part + static_cast<std::uint32_t>(kind);
         const Duration took = end - lap_;
-        FunctionTiming& timing = plan_.functions[index];
-        const Duration excess = took - timing.usual();
-        if (excess > worst_excess_)
-            worst_excess_ = excess, worst_function_ = index, worst_took_ = took,
-            worst_usual_ = timing.usual();
+        if (timing.exceeds_usual(took, worst_excess_)) note_excess(timing, took);
         timing.add(took);
         lap_ = end;
-        if (tape_ != nullptr) tape_->mark(index, (end - cycle_.now).count());
+        if (tape_ != nullptr) tape_->mark(index_of(timing), (end - cycle_.now).count());
     }
     [[nodiscard]] Time due_at(const EngineTimer& timer) const noexcept TAPPET_REALTIME {
         return is_running(plan_.parts[timer.part].state) ? timer.timer->when() : never;
     }
-    /// What observers read changes from here to end_change(): a cycle, a start, a stop. False: it is changing
-    /// already, when the stop runs in place of a thread that hangs in its cycle.
-    [[nodiscard]] bool begin_change() noexcept TAPPET_REALTIME;
-    void end_change(bool begun) noexcept TAPPET_REALTIME;
+    /// What observers read changes from here to end_change(), which is given what this returns: a
+    /// cycle, a start, a stop. is_changing: when the stop runs in place of a thread that hangs in its cycle.
+    static constexpr std::uint64_t is_changing = 0;
+    [[nodiscard]] std::uint64_t begin_change() noexcept TAPPET_REALTIME {
+        // The engine alone writes its generation, so this needs no operation that reads and writes at once;
+        // who runs the stop in place of a thread that hangs finds it odd and leaves it.
+        const std::uint64_t before =
+            generation_.load(std::memory_order_relaxed); // no step: nobody else writes it
+        if (before % 2 != 0) return is_changing;
+        generation_.store(before + 1, std::memory_order_relaxed); // observe.begin
+        std::atomic_thread_fence(std::memory_order_release);      // what follows is stored behind it
+        return before + 2;
+    }
+    void end_change(std::uint64_t generation) noexcept TAPPET_REALTIME {
+        if (generation != is_changing)
+            generation_.store(generation, std::memory_order_release); // observe.end
+    }
+    [[nodiscard]] Time earliest_wake() const noexcept TAPPET_REALTIME;
     enum class Rule : std::uint8_t { with_the_machine, alone };
     [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
     void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;
@@ -240,12 +259,22 @@ private:
     void run_behaviours(bool all) noexcept TAPPET_REALTIME;
     void watch_inputs() noexcept TAPPET_REALTIME;
     void watch_wakes() noexcept TAPPET_REALTIME;
-    void account() noexcept TAPPET_REALTIME;
+    void note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME;
+    void note_miss(Duration response) noexcept TAPPET_REALTIME;
+    void note_response(Duration response) noexcept TAPPET_REALTIME;
+    void end_period() noexcept TAPPET_REALTIME;
+    void cycle(bool woken) noexcept TAPPET_REALTIME {
+        steps_only_ ? cycle_as<true>(woken) : cycle_as<false>(woken);
+    }
+    template <bool steps_only>
+    void cycle_as(bool woken) noexcept TAPPET_REALTIME;
     void ask_stop(StopReason reason, std::uint64_t detail) const noexcept TAPPET_REALTIME {
         if (stop_call_ != nullptr) stop_call_(stop_context_, reason, detail, *this);
     }
 
     EnginePlan plan_{};
+    bool has_deadline_ = false;
+    bool steps_only_ = false; ///< it has no timers, behaviours, guarded inputs, wakes to watch or tape
     os::Clock* clock_ = nullptr;
     Cycle cycle_{};
     /// How often it looks whether a component that waits for an input may start.
@@ -257,14 +286,17 @@ private:
     Time next_release_ = never;
     Time lap_{};
     Time ended_{};
-    Duration worst_excess_{};
+    Duration least_excess_{}; ///< from which on a function could be to blame: zero, or never
+    Duration worst_excess_{}; ///< of this cycle; least_excess_: no function took longer than usual
     Duration worst_took_{};
     Duration worst_usual_{};
     std::uint32_t worst_function_ = Miss::nobody;
     CycleTape* recorded_ = nullptr;
-    CycleTape* tape_ = nullptr; ///< of this cycle; null: it is not recorded
+    CycleTape* tape_ = nullptr;   ///< of this cycle; null: it is not recorded
+    Duration quiet_response_{-1}; ///< one up to here is no maximum of anything and no miss
     std::array<Time, max_wakes_watched> wakes_{};
     std::uint64_t wake_count_ = 0;
+    std::uint64_t oldest_wake_ = 0; ///< its place
     StopCall stop_call_ = nullptr;
     void* stop_context_ = nullptr;
     EngineStatistics statistics_{};

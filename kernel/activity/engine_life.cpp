@@ -35,7 +35,7 @@ void Engine::finalise() {
 }
 
 void Engine::start(Time now) noexcept TAPPET_REALTIME {
-    const bool begun = begin_change();
+    const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity};
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     next_release_ = plan_.periodic ? now + plan_.period : never;
@@ -57,11 +57,11 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
         }
     }
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) start_behaviours(i);
-    end_change(begun);
+    end_change(generation);
 }
 
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
-    const bool begun = begin_change();
+    const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity};
     cycle_.now = cycle_.release = now;
     for (const Behaviour& each : plan_.behaviours)
@@ -71,7 +71,7 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     awaiting_ = 0;
     was_stopped_ = true;
     active_.store(false, std::memory_order_release);
-    end_change(begun);
+    end_change(generation);
 }
 
 void Engine::reject_late() noexcept TAPPET_REALTIME {

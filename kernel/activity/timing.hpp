@@ -13,19 +13,30 @@ namespace tappet {
 struct FunctionTiming {
     std::uint64_t passes = 0;
     Duration last{};
-    Duration longest{};
+    Duration longest{-1}; ///< negative before the first pass
     Duration total{};
     std::uint64_t blamed = 0; ///< missed deadlines of which this function was the culprit
 
     void add(Duration took) noexcept TAPPET_REALTIME {
+        ++passes;
         last = took;
-        if (passes++ == 0) return;
         total += took;
-        if (took > longest) longest = took;
+        if (took <= longest) return;
+        longest = passes == 1 ? Duration::zero() : took;
+        if (passes == 1) total = Duration::zero();
     }
     /// The mean of all passes but the first.
     [[nodiscard]] Duration usual() const noexcept TAPPET_REALTIME {
         return passes > 1 ? total / static_cast<std::int64_t>(passes - 1) : last;
+    }
+    /// Whether took - usual() > excess, told without a division.
+    [[nodiscard]] bool exceeds_usual(Duration took, Duration excess) const noexcept TAPPET_REALTIME {
+        const std::int64_t above = (took - excess).count();
+        if (above <= 0) return false;
+        if (passes < 2) return above > last.count();
+        std::int64_t least = 0;
+        return __builtin_mul_overflow(above, static_cast<std::int64_t>(passes - 1), &least) ||
+               total.count() < least;
     }
 };
 

@@ -50,7 +50,10 @@ constexpr std::string_view to_text(CommandState state) noexcept {
 
 /// Between send() and the end: the receiver has it.
 constexpr bool in_flight(CommandState state) noexcept TAPPET_REALTIME {
-    return state == CommandState::sent || state == CommandState::accepted || state == CommandState::executing;
+    constexpr unsigned at_the_receiver = 1u << static_cast<unsigned>(CommandState::sent) |
+                                         1u << static_cast<unsigned>(CommandState::accepted) |
+                                         1u << static_cast<unsigned>(CommandState::executing);
+    return (at_the_receiver >> static_cast<unsigned>(state) & 1u) != 0;
 }
 
 /// What a completion condition says.
@@ -78,7 +81,7 @@ public:
         void* component = nullptr;
         std::uint32_t part = 0; ///< of the component in its engine
         const AtomicComponentState* receiver_state = nullptr;
-        Inbox* inbox = nullptr;
+        CommandInbox* inbox = nullptr;
         std::size_t sender = 0; ///< the sending activity's mailbox there
         std::uint32_t sending_activity = no_activity;
         Waker wake_receiver{};
@@ -106,24 +109,24 @@ public:
     /// connects it.
     [[nodiscard]] bool send() noexcept TAPPET_REALTIME {
         if (!connected() || !is_mine()) return false;
+        post();
+        return true;
+    }
+    /// The same of one that is connected and the sender's.
+    void post() noexcept TAPPET_REALTIME {
         // An engine that was stopped serves nobody: its answer is given here.
         const ComponentState receiver =
             route_.receiver_state->load(std::memory_order_acquire); // command.look
-        if (receiver == ComponentState::stopped || receiver == ComponentState::failed) {
+        if (receiver >= ComponentState::stopped) {
             state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
-            return true;
+            return;
         }
         // Before the message: from then on the receiver writes it.
         state_.store(CommandState::sent, std::memory_order_relaxed); // command.send
-        Message message;
-        message.object = this;
-        message.id = route_.part;
-        if (!route_.inbox->post(route_.sender, message)) { // the mailbox has a place for each of its slots
+        if (route_.inbox->post(route_.sender, {this, route_.part}))
+            route_.wake_receiver();
+        else // the mailbox has a place for each of its slots
             state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
-            return true;
-        }
-        route_.wake_receiver();
-        return true;
     }
     /// Forgets how it ended. False while the receiver has it.
     bool reset() noexcept TAPPET_REALTIME {
@@ -233,7 +236,10 @@ public:
     /// still on its way or when no row connects it. Real-time.
     template <class... Given>
     [[nodiscard]] bool send(const Given&... arguments) noexcept TAPPET_REALTIME {
-        return slot_.connected() && prepare(arguments...) && send_prepared();
+        if (!slot_.connected() || !prepare(arguments...)) return false;
+        check_sender();
+        slot_.post();
+        return true;
     }
     /// Sets the arguments for a send_prepared() of whoever it is handed on to. False while it is on its way.
     template <class... Given>
@@ -298,8 +304,8 @@ private:
     void check_sender() const noexcept TAPPET_REALTIME {
         const std::uint32_t sender = slot_.route().sending_activity;
         const std::uint32_t here = running_activity();
-        TAPPET_CONTRACT(sender == no_activity || here == no_activity || here == sender,
-                        Contract::command_sender, sender, here);
+        if (here == sender) return;
+        TAPPET_CONTRACT(sender == no_activity || here == no_activity, Contract::command_sender, sender, here);
     }
     template <class... In, class... Given>
     void put(Arguments<In...>, const Given&... arguments) noexcept TAPPET_REALTIME {

@@ -29,9 +29,11 @@ inline std::uint32_t running_activity() noexcept TAPPET_REALTIME {
 class RunsActivity {
 public:
     explicit RunsActivity(std::uint32_t activity) noexcept TAPPET_REALTIME : before_{running_activity()} {
-        set(activity);
+        if (before_ != activity) set(activity);
     }
-    ~RunsActivity() TAPPET_REALTIME { set(before_); }
+    ~RunsActivity() TAPPET_REALTIME {
+        if (running_activity() != before_) set(before_);
+    }
     RunsActivity(const RunsActivity&) = delete;
     RunsActivity& operator=(const RunsActivity&) = delete;
 

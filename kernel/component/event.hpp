@@ -35,17 +35,29 @@ public:
     /// Synchronous reactions first, then asynchronous ones, the most urgent receiver's first (4.6.2). A row
     /// is asked for just before it is run: what a reaction disconnects does not run in this emission either.
     void emit(A... arguments) noexcept TAPPET_REALTIME {
-        if (connected_.load(std::memory_order_acquire) == 0) return; // emit.row
-        const std::size_t count = count_; // a bound that no handler can move: a counted loop
-        const Subscriber<A...>* const subscribers = subscribers_;
-        for (std::size_t i = 0; i < count; ++i)
-            if (((connected_.load(std::memory_order_acquire) >> i) & 1) != 0) // emit.row
-                subscribers[i].react(subscribers[i].context, arguments...);
+        std::uint64_t rows = connected_.load(std::memory_order_acquire); // emit.row
+        if (rows == 0) return;
+        const Subscriber<A...>* const first = subscribers_;
+        if ((rows & 1) != 0) first->react(first->context, arguments...);
+        rows = connected_.load(std::memory_order_acquire); // emit.row
+        if (rows < 2) return;
+        if ((rows & 2) != 0) first[1].react(first[1].context, arguments...);
+        rows = connected_.load(std::memory_order_acquire); // emit.row
+        if (rows >= 4) emit_to_the_rest(arguments...);
     }
     void operator()(A... arguments) noexcept TAPPET_REALTIME { emit(arguments...); }
 
 private:
     friend struct PortAccess;
+    /// From the third row on. Aligned: a short loop that lies across two blocks of the processor's fetch
+    /// takes a fifth longer.
+    [[gnu::noinline, gnu::aligned(64)]] void emit_to_the_rest(A... arguments) const noexcept TAPPET_REALTIME {
+        const std::size_t count = count_; // a bound that no handler can move: a counted loop
+        const Subscriber<A...>* const subscribers = subscribers_;
+        for (std::size_t i = 2; i < count; ++i)
+            if ((connected_.load(std::memory_order_acquire) >> i & 1) != 0) // emit.row
+                subscribers[i].react(subscribers[i].context, arguments...);
+    }
     std::atomic<std::uint64_t> connected_{0};
     Subscriber<A...>* subscribers_ = nullptr;
     std::size_t count_ = 0;

@@ -14,20 +14,20 @@ namespace tappet {
 /// thread.
 enum class ComponentState : std::uint8_t {
     inactive, ///< constructed, perhaps configured; its activity never ran
-    stopped,  ///< its outputs hold the safe values; it does nothing
     starting, ///< it may not run yet: start() runs, or an input that it needs has no valid value
     running,  ///< it is stepped, and messages reach it
     stopping, ///< stop() leaves the safe values
+    stopped,  ///< its outputs hold the safe values; it does nothing, and from here on nothing reaches it
     failed    ///< it could not be initialised, or its thread broke a contract: it is not started again
 };
 
 constexpr std::string_view to_text(ComponentState state) noexcept {
     switch (state) {
     case ComponentState::inactive: return "inactive";
-    case ComponentState::stopped: return "stopped";
     case ComponentState::starting: return "starting";
     case ComponentState::running: return "running";
     case ComponentState::stopping: return "stopping";
+    case ComponentState::stopped: return "stopped";
     case ComponentState::failed: return "failed";
     }
     return "?";
@@ -35,7 +35,7 @@ constexpr std::string_view to_text(ComponentState state) noexcept {
 
 template <>
 inline constexpr auto names_of<ComponentState> =
-    std::array<std::string_view, 6>{"inactive", "stopped", "starting", "running", "stopping", "failed"};
+    std::array<std::string_view, 6>{"inactive", "starting", "running", "stopping", "stopped", "failed"};
 
 using AtomicComponentState = std::atomic<ComponentState>;
 static_assert(AtomicComponentState::is_always_lock_free);
@@ -49,12 +49,12 @@ inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTI
 /// not called, which is counted. One whose activity has not begun yet, or stops just now, is. Any thread.
 struct GatedComponent {
     void* component = nullptr;
-    const AtomicComponentState* state = nullptr;
+    AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
     std::atomic<std::uint32_t> dropped{0};
 
     [[nodiscard]] bool is_open() noexcept TAPPET_REALTIME {
-        const ComponentState now = state->load(std::memory_order_acquire);
-        if (now != ComponentState::stopped && now != ComponentState::failed) return true;
+        const ComponentState now = state.load(std::memory_order_acquire);
+        if (now < ComponentState::stopped) return true;
         dropped.fetch_add(1, std::memory_order_relaxed);
         return false;
     }

@@ -37,19 +37,29 @@ inline const Message& message_of(const std::byte* arguments) noexcept TAPPET_REA
 
 using Mailbox = Ring<Message>;
 
+/// A command that was sent: its slot holds everything else.
+struct CommandNotice {
+    void* slot = nullptr;
+    std::uint64_t part = 0; ///< of the receiving engine
+};
+using CommandMailbox = Ring<CommandNotice>;
+
 /// The receiving end of up to 64 mailboxes, each with one sending activity: index 0 is served first. Posting
 /// is one push and one atomic OR; waking the receiver's thread is its activity's business.
-class Inbox {
+template <class Item>
+class InboxOf {
 public:
     static constexpr std::size_t max_senders = 64;
     static_assert(max_senders == 8 * sizeof(std::uint64_t), "one bit for each sender in one atomic word");
 
-    constexpr Inbox() = default;
+    using Mailbox = Ring<Item>;
+
+    constexpr InboxOf() = default;
     /// The mailboxes are placed with Overflow::reject and outlive the inbox; those beyond max_senders are not
     /// used.
-    explicit constexpr Inbox(std::span<Mailbox> mailboxes) noexcept { place(mailboxes); }
-    Inbox(const Inbox&) = delete;
-    Inbox& operator=(const Inbox&) = delete;
+    explicit constexpr InboxOf(std::span<Mailbox> mailboxes) noexcept { place(mailboxes); }
+    InboxOf(const InboxOf&) = delete;
+    InboxOf& operator=(const InboxOf&) = delete;
 
     /// As the constructor; before anybody posts.
     constexpr void place(std::span<Mailbox> mailboxes) noexcept {
@@ -58,24 +68,25 @@ public:
 
     /// The sending activity's thread only, real-time. False: no such sender, or its mailbox is full and
     /// counts the loss.
-    [[nodiscard]] bool post(std::size_t sender, const Message& message) noexcept TAPPET_REALTIME {
+    [[nodiscard]] bool post(std::size_t sender, const Item& message) noexcept TAPPET_REALTIME {
         if (sender >= mailboxes_.size()) return false;
         if (!mailboxes_[sender].push(message)) return false; // inbox.push
-        // The result stays unused: with it both compilers would emit a loop of compare-and-exchange.
-        pending_.fetch_or(std::uint64_t{1} << sender, std::memory_order_release); // inbox.bit
+        // The result stays unused: with it both compilers would emit a loop of compare-and-exchange. In one
+        // order with Waiter::wake_after_post(), which looks whether the receiver is woken already.
+        pending_.fetch_or(std::uint64_t{1} << sender, std::memory_order_seq_cst); // inbox.bit
         return true;
     }
 
     /// Any thread, real-time: whether serve() would find something.
     [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME {
-        return pending_.load(std::memory_order_acquire) != 0; // inbox.pending
+        return pending_.load(std::memory_order_seq_cst) != 0; // inbox.pending
     }
 
-    /// The receiver's thread only, real-time if visit(const Message&) is. Serves from each mailbox what is in
+    /// The receiver's thread only, real-time if visit(const Item&) is. Serves from each mailbox what is in
     /// it when its turn comes, so a message posted by a visited one may wait for the next call: pending()
     /// then says so. Returns how many were served.
     template <class Visit> std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
-        std::uint64_t waiting = pending_.exchange(0, std::memory_order_acquire); // inbox.take_bits
+        std::uint64_t waiting = pending_.exchange(0, std::memory_order_seq_cst); // inbox.take_bits
         std::uint64_t left = 0;
         std::size_t served = 0;
         for (std::size_t turn = 0; turn < max_senders && waiting != 0; ++turn) {
@@ -84,9 +95,9 @@ public:
             Mailbox& mailbox = mailboxes_[sender];
             const std::size_t batch = mailbox.size(); // inbox.size
             for (std::size_t i = 0; i < batch; ++i) {
-                Message message;
-                if (!mailbox.pop(message)) break; // inbox.pop
-                visit(static_cast<const Message&>(message));
+                Item message;
+                if (!mailbox.pop_next(message)) break; // inbox.pop
+                visit(static_cast<const Item&>(message));
                 ++served;
             }
             if (!mailbox.empty()) left |= std::uint64_t{1} << sender; // inbox.left
@@ -97,15 +108,17 @@ public:
 
     /// The receiver's thread only, real-time: takes one message, of the first sender that has any. For a
     /// receiver that uses nothing else of the inbox. False: there is none.
-    [[nodiscard]] bool take(Message& into) noexcept TAPPET_REALTIME {
+    [[nodiscard]] bool take(Item& into) noexcept TAPPET_REALTIME {
         const std::size_t senders = mailboxes_.size();
         for (std::size_t sender = 0; sender < senders; ++sender)
-            if (mailboxes_[sender].pop(into)) return true;
+            if (mailboxes_[sender].pop_next(into)) return true;
         return false;
     }
 
     /// serve(), each message making its call.
-    std::size_t run_all() noexcept TAPPET_REALTIME {
+    std::size_t run_all() noexcept TAPPET_REALTIME
+        requires std::is_same_v<Item, Message>
+    {
         return serve([](const Message& message) noexcept TAPPET_REALTIME {
             if (message.run != nullptr) message.run(message.object, message.arguments.data());
         });
@@ -115,5 +128,7 @@ private:
     std::span<Mailbox> mailboxes_{};
     alignas(line_pair_bytes) std::atomic<std::uint64_t> pending_{};
 };
+using Inbox = InboxOf<Message>;
+using CommandInbox = InboxOf<CommandNotice>;
 
 } // namespace tappet

@@ -99,6 +99,18 @@ public:
         return consumer_.place.overflow == Overflow::reject ? pop_next(into) : pop_oldest_left(into);
     }
 
+    /// As pop(), of a ring that rejects: nothing was ever lost, so one look suffices.
+    [[nodiscard]] bool pop_next(T& into) noexcept TAPPET_REALTIME {
+        Consumer& my = consumer_;
+        if (my.position == my.produced) {
+            my.produced = tail_.load(std::memory_order_acquire); // ring.pop_look
+            if (my.position == my.produced) return false;
+        }
+        my.place.cells[my.cell].value.load(into);
+        advance();
+        return true;
+    }
+
     /// Values inside. Exact for either side as far as its own doing goes; any other thread sees a recent
     /// value.
     [[nodiscard]] std::size_t size() const noexcept TAPPET_REALTIME {
@@ -159,17 +171,6 @@ private:
         my.consumed = head_.load(std::memory_order_acquire); // ring.mark_look
         const std::uint64_t fill = std::min(my.position - my.consumed, my.place.capacity);
         if (fill > mark) my.high_water.store(fill, std::memory_order_relaxed); // ring.mark_raise
-    }
-
-    bool pop_next(T& into) noexcept TAPPET_REALTIME {
-        Consumer& my = consumer_;
-        if (my.position == my.produced) {
-            my.produced = tail_.load(std::memory_order_acquire); // ring.pop_look
-            if (my.position == my.produced) return false;
-        }
-        my.place.cells[my.cell].value.load(into);
-        advance();
-        return true;
     }
 
     bool pop_oldest_left(T& into) noexcept TAPPET_REALTIME {

@@ -72,8 +72,10 @@ void MachineInstance::place_engines() {
             if (machine_.index.activity[c] != a) continue;
             const ComponentRow& component_row = table.components[c];
             const std::uint32_t part = machine_.plan.part_of[c];
-            new (parts + part)
-                EnginePart{.name = component_row.name, .component = component(c), .type = component_row.type};
+            auto* placed = new (parts + part) EnginePart;
+            placed->component = component(c);
+            placed->type = component_row.type;
+            placed->name = component_row.name;
             for (std::size_t f = 0; f < component_row.type->facets.size(); ++f) {
                 const Facet& each = component_row.type->facets[f];
                 if (each.kind == FacetKind::timer)
@@ -145,6 +147,12 @@ Waker MachineInstance::waker_of(std::size_t activity) noexcept TAPPET_REALTIME {
     // A periodic activity serves its messages at its next period: nothing wakes it in between.
     if (engine.plan().periodic) return {};
     return {&os::Waiter::wake_thunk, &engine.waiter()};
+}
+
+Waker MachineInstance::post_waker_of(std::size_t activity) noexcept TAPPET_REALTIME {
+    Waker waker = waker_of(activity);
+    if (waker.wake != nullptr) waker.wake = &os::Waiter::wake_after_post_thunk;
+    return waker;
 }
 
 const BehaviourUnit* MachineInstance::behaviour_of(std::string_view component) const noexcept {

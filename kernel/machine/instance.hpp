@@ -201,6 +201,8 @@ private:
     }
     [[nodiscard]] void* facet(End end) noexcept;
     [[nodiscard]] Waker waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
+    /// The same for whoever posted to an inbox of that activity just before.
+    [[nodiscard]] Waker post_waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
 
     [[nodiscard]] Sentence change_activity(std::size_t index, LifeChange change,
                                            const ActivityControl& control, LifeAnswer& answer);

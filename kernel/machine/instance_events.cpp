@@ -86,7 +86,7 @@ void MachineInstance::bind_receiver(std::size_t s, AsyncReaction& reaction) {
     const SubscriptionPlan& place = plan.subscription_at[s];
     Engine& receiver = engines()[row.receiver];
     reaction.inbox = &receiver.inbox();
-    reaction.waker = waker_of(row.receiver);
+    reaction.waker = post_waker_of(row.receiver);
     switch (row.kind) {
     case SubscriberKind::operation:
         reaction.run = facet_at(machine_.table, row.target).operation->run;

@@ -62,10 +62,7 @@ LifeSign MachineInstance::life_sign_of(std::string_view watched) noexcept {
 }
 
 GatedComponent* MachineInstance::gate_of(std::size_t c) noexcept {
-    EnginePart& part = engines()[machine_.index.activity[c]].plan().parts[machine_.plan.part_of[c]];
-    part.gate.component = component(c);
-    part.gate.state = &part.state;
-    return &part.gate;
+    return &engines()[machine_.index.activity[c]].plan().parts[machine_.plan.part_of[c]];
 }
 
 LifeTicket MachineInstance::ask_component(std::size_t c, LifeChange change) noexcept TAPPET_REALTIME {
@@ -189,7 +186,7 @@ std::uint64_t MachineInstance::dropped_messages() const noexcept {
     for (std::size_t s = 0; s < machine_.plan.subscriptions.size(); ++s) dropped += counts_of(s).dropped;
     for (const Engine& engine : engines())
         for (const EnginePart& part : engine.plan().parts)
-            dropped += part.gate.dropped.load(std::memory_order_relaxed);
+            dropped += part.dropped.load(std::memory_order_relaxed);
     return dropped;
 }
 

@@ -29,8 +29,8 @@ void MachineInstance::place_command_processors() {
     const std::size_t n = machine_.table.activities.size();
     for (std::size_t receiver = 0; receiver < n; ++receiver) {
         const ActivityPlan& plan = machine_.plan.activities[receiver];
-        auto* mailboxes = at<Mailbox>(plan.command_mailboxes_at);
-        for (std::size_t i = 0; i < plan.command_sender_count; ++i) new (mailboxes + i) Mailbox;
+        auto* mailboxes = at<CommandMailbox>(plan.command_mailboxes_at);
+        for (std::size_t i = 0; i < plan.command_sender_count; ++i) new (mailboxes + i) CommandMailbox;
         const auto place = [&](const MailPlan& mail) {
             if (mail.capacity != 0)
                 mailboxes[mail.sender_index].place(at<std::byte>(mail.storage_at), mail.capacity,
@@ -65,7 +65,7 @@ CommandSlot::Route MachineInstance::route_to(End to) noexcept {
     route.part = machine_.plan.part_of[to.component];
     route.receiver_state = &engines()[receiver].plan().parts[route.part].state;
     route.inbox = &engines()[receiver].commands().inbox();
-    route.wake_receiver = waker_of(receiver);
+    route.wake_receiver = post_waker_of(receiver);
     route.clock = clock_;
     return route;
 }
@@ -103,7 +103,7 @@ bool MachineInstance::post_request(std::size_t activity, const Message& message)
     const MailPlan& mail = machine_.plan.requests[activity];
     // The index of a mailbox that was not planned is another's.
     if (mail.capacity == 0 || !engines()[activity].inbox().post(mail.sender_index, message)) return false;
-    waker_of(activity)();
+    post_waker_of(activity)();
     return true;
 }
 

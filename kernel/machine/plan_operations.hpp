@@ -63,7 +63,8 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
         auto& activity = p.activities[receiver];
         const auto place = [&](auto& mail) {
             mail.sender_index = activity.command_sender_count++;
-            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+            mail.storage_at =
+                ground.take(CommandMailbox::bytes_for(mail.capacity), CommandMailbox::alignment);
         };
         // Senders in order of their urgency; what only watches the machine stands behind them all.
         for (const std::size_t sender : r.by_rank)
@@ -73,7 +74,7 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
             place(p.command_requests[receiver]);
             activity.followed_count += requests_waiting;
         }
-        activity.command_mailboxes_at = ground.template take<Mailbox>(activity.command_sender_count);
+        activity.command_mailboxes_at = ground.template take<CommandMailbox>(activity.command_sender_count);
         activity.followed_at = ground.template take<CommandSlot*>(activity.followed_count);
     }
 }

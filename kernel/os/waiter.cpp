@@ -31,7 +31,7 @@ bool Waiter::watch(int descriptor) noexcept {
 }
 
 void Waiter::wake() noexcept TAPPET_REALTIME {
-    if (state_.exchange(woken, std::memory_order_acq_rel) != asleep) return; // waiter.wake
+    if (state_.exchange(woken, std::memory_order_seq_cst) != asleep) return; // waiter.wake
     if (wake_descriptor_ >= 0) {
         const std::uint64_t one = 1;
         TAPPET_ESCAPE("waking another activity",

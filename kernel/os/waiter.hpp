@@ -29,10 +29,18 @@ public:
     /// Wakes the waiting thread, or the next wait. Real-time, from any thread.
     void wake() noexcept TAPPET_REALTIME;
     static void wake_thunk(void* waiter) noexcept TAPPET_REALTIME { static_cast<Waiter*>(waiter)->wake(); }
+    /// wake(), for whoever published what he wakes for by an operation that reads and writes at once, in the
+    /// one order of all such (seq_cst): one that was woken and did not look yet needs no second exchange.
+    void wake_after_post() noexcept TAPPET_REALTIME {
+        if (state_.load(std::memory_order_seq_cst) != woken) wake(); // waiter.look
+    }
+    static void wake_after_post_thunk(void* waiter) noexcept TAPPET_REALTIME {
+        static_cast<Waiter*>(waiter)->wake_after_post();
+    }
 
     /// True when woken since the last call; takes the wake. For worlds that do not sleep.
     [[nodiscard]] bool take() noexcept TAPPET_REALTIME {
-        return (state_.exchange(idle, std::memory_order_acquire) & woken) != 0; // waiter.take
+        return (state_.exchange(idle, std::memory_order_seq_cst) & woken) != 0; // waiter.take
     }
     [[nodiscard]] bool is_woken() const noexcept TAPPET_REALTIME {
         return (state_.load(std::memory_order_acquire) & woken) != 0; // no step: virtual time has one thread

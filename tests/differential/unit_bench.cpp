@@ -106,10 +106,11 @@ UnitBench::UnitBench() {
             facet.event->subscribe(event, call, heard_.back().get()) |= 1;
         }
     constexpr std::size_t places = 64;
-    mail_.resize(Mailbox::bytes_for(places) + Mailbox::alignment);
-    const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(mail_.data()) % Mailbox::alignment;
-    mailbox_ = std::make_unique<Mailbox>(
-        mail_.data() + (misaligned == 0 ? 0 : Mailbox::alignment - misaligned), places, Overflow::reject);
+    mail_.resize(CommandMailbox::bytes_for(places) + CommandMailbox::alignment);
+    const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(mail_.data()) % CommandMailbox::alignment;
+    mailbox_ = std::make_unique<CommandMailbox>(
+        mail_.data() + (misaligned == 0 ? 0 : CommandMailbox::alignment - misaligned), places,
+        Overflow::reject);
     followed_.resize(places);
     commands_.place({mailbox_.get(), 1}, followed_, places);
 }

@@ -86,7 +86,7 @@ private:
     std::deque<std::vector<std::byte>> subscribers_;
     std::vector<std::unique_ptr<Heard>> heard_;
     std::vector<std::byte> mail_;
-    std::unique_ptr<Mailbox> mailbox_;
+    std::unique_ptr<CommandMailbox> mailbox_;
     std::vector<CommandSlot*> followed_;
     CommandProcessor commands_;
     AtomicComponentState arm_state_{ComponentState::running};

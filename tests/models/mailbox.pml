@@ -11,7 +11,7 @@
 #define SENDERS 2
 #define MESSAGES 3
 #define CAPACITY 2
-#define POST_BOUND 3        /* the push, the bit, the wake; beside it the operating system's call */
+#define POST_BOUND 4        /* the push, the bit, the look, the wake; beside it the operating system's call */
 
 #define IDLE 0
 #define WOKEN 1
@@ -25,6 +25,12 @@ byte served, left_over, posted;
 
 inline wake() {
     old = IDLE;
+waiter_look:
+    atomic { seen = state; steps++ }
+    if
+    :: seen == WOKEN -> goto awake      /* it takes that wake after this look, and looks at the bits behind it */
+    :: else
+    fi;
 #ifdef TWIN_WAKE_BY_STORE
     old = state;
     state = WOKEN;
@@ -36,11 +42,13 @@ waiter_wake:
     :: old == ASLEEP ->
         atomic { in_kernel = false }
     :: else
-    fi
+    fi;
+awake:
+    seen = IDLE
 }
 
 active [SENDERS] proctype sender() {
-    byte me = _pid, sent, steps, old;
+    byte me = _pid, sent, steps, old, seen;
     do
     :: sent < MESSAGES ->
         steps = 0;

@@ -1,11 +1,11 @@
 /* Another process reads an activity's values out of the machine's memory, which does not notice (thesis 4.8).
-   Source: kernel/activity/engine.cpp kernel/machine/map_view.hpp
+   Source: kernel/activity/engine.hpp kernel/activity/engine.cpp kernel/machine/map_view.hpp
    Twins: EVEN_ALL_THE_TIME NO_SECOND_LOOK ODD_IGNORED START_UNGUARDED
 
    Shown: what the observer takes is whole and of one cycle, whether the activity starts, runs or stops meanwhile; it gives
    up after its attempts, so that it never waits; and the machine's part is two steps in a cycle, whatever observers do.
-   The machine changes the generation by operations that read and write at once, which nothing passes; the observer only
-   loads, in order. */
+   The machine stores the generation, the values and the generation again in the order that the processor keeps, and is the
+   only one that writes them; the observer only loads, in order. */
 
 #define WORDS 2
 #define CYCLES 3

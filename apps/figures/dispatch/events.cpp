@@ -16,7 +16,8 @@ namespace {
 
 // ---- floors and peers: the same reaction, reached by other ways
 
-[[gnu::noinline]] void hear(void* context, double value) noexcept {
+// Aligned like ours: where a short function crosses a block of 32 bytes, a call takes a fifth longer.
+[[gnu::noinline, gnu::aligned(32)]] void hear(void* context, double value) noexcept {
     static_cast<Listener*>(context)->sum += value;
 }
 struct Entry {

@@ -47,7 +47,7 @@ struct Tripler {
 class Receiver {
 public:
     Receiver(std::size_t senders, std::size_t slots)
-        : box_bytes_(Mailbox::bytes_for(slots)),
+        : box_bytes_(CommandMailbox::bytes_for(slots)),
           storage_(senders * box_bytes_ / sizeof(Line) + 1),
           boxes_(senders),
           followed_(senders * slots) {
@@ -92,7 +92,7 @@ private:
     };
     std::size_t box_bytes_;
     std::vector<Line> storage_;
-    std::vector<Mailbox> boxes_;
+    std::vector<CommandMailbox> boxes_;
     std::vector<CommandSlot*> followed_;
 };
 

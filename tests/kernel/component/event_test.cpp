@@ -185,6 +185,38 @@ TEST_F(AnEvent, does_not_run_in_the_same_emission_what_an_earlier_reaction_disco
     EXPECT_EQ(second.heard, std::vector<double>{});
 }
 
+TEST_F(AnEvent, runs_in_the_same_emission_what_an_earlier_reaction_connects_and_nothing_twice) {
+    emitter.call(hear, &first);
+    emitter.call(hear, &second);
+    const EventHandle later = emitter.call(hear, &third);
+    later.disconnect();
+    second.then = [&] { later.connect(); };
+    emitter.event(1.0);
+    for (const Listener* each : {&first, &second, &third}) EXPECT_EQ(each->heard, (std::vector{1.0}));
+}
+
+TEST_F(AnEvent, goes_on_behind_a_reaction_that_disconnects_one_that_ran) {
+    const EventHandle earlier = emitter.call(hear, &first);
+    emitter.call(hear, &second);
+    emitter.call(hear, &third);
+    second.then = [&] { earlier.disconnect(); };
+    emitter.event(1.0);
+    emitter.event(2.0);
+    EXPECT_EQ(first.heard, (std::vector{1.0}));
+    EXPECT_EQ(second.heard, (std::vector{1.0, 2.0}));
+    EXPECT_EQ(third.heard, (std::vector{1.0, 2.0}));
+}
+
+TEST_F(AnEvent, passes_over_a_gap_among_its_rows) {
+    emitter.call(hear, &first);
+    emitter.call(hear, &second).disconnect();
+    emitter.call(hear, &third);
+    emitter.event(1.0);
+    EXPECT_EQ(first.heard, (std::vector{1.0}));
+    EXPECT_TRUE(second.heard.empty());
+    EXPECT_EQ(third.heard, (std::vector{1.0}));
+}
+
 TEST_F(AnEvent, may_have_its_reactions_connect_and_disconnect_each_other_and_those_of_other_events) {
     Emitter other;
     const EventHandle elsewhere = other.call(hear, &third);

@@ -60,6 +60,39 @@ TEST(Waiter, takes_a_wake_that_came_before_the_wait) {
     }
 }
 
+TEST(Waiter, keeps_a_wake_after_a_post_until_it_is_taken_and_then_takes_the_next) {
+    Waiter waiter;
+    for (int round = 0; round < 3; ++round) {
+        EXPECT_FALSE(waiter.is_woken());
+        waiter.wake_after_post();
+        waiter.wake_after_post();
+        EXPECT_TRUE(waiter.is_woken());
+        EXPECT_TRUE(waiter.take());
+        EXPECT_FALSE(waiter.take());
+    }
+}
+
+TEST(Waiter, is_woken_out_of_its_sleep_after_each_post) {
+    Waiter waiter;
+    std::atomic<std::uint64_t> posted{0};
+    std::atomic<std::uint64_t> seen{0};
+    constexpr std::uint64_t posts = 2000;
+    std::thread sleeper{[&] {
+        while (seen.load() != posts) {
+            waiter.wait_for_wake();
+            seen.store(posted.load(std::memory_order_seq_cst));
+        }
+    }};
+    for (std::uint64_t i = 0; i < posts; ++i) {
+        posted.fetch_add(1, std::memory_order_seq_cst);
+        waiter.wake_after_post();
+        if (i % 64 == 0) // it sleeps now and then
+            while (seen.load() <= i) std::this_thread::yield();
+    }
+    sleeper.join(); // it would hang if the last wake were lost
+    EXPECT_EQ(seen.load(), posts);
+}
+
 TEST(Waiter, without_devices_sleeps_until_a_wake) {
     Waiter waiter;
     std::atomic<bool> returned{false};

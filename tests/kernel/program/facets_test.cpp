@@ -257,14 +257,14 @@ struct PeersCommand : ArmProgram {
     CommandSlot slot{};
     alignas(8) std::array<std::byte, 16> values{};
     alignas(512) std::array<std::byte, 4096> ring{};
-    std::array<Mailbox, 1> boxes{};
+    std::array<CommandMailbox, 1> boxes{};
     std::array<CommandSlot*, 4> followed{};
     CommandProcessor processor{};
     AtomicComponentState state{ComponentState::running};
     os::Clock clock{os::Clock::Kind::virtual_time};
 
     PeersCommand() {
-        EXPECT_LE(Mailbox::bytes_for(2), ring.size());
+        EXPECT_LE(CommandMailbox::bytes_for(2), ring.size());
         boxes[0].place(ring.data(), 2, Overflow::reject);
         processor.place(boxes, followed, 0);
         CommandSlot::Route route;

@@ -51,7 +51,7 @@ struct Played::Parts {
     std::vector<std::vector<std::byte>> deferred;
 
     alignas(512) std::array<std::byte, 16384> ring{};
-    std::array<Mailbox, 1> boxes{};
+    std::array<CommandMailbox, 1> boxes{};
     std::array<CommandSlot*, 16> followed{};
     CommandProcessor processor{};
     AtomicComponentState running{ComponentState::running};
