@@ -17,6 +17,7 @@ constexpr auto table = std::to_array<Command>({
     {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch},
     {"tree",    "tree [COMPONENT]",                        "components, facets and what is connected to them", Takes::component, 0, 1, run_tree},
     {"info",    "info [NAME]",                             "the machine and its activities, or everything about one name", Takes::anything, 0, 1, run_info},
+    {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions},
     {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced},
     {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events},
     {"set",     "set PROPERTY VALUE [PROPERTY VALUE...]",  "properties of one component, all at once or none (engineer)", Takes::property, 2, any, run_set},

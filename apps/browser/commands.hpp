@@ -78,5 +78,6 @@ Result<void> run_force(Work& work);
 Result<void> run_plain_request(Work& work);
 Result<void> run_behaviour(Work& work);
 Result<void> run_scope(Work& work);
+Result<void> run_reactions(Work& work);
 
 } // namespace tappet::browser

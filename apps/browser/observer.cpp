@@ -84,6 +84,14 @@ FigureReading Observer::read_figure(std::uint32_t figure) const {
     return reading;
 }
 
+std::optional<map::Times> Observer::read_times(std::uint64_t at, std::uint32_t activity) const {
+    map::Times times;
+    bool inside = true;
+    const bool whole = between_cycles(
+        activity, [&] { inside = map_->view().copy(at, std::as_writable_bytes(std::span{&times, 1})); });
+    return whole && inside ? std::optional{times} : std::nullopt;
+}
+
 std::uint32_t Observer::forced() const { return map_->view().word<std::uint32_t>(map_->header().forced_at); }
 
 } // namespace tappet::browser

@@ -4,6 +4,8 @@
 
 #include "apps/browser/map_reader.hpp"
 
+#include <optional>
+
 namespace tappet::browser {
 
 /// A facet's value as it was between two cycles of its activity.
@@ -40,6 +42,8 @@ public:
     /// moment.
     [[nodiscard]] std::vector<Reading> read(std::span<const std::uint32_t> facets) const;
     [[nodiscard]] FigureReading read_figure(std::uint32_t figure) const;
+    /// Of one row, at its times_at; `activity` receives. Nothing: it was busy.
+    [[nodiscard]] std::optional<map::Times> read_times(std::uint64_t at, std::uint32_t activity) const;
     /// How many ports are forced now, of the whole machine.
     [[nodiscard]] std::uint32_t forced() const;
     /// The generation of an activity: even between two cycles.

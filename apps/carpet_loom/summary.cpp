@@ -52,6 +52,34 @@ void write_weave(JsonText& json, const MachineInstance& instance) {
     json.field("roll_backs", slot->roll_backs()).field("news", slot->describe_roll_back().view()).close('}');
 }
 
+void write_times(JsonText& json, const MachineInstance& instance, const Link& link, std::string_view how,
+                 const ReactionTimes* times) {
+    if (times == nullptr || times->count == 0) return;
+    const MachineView& table = instance.machine().table;
+    const auto name = [&table](End end) {
+        return Sentence{table.components[end.component].name, ".", facet_at(table, end).name};
+    };
+    json.open('{')
+        .field("row", Sentence{name(link.from), " ", how, " ", name(link.to)}.view())
+        .field("count", times->count);
+    json.field("mean_us", static_cast<double>(times->mean().count()) * 1e-3)
+        .field("longest_us", static_cast<double>(times->longest.count()) * 1e-3);
+    json.key("histogram").open('[');
+    for (const std::uint32_t n : times->histogram) json.value(n);
+    json.close(']').close('}');
+}
+
+/// From the edge or the frame to the output it caused, row by row.
+void write_reactions(JsonText& json, const MachineInstance& instance) {
+    const AcceptedMachine& machine = instance.machine();
+    json.key("reactions").open('[');
+    for (std::size_t x = 0; x < machine.table.connections.size(); ++x)
+        write_times(json, instance, machine.index.connections[x], "wakes", instance.times_of_connection(x));
+    for (std::size_t i = 0; i < machine.table.reactions.size(); ++i)
+        write_times(json, instance, machine.index.reactions[i], "tells", instance.times_of_reaction(i));
+    json.close(']');
+}
+
 } // namespace
 
 std::size_t write_machine_summary(const MachineInstance& instance, const RunFacts& facts,
@@ -84,7 +112,10 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
         .field("binary_bytes", os::binary_bytes())
         .field("static_memory_bytes", machine.plan.bytes + machine.board->heap_bytes);
     json.field("rss_bytes", os::rss_bytes());
+    if (facts.start_to_armed > Duration::zero())
+        json.field("start_to_armed_ms", static_cast<double>(facts.start_to_armed.count()) * 1e-6);
     if (facts.with_digest) json.field("machine_digest", instance.event_log_digest());
+    write_reactions(json, instance);
     write_activities(json, instance);
     return json.size();
 }

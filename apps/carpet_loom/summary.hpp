@@ -28,7 +28,8 @@ struct RunFacts {
         std::uint64_t can_malformed = 0;
     } wires;
     std::string_view stop_reason;
-    bool with_digest = false; ///< virtual time only: elsewhere no two runs are alike
+    Duration start_to_armed{}; ///< from the loading of the program; zero where nothing is armed
+    bool with_digest = false;  ///< virtual time only: elsewhere no two runs are alike
 };
 
 /// The machine's half: an object without its closing brace, so that the plant's half can follow. Not

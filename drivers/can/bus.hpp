@@ -4,6 +4,7 @@
 #include "drivers/can/device.hpp"
 #include "drivers/can/facet_names.hpp"
 #include "drivers/can/signal_store.hpp"
+#include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 
 #include <array>
@@ -209,6 +210,7 @@ private:
         if (store_.decode(frame, f) != Decoded::yes) return;
         ++taken_;
         const FrameRow& row = map.frames[f];
+        const CausedBy arrival{frame.stamp};
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
             if (is_whole(map.signals[s]))
                 whole_out[s].write(store_.integer(s), frame.stamp);

@@ -3,6 +3,7 @@
 
 #include "drivers/gpio/device.hpp"
 #include "drivers/gpio/line_map.hpp"
+#include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 
 #include <array>
@@ -211,6 +212,7 @@ private:
 
     void tell(std::size_t line, bool rising, Time stamp) noexcept TAPPET_REALTIME {
         levels_ = with_bit(levels_, line, rising);
+        const CausedBy edge{stamp};
         level[line].write(rising, stamp);
         if (rising)
             rises[line].emit(stamp);

@@ -1,6 +1,8 @@
 // One cycle of an engine: timers, components, commands, messages, behaviours, and the account of their time.
 #include "kernel/activity/engine.hpp"
 
+#include "kernel/component/subscription.hpp"
+
 #include <algorithm>
 #include <cstring>
 
@@ -67,6 +69,12 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if constexpr (!steps_only)
         for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
     const std::uint64_t generation = begin_change();
+    WakingRow* waking = nullptr;
+    if constexpr (!steps_only) {
+        waking = due && !plan_.periodic ? take_waking_row() : nullptr;
+        cause_ = waking == nullptr ? no_cause : waking->cause();
+        set_running_cause(cause_);
+    }
     cycle_.now = lap_ = now;
     cycle_.release = release;
     worst_excess_ = least_excess_;
@@ -83,7 +91,10 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if (commands_.has_work()) acted |= run_commands();
     if (inbox_.pending()) acted |= run_messages();
     if constexpr (!steps_only) {
+        set_running_cause(cause_);
         run_behaviours(due || acted); // what ran may have changed a condition
+        if (waking != nullptr) waking->times.add(lap_ - cause_);
+        set_running_cause(no_cause);
         watch_inputs();
     }
     ++statistics_.cycles;
@@ -95,6 +106,14 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
 }
 template void Engine::cycle_as<true>(bool) noexcept TAPPET_REALTIME;
 template void Engine::cycle_as<false>(bool) noexcept TAPPET_REALTIME;
+
+// Between the two steps a later value may name its own row: then that one is not counted, and no time is
+// wrong.
+WakingRow* Engine::take_waking_row() noexcept TAPPET_REALTIME {
+    WakingRow* const row = waking_.load(std::memory_order_acquire);        // no step: for the report
+    if (row != nullptr) waking_.store(nullptr, std::memory_order_relaxed); // no step: for the report
+    return row;
+}
 
 bool Engine::run_timers() noexcept TAPPET_REALTIME {
     bool acted = false;
@@ -131,17 +150,26 @@ bool Engine::run_commands() noexcept TAPPET_REALTIME {
     return served != 0 || ended;
 }
 
+void Engine::note(const Message& message) noexcept TAPPET_REALTIME {
+    note(message.id, cycle_.now);
+    for (std::size_t at = 0; at < message.arguments.size(); at += sizeof(std::uint64_t)) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, message.arguments.data() + at, sizeof word);
+        digest_.add(word);
+    }
+}
+
 bool Engine::run_messages() noexcept TAPPET_REALTIME {
     const std::size_t served = inbox_.serve([this](const Message& message) noexcept TAPPET_REALTIME {
-        note(message.id, cycle_.now);
-        for (std::size_t at = 0; at < message.arguments.size(); at += sizeof(std::uint64_t)) {
-            std::uint64_t word = 0;
-            std::memcpy(&word, message.arguments.data() + at, sizeof word);
-            digest_.add(word);
-        }
+        if (clock_->is_virtual()) note(message);
+        set_running_cause(message.cause);
         timed(message.id, FunctionKind::reactions,
               [&]() noexcept TAPPET_REALTIME { message.run(message.object, message.arguments.data()); });
+        if (message.cause == no_cause) return;
+        AsyncReaction::note_end(message, lap_);
+        if (cause_ == no_cause) cause_ = message.cause;
     });
+    set_running_cause(no_cause);
     statistics_.messages += served;
     return served != 0;
 }

@@ -7,6 +7,7 @@
 #include "kernel/activity/cycle_tape.hpp"
 #include "kernel/activity/timing.hpp"
 #include "kernel/base/digest.hpp"
+#include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/life.hpp"
 #include "kernel/exchange/mailbox.hpp"
@@ -174,6 +175,13 @@ public:
     /// All drivers among its components run: whoever waits for it listens to its devices.
     [[nodiscard]] bool heeds_devices() const noexcept TAPPET_REALTIME;
 
+    /// A connection row that wakes this engine has a value that an edge or a frame set off: the cycle that
+    /// follows is counted as what the row led to. Of several rows the last. Real-time, any thread.
+    void expect(WakingRow& row, Time cause) noexcept TAPPET_REALTIME {
+        row.cause_ns.store(to_ns(cause), std::memory_order_relaxed); // no step: for the report
+        waking_.store(&row, std::memory_order_release);              // no step: for the report
+    }
+
     /// When it wants to run although nothing wakes it.
     [[nodiscard]] Time next_wake() const noexcept TAPPET_REALTIME {
         return steps_only_ && awaiting_ == 0 ? next_release_ : earliest_wake();
@@ -187,11 +195,12 @@ public:
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
     [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
-    /// Of what happened here: every message, timer and transition with its time. Equal in two runs that did
-    /// the same.
+    /// Of what happened here in virtual time: every message, timer and transition with its time. Equal in two
+    /// runs that did the same. Under real time no two runs are alike, and nothing is noted.
     [[nodiscard]] const Digest& digest() const noexcept TAPPET_REALTIME { return digest_; }
     /// Adds a transition of a behaviour to the digest.
     void note(std::uint64_t what, Time when) noexcept TAPPET_REALTIME {
+        if (!clock_->is_virtual()) return;
         digest_.add(to_ns(when));
         digest_.add(what);
     }
@@ -252,11 +261,13 @@ private:
     [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;
     void serve_requests() noexcept TAPPET_REALTIME;
     void start_awaiting() noexcept TAPPET_REALTIME;
+    [[nodiscard]] WakingRow* take_waking_row() noexcept TAPPET_REALTIME;
     bool run_timers() noexcept TAPPET_REALTIME;
     void run_components() noexcept TAPPET_REALTIME;
     bool run_commands() noexcept TAPPET_REALTIME;
     bool run_messages() noexcept TAPPET_REALTIME;
     void run_behaviours(bool all) noexcept TAPPET_REALTIME;
+    void note(const Message& message) noexcept TAPPET_REALTIME;
     void watch_inputs() noexcept TAPPET_REALTIME;
     void watch_wakes() noexcept TAPPET_REALTIME;
     void note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME;
@@ -286,6 +297,8 @@ private:
     Time next_release_ = never;
     Time lap_{};
     Time ended_{};
+    Time cause_{}; ///< of this cycle: of what woke it, or of the first message that has one
+    std::atomic<WakingRow*> waking_{nullptr};
     Duration least_excess_{}; ///< from which on a function could be to blame: zero, or never
     Duration worst_excess_{}; ///< of this cycle; least_excess_: no function took longer than usual
     Duration worst_took_{};

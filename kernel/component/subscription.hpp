@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/component/cause.hpp"
 #include "kernel/component/current.hpp"
 #include "kernel/component/life.hpp"
 #include "kernel/component/port.hpp"
@@ -79,6 +80,8 @@ struct AsyncReaction {
     std::uint32_t part = 0; ///< the receiver's number for the component it is timed as
     std::uint32_t quota = 0;
     std::atomic<std::uint32_t> stray{0}; ///< any thread counts
+    bool has_run = false;  ///< the receiver's: the message served last was neither outdated nor dropped
+    ReactionTimes times{}; ///< the receiver's
     alignas(64) std::atomic<std::uint32_t> epoch{0};
 
     /// In the emitter. The epoch is read before the bit: what is posted with an epoch found the row connected
@@ -95,7 +98,14 @@ struct AsyncReaction {
         message.run = &serve;
         message.object = &lanes[index];
         message.id = part;
+        message.cause = running_cause();
         post_to(lanes[index], message);
+    }
+    /// In the receiver: the row that the message came by has done what it had to, at `end`.
+    static void note_end(const Message& message, Time end) noexcept TAPPET_REALTIME {
+        if (message.run != &serve) return;
+        AsyncReaction& row = *static_cast<EventLane*>(message.object)->row;
+        if (row.has_run) row.times.add(end - message.cause);
     }
     [[nodiscard]] SubscriptionCounts counts() const noexcept TAPPET_REALTIME {
         SubscriptionCounts sum;
@@ -138,6 +148,7 @@ private:
         notice.run = message.run;
         notice.object = message.object;
         notice.id = message.id;
+        notice.cause = message.cause;
         lane.posted.add();
         lane.high_water.set(1);
         if (inbox->post(lane.sender, notice)) waker(); // there is room: one notice is on its way at most
@@ -149,14 +160,17 @@ private:
         // Its place in the mailbox is free again, so one more may be posted while this one runs.
         const std::uint32_t served = lane.served.load(std::memory_order_relaxed); // serve.count
         lane.served.store(served + 1, std::memory_order_release);                 // serve.count
+        row.has_run = false;
         const Message* caught = lane.latest != nullptr ? lane.latest->take() : &message_of(arguments);
         if (caught == nullptr) return;
         if (caught->epoch != row.epoch.load(std::memory_order_acquire)) // serve.epoch
             lane.outdated.add();
         else if (row.receiver != nullptr && !is_running(*row.receiver))
             lane.dropped.add();
-        else
+        else {
+            row.has_run = true;
             row.run(row.object, caught->arguments.data());
+        }
     }
 };
 

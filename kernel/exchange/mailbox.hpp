@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
 #include "kernel/exchange/ring.hpp"
 
 #include <array>
@@ -24,11 +25,12 @@ struct Message {
     void* object = nullptr;
     std::uint32_t id = 0;    ///< the receiver's: a row, a command slot
     std::uint32_t epoch = 0; ///< of the subscription it was posted through: an older one is dropped
+    Time cause{};            ///< the stamp of what set it off; the epoch: nothing did
     alignas(8) std::array<std::byte, 48> arguments{};
 };
 static_assert(std::is_standard_layout_v<Message>);
-static_assert(sizeof(Message) == 72,
-              "with its number in the ring a message takes 80 bytes, two lines and no third");
+static_assert(sizeof(Message) == 80,
+              "with its number in the ring a message takes 88 bytes, two lines and no third");
 
 /// The message that a Message::Run is called out of: it gets the arguments where they lie.
 inline const Message& message_of(const std::byte* arguments) noexcept TAPPET_REALTIME {

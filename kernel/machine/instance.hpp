@@ -175,6 +175,12 @@ public:
     /// Of one of the plan's subscriptions; nothing for a synchronous one. Real-time, any thread.
     [[nodiscard]] SubscriptionCounts counts_of(std::size_t subscription) const noexcept TAPPET_REALTIME;
 
+    /// How long a reaction row that tells, or a connection row that wakes, took each time an edge or a frame
+    /// set it off; null for other rows. Whole while the receiving activity rests. Rows by their number in the
+    /// table.
+    [[nodiscard]] const ReactionTimes* times_of_reaction(std::size_t row) const noexcept;
+    [[nodiscard]] const ReactionTimes* times_of_connection(std::size_t row) const noexcept;
+
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {

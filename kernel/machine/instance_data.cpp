@@ -9,8 +9,11 @@ namespace {
 
 // The chain of an output's wakers ends after as many nodes as it has rows that wake.
 void wake_chain(void* first) noexcept TAPPET_REALTIME {
-    for (const auto* node = static_cast<const WakerNode*>(first); node != nullptr; node = node->next)
+    const Time cause = running_cause();
+    for (auto* node = static_cast<WakerNode*>(first); node != nullptr; node = node->next) {
+        if (cause != no_cause) node->reader->expect(node->row, cause);
         node->waker();
+    }
 }
 
 } // namespace
@@ -56,14 +59,21 @@ void MachineInstance::add_waker(std::size_t x) {
     for (std::size_t j = 0; j < x; ++j)
         if (machine_.index.connections[j].from == link.from && machine_.table.connections[j].wakes_reader)
             before = at<WakerNode>(machine_.plan.connections[j].waker_at);
+    const std::size_t reader = machine_.index.activity[link.to.component];
     auto* node = new (at<WakerNode>(machine_.plan.connections[x].waker_at))
-        WakerNode{waker_of(machine_.index.activity[link.to.component]), before};
+        WakerNode{waker_of(reader), before, &engines()[reader]};
     const Waker chain{&wake_chain, node};
     const Facet& from = facet_at(machine_.table, link.from);
     if (machine_.table.connections[x].buffered)
         from.buffer->set_waker(facet(link.from), chain);
     else
         from.port->set_waker(facet(link.from), chain);
+}
+
+const ReactionTimes* MachineInstance::times_of_connection(std::size_t row) const noexcept {
+    if (!machine_.table.connections[row].wakes_reader) return nullptr;
+    const std::size_t place = machine_.plan.connections[row].waker_at;
+    return &reinterpret_cast<const WakerNode*>(machine_.memory.data() + place)->row.times;
 }
 
 } // namespace tappet

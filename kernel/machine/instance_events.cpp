@@ -165,6 +165,20 @@ SubscriptionCounts MachineInstance::counts_of(std::size_t s) const noexcept TAPP
     return reinterpret_cast<const AsyncReaction*>(machine_.memory.data() + place)->counts();
 }
 
+const ReactionTimes* MachineInstance::times_of_reaction(std::size_t row) const noexcept {
+    const auto& plan = machine_.plan;
+    const Link& link = machine_.index.reactions[row];
+    for (std::size_t s = 0; s < plan.subscriptions.size(); ++s) {
+        const Subscription& each = plan.subscriptions[s];
+        if (each.kind == SubscriberKind::operation && !each.synchronous && each.event == link.from &&
+            each.target == link.to)
+            return &reinterpret_cast<const AsyncReaction*>(machine_.memory.data() +
+                                                           plan.subscription_at[s].async_at)
+                        ->times;
+    }
+    return nullptr;
+}
+
 std::uint64_t MachineInstance::lost_emissions() const noexcept {
     std::uint64_t lost = 0;
     for (std::size_t s = 0; s < machine_.plan.subscriptions.size(); ++s) {

@@ -6,6 +6,7 @@
 #include "kernel/os/local_socket.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <cstring>
 #include <new>
 #include <string_view>
@@ -19,6 +20,11 @@ template <class Record>
 std::span<Record> records(std::span<std::byte> memory, const map::Section& section) noexcept {
     return {reinterpret_cast<Record*>(memory.data() + section.at), section.count};
 }
+
+static_assert(sizeof(map::Times) == sizeof(ReactionTimes) &&
+              offsetof(map::Times, total_ns) == offsetof(ReactionTimes, total) &&
+              offsetof(map::Times, longest_ns) == offsetof(ReactionTimes, longest) &&
+              offsetof(map::Times, histogram) == offsetof(ReactionTimes, histogram));
 
 } // namespace
 
@@ -60,6 +66,12 @@ void MachineInstance::place_map() {
         activities[a].now_at = offset_of(engines()[a].now_address());
     }
     for (map::Figure& figure : records<map::Figure>(memory, header.figures)) place_figure(figure);
+    const auto connections = records<map::Connection>(memory, header.connections);
+    for (std::size_t x = 0; x < connections.size(); ++x)
+        connections[x].times_at = offset_of(times_of_connection(x));
+    const auto reactions = records<map::Reaction>(memory, header.reactions); // rows first, then triggers
+    for (std::size_t i = 0; i < machine_.table.reactions.size(); ++i)
+        reactions[i].times_at = offset_of(times_of_reaction(i));
     place_fields(header);
     std::atomic_ref{header.ready}.store(1, std::memory_order_release);
 }

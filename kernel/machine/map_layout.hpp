@@ -139,6 +139,7 @@ struct Connection {
     std::int64_t max_age_ns = 0; ///< 0: a value never becomes stale
     Text when_stale;             ///< "hold", "substitute", "stop"
     Text overflow;               ///< of a buffer: "reject", "drop_oldest"
+    std::uint64_t times_at = 0;  ///< Times, of a row that wakes
 };
 
 struct Reaction {
@@ -149,6 +150,18 @@ struct Reaction {
     std::uint32_t quota = 0;        ///< unserved emissions that may wait
     std::uint32_t from_activity = none;
     std::uint32_t to_activity = none;
+    std::uint64_t times_at = 0; ///< Times, of a "tell"
+};
+
+/// How long a row took, from the stamp of the edge or the frame that set it off to the end of what the row
+/// leads to, in the receiving activity; guarded by that activity's generation.
+struct Times {
+    std::uint64_t count = 0;
+    std::int64_t total_ns = 0;
+    std::int64_t longest_ns = 0;
+    /// The first counts those below 1 us, each further one twice the time of the one before it, the last also
+    /// all beyond.
+    std::array<std::uint32_t, 16> histogram{};
 };
 
 struct Behaviour {
@@ -226,12 +239,12 @@ template <class Record>
 inline constexpr bool is_plain =
     std::is_trivially_copyable_v<Record> && std::is_standard_layout_v<Record> && alignof(Record) <= 8;
 static_assert(is_plain<Header> && is_plain<Component> && is_plain<Facet> && is_plain<Activity> &&
-              is_plain<Connection> && is_plain<Reaction> && is_plain<Behaviour> && is_plain<Type> &&
-              is_plain<Field> && is_plain<Enumerator> && is_plain<Figure>);
+              is_plain<Connection> && is_plain<Reaction> && is_plain<Times> && is_plain<Behaviour> &&
+              is_plain<Type> && is_plain<Field> && is_plain<Enumerator> && is_plain<Figure>);
 static_assert(sizeof(Header) == 312 && sizeof(Component) == 56 && sizeof(Facet) == 104 &&
-                  sizeof(Activity) == 80 && sizeof(Connection) == 40 && sizeof(Reaction) == 32 &&
-                  sizeof(Behaviour) == 24 && sizeof(Type) == 56 && sizeof(Field) == 24 &&
-                  sizeof(Enumerator) == 16 && sizeof(Figure) == 48,
+                  sizeof(Activity) == 80 && sizeof(Connection) == 48 && sizeof(Reaction) == 40 &&
+                  sizeof(Times) == 88 && sizeof(Behaviour) == 24 && sizeof(Type) == 56 &&
+                  sizeof(Field) == 24 && sizeof(Enumerator) == 16 && sizeof(Figure) == 48,
               "the layout changed: give it a new layout_version");
 
 } // namespace tappet::map

@@ -134,6 +134,8 @@ struct ObserverBinding {
 struct WakerNode {
     Waker waker;
     WakerNode* next;
+    Engine* reader;
+    WakingRow row{};
 };
 
 /// Whether the row feeds an input that a component needs before it starts.

@@ -4,6 +4,7 @@
 #include "kernel/os/arming.hpp"
 
 #include <cstring>
+#include <ctime>
 #include <string_view>
 
 #include <elf.h>
@@ -67,6 +68,12 @@ BuildId build_id() noexcept {
         },
         &id);
     return id;
+}
+
+Duration own_processor_time() noexcept {
+    timespec used{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return std::chrono::seconds{used.tv_sec} + Duration{used.tv_nsec};
 }
 
 } // namespace tappet::os

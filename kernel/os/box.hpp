@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/text.hpp"
+#include "kernel/base/time.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,6 +16,10 @@ namespace tappet::os {
 [[nodiscard]] bool kernel_is_realtime() noexcept;
 /// The size of this program's file; 0 when it cannot be told.
 [[nodiscard]] std::size_t binary_bytes() noexcept;
+
+/// Processor time of this process so far. Called first in main it tells what the kernel took to load the
+/// program.
+[[nodiscard]] Duration own_processor_time() noexcept;
 
 /// The linker's mark of this program (--build-id), in hexadecimal; empty when it was linked without.
 struct BuildId {

@@ -64,7 +64,7 @@ Options parse(int count, char** words) {
 }
 
 int write_summary(MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices,
-                  const Sentence& reason, const char* path) {
+                  const Sentence& reason, Duration start_to_armed, const char* path) {
     const auto* bus = instance.find<can::Bus<carpet::can_signals>>("can");
     const auto* utility = instance.find<modbus::Slave<carpet::utility_registers>>("utility");
     carpet::RunFacts facts;
@@ -77,6 +77,7 @@ int write_summary(MachineInstance& instance, const RealWorld& world, const carpe
     const can::Counters seen = devices.can().counters();
     facts.wires = {seen.faults, seen.restarts, bus->decoding().wrong_lengths, seen.impostors, seen.malformed};
     facts.stop_reason = reason.view();
+    facts.start_to_armed = start_to_armed;
     const std::size_t length = carpet::write_machine_summary(instance, facts, summary_text);
     if (length == 0 || length + 2 > summary_text.size())
         return fail(wrong_set_up, Sentence{"the summary does not fit its buffer"});
@@ -139,6 +140,7 @@ void list_misses(const MachineInstance& instance) {
 } // namespace
 
 int main(int count, char** words) {
+    const Time begun = machine_clock.now() - os::own_processor_time(); // when the kernel began to load us
     const Options options = parse(count, words);
     if (!options.error.empty()) return fail(wrong_set_up, options.error);
 
@@ -158,9 +160,11 @@ int main(int count, char** words) {
         arming.fault("can-bus", Sentence{"the CAN bus is faulted"},
                      Sentence{"look at its wiring and at the other nodes' power"});
     if (!world.arm(arming, 2)) return refused_to_arm;
+    const Duration start_to_armed = machine_clock.now() - begun;
     if (!world.start()) return fail(stopped_by_fault, world.refusal());
     os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ",
-                       static_cast<std::int64_t>(arming.warnings()), " warnings\n"}
+                       static_cast<std::int64_t>(arming.warnings()), " warnings, ",
+                       start_to_armed.count() / 1000, " us after its start\n"}
                   .view());
     StateMachineExecution::News told;
     for (int look = 1; world.supervise(100ms); ++look) {
@@ -177,7 +181,8 @@ int main(int count, char** words) {
         if (const Sentence fault = instance.save_properties(); !fault.empty())
             os::print(Sentence{"carpet-loom: ", fault, "\n"}.view());
     if (options.summary != nullptr)
-        if (const int written = write_summary(instance, world, devices, reason, options.summary);
+        if (const int written =
+                write_summary(instance, world, devices, reason, start_to_armed, options.summary);
             written != ended_well)
             return written;
     return hung == 0 && instance.stop_request().reason == StopReason::requested ? ended_well
