@@ -79,6 +79,10 @@ static_assert(sizeof(ReactionTimes) == 88, "the layout is part of the machine's 
 struct WakingRow {
     std::atomic<std::int64_t> cause_ns{0}; ///< of the value written last
     ReactionTimes times{};                 ///< the reader's
+
+    [[nodiscard]] Time cause() const noexcept TAPPET_REALTIME {
+        return at_ns(cause_ns.load(std::memory_order_relaxed)); // no step: for the report
+    }
 };
 
 } // namespace tappet
