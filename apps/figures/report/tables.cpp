@@ -32,12 +32,13 @@ constexpr const char* class_of(Role role) {
 struct Columns {
     bool spread;  ///< more was measured than one value
     bool counted; ///< instructions
-    bool ours;    ///< something to stand beside
+    bool ours;    ///< floors or peers stand beside it
     explicit Columns(const Figure& figure)
         : spread{std::ranges::any_of(figure.rows, [](const Row& row) { return row.summary.count > 1; })},
           counted{
               std::ranges::any_of(figure.rows, [](const Row& row) { return row.instructions.has_value(); })},
-          ours{std::ranges::find(figure.rows, Role::ours, &Row::role) != figure.rows.end()} {}
+          ours{std::ranges::any_of(figure.rows, [](const Row& row) { return row.role == Role::ours; }) &&
+               std::ranges::any_of(figure.rows, [](const Row& row) { return row.role != Role::ours; })} {}
 
     [[nodiscard]] std::string head() const {
         return std::string{"<tr><th></th><th>role</th>"} +
