@@ -22,10 +22,9 @@ struct Idle {
 
 // ---- one component, bound by a table
 
-constexpr auto idle_table =
-    machine("idle", components(component<Idle>("idle")),
-            activities(activity("motion", every(1ms), budget(50us), runs("idle"))), connections(),
-            reactions(), behaviours());
+constexpr auto idle_table = machine("idle", components(component<Idle>("idle")),
+                                    activities(activity("motion", every(1ms), budget(50us), runs("idle"))),
+                                    connections(), reactions(), behaviours());
 constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 1024 * 1024};
 
 struct World {
