@@ -184,6 +184,12 @@ int main(int argc, char** argv) {
     result.notes.push_back("each application ran " + std::to_string(seconds) +
                            " s in each setting, all activities on processor " + std::to_string(processor) +
                            "; the thesis ran each for 300 s (--seconds 300)");
+    result.notes.push_back("averages and worst cases hold whatever interrupted the machine meanwhile; a bare "
+                           "thread and bare copies, "
+                           "which nothing of Tappet touches, stand beside them");
+    result.notes.push_back("that the highest priority meets a lock held by a lower one is rare, some times "
+                           "in 100000 executions: a "
+                           "short run may see none");
     result.notes.push_back(
         "the load of the concurrent application is 0.55: that is what the thesis' periods and "
         "loads add up to, its table 4.1 says 0.65");
