@@ -20,11 +20,10 @@ bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TA
     context_.links = binding.links;
     context_.machines = binding.machines;
     fast_ = binding.fast;
-    dispatch_ = fast_.dispatch != nullptr ? fast_.dispatch
-                : machine_.folded         ? &dispatch_folded
-                                          : &dispatch_walked;
-    step_ = fast_.step != nullptr ? fast_.step : &step_walked;
     policy_ = binding.policy;
+    const bool is_quick = fast_.dispatch != nullptr && policy_.statements >= fast_.statements;
+    dispatch_ = is_quick ? fast_.dispatch : machine_.folded ? &dispatch_folded : &dispatch_walked;
+    step_ = is_quick ? fast_.step : &step_walked;
     parent_ = binding.parent;
     history_ = binding.history;
     deferred_ = binding.deferred;

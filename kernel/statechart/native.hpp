@@ -116,9 +116,6 @@ template <const auto& source, std::size_t type> struct MachineCode {
         constexpr const Extent& extent = extent_of<number>;
         if constexpr (view.captured[at.trigger] != 0)
             if (arguments == nullptr) return StateOutcome::ignored;
-        if constexpr (!is_folded && extent.is_bounded())
-            if (execution.policy_.statements < extent.statements) [[unlikely]]
-                return execution.resume_event(at.trigger, now, arguments, at.first);
         Run run = Step::template begins<extent.calls, !extent.is_bounded()>(execution, now,
                                                                             execution.policy_.statements);
         ArcIndex asked = at.first + arcs;
@@ -140,6 +137,20 @@ template <const auto& source, std::size_t type> struct MachineCode {
                    ? outcome
                    : execution.finish_with(outcome, run.statements, now);
     }
+
+    // The most that one cell or the first round of one leaf runs, of those that do not count.
+    template <std::size_t... cell, std::size_t... leaf>
+    static constexpr std::uint32_t most_of(std::index_sequence<cell...>, std::index_sequence<leaf...>) {
+        std::uint32_t most = 0;
+        const auto add = [&](const Extent& extent) {
+            if (!is_folded && extent.is_bounded()) most = std::max(most, extent.statements);
+        };
+        (add(extent_of<cell>), ...);
+        (add(Step::template extent_at<Step::leaves[leaf]>), ...);
+        return most;
+    }
+    static constexpr std::uint32_t uncounted =
+        most_of(std::make_index_sequence<cell_count>{}, std::make_index_sequence<Step::leaf_count>{});
 
     // ---- the switches
 
@@ -248,7 +259,7 @@ constexpr StateMachineFast fast_of() noexcept {
     if constexpr (!Machine::view.plain)
         return {nullptr, nullptr, &Machine::capture};
     else
-        return {&Machine::dispatch, &Machine::step, &Machine::capture};
+        return {&Machine::dispatch, &Machine::step, &Machine::capture, Machine::uncounted};
 }
 
 } // namespace native

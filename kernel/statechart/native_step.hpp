@@ -253,9 +253,6 @@ template <const auto& source, std::size_t type> struct StepCode {
         constexpr const Extent& extent = extent_at<leaf>;
         constexpr auto levels = std::make_index_sequence<plan.depth>{};
         if (waits<leaf>(levels, execution)) return execution.step_generally(now);
-        if constexpr (!is_folded && extent.is_bounded())
-            if (round.statements < extent.statements) [[unlikely]]
-                return execution.step_generally(now); // of a later round this was asked before
         Run run = begins<extent.calls, !extent.is_bounded()>(execution, now, round.statements);
         if (!runs<leaf>(levels, execution, run, round, now)) [[unlikely]]
             return;

@@ -72,12 +72,17 @@ struct Fault : Counted, sc::simple_state<Fault, Machine> {
     using reactions = mpl::list<sc::transition<Reset, On>, sc::transition<Power, Off>>;
 };
 
-Machine machine;
+Machine machines[peer_machines];
 
 } // namespace
 
-void statechart_start() { machine.initiate(); }
+void statechart_start() {
+    for (Machine& machine : machines) machine.initiate();
+    statechart_counts = {0, 1, 0}; // of one machine
+}
+template <int number>
 void statechart_dispatch(std::size_t event) {
+    Machine& machine = machines[number];
     switch (event) {
     case power: machine.process_event(Power{}); break;
     case start: machine.process_event(Start{}); break;
@@ -90,5 +95,7 @@ void statechart_dispatch(std::size_t event) {
     default: break;
     }
 }
+template void statechart_dispatch<0>(std::size_t event);
+template void statechart_dispatch<1>(std::size_t event);
 
 } // namespace tappet::figures

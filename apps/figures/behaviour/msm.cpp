@@ -78,13 +78,18 @@ struct LoomDef : msm::front::state_machine_def<LoomDef> {
     template <class M, class E> void no_transition(const E&, M&, int) {}
 };
 
-msm::back::state_machine<LoomDef> machine;
+msm::back::state_machine<LoomDef> machines[peer_machines];
 
 } // namespace
 
-void msm_start() { machine.start(); }
+void msm_start() {
+    for (auto& machine : machines) machine.start();
+    msm_counts = {0, 1, 0}; // of one machine
+}
 
+template <int number>
 void msm_dispatch(std::size_t event) {
+    auto& machine = machines[number];
     switch (event) {
     case power: machine.process_event(Power{}); break;
     case start: machine.process_event(Start{}); break;
@@ -97,5 +102,7 @@ void msm_dispatch(std::size_t event) {
     default: break;
     }
 }
+template void msm_dispatch<0>(std::size_t event);
+template void msm_dispatch<1>(std::size_t event);
 
 } // namespace tappet::figures
