@@ -314,12 +314,10 @@ private:
         TAPPET_REALTIME;
     StateOutcome resume_event(std::size_t trigger, Time now, const std::byte* arguments,
                               ArcIndex from) noexcept TAPPET_REALTIME;
-    void resume_run(const Round& round, std::size_t level, ProgramReturn why, Time now) noexcept
-        TAPPET_REALTIME;
-    void resume_handle(const Round& round, std::size_t level, ProgramReturn why, Time now) noexcept
-        TAPPET_REALTIME;
-    void resume_round(const Round& round, std::size_t levels, Time now) noexcept TAPPET_REALTIME;
-    void note_round(const Round& round, std::size_t levels) noexcept TAPPET_REALTIME;
+    void resume_run(Round round, std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
+    void resume_handle(Round round, std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
+    void resume_round(Round round, std::size_t levels, Time now) noexcept TAPPET_REALTIME;
+    void note_round(Round round, std::size_t levels) noexcept TAPPET_REALTIME;
     void go_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME;
     void hand_over(std::size_t part, ProgramReturn why) noexcept TAPPET_REALTIME;
     ProgramReturn take_over(const ProgramRef& program) noexcept TAPPET_REALTIME;

@@ -59,7 +59,7 @@ StateOutcome StateMachineExecution::finish_with(StateOutcome outcome, std::int64
 }
 
 // The run programs of so many levels have ended or are held.
-void StateMachineExecution::note_round(const Round& round, std::size_t levels) noexcept TAPPET_REALTIME {
+void StateMachineExecution::note_round(Round round, std::size_t levels) noexcept TAPPET_REALTIME {
     set(busy);
     set(mid_round);
     asked_ = 0;
@@ -72,8 +72,8 @@ void StateMachineExecution::note_round(const Round& round, std::size_t levels) n
     }
 }
 
-void StateMachineExecution::resume_run(const Round& round, std::size_t level, ProgramReturn why,
-                                       Time now) noexcept TAPPET_REALTIME {
+void StateMachineExecution::resume_run(Round round, std::size_t level, ProgramReturn why, Time now) noexcept
+    TAPPET_REALTIME {
     ActiveState& at = status_.states[level];
     const bool is_function = row(at.state).run.call != nullptr;
     const bool has_begun =
@@ -96,8 +96,7 @@ void StateMachineExecution::resume_run(const Round& round, std::size_t level, Pr
     finish(now);
 }
 
-void StateMachineExecution::resume_round(const Round& round, std::size_t levels, Time now) noexcept
-    TAPPET_REALTIME {
+void StateMachineExecution::resume_round(Round round, std::size_t levels, Time now) noexcept TAPPET_REALTIME {
     note_round(round, levels);
     statements_ = machine_.folded ? policy_.statements : static_cast<std::uint32_t>(round.statements);
     if (round.taken != 0 && is(final_wanted)) serve_final(now);
@@ -105,7 +104,7 @@ void StateMachineExecution::resume_round(const Round& round, std::size_t levels,
     finish(now);
 }
 
-void StateMachineExecution::resume_handle(const Round& round, std::size_t level, ProgramReturn why,
+void StateMachineExecution::resume_handle(Round round, std::size_t level, ProgramReturn why,
                                           Time now) noexcept TAPPET_REALTIME {
     note_round(round, status_.states.size());
     for (std::size_t i = 0; i < status_.states.size(); ++i)

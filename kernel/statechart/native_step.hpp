@@ -89,16 +89,17 @@ template <const auto& source, std::size_t type> struct StepCode {
     template <StateIndex leaf> static constexpr Extent extent_at = extent_of(leaf);
     template <StateIndex leaf> static constexpr Path path_at = path_of(leaf);
 
-    [[gnu::noinline, gnu::cold]] static void breaks_off_run(Execution& execution, const Run& run, Next next,
-                                                            std::size_t level, Round round, Time now) noexcept
-        TAPPET_REALTIME {
-        const ProgramReturn why = Transition::breaks_off(execution, run.statements, run.fresh, next);
+    [[gnu::noinline, gnu::cold]] static void breaks_off_run(Execution& execution, std::int64_t statements,
+                                                            bool fresh, Next next, std::size_t level,
+                                                            Round round, Time now) noexcept TAPPET_REALTIME {
+        const ProgramReturn why = Transition::breaks_off(execution, statements, fresh, next);
         execution.resume_run(round, level, why, now);
     }
-    [[gnu::noinline, gnu::cold]] static void breaks_off_handle(Execution& execution, const Run& run,
-                                                               Next next, std::size_t level, Round round,
-                                                               Time now) noexcept TAPPET_REALTIME {
-        const ProgramReturn why = Transition::breaks_off(execution, run.statements, run.fresh, next);
+    [[gnu::noinline, gnu::cold]] static void breaks_off_handle(Execution& execution, std::int64_t statements,
+                                                               bool fresh, Next next, std::size_t level,
+                                                               Round round, Time now) noexcept
+        TAPPET_REALTIME {
+        const ProgramReturn why = Transition::breaks_off(execution, statements, fresh, next);
         execution.resume_handle(round, level, why, now);
     }
     template <StateIndex leaf, std::size_t level>
@@ -110,7 +111,7 @@ template <const auto& source, std::size_t type> struct StepCode {
         Next next = end_node;
         if (Transition::template performs<program.call, program.program>(execution, run, next)) [[likely]]
             return true;
-        breaks_off_run(execution, run, next, level, round, now);
+        breaks_off_run(execution, run.statements, run.fresh, next, level, round, now);
         return false;
     }
     template <StateIndex leaf, std::size_t level>
@@ -122,7 +123,7 @@ template <const auto& source, std::size_t type> struct StepCode {
         Next next = end_node;
         if (Transition::template performs<program.call, program.program>(execution, run, next)) [[likely]]
             return true;
-        breaks_off_handle(execution, run, next, level, round, now);
+        breaks_off_handle(execution, run.statements, run.fresh, next, level, round, now);
         return false;
     }
     template <StateIndex leaf, std::size_t... level>
