@@ -112,14 +112,15 @@ void tell_worst(std::ostream& out, const ScopeReader& scope, const Kept& kept) {
     out << "; began " << us(kept.of.begin - kept.of.release) << " late, " << us(kept.of.end - kept.of.begin)
         << " busy; " << ago(scope.directory().looked_ns - kept.of.end) << "\n";
     std::size_t beside = 0;
-    bool waited_alone = kept.of.begin > kept.of.release;
+    std::int64_t others_ran = 0; // while it waited; on several processors together more than the time passed
     for (const WaveCycle& each : waves.cycles)
         if (each.activity == kept.of.activity && each.end == kept.of.end && each.begin == kept.of.begin)
             tell_blocks(out, activity, each);
     for (const WaveCycle& each : waves.cycles) {
         if (each.activity == kept.of.activity && each.begin == kept.of.begin) continue;
         ++beside;
-        if (each.begin < kept.of.begin && each.end > kept.of.release) waited_alone = false;
+        others_ran += std::max<std::int64_t>(0, std::min(each.end, kept.of.begin) -
+                                                    std::max(each.begin, kept.of.release));
         if (each.end < kept.of.release || each.begin > kept.of.end) continue;
         const std::int64_t at = each.begin - kept.of.release;
         out << "  meanwhile " << waves.activities[each.activity].name << ", " << us(at < 0 ? -at : at)
@@ -127,8 +128,9 @@ void tell_worst(std::ostream& out, const ScopeReader& scope, const Kept& kept) {
             << us(each.end - each.begin) << "\n";
         tell_blocks(out, waves.activities[each.activity], each);
     }
-    if (waited_alone)
-        out << "  nothing of this machine ran while it waited to begin: look at what else the box did\n";
+    if (kept.of.begin > kept.of.release)
+        out << "  while it waited to begin, " << us(kept.of.begin - kept.of.release)
+            << ", this machine's other cycles ran for " << us(others_ran) << "\n";
     out << "  and " << beside << " cycles from " << us(kept.of.release - waves.from) << " before to "
         << us(waves.to - kept.of.end) << " behind it: --to FILE.json or FILE.vcd shows them\n";
 }

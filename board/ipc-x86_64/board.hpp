@@ -18,7 +18,7 @@ inline constexpr Board ipc_x86_64{
     // the other, so that neither an interrupt nor a background thread takes their caches.
     .default_processor = 2,
     .placement = placements(place("can", 3), place("io", 3), place("utility", 0), place("console", 0),
-                            place("browser", 0)),
+                            place("scope", 0), place("browser", 0)),
     .devices = board_devices(
         board_device("loom-can", "can", "can0"),
         // By the chip's label, as gpiodetect shows it: numbers follow the order in which drivers load.
