@@ -165,11 +165,15 @@ struct PortAccess {
         .shared_align = alignof(DataObject<Sample<T>>),
         .place_shared =
             [](void* output, void* memory) {
-                static_cast<Output<T>*>(output)->shared_ = new (memory) DataObject<Sample<T>>;
+                auto& out = *static_cast<Output<T>*>(output);
+                out.shared_ = new (memory) DataObject<Sample<T>>;
+                out.settle();
             },
         .link_local =
             [](void* input, const void* output) {
-                static_cast<Input<T>*>(input)->local_ = static_cast<const Output<T>*>(output);
+                auto& in = *static_cast<Input<T>*>(input);
+                in.local_ = static_cast<const Output<T>*>(output);
+                in.settle();
             },
         .link_shared =
             [](void* input, const void* output) {
@@ -182,11 +186,17 @@ struct PortAccess {
                 else
                     static_cast<Output<T>*>(port)->now_ = now;
             },
-        .set_waker = [](void* output, Waker waker) { static_cast<Output<T>*>(output)->waker_ = waker; },
+        .set_waker =
+            [](void* output, Waker waker) {
+                auto& out = *static_cast<Output<T>*>(output);
+                out.waker_ = waker;
+                out.settle();
+            },
         .set_policy =
             [](void* input, const InputPolicy& policy) {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.max_age_ = policy.max_age;
+                in.settle();
                 in.when_stale_ = policy.when_stale;
                 in.substitute_ = value_in<T>(policy.substitute);
                 in.before_first_ =

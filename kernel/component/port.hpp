@@ -7,6 +7,8 @@
 #include "kernel/base/type_tag.hpp"
 #include "kernel/exchange/data_object.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -44,6 +46,10 @@ struct Sample {
 template <class T>
 inline constexpr bool copied_as_bytes<Sample<T>> = copied_as_bytes<T>;
 
+/// Of what a port holds: a larger value begins on a line, so that it touches no more of them than it must.
+template <class T>
+inline constexpr std::size_t place_alignment = std::max(alignof(T), std::size_t{sizeof(T) < 96 ? 1 : 64});
+
 /// Where an observer finds what a port holds; null where there is nothing. They change in the port's own
 /// activity only.
 struct PortPlaces {
@@ -75,12 +81,10 @@ public:
     void write(const T& value) noexcept TAPPET_REALTIME { write(value, *now_); }
     /// Writes a value that was true at `stamp`.
     void write(const T& value, Time stamp) noexcept TAPPET_REALTIME {
-        if (forced_)
-            hidden_ = value;
-        else
-            last_.value = value;
+        if (!inside_only_) return write_further(value, stamp);
+        last_.value = value;
         last_.stamp = stamp;
-        publish();
+        ++generation_;
     }
     /// What the component wrote last, also while readers get a forced value instead.
     [[nodiscard]] const T& last() const noexcept TAPPET_REALTIME { return forced_ ? hidden_ : last_.value; }
@@ -90,6 +94,20 @@ private:
     friend class Input;
     friend struct PortAccess;
 
+    [[gnu::noinline]] void write_further(const T& value, Time stamp) noexcept TAPPET_REALTIME {
+        if (forced_) [[unlikely]] {
+            hidden_ = value;
+            last_.stamp = stamp;
+            return publish();
+        }
+        copy_value(value, last_.value);
+        last_.stamp = stamp;
+        publish();
+    }
+    /// After each change of what a write has to look at.
+    void settle() noexcept TAPPET_REALTIME {
+        inside_only_ = !forced_ && shared_ == nullptr && waker_.wake == nullptr;
+    }
     void publish() noexcept TAPPET_REALTIME {
         ++generation_;
         if (shared_ != nullptr) shared_->write(last_);
@@ -99,6 +117,7 @@ private:
     void force(const T& value) noexcept TAPPET_REALTIME {
         if (!forced_) hidden_ = last_.value;
         forced_ = true;
+        settle();
         last_ = {value, *now_};
         publish();
     }
@@ -106,17 +125,20 @@ private:
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         forced_ = false;
+        settle();
         last_ = {hidden_, *now_};
         publish();
     }
 
-    Sample<T> last_{};
-    T hidden_ = default_value<T>(); ///< of a forced port: what its component wrote
-    bool forced_ = false;
+    alignas(place_alignment<Sample<T>>) Sample<T> last_{};
     std::uint64_t generation_ = 0;
-    DataObject<Sample<T>>* shared_ = nullptr;
     const Time* now_ = &detail_epoch;
+    bool inside_only_ = true; ///< nobody but readers of the own activity, and the value is the component's
+    bool forced_ = false;
+    DataObject<Sample<T>>* shared_ = nullptr;
     Waker waker_{};
+    alignas(place_alignment<T>) T hidden_ =
+        default_value<T>(); ///< of a forced port: what its component wrote
 
     static constexpr Time detail_epoch{};
 };
@@ -130,9 +152,11 @@ public:
     /// Copies the value into `into` and tells what it is. Never written: what the row gives before the first
     /// value, or its substitute, or zero.
     Flow read(T& into) noexcept TAPPET_REALTIME {
-        const Flow flow = refresh();
-        into = value_of(flow);
-        return flow;
+        if (!inside_only_ || local_->generation_ == 0) return read_further(into);
+        into = local_->last_.value;
+        const std::uint64_t seen = seen_;
+        seen_ = local_->generation_;
+        return seen == seen_ ? Flow::old : Flow::fresh;
     }
     /// The value alone, with the row's staleness policy applied.
     [[nodiscard]] T get() noexcept TAPPET_REALTIME { return value_of(refresh()); }
@@ -154,26 +178,42 @@ public:
 private:
     friend struct PortAccess;
 
+    [[gnu::noinline]] Flow read_further(T& into) noexcept TAPPET_REALTIME {
+        if (fetch() && max_age_ == Duration::zero()) {
+            // Out of the registers that the value has just come in.
+            copy_value(cache_.value, into);
+            seen_ = cached_generation_;
+            return Flow::fresh;
+        }
+        const Flow flow = judge();
+        into = value_of(flow);
+        return flow;
+    }
     Flow refresh() noexcept TAPPET_REALTIME {
-        std::uint64_t generation = 0;
-        if (forced_) {
+        static_cast<void>(fetch());
+        return judge();
+    }
+    /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
+    /// writer leaves the last good value, which is then old.
+    bool fetch() noexcept TAPPET_REALTIME {
+        return shared_ != nullptr && !forced_ && shared_->read(cache_, cached_generation_);
+    }
+    Flow judge() noexcept TAPPET_REALTIME {
+        if (forced_) [[unlikely]] {
             const bool is_new = seen_ != forced_generation;
             seen_ = forced_generation;
             return is_new ? Flow::fresh : Flow::old;
         }
-        if (local_ != nullptr) {
-            generation = local_->generation_;
-        } else if (shared_ != nullptr) {
-            // A read that lost against a fast writer leaves the last good value, which is then old.
-            if (!shared_->read(cache_, cached_generation_) && cached_generation_ == 0)
-                return Flow::never_written;
-            generation = cached_generation_;
-        }
+        const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
         if (generation == 0) return Flow::never_written;
         if (max_age_ > Duration::zero() && *now_ - stamp() > max_age_) return Flow::stale;
         if (generation == seen_) return Flow::old;
         seen_ = generation;
         return Flow::fresh;
+    }
+    /// After each change of what a read has to look at.
+    void settle() noexcept TAPPET_REALTIME {
+        inside_only_ = local_ != nullptr && !forced_ && max_age_ == Duration::zero();
     }
     [[nodiscard]] const T& value_of(Flow flow) const noexcept TAPPET_REALTIME {
         if (flow == Flow::never_written) return before_first_;
@@ -186,27 +226,30 @@ private:
         cache_ = {value, *now_};
         seen_ = 0;
         forced_ = true;
+        settle();
     }
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         forced_ = false;
+        settle();
         seen_ = cached_generation_ = 0; // what stands at the other end is read again
         cache_ = {};
     }
 
     static constexpr std::uint64_t forced_generation = ~std::uint64_t{0};
 
-    const Output<T>* local_ = nullptr;
-    const DataObject<Sample<T>>* shared_ = nullptr;
-    const Time* now_ = &Output<T>::detail_epoch;
-    Duration max_age_{};
-    WhenStale when_stale_ = WhenStale::hold;
-    bool forced_ = false;
-    std::uint64_t seen_ = 0;
+    alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0;
-    Sample<T> cache_{};
-    T substitute_ = default_value<T>();
-    T before_first_ = default_value<T>();
+    const DataObject<Sample<T>>* shared_ = nullptr;
+    bool inside_only_ = false; ///< the value is the one at the other end, of any age
+    bool forced_ = false;
+    WhenStale when_stale_ = WhenStale::hold;
+    std::uint64_t seen_ = 0;
+    const Output<T>* local_ = nullptr;
+    Duration max_age_{};
+    const Time* now_ = &Output<T>::detail_epoch;
+    alignas(place_alignment<T>) T substitute_ = default_value<T>();
+    alignas(place_alignment<T>) T before_first_ = default_value<T>();
 };
 
 } // namespace tappet

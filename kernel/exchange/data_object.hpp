@@ -28,10 +28,16 @@ class DataObject {
 public:
     /// One thread only.
     void write(const T& value) noexcept TAPPET_REALTIME {
+        typename Value::Copy
+            packed; // before anything is stored, so that what the caller just copied is at hand
+        if constexpr (Value::fits_registers) Value::pack(value, packed);
         const std::uint64_t generation = ++own_;
         Slot& slot = slots_[generation % Slots];
         slot.generation.store(being_written, std::memory_order_relaxed); // data.write_mark
-        slot.value.store(value);
+        if constexpr (Value::fits_registers)
+            slot.value.store(packed);
+        else
+            slot.value.store(value);
         slot.generation.store(generation, std::memory_order_release); // data.write_number
         published_.store(generation, std::memory_order_release);      // data.write_publish
     }
@@ -67,8 +73,8 @@ private:
     static constexpr std::uint64_t being_written = 0;
 
     struct alignas(64) Slot {
+        Value value{}; // first, so that no pair of its words lies across two lines
         Atomic<std::uint64_t> generation{};
-        Value value{};
     };
 
     std::array<Slot, Slots> slots_{};

@@ -27,44 +27,194 @@ inline constexpr bool copied_as_bytes = std::is_trivially_copyable_v<T> || Fixed
 template <class T>
 concept Exchangeable = copied_as_bytes<T> && std::is_trivially_destructible_v<T>;
 
+// Two words at once where the processor keeps the order of such accesses, and where nobody watches them one
+// by one: what the thread sanitizer sees must be atomics.
+#if defined(__SANITIZE_THREAD__)
+#define TAPPET_MOVES_PAIRS 0
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define TAPPET_MOVES_PAIRS 0
+#endif
+#endif
+#if !defined(TAPPET_MOVES_PAIRS)
+#if defined(__x86_64__)
+#define TAPPET_MOVES_PAIRS 1
+#else
+#define TAPPET_MOVES_PAIRS 0
+#endif
+#endif
+
+namespace detail {
+
+/// Two words in one register.
+using Pair [[gnu::vector_size(16)]] = std::uint64_t;
+/// The same where they lie in memory, wherever that is. A memcpy of sixteen bytes g++ takes for an integer,
+/// and carries it in two registers.
+using PlacedPair [[gnu::vector_size(16), gnu::aligned(1), gnu::may_alias]] = std::uint64_t;
+
+[[nodiscard]] inline PlacedPair& pair_at(std::byte* first, std::size_t i) noexcept TAPPET_REALTIME {
+    return reinterpret_cast<PlacedPair*>(first)[i];
+}
+[[nodiscard]] inline const PlacedPair& pair_at(const std::byte* first, std::size_t i) noexcept
+    TAPPET_REALTIME {
+    return reinterpret_cast<const PlacedPair*>(first)[i];
+}
+
+// Written as instructions: to the language a vector that two threads access at once is undefined, to the
+// processor it is a move like that of a word, in the same order (Intel SDM 3A, 9.2.2: loads are not reordered
+// with loads, nor stores with stores).
+inline void store_pair(PlacedPair& to, Pair pair) noexcept TAPPET_REALTIME {
+#if TAPPET_MOVES_PAIRS
+    asm volatile("movups %1, %0" : "=m"(to) : "x"(pair));
+#else
+    to = pair;
+#endif
+}
+inline Pair load_pair(const PlacedPair& from) noexcept TAPPET_REALTIME {
+    Pair pair;
+#if TAPPET_MOVES_PAIRS
+    asm volatile("movups %1, %0" : "=x"(pair) : "m"(from));
+#else
+    pair = from;
+#endif
+    return pair;
+}
+
+// Values of so many pairs stay in registers between two copies.
+inline constexpr std::size_t most_pairs_in_registers = 12;
+
+} // namespace detail
+
+/// A copy that the compiler makes here, sixteen bytes at once, and can make together with others of the same
+/// value; what is small or large it copies best by itself.
+template <Exchangeable T>
+inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
+    constexpr std::size_t pairs = sizeof(T) / sizeof(detail::Pair);
+    if constexpr (pairs < 4 || pairs > detail::most_pairs_in_registers) {
+        into = from;
+    } else {
+        const auto* source = reinterpret_cast<const std::byte*>(std::addressof(from));
+        auto* target = reinterpret_cast<std::byte*>(std::addressof(into));
+        // All of them before the first is stored: the compiler cannot know that the two do not overlap.
+        detail::Pair all[pairs];
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < pairs; ++i) all[i] = detail::pair_at(source, i);
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(target, i) = all[i];
+        constexpr std::size_t done = pairs * sizeof(detail::Pair);
+        if constexpr (done != sizeof(T)) __builtin_memcpy(target + done, source + done, sizeof(T) - done);
+    }
+}
+
 /// Room for one T that one thread writes while others read it. Every word is stored with release and loaded
 /// with acquire (on x86-64 the same plain moves as relaxed ones): a reader that met one word of a newer value
 /// therefore also sees whatever the writer stored before it began, and needs no fence, which the thread
-/// sanitizer cannot follow. Atomic is std::atomic; tests put one in its place that lets the other side run
-/// between any two accesses.
+/// sanitizer cannot follow. A larger value goes two words at once. Atomic is std::atomic; tests put one in
+/// its place that lets the other side run between any two accesses.
 template <Exchangeable T, template <class> class Atomic = std::atomic> class Words {
 public:
     static constexpr std::size_t count = (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
-    using Copy = std::array<std::uint64_t, count>;
 
+private:
+    // A small value was as a rule stored just now, field by field: a wider load would have to wait until
+    // those stores have left the processor's buffer. So would one of a large value's last words: there lies
+    // the stamp.
+    static constexpr std::size_t fewest_for_pairs = 12;
+    static constexpr bool moves_pairs = TAPPET_MOVES_PAIRS != 0 && count >= fewest_for_pairs &&
+                                        std::is_same_v<Atomic<std::uint64_t>, std::atomic<std::uint64_t>>;
+    static constexpr std::size_t pairs = moves_pairs ? (count - 1) / 2 : 0;
+    static constexpr std::size_t singles = count - 2 * pairs;
+
+public:
+    /// A copy of all words, in registers while there are not too many.
+    struct Copy {
+        detail::Pair paired[pairs == 0 ? 1 : pairs];
+        std::uint64_t single[singles];
+    };
+
+    static constexpr bool fits_registers = pairs != 0 && pairs <= detail::most_pairs_in_registers;
+
+    static void pack(const T& from, Copy& into) noexcept TAPPET_REALTIME {
+        const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = detail::pair_at(bytes, i);
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < singles; ++i) into.single[i] = word_of(from, 2 * pairs + i);
+    }
+    void store(const Copy& from) noexcept TAPPET_REALTIME {
+        if constexpr (pairs != 0) {
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+#pragma GCC unroll 16
+            for (std::size_t i = 0; i < pairs; ++i) detail::store_pair(pair(i), from.paired[i]);
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+        }
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < singles; ++i)
+            words_[2 * pairs + i].store(from.single[i], std::memory_order_release); // words.store
+    }
     void store(const T& from) noexcept TAPPET_REALTIME {
         const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));
-        for (std::size_t i = 0; i < count; ++i) {
-            std::uint64_t word = 0;
-            if (i < whole)
-                __builtin_memcpy(&word, bytes + i * sizeof word, sizeof word);
-            else
-                __builtin_memcpy(&word, bytes + i * sizeof word, rest);
-            words_[i].store(word, std::memory_order_release); // words.store
+        if constexpr (pairs != 0) {
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+#pragma GCC unroll 16
+            for (std::size_t i = 0; i < pairs; ++i) detail::store_pair(pair(i), detail::pair_at(bytes, i));
+            std::atomic_signal_fence(std::memory_order_acq_rel);
         }
+#pragma GCC unroll 16
+        for (std::size_t i = 2 * pairs; i < count; ++i)
+            words_[i].store(word_of(from, i), std::memory_order_release); // words.store
     }
     void load(Copy& into) const noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < count; ++i)
-            into[i] = words_[i].load(std::memory_order_acquire); // words.load
+        if constexpr (pairs != 0) {
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+#pragma GCC unroll 16
+            for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = detail::load_pair(pair(i));
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+        }
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < singles; ++i)
+            into.single[i] = words_[2 * pairs + i].load(std::memory_order_acquire); // words.load
     }
     /// For whoever knows that nobody is writing: without the copy in between that could be thrown away.
     void load(T& into) const noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < count; ++i)
+        auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
+        if constexpr (pairs != 0) {
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+#pragma GCC unroll 16
+            for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = detail::load_pair(pair(i));
+            std::atomic_signal_fence(std::memory_order_acq_rel);
+        }
+#pragma GCC unroll 16
+        for (std::size_t i = 2 * pairs; i < count; ++i)
             put(into, i, words_[i].load(std::memory_order_acquire)); // words.take
     }
     static void unpack(const Copy& from, T& into) noexcept TAPPET_REALTIME {
-        for (std::size_t i = 0; i < count; ++i) put(into, i, from[i]);
+        auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = from.paired[i];
+#pragma GCC unroll 16
+        for (std::size_t i = 0; i < singles; ++i) put(into, 2 * pairs + i, from.single[i]);
     }
 
 private:
     static constexpr std::size_t whole = sizeof(T) / sizeof(std::uint64_t);
     static constexpr std::size_t rest = sizeof(T) % sizeof(std::uint64_t);
 
+    [[nodiscard]] detail::PlacedPair& pair(std::size_t i) noexcept TAPPET_REALTIME {
+        return reinterpret_cast<detail::PlacedPair&>(words_[2 * i]);
+    }
+    [[nodiscard]] const detail::PlacedPair& pair(std::size_t i) const noexcept TAPPET_REALTIME {
+        return reinterpret_cast<const detail::PlacedPair&>(words_[2 * i]);
+    }
+    [[nodiscard]] static std::uint64_t word_of(const T& from, std::size_t i) noexcept TAPPET_REALTIME {
+        const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));
+        std::uint64_t word = 0;
+        if (i < whole)
+            __builtin_memcpy(&word, bytes + i * sizeof word, sizeof word);
+        else
+            __builtin_memcpy(&word, bytes + i * sizeof word, rest);
+        return word;
+    }
     static void put(T& into, std::size_t i, std::uint64_t word) noexcept TAPPET_REALTIME {
         auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
         if (i < whole)
