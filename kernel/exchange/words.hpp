@@ -138,7 +138,6 @@ public:
         const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));
 #pragma GCC unroll 16
         for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = detail::pair_at(bytes, i);
-#pragma GCC unroll 16
         for (std::size_t i = 0; i < singles; ++i) into.single[i] = word_of(from, 2 * pairs + i);
     }
     void store(const Copy& from) noexcept TAPPET_REALTIME {
@@ -148,7 +147,6 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) detail::store_pair(pair(i), from.paired[i]);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
-#pragma GCC unroll 16
         for (std::size_t i = 0; i < singles; ++i)
             words_[2 * pairs + i].store(from.single[i], std::memory_order_release); // words.store
     }
@@ -160,7 +158,6 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) detail::store_pair(pair(i), detail::pair_at(bytes, i));
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
-#pragma GCC unroll 16
         for (std::size_t i = 2 * pairs; i < count; ++i)
             words_[i].store(word_of(from, i), std::memory_order_release); // words.store
     }
@@ -171,7 +168,6 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = detail::load_pair(pair(i));
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
-#pragma GCC unroll 16
         for (std::size_t i = 0; i < singles; ++i)
             into.single[i] = words_[2 * pairs + i].load(std::memory_order_acquire); // words.load
     }
@@ -184,7 +180,6 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = detail::load_pair(pair(i));
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
-#pragma GCC unroll 16
         for (std::size_t i = 2 * pairs; i < count; ++i)
             put(into, i, words_[i].load(std::memory_order_acquire)); // words.take
     }
@@ -192,7 +187,6 @@ public:
         auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
 #pragma GCC unroll 16
         for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = from.paired[i];
-#pragma GCC unroll 16
         for (std::size_t i = 0; i < singles; ++i) put(into, 2 * pairs + i, from.single[i]);
     }
 
