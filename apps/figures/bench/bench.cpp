@@ -60,7 +60,8 @@ void judge(const std::string& id, const std::string& title, const Told& told, Re
          .unit = "us",
          .source = "",
          .how = "one answer, seen from the other end of the wire; in turns in one boot; the guest's time is "
-                "the instructions it executes, at 1 ns each or the emulator's own pace",
+                "the instructions it executes: a ratio of times is one of instructions, those of the kernel "
+                "included",
          .rows = {{"Tappet: driver, components, driver", Role::ours, ours.summary(), {}},
                   {"bare: wait, read, write", Role::floor, bare.summary(), {}}}});
     for (const auto& [q, name] : {std::pair{0.5, "median"}, std::pair{0.99, "p99"}}) {
