@@ -10,19 +10,28 @@ namespace tappet::checks {
 /// The engine remembers so many wakes to hold a sporadic activity to its promise.
 inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
 
-constexpr Sentence check_interface(const ComponentRow& row) {
-    const auto& facets = row.type->facets;
+/// The first facet without a name, or with the name of one before it; nowhere: there is none. Of the type
+/// alone, so that a compiler which remembers its constant calls looks at each type once.
+constexpr std::size_t faulty_facet(const ComponentType* type) noexcept {
+    const auto& facets = type->facets;
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        // A facet's name may have dots: a table row's path is cut at its first one, behind the component.
-        if (facets[f].name.empty())
-            return of_component(row.name, ": its interface has a facet without a name; name it in ",
-                                row.type->tag->name);
+        if (facets[f].name.empty()) return f;
         for (std::size_t g = 0; g < f; ++g)
-            if (facets[f].name == facets[g].name)
-                return of_component(row.name, ": its interface names \"", facets[f].name,
-                                    "\" twice; rename one in ", row.type->tag->name);
+            if (same_letters(facets[f].name, facets[g].name)) return f;
     }
-    return {};
+    return nowhere;
+}
+
+constexpr Sentence check_interface(const ComponentRow& row) {
+    const std::size_t faulty = faulty_facet(row.type);
+    if (faulty == nowhere) return {};
+    const Facet& facet = row.type->facets[faulty];
+    // A facet's name may have dots: a table row's path is cut at its first one, behind the component.
+    if (facet.name.empty())
+        return of_component(row.name, ": its interface has a facet without a name; name it in ",
+                            row.type->tag->name);
+    return of_component(row.name, ": its interface names \"", facet.name, "\" twice; rename one in ",
+                        row.type->tag->name);
 }
 
 /// The tapes have one reader that keeps the worst cycles in the one place for them.
@@ -44,7 +53,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         return Sentence{"the table has no components; add component<Type>(\"name\") rows to components(...)"};
     for (std::size_t i = 0; i < m.components.size(); ++i) {
         const ComponentRow& row = m.components[i];
-        if (row.name.empty() || row.name.find('.') != std::string_view::npos)
+        if (row.name.empty() || find_letter(row.name, '.') != std::string_view::npos)
             return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;

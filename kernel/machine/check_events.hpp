@@ -14,7 +14,9 @@ constexpr Sentence of_reaction(const ReactionRow& row, const Pieces&... fault) {
 
 /// Events that must be heard, are: by rows that nobody can disconnect.
 constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView& r) {
-    for (std::size_t c = 0; c < m.components.size(); ++c)
+    const auto must_be_heard = [](const Facet& facet) { return facet.least_reactions != 0; };
+    for (std::size_t c = 0; c < m.components.size(); ++c) {
+        if (!has_facet(m.components[c].type, must_be_heard)) continue;
         for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
             const Facet& facet = m.components[c].type->facets[f];
             if (facet.least_reactions == 0) continue;
@@ -27,6 +29,7 @@ constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView
                                     " reactions; add when(\"", m.components[c].name, ".", facet.name,
                                     "\", ...) to reactions(...)");
         }
+    }
     return {};
 }
 
@@ -65,11 +68,14 @@ constexpr Sentence check_wait(const MachineView& m, const TableIndexView& r, std
 
 /// Every handle and every wait that is not optional stands in a row.
 constexpr Sentence check_handles_and_waits(const MachineView& m, const TableIndexView& r) {
-    for (std::size_t c = 0; c < m.components.size(); ++c)
+    const auto must_be_named = [](const Facet& facet) {
+        return facet.required && (facet.kind == FacetKind::handle || facet.kind == FacetKind::wait);
+    };
+    for (std::size_t c = 0; c < m.components.size(); ++c) {
+        if (!has_facet(m.components[c].type, must_be_named)) continue;
         for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
             const Facet& facet = m.components[c].type->facets[f];
-            if (!facet.required || (facet.kind != FacetKind::handle && facet.kind != FacetKind::wait))
-                continue;
+            if (!must_be_named(facet)) continue;
             const std::string_view component = m.components[c].name;
             bool named = false;
             for (std::size_t i = 0; i < m.reactions.size() && !named; ++i)
@@ -83,6 +89,7 @@ constexpr Sentence check_handles_and_waits(const MachineView& m, const TableInde
             return of_component(component, ": no reaction is handled by its \"", facet.name,
                                 "\"; add handled_by(\"", component, ".", facet.name, "\") to a when(...)");
         }
+    }
     return {};
 }
 

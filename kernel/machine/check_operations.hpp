@@ -117,10 +117,12 @@ constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
                           m.components[link.from.component].name, "\" a second call");
         }
     }
+    const auto must_reach = [](const Facet& facet) { return facet.required && is_call(facet.kind); };
     for (std::size_t c = 0; c < m.components.size(); ++c) {
+        if (!has_facet(m.components[c].type, must_reach)) continue;
         const auto& facets = m.components[c].type->facets;
         for (std::size_t f = 0; f < facets.size(); ++f) {
-            if (!is_call(facets[f].kind) || !facets[f].required) continue;
+            if (!must_reach(facets[f])) continue;
             bool connected = false;
             for (std::size_t i = 0; i < m.reactions.size() && !connected; ++i)
                 connected = m.reactions[i].kind == ReactionKind::uses && r.reactions[i].from == End{c, f};

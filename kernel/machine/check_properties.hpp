@@ -158,7 +158,7 @@ constexpr Sentence check_settings(const ComponentRow& row) {
     for (std::size_t i = 0; i < row.settings.size(); ++i) {
         const PropertyRow& setting = row.settings[i];
         for (std::size_t j = 0; j < i; ++j)
-            if (row.settings[j].name == setting.name)
+            if (same_letters(row.settings[j].name, setting.name))
                 return of_component(row.name, " sets property \"", setting.name, "\" twice; keep one");
         if (Sentence fault = check_setting(row, setting); !fault.empty()) return fault;
     }
@@ -180,7 +180,7 @@ constexpr Sentence check_bags(const ComponentRow& row) {
                                     to_text(facet.kind), "; a bag holds properties and bags");
             continue;
         }
-        if (f >= bag_ends && facet.name.find('.') != std::string_view::npos)
+        if (f >= bag_ends && find_letter(facet.name, '.') != std::string_view::npos)
             return of_component(row.name, ": its property \"", facet.name,
                                 "\" has a dot in its name; put it into a bag(...) in ", row.type->tag->name);
         ++properties;

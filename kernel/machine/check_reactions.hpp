@@ -59,10 +59,14 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                    "); remove one");
         r.reactions_into.add(i, link.to.component);
     }
-    for (std::size_t c = 0; c < m.components.size(); ++c)
+    const auto must_be_named = [](const Facet& facet) {
+        return facet.required && facet.kind == FacetKind::operation;
+    };
+    for (std::size_t c = 0; c < m.components.size(); ++c) {
+        if (!has_facet(m.components[c].type, must_be_named)) continue;
         for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
             const Facet& facet = m.components[c].type->facets[f];
-            if (!facet.required || facet.kind != FacetKind::operation) continue;
+            if (!must_be_named(facet)) continue;
             bool named = false;
             for (std::size_t i = r.reactions_into.first[c]; i != nowhere && !named;
                  i = r.reactions_into.next[i])
@@ -72,6 +76,7 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                     facet.name, "\"; add when(\"...\", tell(\"", m.components[c].name, ".",
                                     facet.name, "\"))");
         }
+    }
     if (Sentence fault = check_heard_events(m, r); !fault.empty()) return fault;
     return check_handles_and_waits(m, r);
 }

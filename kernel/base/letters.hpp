@@ -1,0 +1,38 @@
+// Texts compared in one step of a constant expression: a table of a thousand components compares ten thousand
+// names, which the library does letter by letter and call by call.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+namespace tappet {
+
+/// As a.compare(b).
+constexpr int compare_letters(std::string_view a, std::string_view b) noexcept {
+    const std::size_t common = std::min(a.size(), b.size());
+    // g++ folds it for constants of static storage, such as literals; for others it says so, and they are
+    // few.
+    if (__builtin_constant_p(__builtin_memcmp(a.data(), b.data(), common))) {
+        const int order = __builtin_memcmp(a.data(), b.data(), common);
+        if (order != 0 || a.size() == b.size()) return order;
+        return a.size() < b.size() ? -1 : 1;
+    }
+    return a.compare(b);
+}
+
+/// As a == b.
+constexpr bool same_letters(std::string_view a, std::string_view b) noexcept {
+    return a.size() == b.size() && compare_letters(a, b) == 0;
+}
+
+/// As text.find(letter).
+constexpr std::size_t find_letter(std::string_view text, char letter) noexcept {
+    const char* const letters = text.data();
+    const std::size_t size = text.size();
+    for (std::size_t i = 0; i < size; ++i)
+        if (letters[i] == letter) return i;
+    return std::string_view::npos;
+}
+
+} // namespace tappet
