@@ -111,7 +111,7 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
     json.field("deadline_misses", misses)
         .field("binary_bytes", os::binary_bytes())
         .field("static_memory_bytes", machine.plan.bytes + machine.board->heap_bytes);
-    json.field("rss_bytes", os::rss_bytes());
+    json.field("heap_high_water_bytes", os::heap::high_water_bytes()).field("rss_bytes", os::rss_bytes());
     if (facts.start_to_armed > Duration::zero())
         json.field("start_to_armed_ms", static_cast<double>(facts.start_to_armed.count()) * 1e-6);
     if (facts.with_digest) json.field("machine_digest", instance.event_log_digest());
