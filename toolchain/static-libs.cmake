@@ -55,9 +55,10 @@ add_library(tappet::double_conversion ALIAS tappet_double_conversion)
 # glibc takes another routine on a processor with fused multiply-add, so that one seed gave one run on one kind of box
 # only; and a static binary holds four of each. Of musl's, all of what one routine needs becomes one object that shows
 # the routines alone: its tables bear names that glibc uses too.
-set(tappet_routines sin cos tan asin acos atan atan2 exp log pow sqrt fabs floor ceil round nearbyint rint fmod)
+# g++ makes one sincos of a sine and a cosine, and both compilers an exp2 of a power of two.
+set(tappet_routines sin cos sincos tan asin acos atan atan2 exp exp2 log log2 log10 pow sqrt hypot fabs floor ceil round trunc nearbyint rint fmod)
 set(tappet_routine_parts ${tappet_routines} scalbn __sin __cos __tan __rem_pio2 __rem_pio2_large __math_divzero __math_invalid
-    __math_oflow __math_uflow __math_xflow exp_data log_data pow_data)
+    __math_oflow __math_uflow __math_xflow exp_data log_data log2_data pow_data)
 find_file(TAPPET_MUSL_ARCHIVE libc.a PATHS /usr/lib/x86_64-linux-musl NO_DEFAULT_PATH)
 if(NOT TAPPET_MUSL_ARCHIVE)
     message(FATAL_ERROR "musl's libc.a is not installed; run ci/setup once as root")

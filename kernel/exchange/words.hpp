@@ -48,6 +48,7 @@ namespace detail {
 
 /// Two words in one register.
 using Pair [[gnu::vector_size(16)]] = std::uint64_t;
+inline constexpr std::size_t pair_bytes = sizeof(Pair);
 /// The same where they lie in memory, wherever that is. A memcpy of sixteen bytes g++ takes for an integer,
 /// and carries it in two registers.
 using PlacedPair [[gnu::vector_size(16), gnu::aligned(1), gnu::may_alias]] = std::uint64_t;
@@ -89,7 +90,7 @@ inline constexpr std::size_t most_pairs_in_registers = 12;
 /// value; what is small or large it copies best by itself.
 template <Exchangeable T>
 inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
-    constexpr std::size_t pairs = sizeof(T) / sizeof(detail::Pair);
+    constexpr std::size_t pairs = sizeof(T) / detail::pair_bytes;
     if constexpr (pairs < 4 || pairs > detail::most_pairs_in_registers) {
         into = from;
     } else {
@@ -101,7 +102,7 @@ inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < pairs; ++i) all[i] = detail::pair_at(source, i);
 #pragma GCC unroll 16
         for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(target, i) = all[i];
-        constexpr std::size_t done = pairs * sizeof(detail::Pair);
+        constexpr std::size_t done = pairs * detail::pair_bytes;
         if constexpr (done != sizeof(T)) __builtin_memcpy(target + done, source + done, sizeof(T) - done);
     }
 }

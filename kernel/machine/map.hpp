@@ -109,9 +109,9 @@ private:
     constexpr std::uint32_t type(TypeId id) { return id == nullptr ? none : types_.of(id); }
     [[nodiscard]] constexpr std::uint32_t facet_index(End end) const {
         // The components are drawn first; who only counts needs no index.
-        return room_.components.empty() ? 0
-                                        : room_.components[end.component].first_facet +
-                                              static_cast<std::uint32_t>(end.facet);
+        return room_.components.empty()
+                   ? 0
+                   : room_.components[end.component].first_facet + static_cast<std::uint32_t>(end.facet);
     }
 
     constexpr void draw_components();
