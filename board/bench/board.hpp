@@ -10,7 +10,7 @@ inline constexpr Board bench{
     .name = "bench",
     .world = "bench",
     .memory_budget_bytes = 4 * 1024 * 1024,
-    .heap_bytes = 192 * 1024,
+    .heap_bytes = 160 * 1024,
     .processors = 1, // the emulator counts instructions for one processor only
     .highest_priority = 80,
     .devices =

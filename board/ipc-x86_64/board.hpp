@@ -10,7 +10,7 @@ inline constexpr Board ipc_x86_64{
     .name = "ipc-x86_64",
     .world = "box",
     .memory_budget_bytes = 4 * 1024 * 1024,
-    .heap_bytes = 192 * 1024,
+    .heap_bytes = 160 * 1024,
     .processors = 4,
     .highest_priority =
         80, // interrupt threads of CAN and GPIO stand above every activity: see README.md here

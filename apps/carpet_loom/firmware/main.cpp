@@ -28,7 +28,7 @@ enum Ending : int { ended_well = 0, wrong_set_up = 2, refused_to_arm = 3, stoppe
 
 // Large, and there once: in static memory, not on main's stack.
 constinit os::Clock machine_clock{os::Clock::Kind::real};
-std::array<char, 64 * 1024> summary_text;
+std::array<char, 32 * 1024> summary_text;
 
 int fail(Ending ending, const Sentence& why) {
     static_cast<void>(os::write_all(2, Sentence{"carpet-loom: ", why, "\n"}.view()));
