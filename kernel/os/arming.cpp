@@ -2,22 +2,13 @@
 #include "kernel/os/arming.hpp"
 
 #include "kernel/base/nearest.hpp"
+#include "kernel/os/terminal.hpp"
 
 #include <algorithm>
-
-#include <unistd.h>
 
 namespace tappet::os {
 
 namespace {
-
-void write_all(int file, std::string_view text) noexcept {
-    while (!text.empty()) {
-        const auto written = write(file, text.data(), text.size());
-        if (written <= 0) return; // nobody listens: the machine's answer does not depend on it
-        text.remove_prefix(static_cast<std::size_t>(written));
-    }
-}
 
 Sentence counted(std::size_t n, std::string_view one) noexcept {
     return Sentence{n, " ", one, n == 1 ? "" : "s"};
@@ -67,24 +58,25 @@ bool ArmingReport::has_check(std::string_view name) const noexcept {
 }
 
 void print(const ArmingReport& report, int file) noexcept {
+    // When nobody listens, the machine's answer does not depend on it.
+    const auto say = [file](const Sentence& text) { static_cast<void>(write_all(file, text.view())); };
     Sentence head;
     if (report.refused() > 0)
         head.add("cannot arm: ").add(counted(report.refused(), "reason"));
     else
         head.add("can arm: ").add(counted(report.findings().size(), "check")).add(" made");
     if (report.warnings() > 0) head.add(", ").add(counted(report.warnings(), "warning"));
-    write_all(file, head.add("\n").view());
+    say(head.add("\n"));
     for (const Severity severity : {Severity::refused, Severity::warning})
         for (const Finding& found : report.findings()) {
             if (found.severity != severity) continue;
-            write_all(file, severity == Severity::refused ? "  refused  " : "  warning  ");
-            write_all(file, Sentence{found.name, ": ", found.finding}.view());
-            write_all(file, Sentence{"; cure: ", found.cure, "\n"}.view());
+            say(Sentence{severity == Severity::refused ? "  refused  " : "  warning  ", found.name, ": ",
+                         found.finding});
+            say(Sentence{"; cure: ", found.cure, "\n"});
         }
     if (report.lost() > 0)
-        write_all(file, Sentence{"  refused  ", counted(report.lost(), "finding"),
-                                 " had no room here; cure: raise ArmingReport::max_findings\n"}
-                            .view());
+        say(Sentence{"  refused  ", counted(report.lost(), "finding"),
+                     " had no room here; cure: raise ArmingReport::max_findings\n"});
 }
 
 } // namespace tappet::os

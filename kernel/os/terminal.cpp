@@ -1,16 +1,135 @@
-// Writes whole texts by write(2), whatever interrupts it.
+// Writes whole texts by write(2), whatever interrupts it, and without waiting where that is wanted.
 #include "kernel/os/terminal.hpp"
 
+#include "kernel/base/text.hpp"
+
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
 
 #include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace tappet::os {
 
+namespace {
+
+// One of the two files that other people hold the end of.
+class Outlet {
+public:
+    explicit constexpr Outlet(int file) noexcept : file_{file} {}
+
+    // A pipe or a terminal is opened anew, so that it can be asked not to wait: O_NONBLOCK on the file as it was
+    // given would hold for everybody who shares it, the shell included, and outlive a process that is killed.
+    // A socket cannot be opened anew, but is asked in each call. A regular file does not wait for a reader, and
+    // opened anew it would be written at another place.
+    bool never_wait() noexcept {
+        const std::lock_guard lock{mutex_};
+        if (own_ >= 0) ::close(own_);
+        own_ = -1;
+        rest_length_ = 0;
+        untold_ = 0;
+        struct stat facts{};
+        if (fstat(file_, &facts) != 0) {
+            how_ = How::not_at_all; // it was closed before the start: nobody wants to read
+            return true;
+        }
+        if (S_ISREG(facts.st_mode)) {
+            how_ = How::as_given;
+        } else if (S_ISSOCK(facts.st_mode)) {
+            how_ = How::as_socket;
+        } else {
+            const Sentence path{"/proc/self/fd/", file_};
+            own_ = open(path.letters, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+            how_ = own_ >= 0 ? How::opened_anew : How::not_at_all;
+            return own_ >= 0 || errno == ENXIO; // a pipe whose reader is gone already
+        }
+        return true;
+    }
+    [[nodiscard]] bool waits() const noexcept { return how_ == How::waiting; }
+
+    bool write_or_drop(std::string_view text) noexcept {
+        const std::lock_guard lock{mutex_};
+        if (write_rest() && tell_dropped() && write_new(text)) return true;
+        ++untold_;
+        dropped.fetch_add(1, std::memory_order_relaxed);
+        return false;
+    }
+
+    static constinit std::atomic<std::uint64_t> dropped;
+
+private:
+    enum class How : std::uint8_t { waiting, as_given, opened_anew, as_socket, not_at_all };
+
+    [[nodiscard]] std::size_t write_some(std::string_view text) const noexcept {
+        ssize_t written = -1;
+        do switch (how_) {
+            case How::as_given: written = write(file_, text.data(), text.size()); break;
+            case How::opened_anew: written = write(own_, text.data(), text.size()); break;
+            case How::as_socket:
+                written = send(file_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+                break;
+            case How::waiting:
+            case How::not_at_all: return 0;
+            }
+        while (written < 0 && errno == EINTR);
+        return written < 0 ? 0 : static_cast<std::size_t>(written);
+    }
+    bool write_rest() noexcept {
+        if (rest_length_ == 0) return true;
+        const std::size_t written = write_some({rest_, rest_length_});
+        rest_length_ -= written;
+        std::memmove(rest_, rest_ + written, rest_length_);
+        return rest_length_ == 0;
+    }
+    // A text that has begun to go out is finished later: nobody reads half a line.
+    bool write_new(std::string_view text) noexcept {
+        const std::size_t written = write_some(text);
+        if (written == text.size()) return true;
+        if (written == 0) return false;
+        text.remove_prefix(written);
+        rest_length_ = text.size() < sizeof rest_ ? text.size() : sizeof rest_;
+        std::memcpy(rest_, text.data(), rest_length_);
+        return rest_length_ == text.size();
+    }
+    bool tell_dropped() noexcept {
+        if (untold_ == 0) return true;
+        const Sentence line{"(", untold_, untold_ == 1 ? " text was" : " texts were",
+                            " dropped here: nobody took them in time)\n"};
+        if (!write_new(line.view())) return false;
+        untold_ = 0;
+        return rest_length_ == 0;
+    }
+
+    std::mutex mutex_{};
+    int file_;
+    int own_ = -1;
+    How how_ = How::waiting;
+    std::uint64_t untold_ = 0;
+    std::size_t rest_length_ = 0;
+    char rest_[4096] = {};
+};
+
+constinit std::atomic<std::uint64_t> Outlet::dropped{0};
+constinit Outlet outlets[] = {Outlet{STDOUT_FILENO}, Outlet{STDERR_FILENO}};
+
+} // namespace
+
+bool never_wait() noexcept {
+    bool all = true;
+    for (Outlet& each : outlets) all &= each.never_wait();
+    return all;
+}
+
+std::uint64_t dropped_texts() noexcept { return Outlet::dropped.load(std::memory_order_relaxed); }
+
 bool write_all(int file, std::string_view text) noexcept {
+    if (file == STDOUT_FILENO || file == STDERR_FILENO)
+        if (Outlet& outlet = outlets[file - STDOUT_FILENO]; !outlet.waits()) return outlet.write_or_drop(text);
     while (!text.empty()) {
         const ssize_t written = write(file, text.data(), text.size());
         if (written < 0 && errno == EINTR) continue;

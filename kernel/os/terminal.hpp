@@ -1,14 +1,27 @@
-// Text to the terminal or a file, unbuffered, without stdio and its heap.
+// Text to the terminal or a file, unbuffered, without stdio and its heap. From never_wait() on nobody who
+// reads it, or does not, can hold up who writes.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 namespace tappet::os {
 
-/// To standard output. May block: not real-time.
+/// To standard output. Waits for who reads it until never_wait(): not real-time.
 void print(std::string_view text) noexcept;
-/// To an open file; false when not all of it could be written.
+/// To an open file; false when not all of it could be written. To standard output and standard error it waits
+/// until never_wait() only; from then on true also when the rest of a text waits here for room.
 bool write_all(int file, std::string_view text) noexcept;
+
+/// For a machine that may move: a text for standard output or standard error is written whole, or dropped and
+/// counted when its reader is slow, stopped (Ctrl-S) or gone. Once there is room again, a line says how many
+/// were dropped. For the rest of the process; it may be called again, when these files were replaced. False:
+/// one of them is neither a file, a pipe, a terminal nor a socket that this process may open; all texts for it
+/// are dropped. A regular file is trusted not to wait. Not real-time.
+bool never_wait() noexcept;
+/// Texts dropped since never_wait(). Any thread.
+[[nodiscard]] std::uint64_t dropped_texts() noexcept;
+
 /// Replaces a file's contents at once: an old or a new file is there, never half of one. False: `path` cannot
 /// be written.
 bool replace_file(const char* path, std::string_view text) noexcept;

@@ -1,0 +1,201 @@
+// What a machine writes reaches its reader whole or not at all, and never holds up who writes it.
+#include "kernel/os/terminal.hpp"
+
+#include "kernel/os/signals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace tappet::os {
+namespace {
+
+void ignore(int) noexcept {}
+
+/// Standard output is one end of something, as long as this lives.
+class StandardOutput {
+public:
+    explicit StandardOutput(int end) : kept_{::dup(STDOUT_FILENO)} {
+        ::dup2(end, STDOUT_FILENO);
+        ::close(end);
+        on_termination(&ignore);
+        accepted = never_wait();
+        before_ = dropped_texts();
+    }
+    ~StandardOutput() {
+        ::dup2(kept_, STDOUT_FILENO);
+        ::close(kept_);
+        static_cast<void>(never_wait());
+        on_termination(nullptr);
+    }
+    StandardOutput(const StandardOutput&) = delete;
+    StandardOutput& operator=(const StandardOutput&) = delete;
+
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_texts() - before_; }
+    bool accepted = false;
+
+private:
+    int kept_;
+    std::uint64_t before_ = 0;
+};
+
+std::string line(int number) { return "line " + std::to_string(number) + std::string(90, '.') + "\n"; }
+
+/// What is there now.
+std::string take(int from) {
+    ::fcntl(from, F_SETFL, ::fcntl(from, F_GETFL) | O_NONBLOCK);
+    std::string all(1 << 20, '\0');
+    std::size_t length = 0;
+    for (ssize_t got = 0; (got = ::read(from, all.data() + length, all.size() - length)) > 0;)
+        length += static_cast<std::size_t>(got);
+    all.resize(length);
+    return all;
+}
+
+/// Every line of it is one of ours, in order, or says how many are missing.
+void expect_whole_lines(const std::string& read) {
+    int next = 0;
+    for (std::size_t at = 0; at < read.size();) {
+        const std::size_t end = read.find('\n', at);
+        ASSERT_NE(end, std::string::npos) << "half a line: " << read.substr(at);
+        std::string one = read.substr(at, end - at + 1);
+        std::erase(one, '\r');
+        if (one.starts_with("(")) {
+            next += std::atoi(one.c_str() + 1);
+            EXPECT_NE(one.find("dropped here"), std::string::npos) << one;
+        } else {
+            EXPECT_EQ(one, line(next++));
+        }
+        at = end + 1;
+    }
+}
+
+constexpr int more_than_fits = 3000;
+
+void write_more_than_fits() {
+    for (int n = 0; n < more_than_fits; ++n) print(line(n));
+}
+
+TEST(Terminal, drops_and_counts_whole_texts_while_the_reader_of_a_pipe_stands_still) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const StandardOutput output{ends[1]};
+    EXPECT_TRUE(output.accepted);
+    write_more_than_fits(); // it came back: that is the promise
+    EXPECT_GT(output.dropped(), 1000u);
+    const auto dropped = output.dropped();
+    std::string all = take(ends[0]);
+    print(line(more_than_fits));
+    all += take(ends[0]);
+    EXPECT_EQ(output.dropped(), dropped) << "there is room again";
+    expect_whole_lines(all);
+    EXPECT_NE(all.find("(" + std::to_string(dropped) + " texts were dropped here"), std::string::npos);
+    EXPECT_TRUE(all.ends_with(line(more_than_fits)));
+    ::close(ends[0]);
+}
+
+TEST(Terminal, does_not_change_the_pipe_for_others_who_share_it) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const int shared = ::dup(ends[1]);
+    const StandardOutput output{ends[1]};
+    print("x");
+    EXPECT_EQ(::fcntl(shared, F_GETFL) & O_NONBLOCK, 0);
+    ::close(shared);
+    ::close(ends[0]);
+}
+
+TEST(Terminal, outlives_a_reader_that_went_away) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const StandardOutput output{ends[1]};
+    print("before\n");
+    ::close(ends[0]);
+    print("after\n"); // neither a signal ends us, nor does anybody wait
+    EXPECT_EQ(output.dropped(), 1u);
+}
+
+TEST(Terminal, starts_when_the_reader_is_gone_already) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    ::close(ends[0]);
+    const StandardOutput output{ends[1]};
+    EXPECT_TRUE(output.accepted);
+    print("nobody\n");
+    EXPECT_EQ(output.dropped(), 1u);
+}
+
+TEST(Terminal, does_not_wait_for_a_terminal_that_was_stopped_nor_for_one_that_hung_up) {
+    const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+    ASSERT_TRUE(master >= 0 && ::grantpt(master) == 0 && ::unlockpt(master) == 0);
+    const int terminal = ::open(::ptsname(master), O_RDWR | O_NOCTTY);
+    ASSERT_GE(terminal, 0);
+    const int kept = ::dup(terminal);
+    const StandardOutput output{terminal};
+    ASSERT_EQ(::tcflow(kept, TCOOFF), 0); // what Ctrl-S does
+    write_more_than_fits();
+    EXPECT_GT(output.dropped(), 1000u);
+    ASSERT_EQ(::tcflow(kept, TCOON), 0);
+    expect_whole_lines(take(master) + [&] {
+        print(line(more_than_fits));
+        return take(master);
+    }());
+    ::close(kept);
+    ::close(master);
+    const auto before = output.dropped();
+    print("gone\n");
+    EXPECT_EQ(output.dropped(), before + 1);
+}
+
+TEST(Terminal, does_not_wait_for_a_socket) {
+    int ends[2];
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    const StandardOutput output{ends[1]};
+    EXPECT_TRUE(output.accepted);
+    write_more_than_fits();
+    EXPECT_GT(output.dropped(), 100u);
+    expect_whole_lines(take(ends[0]));
+    ::close(ends[0]);
+    const auto before = output.dropped();
+    print("gone\n");
+    EXPECT_EQ(output.dropped(), before + 1);
+}
+
+TEST(Terminal, writes_behind_what_stands_in_a_file) {
+    const std::string path = testing::TempDir() + "terminal_test." + std::to_string(::getpid());
+    const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_TRUNC | O_CLOEXEC, 0600);
+    ASSERT_GE(file, 0);
+    const int reader = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    ::unlink(path.c_str());
+    ASSERT_TRUE(write_all(file, "first\n"));
+    {
+        const StandardOutput output{file};
+        print("second\n");
+        EXPECT_EQ(output.dropped(), 0u);
+    }
+    EXPECT_EQ(take(reader), "first\nsecond\n");
+    ::close(reader);
+}
+
+TEST(Signals, that_would_end_or_freeze_the_process_are_handed_over_and_a_closed_pipe_is_not_one) {
+    static int got = 0;
+    on_termination([](int number) noexcept { got = number; });
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1, SIGALRM, SIGXCPU, SIGRTMIN}) {
+        ::raise(number);
+        EXPECT_EQ(got, number);
+    }
+    got = 0;
+    for (const int number : {SIGPIPE, SIGTTIN, SIGTTOU, SIGXFSZ}) ::raise(number);
+    EXPECT_EQ(got, 0);
+    on_termination(nullptr);
+}
+
+} // namespace
+} // namespace tappet::os
