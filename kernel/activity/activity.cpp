@@ -40,12 +40,16 @@ bool Activity::start(int milliseconds) noexcept {
     return wait_for(State::waiting, milliseconds);
 }
 
-bool Activity::stop(int milliseconds) noexcept {
-    if (state() == State::inactive || state() == State::stopped) return true;
+void Activity::ask_to_stop() noexcept {
+    if (state() == State::inactive || state() == State::stopped) return;
     stop_asked_.store(true, std::memory_order_release);
     if (const EnginePart* part = engine_->looping(); part != nullptr && part->type->break_loop != nullptr)
         part->type->break_loop(part->component);
     engine_->waiter().wake();
+}
+
+bool Activity::is_stopped_within(int milliseconds) const noexcept {
+    if (state() == State::inactive) return true;
     return wait_for(State::stopped, milliseconds) && state() == State::stopped;
 }
 
@@ -137,6 +141,10 @@ void Activity::loop(const EnginePart& part) {
 
 void Activity::park() noexcept TAPPET_REALTIME {
     state_.store(State::parked, std::memory_order_release);
+    sleep_for_ever();
+}
+
+void Activity::sleep_for_ever() noexcept TAPPET_REALTIME {
     while (true) TAPPET_ESCAPE("this thread must not go on: its contract is broken", os::sleep_for(1h));
 }
 

@@ -31,7 +31,13 @@ public:
     /// Ends the cycles and lets the engine stop on its own thread, which then waits to be started again.
     /// False when it did not within `milliseconds`: its thread hangs, and whoever called may claim the
     /// engine's stop and run it.
-    [[nodiscard]] bool stop(int milliseconds) noexcept;
+    [[nodiscard]] bool stop(int milliseconds) noexcept {
+        ask_to_stop();
+        return is_stopped_within(milliseconds);
+    }
+    /// The same in two steps.
+    void ask_to_stop() noexcept;
+    [[nodiscard]] bool is_stopped_within(int milliseconds) const noexcept;
     /// Ends the thread of an activity that is stopped, or never started; false when it does not end.
     [[nodiscard]] bool end(int milliseconds) noexcept;
     /// True once, for the one who then runs the engine's stop: its own thread, or whoever gave that up.
@@ -46,6 +52,8 @@ public:
     }
     /// For a thread that must not go on (a broken contract): it says so and sleeps for ever. Real-time.
     [[noreturn]] void park() noexcept TAPPET_REALTIME;
+    /// The same for a thread that is no activity's.
+    [[noreturn]] static void sleep_for_ever() noexcept TAPPET_REALTIME;
 
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME {
         return state_.load(std::memory_order_acquire);

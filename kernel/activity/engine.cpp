@@ -34,6 +34,7 @@ Time Engine::earliest_wake() const noexcept TAPPET_REALTIME {
     for (const EngineTimer& each : plan_.timers) next = std::min(next, due_at(each));
     for (const Behaviour& each : plan_.behaviours)
         if (is_running(plan_.parts[each.part].state)) next = std::min(next, each.next(each.self));
+    for (const GuardedInput& each : plan_.guarded) next = std::min(next, each.expires);
     if (awaiting_ != 0) next = std::min(next, cycle_.now + awaiting_period);
     return next;
 }
@@ -64,7 +65,14 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
 template <bool steps_only>
 void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     const Time now = clock_->now();
-    const bool due = plan_.periodic ? now >= next_release_ : woken;
+    cycle_.now = lap_ = now;
+    Duration used{};
+    auto expired = Expired::none;
+    if constexpr (!steps_only) {
+        if (measures_processor_) used = used_processor();
+        if (!plan_.periodic) expired = look_at_expired();
+    }
+    const bool due = plan_.periodic ? now >= next_release_ : woken || expired == Expired::stale;
     Time release = due && plan_.periodic ? next_release_ : now;
     if constexpr (!steps_only)
         for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
@@ -75,13 +83,12 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
         cause_ = waking == nullptr ? no_cause : waking->cause();
         set_running_cause(cause_);
     }
-    cycle_.now = lap_ = now;
     cycle_.release = release;
     worst_excess_ = least_excess_;
     if constexpr (!steps_only) {
         tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
         if (tape_ != nullptr) tape_->begin();
-        watch_wakes();
+        if (due || expired == Expired::none) watch_wakes(); // a look at what is as good as it was is no wake
     }
     if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
     if (awaiting_ != 0) start_awaiting();
@@ -96,6 +103,7 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
         if (waking != nullptr) waking->times.add(lap_ - cause_);
         set_running_cause(no_cause);
         watch_inputs();
+        if (measures_processor_) note_processor(used);
     }
     ++statistics_.cycles;
     if (const Duration response = lap_ - cycle_.release; response > quiet_response_) note_response(response);
@@ -189,16 +197,42 @@ void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
     }
 }
 
+Engine::Expired Engine::look_at_expired() noexcept TAPPET_REALTIME {
+    auto found = Expired::none;
+    for (GuardedInput& each : plan_.guarded) {
+        if (each.expires > cycle_.now) continue;
+        // A newer value may have come, of a row that wakes nobody.
+        const bool stale = each.port->flow(each.input) == Flow::stale;
+        each.expires = stale ? never : each.port->expires(each.input);
+        if (stale || found == Expired::none) found = stale ? Expired::stale : Expired::looked;
+    }
+    return found;
+}
+
 void Engine::watch_inputs() noexcept TAPPET_REALTIME {
     for (GuardedInput& each : plan_.guarded) {
+        each.expires = never;
         if (!is_running(plan_.parts[each.part].state)) {
             each.was_valid = false;
             continue;
         }
-        const Flow flow = each.flow(each.input);
-        if (flow == Flow::stale && each.was_valid) ask_stop(StopReason::stale_input, each.connection);
+        const Flow flow = each.port->flow(each.input);
+        if (flow == Flow::stale && each.was_valid && each.stops)
+            ask_stop(StopReason::stale_input, each.connection);
         each.was_valid = flow == Flow::fresh || flow == Flow::old;
+        if (flow != Flow::stale && !plan_.periodic) each.expires = each.port->expires(each.input);
     }
+}
+
+// Virtual time has no preemption, and its processor is whatever host runs it.
+Duration Engine::used_processor() const noexcept TAPPET_REALTIME {
+    return clock_->is_virtual() ? clock_->now() - Time{} : os::processor_time_of_this_thread();
+}
+
+void Engine::note_processor(Duration before) noexcept TAPPET_REALTIME {
+    const Duration took = used_processor() - before;
+    statistics_.longest_processor = std::max(statistics_.longest_processor, took);
+    if (took > plan_.budget) ++statistics_.over_budget;
 }
 
 // Sporadic activities promised at most n wakes in a window: the analysis believed it, so a breach is counted.
@@ -240,6 +274,13 @@ void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
         seen.longest_response = std::max(seen.longest_response, response);
         seen.longest_lateness = std::max(seen.longest_lateness, cycle_.now - cycle_.release);
         seen.longest_busy = std::max(seen.longest_busy, lap_ - cycle_.now);
+        // Reading the thread's processor time enters the kernel. Who never was busy for longer than its
+        // budget kept it, whatever else ran meanwhile; who was may have been preempted, or have claimed too
+        // little.
+        if (plan_.budget > Duration::zero() && seen.longest_busy > plan_.budget && !measures_processor_) {
+            measures_processor_ = true;
+            steps_only_ = false;
+        }
         quiet_response_ = std::min(seen.longest_lateness, seen.longest_busy);
         if (has_deadline_) quiet_response_ = std::min(quiet_response_, plan_.deadline);
     }

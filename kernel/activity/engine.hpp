@@ -52,13 +52,15 @@ struct EngineTimer {
     std::uint32_t part = 0;
 };
 
-/// An input whose row says that a stale value stops the machine.
+/// An input on whose growing stale somebody acts: its row stops the machine, or wakes its reader.
 struct GuardedInput {
     void* input = nullptr;
-    Flow (*flow)(void*) noexcept TAPPET_REALTIME = nullptr;
+    const PortOperations* port = nullptr;
     std::size_t connection = 0; ///< its row
-    bool was_valid = false;     ///< only a value that was once good can become stale
     std::uint32_t part = 0;     ///< of the component that reads it
+    bool stops = false;         ///< the machine
+    bool was_valid = false;     ///< only a value that was once good can become stale
+    Time expires = never;       ///< an activity without a period looks at it then: nothing else would tell
 };
 
 /// An input that a component needs before it starts.
@@ -110,7 +112,11 @@ struct EngineStatistics {
     std::uint64_t wakes_too_many = 0; ///< more than at_most(n, per) promised
     Duration longest_response{};
     Duration longest_lateness{}; ///< from release to the beginning
-    Duration longest_busy{};     ///< from the beginning to the end: what the budget promised
+    Duration longest_busy{};     ///< from the beginning to the end, preemption included
+    /// The same of the thread's processor time, which is what the budget promised: at most longest_busy, and
+    /// measured in every cycle once longest_busy exceeds the budget.
+    Duration longest_processor{};
+    std::uint64_t over_budget = 0; ///< cycles that were measured to take more
     std::array<Miss, 8> recent_misses{};
 };
 
@@ -268,8 +274,13 @@ private:
     bool run_messages() noexcept TAPPET_REALTIME;
     void run_behaviours(bool all) noexcept TAPPET_REALTIME;
     void note(const Message& message) noexcept TAPPET_REALTIME;
+    /// In an activity without a period: whether an input grew stale since the last cycle.
+    enum class Expired : std::uint8_t { none, looked, stale };
+    [[nodiscard]] Expired look_at_expired() noexcept TAPPET_REALTIME;
     void watch_inputs() noexcept TAPPET_REALTIME;
     void watch_wakes() noexcept TAPPET_REALTIME;
+    [[nodiscard]] Duration used_processor() const noexcept TAPPET_REALTIME;
+    void note_processor(Duration used) noexcept TAPPET_REALTIME;
     void note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME;
     void note_miss(Duration response) noexcept TAPPET_REALTIME;
     void note_response(Duration response) noexcept TAPPET_REALTIME;
@@ -286,6 +297,7 @@ private:
     EnginePlan plan_{};
     bool has_deadline_ = false;
     bool steps_only_ = false; ///< it has no timers, behaviours, guarded inputs, wakes to watch or tape
+    bool measures_processor_ = false;
     os::Clock* clock_ = nullptr;
     Cycle cycle_{};
     /// How often it looks whether a component that waits for an input may start.

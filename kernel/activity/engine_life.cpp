@@ -57,15 +57,24 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
         }
     }
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) start_behaviours(i);
+    if (!plan_.periodic)
+        for (GuardedInput& each : plan_.guarded)
+            each.expires = now; // the first look says when the next is due
     end_change(generation);
 }
 
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity};
-    cycle_.now = cycle_.release = now;
+    cycle_.now = cycle_.release = lap_ = now;
+    // What others asked before the stop is done, and what the own behaviours ask at their end: a valve that
+    // somebody told to close closes. A thread that hangs in its cycle may hang in its mailbox: that is left
+    // alone.
+    const bool hangs = generation == is_changing;
+    if (!hangs) static_cast<void>(run_messages());
     for (const Behaviour& each : plan_.behaviours)
         if (is_running(plan_.parts[each.part].state)) each.stop(each.self, now);
+    if (!hangs) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
     commands_.reject_sent();
     awaiting_ = 0;

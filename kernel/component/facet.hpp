@@ -53,6 +53,7 @@ struct PortOperations {
     void (*set_waker)(void* output, Waker waker);
     void (*set_policy)(void* input, const InputPolicy&);
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
+    Time (*expires)(const void* input) noexcept TAPPET_REALTIME;
     /// How many values a shared data object was given; any thread.
     std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
     PortPlaces (*places)(const void* port, bool is_input) noexcept TAPPET_REALTIME;
@@ -203,6 +204,8 @@ struct PortAccess {
                     value_in<T>(policy.before_first.given ? policy.before_first : policy.substitute);
             },
         .flow = [](void* input) noexcept TAPPET_REALTIME { return static_cast<Input<T>*>(input)->flow(); },
+        .expires = [](const void* input) noexcept
+        TAPPET_REALTIME { return static_cast<const Input<T>*>(input)->expires(); },
         .written = [](const void* shared) noexcept
         TAPPET_REALTIME { return static_cast<const DataObject<Sample<T>>*>(shared)->generation(); },
         .places =

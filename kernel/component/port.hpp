@@ -171,6 +171,13 @@ public:
         seen_ = seen;
         return now;
     }
+    /// When what was read last becomes stale if nothing comes, or nothing came for as long; never: it does
+    /// not.
+    [[nodiscard]] Time expires() const noexcept TAPPET_REALTIME {
+        const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
+        if (forced_ || max_age_ == Duration::zero()) return never;
+        return (generation == 0 ? *now_ : stamp()) + max_age_ + 1ns;
+    }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }

@@ -25,11 +25,14 @@ void MachineInstance::connect_data() {
         const ConnectionRow& row = machine_.table.connections[x];
         const Link& link = machine_.index.connections[x];
         if (row.wakes_reader) add_waker(x);
-        if (row.when_stale != WhenStale::stop) continue;
+        if (!is_guarded(row)) continue;
         const std::size_t reader = machine_.index.activity[link.to.component];
         new (at<GuardedInput>(machine_.plan.activities[reader].guarded_at) + guarded[reader]++)
-            GuardedInput{facet(link.to), facet_at(machine_.table, link.to).port->flow, x, false,
-                         machine_.plan.part_of[link.to.component]};
+            GuardedInput{.input = facet(link.to),
+                         .port = facet_at(machine_.table, link.to).port,
+                         .connection = x,
+                         .part = machine_.plan.part_of[link.to.component],
+                         .stops = row.when_stale == WhenStale::stop};
     }
 }
 

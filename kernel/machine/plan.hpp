@@ -205,7 +205,7 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
             if (plan.first_of_output) plan.memory_at = ground.take(port.shared_bytes, port.shared_align);
         }
         if (row.wakes_reader) plan.waker_at = ground.take<WakerNode>();
-        if (row.when_stale == WhenStale::stop) ++p.activities[reader].guarded_count;
+        if (is_guarded(row)) ++p.activities[reader].guarded_count;
         if (is_needed_input(m, row, link)) ++p.activities[reader].input_count;
     }
     for (auto& activity : p.activities) {

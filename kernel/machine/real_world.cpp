@@ -1,11 +1,12 @@
 // Arms, starts, supervises and stops the threads of a machine.
 #include "kernel/machine/real_world.hpp"
 
-#include "kernel/base/contract.hpp"
+#include "kernel/os/clock.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/memory.hpp"
 #include "kernel/os/signals.hpp"
 #include "kernel/os/sleep.hpp"
+#include "kernel/os/terminal.hpp"
 
 namespace tappet {
 
@@ -15,10 +16,12 @@ namespace {
 std::atomic<RealWorld*> current_world{nullptr};
 std::atomic<os::Waiter*> signal_waiter{nullptr};
 std::atomic<bool> signal_came{false};
+thread_local bool supervises = false;
 
 } // namespace
 
 RealWorld::RealWorld(MachineInstance& instance) noexcept : instance_{instance} {
+    supervises = true;
     current_world.store(this, std::memory_order_release);
     signal_waiter.store(&instance.supervisor(), std::memory_order_release);
     signal_came.store(false);
@@ -32,6 +35,7 @@ RealWorld::~RealWorld() {
     os::on_termination(nullptr);
     signal_waiter.store(nullptr);
     current_world.store(nullptr);
+    supervises = false;
 }
 
 void RealWorld::on_signal(int) noexcept {
@@ -43,19 +47,39 @@ void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
     RealWorld* world = current_world.load(std::memory_order_acquire);
     if (world == nullptr) return;
     Activity* activity = Activity::current();
-    const bool first = !world->instance_.stop_asked();
-    if (first)
-        TAPPET_ESCAPE("the machine is stopping: the sentence is for its report",
-                      world->breach_ = describe(breach));
+    world->keep(breach);
     world->instance_.ask_stop(StopReason::broken_contract, static_cast<std::uint64_t>(breach.id),
                               activity == nullptr ? nullptr : &activity->engine());
     const ContractText* text = find_text(breach.id);
-    const bool goes_on = text != nullptr && text->after == AfterBreach::thread_goes_on;
-    if (!goes_on && activity != nullptr) activity->park();
+    if (text != nullptr && text->after == AfterBreach::thread_goes_on) return;
+    if (activity != nullptr) activity->park();
+    bool is_supervisor = false;
+    TAPPET_ESCAPE("thread-local memory of the main program", is_supervisor = supervises);
+    if (!is_supervisor) Activity::sleep_for_ever(); // the supervisor stops the machine
+    // Nobody else would stop the machine: it is done here, and the process ends when it stands.
+    TAPPET_ESCAPE("the supervisor's thread is not real-time", static_cast<void>(world->stop()));
+}
+
+void RealWorld::keep(const Breach& breach) noexcept TAPPET_REALTIME {
+    const std::size_t place = breaches_.fetch_add(1, std::memory_order_acq_rel);
+    if (place >= max_breaches) return;
+    kept_breaches_[place].breach = breach;
+    kept_breaches_[place].complete.store(true, std::memory_order_release);
+}
+
+Sentence RealWorld::describe_breach(std::size_t index) const noexcept {
+    if (index >= max_breaches || !kept_breaches_[index].complete.load(std::memory_order_acquire))
+        return Sentence{"a contract was broken, of which no more is known"};
+    return describe(kept_breaches_[index].breach);
 }
 
 bool RealWorld::arm(os::ArmingReport& report, int file) {
     const auto& machine = instance_.machine();
+    if (!os::never_wait())
+        report.warning(
+            "terminal", Sentence{"standard output or standard error cannot be opened anew"},
+            Sentence{"nothing is written there: give the machine a pipe, a file or a terminal that is "
+                     "its user's"});
     os::touch(machine.memory); // before there are threads: their stacks are part of it
     const auto engines = instance_.engines();
     int highest = 1;
@@ -126,9 +150,21 @@ bool RealWorld::supervise(Duration time) {
 }
 
 int RealWorld::stop() {
+    const auto stop_now = [this](std::size_t a) {
+        return instance_.change_activity(a, LifeChange::stop, control()).empty() ? 0 : 1;
+    };
     int hung = 0;
-    for (std::size_t a = instance_.engines().size(); a-- > 0;)
-        hung += !instance_.change_activity(a, LifeChange::stop, control()).empty();
+    const Time grace = os::Clock::monotonic() + grace_ms * 1ms;
+    Bounded<std::size_t, checks::max_activities> late;
+    for (std::size_t a = instance_.engines().size(); a-- > 0;) {
+        if (!instance_.engines()[a].plan().real_time && instance_.engines()[a].is_active()) {
+            activities_[a].ask_to_stop();
+            const Duration left = std::max(grace - os::Clock::monotonic(), Duration::zero());
+            if (!activities_[a].is_stopped_within(static_cast<int>(left / 1ms)) && late.push(a)) continue;
+        }
+        hung += stop_now(a);
+    }
+    for (const std::size_t a : late) hung += stop_now(a);
     for (std::size_t a = instance_.engines().size(); a-- > 0;)
         if (!activities_[a].end(patience_ms)) activities_[a].abandon();
     os::heap::release();

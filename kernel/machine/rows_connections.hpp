@@ -43,7 +43,7 @@ struct StaleAfter {
     Duration age;
 };
 /// A value older than this is stale; hold, substitute(x) or stop_machine say what the reader then gets: hold,
-/// if nothing says so.
+/// if nothing says so. stop_machine is kept whatever the reader's activity waits for.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 inline constexpr WhenStale hold = WhenStale::hold;
 inline constexpr WhenStale stop_machine = WhenStale::stop;
@@ -70,13 +70,18 @@ constexpr Initially initially() noexcept {
     return {detail::row_constant<Constant>()};
 }
 struct Wakes {};
-/// Each write wakes the reader's activity.
+/// Each write wakes the reader's activity, and so does a value that grows stale: that, too, is news.
 inline constexpr Wakes wakes{};
 struct Delayed {};
 /// The reader sees the value of the previous cycle: breaks a data-flow cycle inside one activity.
 inline constexpr Delayed delayed{};
 inline constexpr Overflow reject_newest = Overflow::reject;
 inline constexpr Overflow drop_oldest = Overflow::drop_oldest;
+
+/// Whether somebody acts when the value grows stale: the machine stops, or the reader is woken.
+constexpr bool is_guarded(const ConnectionRow& row) noexcept {
+    return row.max_age > Duration::zero() && (row.when_stale == WhenStale::stop || row.wakes_reader);
+}
 
 namespace detail {
 

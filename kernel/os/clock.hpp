@@ -30,4 +30,8 @@ private:
     Time virtual_now_{};
 };
 
+/// What the calling thread used of a processor since it began. A system call that does not block: real-time,
+/// but slower than a clock.
+Duration processor_time_of_this_thread() noexcept TAPPET_REALTIME;
+
 } // namespace tappet::os

@@ -355,8 +355,9 @@ TEST_F(ExecutionEngine, counts_wakes_beyond_the_promise_of_the_row) {
 
 TEST_F(ExecutionEngine, asks_for_a_stop_when_a_guarded_input_that_was_good_becomes_stale) {
     Flow flow = Flow::never_written;
-    std::array guarded{GuardedInput{
-        &flow, [](void* at) noexcept TAPPET_REALTIME { return *static_cast<Flow*>(at); }, 17, false}};
+    PortOperations port{};
+    port.flow = [](void* at) noexcept TAPPET_REALTIME { return *static_cast<Flow*>(at); };
+    std::array guarded{GuardedInput{.input = &flow, .port = &port, .connection = 17, .stops = true}};
     plan.guarded = guarded;
     begin();
     next_cycle();
@@ -375,6 +376,77 @@ TEST_F(ExecutionEngine, asks_for_a_stop_when_a_guarded_input_that_was_good_becom
     EXPECT_EQ(stops[0].second, 17u) << "the connection's row";
     next_cycle();
     EXPECT_EQ(stops.size(), 1u) << "asked once for one loss";
+}
+
+/// A value that a writer elsewhere keeps good for a while, without waking anybody.
+struct Aging {
+    const os::Clock* clock = nullptr;
+    Time good_until = never;
+    static constexpr PortOperations port = [] {
+        PortOperations operations{};
+        operations.flow = [](void* self) noexcept TAPPET_REALTIME {
+            const auto& at = *static_cast<const Aging*>(self);
+            return at.clock->now() <= at.good_until ? Flow::old : Flow::stale;
+        };
+        operations.expires = [](const void* self) noexcept
+            TAPPET_REALTIME { return static_cast<const Aging*>(self)->good_until + 1ns; };
+        return operations;
+    }();
+};
+
+TEST_F(ExecutionEngine, wakes_a_sporadic_activity_by_itself_when_a_guarded_input_grows_stale) {
+    Aging aging{&clock, at_ns(0) + 20ms};
+    std::array guarded{GuardedInput{.input = &aging, .port = &Aging::port, .connection = 17, .stops = true}};
+    plan.periodic = false;
+    plan.at_most_n = 1;
+    plan.at_most_per = 1ms;
+    plan.guarded = guarded;
+    begin();
+    next_cycle(); // the first look, at the start
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + 20ms + 1ns);
+    aging.good_until += 30ms; // written meanwhile
+    next_cycle();
+    EXPECT_TRUE(stops.empty());
+    EXPECT_EQ(log.lines, Lines{}) << "nothing happened that a component could hear of";
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + 50ms + 1ns);
+    next_cycle();
+    ASSERT_EQ(stops.size(), 1u);
+    EXPECT_EQ(stops[0], (std::pair{StopReason::stale_input, std::uint64_t{17}}));
+    EXPECT_EQ(log.lines, (Lines{"a steps", "b steps"})) << "that it is stale is news";
+    EXPECT_EQ(engine.next_wake(), never) << "told once";
+    EXPECT_EQ(statistics().wakes_too_many, 0u);
+}
+
+TEST_F(ExecutionEngine, does_what_was_told_before_the_stop_then_what_the_behaviours_tell_at_their_end) {
+    Wish wish{&log};
+    std::array behaviours{Wish::behaviour(wish)};
+    behaviours[0].self = this;
+    behaviours[0].stop = [](void* self, Time) noexcept TAPPET_REALTIME {
+        auto& test = *static_cast<ExecutionEngine*>(self);
+        test.log.add("behaviour stops");
+        TAPPET_ESCAPE("a test asserts", test.tell(0));
+    };
+    behaviours[0].next = [](const void*) noexcept TAPPET_REALTIME { return never; };
+    plan.behaviours = behaviours;
+    begin();
+    tell(1);
+    engine.stop(clock.now());
+    EXPECT_EQ(log.lines, (Lines{"b hears", "behaviour stops", "a hears", "a stops", "b stops"}));
+}
+
+TEST_F(ExecutionEngine, compares_the_processor_time_of_a_cycle_with_the_budget_of_its_row) {
+    plan.budget = 100us;
+    begin();
+    for (int n = 0; n < 5; ++n) next_cycle();
+    EXPECT_EQ(statistics().over_budget, 0u);
+    workers[0].load = 150us;
+    next_cycle(); // from now on it is measured
+    for (int n = 0; n < 3; ++n) next_cycle();
+    EXPECT_EQ(statistics().over_budget, 3u);
+    EXPECT_EQ(statistics().longest_processor, 150us);
+    workers[0].load = 90us;
+    for (int n = 0; n < 3; ++n) next_cycle();
+    EXPECT_EQ(statistics().over_budget, 3u);
 }
 
 TEST_F(ExecutionEngine, shows_an_even_generation_between_two_cycles) {

@@ -52,10 +52,11 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::heap_double_free), 205);
     EXPECT_EQ(static_cast<int>(Contract::heap_damaged), 206);
     EXPECT_EQ(static_cast<int>(Contract::heap_lock_failed), 207);
+    EXPECT_EQ(static_cast<int>(Contract::memory_not_there), 208);
     EXPECT_EQ(static_cast<int>(Contract::time_went_backwards), 301);
     EXPECT_EQ(static_cast<int>(Contract::step_limit_exceeded), 401);
     EXPECT_EQ(static_cast<int>(Contract::state_unknown), 402);
-    EXPECT_EQ(contract_texts.size(), 18u) << "a new contract gets its line here";
+    EXPECT_EQ(contract_texts.size(), 19u) << "a new contract gets its line here";
 }
 
 TEST(Contract, holds_in_a_constant_expression_or_does_not_compile) {

@@ -322,6 +322,23 @@ inline constexpr auto guarded = machine("guarded",
                        : data("source.value", "near.value", stale_after(20ms), stop_machine)),
     reactions(), behaviours());
 
+/// The same into an activity that nothing but the value's age could wake.
+inline constexpr auto guarded_asleep = machine("guarded_asleep",
+    components(component<Source<double>>("source"), component<Sink<double>>("far")),
+    activities(activity("motion", every(1ms), runs("source"), budget(10us)),
+               activity("logic",  on_work(), at_most(1, 1ms), runs("far"), deadline(1ms), budget(10us))),
+    connections(data("source.value", "far.value", stale_after(20ms), stop_machine)),
+    reactions(), behaviours());
+
+inline constexpr auto told_when_stale = machine("told_when_stale",
+    components(component<Source<double>>("source"), component<Sink<double>>("told"), component<Sink<double>>("untold")),
+    activities(activity("motion", every(1ms), runs("source"), budget(10us)),
+               activity("told",   on_work(), at_most(1, 1ms), runs("told"),   deadline(1ms), budget(10us)),
+               activity("untold", on_work(), at_most(1, 1ms), runs("untold"), deadline(1ms), budget(10us))),
+    connections(data("source.value", "told.value",   stale_after(20ms), hold, wakes),
+                data("source.value", "untold.value", stale_after(20ms), hold)),
+    reactions(), behaviours());
+
 inline constexpr auto woken = machine("woken",
     components(component<Source<double>>("source"), component<Sink<double>>("by_data"), component<Sink<double>>("by_buffer"),
                component<Sink<double>>("asleep")),
@@ -383,6 +400,22 @@ void stops_when_the_value_is_stale(std::string_view reader) {
 TEST(Flow, that_went_stale_stops_the_machine_where_its_row_says_so) {
     stops_when_the_value_is_stale<guarded<false>>("near");
     stops_when_the_value_is_stale<guarded<true>>("far");
+    stops_when_the_value_is_stale<guarded_asleep>("far");
+}
+
+TEST(Flow, that_went_stale_wakes_its_reader_once_where_its_row_wakes) {
+    Running<told_when_stale> rig;
+    const Sink<double>& told = rig.find<Sink<double>>("told");
+    for (int outage = 0; outage < 3; ++outage) {
+        rig.find<Source<double>>("source").writes = true;
+        for (int cycle = 0; cycle < 15; ++cycle) EXPECT_TRUE(rig.run());
+        EXPECT_NE(told.flow, Flow::stale);
+        const std::uint64_t before = told.steps;
+        for (int cycle = 0; cycle < 100; ++cycle) EXPECT_TRUE(rig.run());
+        EXPECT_EQ(told.flow, Flow::stale);
+        EXPECT_EQ(told.steps, before + 1);
+    }
+    EXPECT_EQ(rig.find<Sink<double>>("untold").steps, 0u);
 }
 
 TEST(Flow, wakes_the_activities_of_those_readers_whose_rows_say_so) {

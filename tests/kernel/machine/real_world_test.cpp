@@ -127,15 +127,88 @@ TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_lea
     EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
 }
 
-TEST_F(InRealTime, TERM_ends_the_supervision_as_a_request) {
-    Rig<watched::table> rig;
+TEST_F(InRealTime, a_breach_during_the_stop_is_kept_beside_the_first_one_and_beside_a_request_to_stop) {
+    Rig<watched::twice_broken_table> rig;
     ASSERT_TRUE(rig.runs());
-    EXPECT_TRUE(rig.world->supervise(50ms));
+    rig.worker("driver").breaks_at_stop = rig.worker("logic").breaks_at_stop = true;
     raise(SIGTERM);
     EXPECT_FALSE(rig.world->supervise(1s));
+    EXPECT_EQ(rig.world->stop(), 2);
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::requested);
-    EXPECT_EQ(rig.instance.describe_stop().view(), "asked for from outside");
+    ASSERT_EQ(rig.world->breaches(), 2u);
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_THAT(std::string{rig.world->describe_breach(i).view()},
+                    testing::HasSubstr("A function was called with 8, which its declaration forbids."));
+    for (const char* name : {"driver", "left", "middle", "right", "logic"})
+        EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
+}
+
+/// The process ends here when the supervisor's contract was broken: were all safe by then?
+Rig<watched::supervised_table>* at_the_end = nullptr;
+
+using InRealTimeDeathTest = InRealTime;
+
+TEST_F(InRealTimeDeathTest, a_contract_broken_on_the_supervisors_thread_stops_the_machine_before_it_ends) {
+    testing::FLAGS_gtest_death_test_style = "threadsafe";
+    EXPECT_EXIT(
+        {
+            Rig<watched::supervised_table> rig;
+            if (!rig.runs()) std::_Exit(2);
+            at_the_end = &rig;
+            std::signal(SIGABRT, [](int) {
+                bool safe = true;
+                for (const char* name : {"driver", "left", "middle", "right", "logic"})
+                    safe &= at_the_end->worker(name).at_wire.load() == 0;
+                std::_Exit(safe ? 0 : 1);
+            });
+            TAPPET_CONTRACT(false, Contract::precondition, 9);
+        },
+        testing::ExitedWithCode(0), "A function was called with 9");
+}
+
+TEST_F(InRealTime, what_is_not_real_time_and_blocks_does_not_hold_up_the_stop_of_the_others) {
+    Rig<watched::blocked_table> rig;
+    ASSERT_TRUE(rig.runs());
+    auto& console = *rig.instance.find<watched::Blocking>("console");
+    console.until_safe = &rig.worker("logic").at_wire;
+    while (!console.blocks) os::sleep_for(1ms);
+    EXPECT_EQ(rig.world->stop(), 0) << "waited for, it would have hung until it was given up";
+}
+
+TEST_F(InRealTime, asks_the_processor_time_and_not_the_clock_whether_a_budget_is_kept) {
+    Rig<watched::blocked_table> rig;
+    ASSERT_TRUE(rig.runs());
+    const EngineStatistics& seen = rig.instance.engines()[1].statistics();
+    Worker& logic = rig.worker("logic");
+    logic.overrun = 20ms;
+    const auto twice = [&](Order order) {
+        for (int n = 0; n < 2; ++n) {
+            logic.order = order;
+            while (logic.order != Order::none) static_cast<void>(rig.world->supervise(50ms));
+        }
+        static_cast<void>(rig.world->supervise(100ms));
+    };
+    twice(Order::sleep);
+    EXPECT_GE(seen.longest_busy, 20ms);
+    EXPECT_EQ(seen.over_budget, 0u) << "it waited, and others could have run";
+    twice(Order::overrun);
+    EXPECT_GE(seen.over_budget, 1u);
     EXPECT_EQ(rig.world->stop(), 0);
+}
+
+TEST_F(InRealTime, a_signal_that_would_end_or_freeze_the_process_ends_the_supervision_as_a_request) {
+    for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1}) {
+        Rig<watched::table> rig;
+        ASSERT_TRUE(rig.runs());
+        EXPECT_TRUE(rig.world->supervise(50ms));
+        raise(SIGPIPE); // is none: a reader went away
+        EXPECT_TRUE(rig.world->supervise(50ms));
+        raise(number);
+        EXPECT_FALSE(rig.world->supervise(1s)) << number;
+        EXPECT_EQ(rig.instance.stop_request().reason, StopReason::requested);
+        EXPECT_EQ(rig.instance.describe_stop().view(), "asked for from outside");
+        EXPECT_EQ(rig.world->stop(), 0);
+    }
 }
 
 TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_its_components_are_stopped_in_its_place) {

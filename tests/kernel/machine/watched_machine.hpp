@@ -6,6 +6,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/instance.hpp"
 #include "kernel/machine/machine.hpp"
+#include "kernel/os/sleep.hpp"
 
 #include <atomic>
 #include <string>
@@ -21,7 +22,7 @@ inline std::vector<std::string>& stops() {
 }
 
 /// What a worker is told to do once, by the test's thread.
-enum class Order : int { none, overrun, hang, break_contract };
+enum class Order : int { none, overrun, hang, break_contract, sleep };
 
 /// Costs nothing but what it is told to; its output says whether it is safe.
 struct Worker {
@@ -30,6 +31,7 @@ struct Worker {
     std::atomic<bool> let_go{false}; ///< ends a hang
     std::atomic<std::int64_t> at_wire{-1};
     std::uint64_t cycles = 0;
+    bool breaks_at_stop = false;
     os::Clock* clock = nullptr;
     std::string_view name{};
     Duration overrun{2500us};
@@ -53,14 +55,29 @@ struct Worker {
             }
             break;
         case Order::break_contract: TAPPET_CONTRACT(false, Contract::precondition, 7); break;
+        case Order::sleep: TAPPET_ESCAPE("as if others had the processor", os::sleep_for(overrun)); break;
         }
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         level.write(0);
         at_wire.store(0);
+        TAPPET_CONTRACT(!breaks_at_stop, Contract::precondition, 8);
         TAPPET_ESCAPE("a test's note, after the cycles", stops().push_back(std::string{name}));
     }
     static constexpr auto interface() { return facets(output<&Worker::level>("level", "", "0: safe")); }
+};
+
+/// May block, and does until another component is safe: as a reader of a terminal that stands still would
+/// hold it up.
+struct Blocking {
+    const std::atomic<std::int64_t>* until_safe = nullptr;
+    std::atomic<bool> blocks{false};
+    void work(const Cycle&) {
+        if (until_safe == nullptr) return;
+        blocks.store(true);
+        while (until_safe->load() != 0) os::sleep_for(1ms);
+    }
+    static constexpr auto interface() { return facets(); }
 };
 
 // clang-format off
@@ -75,8 +92,19 @@ inline constexpr auto table = machine("watched",
         activity("logic",   every(5ms), runs("logic"),                   budget(50us), stack(256 * 1024))),
     connections(), reactions(), behaviours());
 
+/// What is not real-time stands last, so that it would be stopped first.
+inline constexpr auto blocked_table = machine("blocked",
+    components(component<Worker>("driver"), component<Worker>("logic"), component<Blocking>("console")),
+    activities(
+        activity("drivers", every(2ms),  runs("driver"),  budget(50us), stack(256 * 1024)),
+        activity("logic",   every(50ms), runs("logic"),   budget(5ms),  stack(256 * 1024)),
+        activity("console", every(10ms), runs("console"), not_real_time, stack(256 * 1024))),
+    connections(), reactions(), behaviours());
+
 /// The same in memory of their own, for tests that leave a thread behind on one of its stacks.
 inline constexpr auto parked_table = table;
+inline constexpr auto twice_broken_table = table;
+inline constexpr auto supervised_table = table;
 inline constexpr auto hung_table = table;
 
 /// The same, where a late cycle of "motion" stops the machine.

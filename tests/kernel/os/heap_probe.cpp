@@ -155,6 +155,21 @@ int main(int count, char** arguments) {
                     static_cast<unsigned long long>(heap::refused_allocations()));
         return 3;
     }
+    if (wanted == "exhaust_new") { // in a thread of its own, as an activity's would be
+        tappet::install_contract_handler([](const tappet::Breach& breach) noexcept TAPPET_REALTIME {
+            stop_safely(breach);
+            TAPPET_ESCAPE("what the machine's handler does with a thread that must not go on",
+                          if (breach.id == tappet::Contract::memory_not_there) pause());
+        });
+        std::thread{[] {
+            while (kept(new char[10'000]) != nullptr) {
+            }
+        }}.detach();
+        while (last_id.load() != static_cast<int>(tappet::Contract::memory_not_there)) usleep(1000);
+        std::printf("contract %d, and the process goes on\n", last_id.load());
+        std::fflush(stdout);
+        std::_Exit(3);
+    }
     if (wanted == "free_twice" || wanted == "free_foreign") {
         static int elsewhere = 0;
         void* piece = wanted == "free_twice" ? std::malloc(10) : &elsewhere;

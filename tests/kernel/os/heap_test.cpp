@@ -89,6 +89,13 @@ TEST(Heap, gives_null_when_it_is_exhausted_and_a_handler_knows) {
     EXPECT_NE(ending.output.find("contract 203 refused 1"), std::string::npos) << ending.output;
 }
 
+TEST(Heap, stops_the_thread_that_cannot_go_on_without_memory_and_not_the_process) {
+    const Ending ending = run_probe("exhaust_new");
+    EXPECT_EQ(ending.exit_code, broken) << ending.output;
+    EXPECT_NE(ending.output.find("contract 208, and the process goes on"), std::string::npos)
+        << ending.output;
+}
+
 TEST(Heap, refuses_a_second_free_and_a_foreign_pointer) {
     EXPECT_NE(run_probe("free_twice").output.find("contract 205 heap-double-free"), std::string::npos);
     EXPECT_NE(run_probe("free_foreign").output.find("contract 204 heap-foreign-pointer"), std::string::npos);
