@@ -8,8 +8,8 @@
 
 namespace tappet::carpet {
 
-/// Runs in a background activity and may block in writing. Its lines begin with "loom ", so that another
-/// program can pick them out of a serial console.
+/// Runs in a background activity. Its lines begin with "loom ", so that another program can pick them out of
+/// a serial console; those that nobody takes in time are dropped.
 struct Console {
     Input<LoomState> state;
     Input<StopCause> cause;

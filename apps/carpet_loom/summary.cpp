@@ -5,6 +5,7 @@
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/memory.hpp"
+#include "kernel/os/terminal.hpp"
 #include "kernel/services/json.hpp"
 
 namespace tappet::carpet {
@@ -23,7 +24,9 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
             .field("deadline_misses", seen.misses)
             .field("skipped_periods", seen.skipped_periods);
         json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3)
-            .field("wakes_too_many", seen.wakes_too_many);
+            .field("longest_processor_us", static_cast<double>(seen.longest_processor.count()) * 1e-3)
+            .field("over_budget", seen.over_budget);
+        json.field("wakes_too_many", seen.wakes_too_many);
         json.key("functions").open('[');
         const EnginePlan& plan = engine.plan();
         constexpr std::string_view kinds[] = {"step", "timers", "reactions", "behaviour"};
@@ -108,6 +111,7 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
     json.field("heap_allocations_after_arming",
                os::heap::allocations_after_seal() + os::heap::mappings_after_seal())
         .field("page_faults_after_arming", facts.page_faults_after_arming);
+    json.field("contracts_broken", facts.contracts_broken).field("texts_dropped", os::dropped_texts());
     json.field("deadline_misses", misses)
         .field("binary_bytes", os::binary_bytes())
         .field("static_memory_bytes", machine.plan.bytes + machine.board->heap_bytes);

@@ -28,6 +28,7 @@ struct RunFacts {
         std::uint64_t can_malformed = 0;
     } wires;
     std::string_view stop_reason;
+    std::uint64_t contracts_broken = 0;
     Duration start_to_armed{}; ///< from the loading of the program; zero where nothing is armed
     bool with_digest = false;  ///< virtual time only: elsewhere no two runs are alike
 };

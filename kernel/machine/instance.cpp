@@ -224,6 +224,23 @@ Sentence MachineInstance::describe_stop() const {
     return {};
 }
 
+Sentence MachineInstance::describe_budget(std::size_t activity) const {
+    const Engine& engine = engines()[activity];
+    const EngineStatistics& seen = engine.statistics();
+    if (seen.over_budget == 0) return {};
+    return Sentence{"activity \"",
+                    engine.name(),
+                    "\" used up to ",
+                    seen.longest_processor.count() / 1000,
+                    " us of its processor in a cycle, ",
+                    seen.over_budget,
+                    " times more than the ",
+                    engine.plan().budget.count() / 1000,
+                    " us of its row; write budget(",
+                    (seen.longest_processor.count() + 999) / 1000,
+                    "us) or more, or shorten what it does"};
+}
+
 std::uint64_t MachineInstance::event_log_digest() const noexcept {
     Digest digest;
     for (const Engine& engine : engines()) digest.add(engine.digest().value());

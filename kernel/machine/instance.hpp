@@ -189,6 +189,9 @@ public:
     [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_; }
     /// What a stop request says, as a sentence.
     [[nodiscard]] Sentence describe_stop() const;
+    /// That an activity used more of its processor than its row claims, and the cure; empty: it did not. The
+    /// analysis of the table believed the claim.
+    [[nodiscard]] Sentence describe_budget(std::size_t activity) const;
     /// Woken when a stop is asked for.
     [[nodiscard]] os::Waiter& supervisor() noexcept TAPPET_REALTIME { return supervisor_; }
 

@@ -101,6 +101,10 @@ inline constexpr auto engine_figures = std::to_array<EngineFigure>({
      offsetof(EngineStatistics, longest_lateness)},
     {"longest_busy", "", "from the beginning to the end, at worst", type_id<Duration>,
      offsetof(EngineStatistics, longest_busy)},
+    {"longest_processor", "", "of it the thread's own; measured once longest_busy exceeds the budget",
+     type_id<Duration>, offsetof(EngineStatistics, longest_processor)},
+    {"over_budget", "", "cycles whose processor time exceeded the budget", type_id<std::uint64_t>,
+     offsetof(EngineStatistics, over_budget)},
 });
 static_assert(std::is_standard_layout_v<EngineStatistics>);
 

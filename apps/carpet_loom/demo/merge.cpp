@@ -44,9 +44,14 @@ constexpr std::array machine_keys{
 };
 // Without a script its name is empty.
 constexpr std::array weave_keys{Key{"loads", Type::count}, Key{"roll_backs", Type::count}};
-constexpr std::array activity_keys{
-    Key{"name", Type::text}, Key{"cycles", Type::count}, Key{"longest_busy_us", Type::number},
-    Key{"longest_response_us", Type::number}, Key{"deadline_misses", Type::count}};
+constexpr std::array activity_keys{Key{"name", Type::text},
+                                   Key{"cycles", Type::count},
+                                   Key{"longest_busy_us", Type::number},
+                                   Key{"longest_processor_us", Type::number},
+                                   Key{"budget_us", Type::number},
+                                   Key{"over_budget", Type::count},
+                                   Key{"longest_response_us", Type::number},
+                                   Key{"deadline_misses", Type::count}};
 
 /// Of the plant, to stand beside the machine's.
 constexpr std::array judging_keys{

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -31,6 +32,15 @@ bool aims_at_stop_angle(const Json& stop) {
 
 std::string row(const char* name, const std::string& words) {
     return format("  %-10s %s\n", name, words.c_str());
+}
+
+/// What the activity used of its processor beside what its row claims; nothing where it claims nothing.
+std::string claim_of(const Json& activity) {
+    const double claimed = number(activity, "budget_us");
+    if (claimed == 0) return "";
+    const double used = std::max(number(activity, "longest_processor_us"),
+                                 std::min(number(activity, "longest_busy_us"), claimed));
+    return format("%.0f/%.0f us", used, claimed);
 }
 
 std::string table_of(const Json& run) {
@@ -70,11 +80,12 @@ std::string table_of(const Json& run) {
     if (const Json& weave = run.at("weave"); count(weave, "loads") != 0)
         table += row("", format("%s is at work; %llu scripts took over; %s", text(weave, "script").c_str(),
                                 count(weave, "loads"), text(weave, "news").c_str()));
-    table += row("timing", "activity   cycles   longest busy   worst response   misses");
+    table += row("timing", "activity   cycles   longest busy   of the claimed   worst response   misses");
     for (const Json& activity : run.at("activities"))
-        table += row("", format("%-9s %7llu %11.0f us %13.0f us %8llu", text(activity, "name").c_str(),
+        table += row("", format("%-9s %7llu %11.0f us %13s %13.0f us %8llu", text(activity, "name").c_str(),
                                 count(activity, "cycles"), number(activity, "longest_busy_us"),
-                                number(activity, "longest_response_us"), count(activity, "deadline_misses")));
+                                claim_of(activity).c_str(), number(activity, "longest_response_us"),
+                                count(activity, "deadline_misses")));
     table += row("memory", format("firmware %.2f MB, static memory %.2f MB, resident %.2f MB",
                                   static_cast<double>(count(run, "binary_bytes")) * 1e-6,
                                   static_cast<double>(count(run, "static_memory_bytes")) * 1e-6,
@@ -121,6 +132,12 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
     none(run, "heap_allocations_after_arming", "heap allocations after arming");
     none(run, "page_faults_after_arming", "page faults in real-time threads after arming");
     none(run, "deadline_misses", "deadlines were missed");
+    for (const Json& activity : run.at("activities"))
+        if (const auto over = count(activity, "over_budget"); over != 0)
+            faults.push_back(format("%llu cycles of \"%s\" used more of the processor than its row claims, "
+                                    "up to %.0f us of %.0f",
+                                    over, text(activity, "name").c_str(),
+                                    number(activity, "longest_processor_us"), number(activity, "budget_us")));
     none(run.at("damage"), "total", "times the loom or its cloth took damage");
     return faults;
 }

@@ -11,6 +11,7 @@
 
 #include TAPPET_BOARD_HEADER
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -77,6 +78,7 @@ int write_summary(MachineInstance& instance, const RealWorld& world, const carpe
     const can::Counters seen = devices.can().counters();
     facts.wires = {seen.faults, seen.restarts, bus->decoding().wrong_lengths, seen.impostors, seen.malformed};
     facts.stop_reason = reason.view();
+    facts.contracts_broken = world.breaches();
     facts.start_to_armed = start_to_armed;
     const std::size_t length = carpet::write_machine_summary(instance, facts, summary_text);
     if (length == 0 || length + 2 > summary_text.size())
@@ -122,6 +124,9 @@ void tell_reason(const StateMachineExecution& loom, StateMachineExecution::News&
 }
 
 void list_misses(const MachineInstance& instance) {
+    for (std::size_t a = 0; a < instance.engines().size(); ++a)
+        if (const Sentence claim = instance.describe_budget(a); !claim.empty())
+            os::print(Sentence{"carpet-loom: ", claim, "\n"}.view());
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
         if (seen.misses == 0) continue;
@@ -176,6 +181,8 @@ int main(int count, char** words) {
     const Sentence reason =
         world.broken_contract().empty() ? instance.describe_stop() : world.broken_contract();
     os::print(Sentence{"carpet-loom: stopped: ", reason, "\n"}.view());
+    for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
+        os::print(Sentence{"carpet-loom: then: ", world.describe_breach(i), "\n"}.view());
     list_misses(instance);
     if (properties.keeps())
         if (const Sentence fault = instance.save_properties(); !fault.empty())
@@ -185,6 +192,7 @@ int main(int count, char** words) {
                 write_summary(instance, world, devices, reason, start_to_armed, options.summary);
             written != ended_well)
             return written;
-    return hung == 0 && instance.stop_request().reason == StopReason::requested ? ended_well
-                                                                                : stopped_by_fault;
+    const bool as_asked = hung == 0 && world.breaches() == 0;
+    return as_asked && instance.stop_request().reason == StopReason::requested ? ended_well
+                                                                               : stopped_by_fault;
 }

@@ -24,6 +24,7 @@ struct Outcome {
     bool woven = false;
     std::uint64_t page_faults = 0;
     Sentence broken_contract{};
+    std::uint64_t contracts_broken = 0;
     std::uint64_t event_log_digest = 0; ///< virtual time only
 };
 
@@ -50,6 +51,7 @@ std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom
     else if (instance.stop_asked())
         reason = instance.describe_stop();
     facts.stop_reason = reason.view();
+    facts.contracts_broken = outcome.contracts_broken;
     facts.with_digest = options.virtual_time;
     const std::size_t machine = carpet::write_machine_summary(instance, facts, text);
     const std::size_t plant =
@@ -73,6 +75,9 @@ int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet:
            const Outcome& outcome) {
     if (!outcome.broken_contract.empty())
         os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
+    for (std::size_t a = 0; a < instance.engines().size(); ++a)
+        if (const Sentence claim = instance.describe_budget(a); !claim.empty())
+            os::print(Sentence{"carpet_loom: ", claim, "\n"}.view());
     if (!options.properties.empty())
         if (const Sentence fault = instance.save_properties(); !fault.empty()) return fail(fault);
     if (!options.summary.empty()) {
@@ -108,6 +113,7 @@ int run_real(const carpet::Options& options) {
     const int hung = run.stop();
     outcome.page_faults = run.world().page_faults_in_real_time_threads();
     outcome.broken_contract = run.world().broken_contract();
+    outcome.contracts_broken = run.world().breaches();
     outcome.woven &= hung == 0;
     return report(run.instance(), run.loom(), options, outcome);
 }
