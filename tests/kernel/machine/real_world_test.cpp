@@ -181,17 +181,18 @@ TEST_F(InRealTime, asks_the_processor_time_and_not_the_clock_whether_a_budget_is
     const EngineStatistics& seen = rig.instance.engines()[1].statistics();
     Worker& logic = rig.worker("logic");
     logic.overrun = 20ms;
-    const auto twice = [&](Order order) {
-        for (int n = 0; n < 2; ++n) {
+    // The first cycle warms caches and counts as no maximum; from the one that is too long on it is measured.
+    const auto several_times = [&](Order order) {
+        for (int n = 0; n < 4; ++n) {
             logic.order = order;
             while (logic.order != Order::none) static_cast<void>(rig.world->supervise(50ms));
         }
         static_cast<void>(rig.world->supervise(100ms));
     };
-    twice(Order::sleep);
+    several_times(Order::sleep);
     EXPECT_GE(seen.longest_busy, 20ms);
     EXPECT_EQ(seen.over_budget, 0u) << "it waited, and others could have run";
-    twice(Order::overrun);
+    several_times(Order::overrun);
     EXPECT_GE(seen.over_budget, 1u);
     EXPECT_EQ(rig.world->stop(), 0);
 }

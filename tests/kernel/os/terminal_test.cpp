@@ -2,9 +2,11 @@
 #include "kernel/os/terminal.hpp"
 
 #include "kernel/os/signals.hpp"
+#include "kernel/os/thread.hpp"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <string>
@@ -187,13 +189,46 @@ TEST(Terminal, writes_behind_what_stands_in_a_file) {
 TEST(Signals, that_would_end_or_freeze_the_process_are_handed_over_and_a_closed_pipe_is_not_one) {
     static int got = 0;
     on_termination([](int number) noexcept { got = number; });
-    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1, SIGALRM, SIGXCPU, SIGRTMIN}) {
+    for (const int number :
+         {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1, SIGALRM, SIGXCPU, SIGRTMIN}) {
         ::raise(number);
         EXPECT_EQ(got, number);
     }
     got = 0;
     for (const int number : {SIGPIPE, SIGTTIN, SIGTTOU, SIGXFSZ}) ::raise(number);
     EXPECT_EQ(got, 0);
+    on_termination(nullptr);
+}
+
+TEST(Signals, are_taken_by_the_starter_of_a_thread_and_never_by_the_thread) {
+    static std::atomic<int> got{0};
+    got = 0;
+    on_termination([](int number) noexcept { got = number; });
+    static std::atomic<bool> ends{false}, looked{false};
+    ends = looked = false;
+    const ThreadPlan plan{.name = "busy",
+                          .body =
+                              [](void*) noexcept {
+                                  while (!ends) looked = true;
+                              },
+                          .context = nullptr};
+    Thread thread;
+    ASSERT_TRUE(thread.start(plan));
+    while (!looked) {
+    }
+    sigset_t term{};
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    ASSERT_EQ(::pthread_sigmask(SIG_BLOCK, &term, nullptr), 0);
+    ::kill(::getpid(), SIGTERM); // to whichever thread would take it
+    looked = false;
+    while (!looked) { // it went on, by then with the signal, were it its
+    }
+    EXPECT_EQ(got, 0);
+    ends = true;
+    thread.join();
+    ::pthread_sigmask(SIG_UNBLOCK, &term, nullptr);
+    EXPECT_EQ(got, SIGTERM);
     on_termination(nullptr);
 }
 
