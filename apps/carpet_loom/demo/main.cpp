@@ -79,7 +79,8 @@ std::vector<std::string> change_of_weaves() {
             "- " + load("faulty_twill.osd", "180"),
             load("running_out.osd", "shaft.beat_up"),
             "@sleep 3",
-            "tappet-browse behaviour list"};
+            "tappet-browse behaviour list",
+            "@signal carpet-loom-plant USR1"};
 }
 
 /// Breaks by chance, one Modbus outage, and one emergency stop in the middle, so that a viewer sees each of
@@ -95,16 +96,19 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
     scenario.can = {"can0"};
     scenario.gpio = {{"loom-io", 14}};
     scenario.settings = {{"/proc/sys/kernel/sched_rt_runtime_us", "-1"}};
+    // How long the requests of a browser take is the host's affair: the plant weaves on until they are
+    // through, and some picks more.
+    const bool changes_weaves = options.picks >= least_picks_for_weaves;
     scenario.commands = {
         "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --seed " + std::to_string(options.seed) +
             " --picks " + std::to_string(options.picks) +
             " --weft-break-one-in 40 --warp-break-one-in 150 --operator-reaction 500ms --stop-modbus-at "
             "3s/2s --fifo 1 --emergency-stop-at " +
-            middle + " --report " + plant_report + " &",
+            middle + (changes_weaves ? " --picks-after-usr1 20" : "") + " --report " + plant_report + " &",
         "@sleep 1",
         std::string{"carpet_loom --summary "} + machine_report + " &",
     };
-    if (options.picks >= least_picks_for_weaves) {
+    if (changes_weaves) {
         const std::vector<std::string> weaves = change_of_weaves();
         scenario.commands.insert(scenario.commands.end(), weaves.begin(), weaves.end());
     }

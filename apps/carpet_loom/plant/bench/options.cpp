@@ -118,6 +118,7 @@ bool read(Reader reader, Options& to, bool& known) {
     if (reader.is("--modbus-address")) return reader.take(to.modbus_address);
     if (reader.is("--seed")) return reader.take(to.seed);
     if (reader.is("--picks")) return reader.take(to.picks);
+    if (reader.is("--picks-after-usr1")) return reader.take(to.picks_after_usr1);
     if (reader.is("--report")) return reader.take(to.report);
     if (reader.is("--period")) return reader.take(to.period) && to.period >= 50us && to.period <= 10ms;
     if (reader.is("--fifo")) return reader.take(to.fifo_priority, 98);
@@ -155,7 +156,7 @@ std::expected<Options, std::string> parse_options(int count, const char* const* 
             return std::unexpected("'" + word + "' does not take '" + words[i + 1] +
                                    "'; --help shows what it takes");
     }
-    options.settings.last_pick = options.picks;
+    options.settings.last_pick = options.picks_after_usr1 == 0 ? options.picks : 0;
     return options;
 }
 
@@ -168,6 +169,8 @@ const char* usage() {
            "  --modbus-port N          its port; 0 = no Modbus (1502)\n"
            "  --seed N                 which loom (1)\n"
            "  --picks N                end when N picks are woven and the loom stands (at SIGTERM)\n"
+           "  --picks-after-usr1 N     end not before USR1 came, and N picks later at least (nobody sends "
+           "it)\n"
            "  --report FILE            where the JSON report goes (standard output)\n"
            "  --period T               polling of the lines, 50us..10ms (200us)\n"
            "  --fifo N                 run with SCHED_FIFO priority N (not)\n"

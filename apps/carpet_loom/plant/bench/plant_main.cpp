@@ -21,6 +21,7 @@ namespace tappet::loom {
 namespace {
 
 volatile std::sig_atomic_t told_to_end = 0;
+volatile std::sig_atomic_t usr1_came = 0;
 
 std::int64_t monotonic_ns() {
     timespec now{};
@@ -67,6 +68,11 @@ public:
         Time last{};
         Time slow{};
         while (told_to_end == 0 && !finished(last)) {
+            if (awaits_usr1_ && usr1_came != 0) {
+                awaits_usr1_ = false;
+                options_.picks = std::max(options_.picks, plant_.picks() + options_.picks_after_usr1);
+                plant_.end_at(options_.picks);
+            }
             const Time wake = std::min(last + options_.period, std::max(plant_.next_timer(), last + 20us));
             sleep_until_ns(start + to_ns(wake));
             const Time now = at_ns(monotonic_ns() - start);
@@ -89,7 +95,8 @@ public:
 
 private:
     bool finished(Time now) {
-        if (options_.picks == 0 || plant_.picks() < options_.picks || plant_.speed_rpm() != 0.0) {
+        if (awaits_usr1_ || options_.picks == 0 || plant_.picks() < options_.picks ||
+            plant_.speed_rpm() != 0.0) {
             rested_since_ = now;
             return false;
         }
@@ -115,6 +122,7 @@ private:
     CanWire& can_;
     std::optional<LineWire>& lines_;
     std::unique_ptr<ModbusWire>& modbus_;
+    bool awaits_usr1_ = options_.picks_after_usr1 != 0;
     Time rested_since_{};
     Duration latest_{};
 };
@@ -130,6 +138,8 @@ int run(int count, const char* const* words) {
     action.sa_handler = [](int) { told_to_end = 1; };
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
+    action.sa_handler = [](int) { usr1_came = 1; };
+    sigaction(SIGUSR1, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN); // a master that went away is no reason to die
 
     auto plant = std::make_unique<Plant>(options->settings, options->seed);
