@@ -24,8 +24,9 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
             .field("deadline_misses", seen.misses)
             .field("skipped_periods", seen.skipped_periods);
         json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3)
-            .field("longest_processor_us", static_cast<double>(seen.longest_processor.count()) * 1e-3)
-            .field("over_budget", seen.over_budget);
+            .field("claim_us", static_cast<double>(engine.plan().claim().count()) * 1e-3);
+        json.field("most_processor_us", static_cast<double>(seen.most_processor.count()) * 1e-3)
+            .field("over_claim", seen.over_claim);
         json.field("wakes_too_many", seen.wakes_too_many);
         json.key("functions").open('[');
         const EnginePlan& plan = engine.plan();

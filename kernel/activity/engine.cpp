@@ -230,9 +230,15 @@ Duration Engine::used_processor() const noexcept TAPPET_REALTIME {
 }
 
 void Engine::note_processor(Duration before) noexcept TAPPET_REALTIME {
-    const Duration took = used_processor() - before;
-    statistics_.longest_processor = std::max(statistics_.longest_processor, took);
-    if (took > plan_.budget) ++statistics_.over_budget;
+    // As the analysis counts: what comes together is one job, and the next one comes a time of at_most later.
+    if (plan_.periodic || claim_began_ == Time::min() || cycle_.now - claim_began_ >= plan_.at_most_per) {
+        claim_began_ = cycle_.now;
+        claim_used_ = {};
+    }
+    const Duration used_before = claim_used_;
+    claim_used_ += used_processor() - before;
+    statistics_.most_processor = std::max(statistics_.most_processor, claim_used_);
+    if (claim_used_ > plan_.claim() && used_before <= plan_.claim()) ++statistics_.over_claim;
 }
 
 // Sporadic activities promised at most n wakes in a window: the analysis believed it, so a breach is counted.
@@ -277,7 +283,8 @@ void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
         // Reading the thread's processor time enters the kernel. Who never was busy for longer than its
         // budget kept it, whatever else ran meanwhile; who was may have been preempted, or have claimed too
         // little.
-        if (plan_.budget > Duration::zero() && seen.longest_busy > plan_.budget && !measures_processor_) {
+        if (!measures_processor_ && plan_.budget > Duration::zero() &&
+            (seen.longest_busy > plan_.budget || seen.wakes_too_many != 0)) {
             measures_processor_ = true;
             steps_only_ = false;
         }

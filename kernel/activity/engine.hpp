@@ -91,7 +91,7 @@ struct EnginePlan {
     bool real_time = true;
     Duration period{};
     Duration deadline{};
-    Duration budget{}; ///< claimed by the table; compare with EngineStatistics::longest_busy
+    Duration budget{}; ///< of a cycle, claimed by the table
     std::int64_t at_most_n = 1;
     Duration at_most_per{};
     bool stop_when_late = false;
@@ -101,6 +101,12 @@ struct EnginePlan {
     std::span<Behaviour> behaviours;
     std::span<GuardedInput> guarded;
     std::span<const NeededInput> inputs;
+
+    /// What the analysis of the table believed: the processor time of a period's cycle, or of all cycles
+    /// within at_most's time, which may come together. Zero: nothing is claimed.
+    [[nodiscard]] Duration claim() const noexcept TAPPET_REALTIME {
+        return periodic ? budget : at_most_n * budget;
+    }
 };
 
 /// Counters that an observer may read while the machine runs; each is written by the engine alone.
@@ -113,10 +119,10 @@ struct EngineStatistics {
     Duration longest_response{};
     Duration longest_lateness{}; ///< from release to the beginning
     Duration longest_busy{};     ///< from the beginning to the end, preemption included
-    /// The same of the thread's processor time, which is what the budget promised: at most longest_busy, and
-    /// measured in every cycle once longest_busy exceeds the budget.
-    Duration longest_processor{};
-    std::uint64_t over_budget = 0; ///< cycles that were measured to take more
+    /// The most of the thread's processor time for one EnginePlan::claim(). Measured in every cycle from the
+    /// one on that is busy for longer than its budget, or comes too often; until then the claim is kept.
+    Duration most_processor{};
+    std::uint64_t over_claim = 0; ///< periods, or times of at_most, that were measured to take more
     std::array<Miss, 8> recent_misses{};
 };
 
@@ -298,6 +304,8 @@ private:
     bool has_deadline_ = false;
     bool steps_only_ = false; ///< it has no timers, behaviours, guarded inputs, wakes to watch or tape
     bool measures_processor_ = false;
+    Time claim_began_ = Time::min(); ///< the time of at_most that is measured
+    Duration claim_used_{};
     os::Clock* clock_ = nullptr;
     Cycle cycle_{};
     /// How often it looks whether a component that waits for an input may start.

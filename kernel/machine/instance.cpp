@@ -226,19 +226,25 @@ Sentence MachineInstance::describe_stop() const {
 
 Sentence MachineInstance::describe_budget(std::size_t activity) const {
     const Engine& engine = engines()[activity];
+    const EnginePlan& plan = engine.plan();
     const EngineStatistics& seen = engine.statistics();
-    if (seen.over_budget == 0) return {};
-    return Sentence{"activity \"",
-                    engine.name(),
-                    "\" used up to ",
-                    seen.longest_processor.count() / 1000,
-                    " us of its processor in a cycle, ",
-                    seen.over_budget,
-                    " times more than the ",
-                    engine.plan().budget.count() / 1000,
-                    " us of its row; write budget(",
-                    (seen.longest_processor.count() + 999) / 1000,
-                    "us) or more, or shorten what it does"};
+    if (seen.over_claim == 0) return {};
+    const std::int64_t cycles = plan.periodic ? 1 : plan.at_most_n;
+    const std::int64_t needed_ns = (seen.most_processor.count() + cycles - 1) / cycles;
+    Sentence text{"activity \"", engine.name(), "\" used up to ", seen.most_processor.count() / 1000,
+                  " us of its processor "};
+    if (plan.periodic)
+        text.add("in a cycle");
+    else
+        text.add("within ").add(plan.at_most_per.count() / 1000).add(" us");
+    return text.add("; its row claims ")
+        .add(plan.claim().count() / 1000)
+        .add(" us, which was too little ")
+        .add(seen.over_claim)
+        .add(seen.over_claim == 1 ? " time" : " times")
+        .add("; write budget(")
+        .add((needed_ns + 999) / 1000)
+        .add("us) or more, or shorten what it does");
 }
 
 std::uint64_t MachineInstance::event_log_digest() const noexcept {

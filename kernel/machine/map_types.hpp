@@ -101,10 +101,10 @@ inline constexpr auto engine_figures = std::to_array<EngineFigure>({
      offsetof(EngineStatistics, longest_lateness)},
     {"longest_busy", "", "from the beginning to the end, at worst", type_id<Duration>,
      offsetof(EngineStatistics, longest_busy)},
-    {"longest_processor", "", "of it the thread's own; measured once longest_busy exceeds the budget",
-     type_id<Duration>, offsetof(EngineStatistics, longest_processor)},
-    {"over_budget", "", "cycles whose processor time exceeded the budget", type_id<std::uint64_t>,
-     offsetof(EngineStatistics, over_budget)},
+    {"most_processor", "", "processor time for one claim of its row; 0: it was never in doubt",
+     type_id<Duration>, offsetof(EngineStatistics, most_processor)},
+    {"over_claim", "", "how often it took more than its row claims", type_id<std::uint64_t>,
+     offsetof(EngineStatistics, over_claim)},
 });
 static_assert(std::is_standard_layout_v<EngineStatistics>);
 

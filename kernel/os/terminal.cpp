@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -23,10 +24,12 @@ class Outlet {
 public:
     explicit constexpr Outlet(int file) noexcept : file_{file} {}
 
-    // A pipe or a terminal is opened anew, so that it can be asked not to wait: O_NONBLOCK on the file as it was
-    // given would hold for everybody who shares it, the shell included, and outlive a process that is killed.
-    // A socket cannot be opened anew, but is asked in each call. A regular file does not wait for a reader, and
-    // opened anew it would be written at another place.
+    // A pipe or a terminal is opened anew, so that it can be asked not to wait: O_NONBLOCK on the file as it
+    // was given would hold for everybody who shares it, the shell included, and outlive a process that is
+    // killed. A socket cannot be opened anew, but is asked in each call. A device that may be open once only
+    // (a port of a virtual machine) is asked before each: another writer to it could take the room in
+    // between, if it had one. A regular file does not wait for a reader, and opened anew it would be written
+    // at another place.
     bool never_wait() noexcept {
         const std::lock_guard lock{mutex_};
         if (own_ >= 0) ::close(own_);
@@ -45,8 +48,8 @@ public:
         } else {
             const Sentence path{"/proc/self/fd/", file_};
             own_ = open(path.letters, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-            how_ = own_ >= 0 ? How::opened_anew : How::not_at_all;
-            return own_ >= 0 || errno == ENXIO; // a pipe whose reader is gone already
+            how_ = own_ >= 0 ? How::opened_anew : errno == EBUSY ? How::asked_first : How::not_at_all;
+            return how_ != How::not_at_all || errno == ENXIO; // a pipe whose reader is gone already
         }
         return true;
     }
@@ -63,13 +66,19 @@ public:
     static constinit std::atomic<std::uint64_t> dropped;
 
 private:
-    enum class How : std::uint8_t { waiting, as_given, opened_anew, as_socket, not_at_all };
+    enum class How : std::uint8_t { waiting, as_given, opened_anew, asked_first, as_socket, not_at_all };
 
     [[nodiscard]] std::size_t write_some(std::string_view text) const noexcept {
         ssize_t written = -1;
         do switch (how_) {
             case How::as_given: written = write(file_, text.data(), text.size()); break;
             case How::opened_anew: written = write(own_, text.data(), text.size()); break;
+            case How::asked_first: {
+                pollfd room{file_, POLLOUT, 0};
+                if (poll(&room, 1, 0) != 1 || room.revents != POLLOUT) return 0;
+                written = write(file_, text.data(), text.size());
+                break;
+            }
             case How::as_socket:
                 written = send(file_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
                 break;
@@ -129,7 +138,8 @@ std::uint64_t dropped_texts() noexcept { return Outlet::dropped.load(std::memory
 
 bool write_all(int file, std::string_view text) noexcept {
     if (file == STDOUT_FILENO || file == STDERR_FILENO)
-        if (Outlet& outlet = outlets[file - STDOUT_FILENO]; !outlet.waits()) return outlet.write_or_drop(text);
+        if (Outlet& outlet = outlets[file - STDOUT_FILENO]; !outlet.waits())
+            return outlet.write_or_drop(text);
     while (!text.empty()) {
         const ssize_t written = write(file, text.data(), text.size());
         if (written < 0 && errno == EINTR) continue;

@@ -47,9 +47,9 @@ constexpr std::array weave_keys{Key{"loads", Type::count}, Key{"roll_backs", Typ
 constexpr std::array activity_keys{Key{"name", Type::text},
                                    Key{"cycles", Type::count},
                                    Key{"longest_busy_us", Type::number},
-                                   Key{"longest_processor_us", Type::number},
-                                   Key{"budget_us", Type::number},
-                                   Key{"over_budget", Type::count},
+                                   Key{"most_processor_us", Type::number},
+                                   Key{"claim_us", Type::number},
+                                   Key{"over_claim", Type::count},
                                    Key{"longest_response_us", Type::number},
                                    Key{"deadline_misses", Type::count}};
 

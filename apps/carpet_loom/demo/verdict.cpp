@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -36,10 +35,10 @@ std::string row(const char* name, const std::string& words) {
 
 /// What the activity used of its processor beside what its row claims; nothing where it claims nothing.
 std::string claim_of(const Json& activity) {
-    const double claimed = number(activity, "budget_us");
+    const double claimed = number(activity, "claim_us");
     if (claimed == 0) return "";
-    const double used = std::max(number(activity, "longest_processor_us"),
-                                 std::min(number(activity, "longest_busy_us"), claimed));
+    const double measured = number(activity, "most_processor_us"); // 0: it was never in doubt
+    const double used = measured > 0 ? measured : number(activity, "longest_busy_us");
     return format("%.0f/%.0f us", used, claimed);
 }
 
@@ -133,11 +132,12 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
     none(run, "page_faults_after_arming", "page faults in real-time threads after arming");
     none(run, "deadline_misses", "deadlines were missed");
     for (const Json& activity : run.at("activities"))
-        if (const auto over = count(activity, "over_budget"); over != 0)
-            faults.push_back(format("%llu cycles of \"%s\" used more of the processor than its row claims, "
-                                    "up to %.0f us of %.0f",
-                                    over, text(activity, "name").c_str(),
-                                    number(activity, "longest_processor_us"), number(activity, "budget_us")));
+        if (const auto over = count(activity, "over_claim"); over != 0)
+            faults.push_back(
+                format("activity \"%s\" used more of the processor than its row claims, %llu times, "
+                       "up to %.0f us of %.0f",
+                       text(activity, "name").c_str(), over, number(activity, "most_processor_us"),
+                       number(activity, "claim_us")));
     none(run.at("damage"), "total", "times the loom or its cloth took damage");
     return faults;
 }

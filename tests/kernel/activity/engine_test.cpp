@@ -438,15 +438,37 @@ TEST_F(ExecutionEngine, compares_the_processor_time_of_a_cycle_with_the_budget_o
     plan.budget = 100us;
     begin();
     for (int n = 0; n < 5; ++n) next_cycle();
-    EXPECT_EQ(statistics().over_budget, 0u);
+    EXPECT_EQ(statistics().over_claim, 0u);
     workers[0].load = 150us;
     next_cycle(); // from now on it is measured
     for (int n = 0; n < 3; ++n) next_cycle();
-    EXPECT_EQ(statistics().over_budget, 3u);
-    EXPECT_EQ(statistics().longest_processor, 150us);
+    EXPECT_EQ(statistics().over_claim, 3u);
+    EXPECT_EQ(statistics().most_processor, 150us);
     workers[0].load = 90us;
     for (int n = 0; n < 3; ++n) next_cycle();
-    EXPECT_EQ(statistics().over_budget, 3u);
+    EXPECT_EQ(statistics().over_claim, 3u);
+}
+
+TEST_F(ExecutionEngine, compares_what_a_sporadic_activity_uses_within_the_time_of_at_most) {
+    plan.budget = 100us;
+    plan.periodic = false;
+    plan.at_most_n = 3;
+    plan.at_most_per = 1ms;
+    begin();
+    const auto wakes = [this](Duration first, std::initializer_list<Duration> loads) {
+        clock.advance_to(at_ns(0) + first);
+        for (const Duration load : loads) {
+            workers[0].load = load;
+            engine.run(true);
+        }
+    };
+    wakes(1ms, {50us, 50us});
+    wakes(3ms, {250us}); // from the next one on it is measured
+    wakes(5ms, {250us, 25us, 25us});
+    EXPECT_EQ(statistics().over_claim, 0u) << "three times 100 us were claimed, whoever took them";
+    wakes(7ms, {250us, 25us, 26us, 100us});
+    EXPECT_EQ(statistics().over_claim, 1u) << "once for one time of at_most";
+    EXPECT_EQ(statistics().most_processor, 401us);
 }
 
 TEST_F(ExecutionEngine, shows_an_even_generation_between_two_cycles) {

@@ -19,7 +19,7 @@ ordered_json machine() {
         R"({"machine": "carpet-loom", "board": "bench", "world": "bench", "kernel_release": "6.1-rt", "realtime": true,
         "machine_seed": 0, "stop_reason": "asked for", "can_frames_lost": 1, "gpio_edges_lost": 2, "modbus_outages_survived": 3, "emissions_lost": 4,
         "heap_allocations_after_arming": 5, "page_faults_after_arming": 6, "deadline_misses": 7, "binary_bytes": 8, "static_memory_bytes": 9,
-        "rss_bytes": 10, "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_processor_us": 0, "budget_us": 60, "over_budget": 0, "longest_response_us": 2.5, "deadline_misses": 0}]})");
+        "rss_bytes": 10, "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "most_processor_us": 0, "claim_us": 60, "over_claim": 0, "longest_response_us": 2.5, "deadline_misses": 0}]})");
 }
 
 ordered_json plant() {

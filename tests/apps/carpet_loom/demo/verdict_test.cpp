@@ -26,7 +26,7 @@ ordered_json good_run() {
         {"cause": "emergency", "angle_deg": 57.0, "error_deg": 107.0, "at_pick": 15}],
         "cam_error_deg": {"samples": 32, "p50": 0.14, "p99": 0.47, "max": 0.48}, "damage": {"total": 0},
         "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "patterns": [{"pattern": 23130, "picks": 15, "first_at_pick": 1}],
-        "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "longest_processor_us": 0, "budget_us": 60, "over_budget": 0, "longest_response_us": 2.5, "deadline_misses": 0}],
+        "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "most_processor_us": 0, "claim_us": 60, "over_claim": 0, "longest_response_us": 2.5, "deadline_misses": 0}],
         "plant": {"stops_total": 2, "time_s": 7.5}})");
 }
 
@@ -54,10 +54,10 @@ TEST(Verdict, names_a_stop_for_which_nothing_was_injected) {
 
 TEST(Verdict, names_an_activity_that_used_more_of_the_processor_than_its_row_claims) {
     auto run = good_run();
-    run["activities"][0]["over_budget"] = 3;
-    run["activities"][0]["longest_processor_us"] = 80;
+    run["activities"][0]["over_claim"] = 3;
+    run["activities"][0]["most_processor_us"] = 80;
     EXPECT_THAT(faults_of(run),
-                ElementsAre(AllOf(HasSubstr("3 cycles of \"motion\""), HasSubstr("80 us of 60"))));
+                ElementsAre(AllOf(HasSubstr("\"motion\""), HasSubstr("3 times"), HasSubstr("80 us of 60"))));
     EXPECT_THAT(judge(run.dump(), 30).table, HasSubstr("80/60 us"));
 }
 
