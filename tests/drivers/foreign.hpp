@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
 #include <iterator>
@@ -21,7 +22,8 @@ namespace tappet {
 class Foreign {
 public:
     explicit Foreign(const std::string& command)
-        : output_{"/tmp/foreign." + std::to_string(::getpid()) + "." + std::to_string(next_++)} {
+        : output_{std::string{std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp"} +
+                  "/foreign." + std::to_string(::getpid()) + "." + std::to_string(next_++)} {
         std::istringstream in{command};
         std::vector<std::string> words{std::istream_iterator<std::string>{in}, {}};
         std::vector<char*> arguments;
@@ -63,6 +65,7 @@ public:
         return false;
     }
     [[nodiscard]] bool started() const { return process_ > 0; }
+    [[nodiscard]] pid_t number() const { return process_; }
     void signal(int number) const {
         if (process_ > 0) ::kill(process_, number);
     }

@@ -382,21 +382,21 @@ TEST_F(ExecutionEngine, asks_for_a_stop_when_a_guarded_input_that_was_good_becom
 struct Aging {
     const os::Clock* clock = nullptr;
     Time good_until = never;
-    static constexpr PortOperations port = [] {
-        PortOperations operations{};
-        operations.flow = [](void* self) noexcept TAPPET_REALTIME {
-            const auto& at = *static_cast<const Aging*>(self);
-            return at.clock->now() <= at.good_until ? Flow::old : Flow::stale;
-        };
-        operations.expires = [](const void* self) noexcept
-            TAPPET_REALTIME { return static_cast<const Aging*>(self)->good_until + 1ns; };
-        return operations;
-    }();
 };
+constexpr PortOperations aging_port = [] {
+    PortOperations operations{};
+    operations.flow = [](void* self) noexcept TAPPET_REALTIME {
+        const auto& at = *static_cast<const Aging*>(self);
+        return at.clock->now() <= at.good_until ? Flow::old : Flow::stale;
+    };
+    operations.expires = [](const void* self) noexcept
+        TAPPET_REALTIME { return static_cast<const Aging*>(self)->good_until + 1ns; };
+    return operations;
+}();
 
 TEST_F(ExecutionEngine, wakes_a_sporadic_activity_by_itself_when_a_guarded_input_grows_stale) {
     Aging aging{&clock, at_ns(0) + 20ms};
-    std::array guarded{GuardedInput{.input = &aging, .port = &Aging::port, .connection = 17, .stops = true}};
+    std::array guarded{GuardedInput{.input = &aging, .port = &aging_port, .connection = 17, .stops = true}};
     plan.periodic = false;
     plan.at_most_n = 1;
     plan.at_most_per = 1ms;
