@@ -151,15 +151,16 @@ Result<std::optional<ordered_json>> Link::receive(Milliseconds within) {
     message.msg_iov = &place;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
-    message.msg_controllen = control.size();
+    message.msg_controllen = CMSG_LEN(sizeof(int)); // one: what is passed beyond it the kernel closes
     const ssize_t count = ::recvmsg(socket_, &message, MSG_CMSG_CLOEXEC);
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::optional<ordered_json>{};
-    if (count <= 0) return std::unexpected(gone());
+    if (count < 0) return std::unexpected(gone());
     for (cmsghdr* each = CMSG_FIRSTHDR(&message); each != nullptr; each = CMSG_NXTHDR(&message, each)) {
         if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_RIGHTS) continue;
         if (received_descriptor_ >= 0) ::close(received_descriptor_);
         std::memcpy(&received_descriptor_, CMSG_DATA(each), sizeof(int));
     }
+    if (count == 0) return std::unexpected(gone());
     auto parsed = ordered_json::parse(packet.data(), packet.data() + count, nullptr, false);
     if (!parsed.is_object())
         return failure(Fault::no_machine, "the machine's answer is no JSON object: " +

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -89,14 +90,18 @@ LocalConnection::Sent LocalConnection::send(std::string_view packet, int passed)
     }
 }
 
-LocalConnection::Received LocalConnection::receive(std::span<char> into) const noexcept {
+LocalConnection::Received LocalConnection::receive(std::span<char> into, Passed passed) const noexcept {
     iovec piece{into.data(), into.size()};
     msghdr message{};
     message.msg_iov = &piece;
     message.msg_iovlen = 1;
+    // What has no room here the kernel closes itself: no room at all, or exactly one's. (CMSG_SPACE would pad
+    // that to two.)
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
+    if (passed == Passed::one) {
+        message.msg_control = control;
+        message.msg_controllen = CMSG_LEN(sizeof(int));
+    }
     ssize_t got = 0;
     do got = recvmsg(descriptor_, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
     while (got < 0 && errno == EINTR);
@@ -106,12 +111,12 @@ LocalConnection::Received LocalConnection::receive(std::span<char> into) const n
         received.what = later ? Received::What::nothing : Received::What::closed;
         return received;
     }
-    for (cmsghdr* header = CMSG_FIRSTHDR(&message); header != nullptr; header = CMSG_NXTHDR(&message, header))
-        if (header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS &&
-            header->cmsg_len == CMSG_LEN(sizeof(int)))
-            std::memcpy(&received.passed, CMSG_DATA(header), sizeof received.passed);
+    if (const cmsghdr* header = CMSG_FIRSTHDR(&message);
+        header != nullptr && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS)
+        std::memcpy(&received.passed, CMSG_DATA(header), sizeof received.passed);
     // The end of a connection reads like an empty packet; nobody here sends one.
     received.what = got == 0 ? Received::What::closed : Received::What::packet;
+    if (got == 0 && received.passed >= 0) ::close(std::exchange(received.passed, -1));
     received.bytes = std::min(static_cast<std::size_t>(got), into.size());
     received.cut = (message.msg_flags & MSG_TRUNC) != 0;
     return received;

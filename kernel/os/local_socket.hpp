@@ -32,6 +32,9 @@ struct Peer {
 [[nodiscard]] std::uint32_t own_user() noexcept;
 [[nodiscard]] std::int32_t own_process() noexcept;
 
+/// How many descriptors are taken with a packet. Whoever answers strangers takes none.
+enum class Passed : std::uint8_t { none, one };
+
 /// One end of a connection (AF_UNIX, SOCK_SEQPACKET: a packet arrives whole, in order, or not at all).
 /// Nothing of it blocks or allocates; each is a system call, so none is real-time.
 class LocalConnection {
@@ -69,7 +72,8 @@ public:
         bool cut = false;      ///< it was longer
         int passed = -1;       ///< a descriptor that came with it; the caller's to close
     };
-    [[nodiscard]] Received receive(std::span<char> into) const noexcept;
+    /// What the other end passes beyond `passed` never becomes a descriptor of this process.
+    [[nodiscard]] Received receive(std::span<char> into, Passed passed = Passed::none) const noexcept;
     /// Until a packet or the end is there; false after `milliseconds`.
     [[nodiscard]] bool wait(int milliseconds) const noexcept;
 

@@ -35,7 +35,6 @@ std::size_t read_all(const os::LocalConnection& client) {
     std::size_t packets = 0;
     while (true) {
         const auto received = client.receive(room);
-        if (received.passed >= 0) close(received.passed);
         if (received.what != os::LocalConnection::Received::What::packet) return packets;
         demand(received.bytes > 2 && room[0] == '{' && room[received.bytes - 1] == '\n');
         ++packets;

@@ -47,8 +47,6 @@ std::optional<std::string_view> Door::receive(Client& client, std::span<char> in
     using What = os::LocalConnection::Received::What;
     if (client.serial == 0) return std::nullopt;
     const auto received = client.connection.receive(into);
-    // Nobody is asked for files: what was passed is not kept.
-    if (received.passed >= 0) os::LocalConnection{received.passed}.close();
     if (received.what == What::closed) dismiss(client);
     if (received.what != What::packet) return std::nullopt;
     cut = received.cut;

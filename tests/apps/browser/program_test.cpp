@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <sstream>
 
 namespace tappet::browser {
@@ -51,6 +52,21 @@ TEST_F(Program, lists_components_and_their_facets) {
     EXPECT_THAT(one.out, HasSubstr("0 deg            of the main shaft"));
     EXPECT_THAT(run({"list", "shaft", "--json"}).out,
                 HasSubstr(R"("name": "shaft.angle", "kind": "output")"));
+}
+
+TEST_F(Program, keeps_no_descriptor_of_the_machine_beyond_the_end_of_its_session) {
+    const auto of_its_memory = [] {
+        std::size_t count = 0;
+        for (const auto& each : std::filesystem::directory_iterator{"/proc/self/fd"}) {
+            std::error_code gone;
+            count += std::filesystem::read_symlink(each, gone).string().find("memfd:") != std::string::npos;
+        }
+        return count;
+    };
+    EXPECT_EQ(run({"list"}).code, 0); // its first session may open what stays
+    const auto before = of_its_memory();
+    EXPECT_EQ(run({"list"}).code, 0);
+    EXPECT_EQ(of_its_memory(), before);
 }
 
 TEST_F(Program, says_that_a_machine_records_no_cycles_and_the_cure) {

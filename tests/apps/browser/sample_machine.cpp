@@ -342,7 +342,8 @@ void SampleMachine::reply(int client, std::string_view text) {
     for (std::string packet : packets) {
         if (const std::size_t at = packet.find('%'); at != std::string::npos) packet.replace(at, 1, number);
         iovec place{packet.data(), packet.size()};
-        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+        const std::array passed{memory_, memory_}; // one more than a browser wants
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof passed)> control{};
         msghdr message{};
         message.msg_iov = &place;
         message.msg_iovlen = 1;
@@ -352,8 +353,8 @@ void SampleMachine::reply(int client, std::string_view text) {
             cmsghdr* const header = CMSG_FIRSTHDR(&message);
             header->cmsg_level = SOL_SOCKET;
             header->cmsg_type = SCM_RIGHTS;
-            header->cmsg_len = CMSG_LEN(sizeof(int));
-            std::memcpy(CMSG_DATA(header), &memory_, sizeof(int));
+            header->cmsg_len = CMSG_LEN(sizeof passed);
+            std::memcpy(CMSG_DATA(header), passed.data(), sizeof passed);
         }
         static_cast<void>(::sendmsg(client, &message, MSG_NOSIGNAL));
     }

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
+#include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +20,34 @@ namespace {
 
 using What = LocalConnection::Received::What;
 using Sent = LocalConnection::Sent;
+
+/// How many descriptors this process holds.
+std::ptrdiff_t open_descriptors() {
+    std::filesystem::directory_iterator all{"/proc/self/fd"};
+    return std::distance(begin(all), end(all));
+}
+
+/// A packet with as many descriptors of one file, as only a foreign program sends it.
+bool send_with_descriptors(const LocalConnection& from, std::string_view packet, std::size_t count) {
+    const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    std::array<int, 8> passed{};
+    passed.fill(file);
+    iovec piece{const_cast<char*>(packet.data()), packet.size()};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof passed)] = {};
+    msghdr message{};
+    message.msg_iov = &piece;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = CMSG_SPACE(count * sizeof(int));
+    cmsghdr* header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(count * sizeof(int));
+    std::memcpy(CMSG_DATA(header), passed.data(), count * sizeof(int));
+    const bool sent = sendmsg(from.descriptor(), &message, 0) >= 0;
+    close(file);
+    return sent;
+}
 
 class LocalSocket : public testing::Test {
 protected:
@@ -68,11 +100,45 @@ TEST_F(LocalSocket, passes_a_descriptor) {
     std::array<int, 2> pipe_ends{};
     ASSERT_EQ(pipe(pipe_ends.data()), 0);
     EXPECT_EQ(server.send("{}", pipe_ends[1]), Sent::sent);
-    const auto received = client->receive(room);
+    const auto received = client->receive(room, Passed::one);
     ASSERT_GE(received.passed, 0);
     EXPECT_EQ(write(received.passed, "x", 1), 1);
     EXPECT_EQ(read(pipe_ends[0], room.data(), 1), 1);
     for (const int each : {received.passed, pipe_ends[0], pipe_ends[1]}) close(each);
+}
+
+TEST_F(LocalSocket, keeps_no_descriptor_that_nobody_asked_for) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const LocalConnection server = listener.accept();
+    const auto before = open_descriptors();
+    for (const std::size_t count : {1u, 2u, 8u}) {
+        ASSERT_TRUE(send_with_descriptors(*client, "1 hello", count));
+        const auto received = server.receive(room);
+        EXPECT_EQ(text(received), "1 hello") << "the packet itself counts";
+        EXPECT_EQ(received.passed, -1);
+        EXPECT_EQ(open_descriptors(), before) << count;
+    }
+}
+
+TEST_F(LocalSocket, takes_one_descriptor_at_most_however_many_are_passed) {
+    ASSERT_TRUE(listener.listen(path, 0600));
+    const auto client = LocalConnection::connect(path.c_str());
+    ASSERT_TRUE(client);
+    const LocalConnection server = listener.accept();
+    const auto before = open_descriptors();
+    for (const std::size_t count : {2u, 8u}) {
+        ASSERT_TRUE(send_with_descriptors(server, "{}", count));
+        const auto received = client->receive(room, Passed::one);
+        EXPECT_EQ(text(received), "{}");
+        ASSERT_GE(received.passed, 0);
+        close(received.passed);
+        EXPECT_EQ(open_descriptors(), before) << count;
+    }
+    ASSERT_TRUE(send_with_descriptors(server, "", 1));
+    EXPECT_EQ(client->receive(room, Passed::one).what, What::closed);
+    EXPECT_EQ(open_descriptors(), before) << "what came with an end that is none";
 }
 
 TEST_F(LocalSocket, says_when_a_packet_was_longer_than_the_room_for_it) {

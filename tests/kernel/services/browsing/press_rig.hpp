@@ -27,7 +27,8 @@ public:
     /// The next packet; empty when none waits.
     std::string receive(int* descriptor = nullptr) {
         std::string room(browsing::max_packet_bytes + 1, '\0');
-        const auto received = connection_->receive(room);
+        const auto received =
+            connection_->receive(room, descriptor != nullptr ? os::Passed::one : os::Passed::none);
         if (received.what != os::LocalConnection::Received::What::packet) return {};
         if (descriptor != nullptr) *descriptor = received.passed;
         room.resize(received.bytes);
