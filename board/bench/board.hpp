@@ -14,7 +14,7 @@ inline constexpr Board bench{
     .processors = 1, // the emulator counts instructions for one processor only
     .highest_priority = 80,
     .devices =
-        board_devices(board_device("loom-can", "can", "can0"),
+        board_devices(board_device("loom-can", "can", "can0", bit_rate(500'000)),
                       board_device("loom-io", "gpio", "/dev/loom-io", line("emergency_stop", 0),
                                    line("drop_wire", 1), line("weft_detector", 2), line("button_start", 3),
                                    line("button_stop", 4), line("button_acknowledge", 5),

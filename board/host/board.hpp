@@ -13,7 +13,7 @@ inline constexpr Board host{
     .processors = 1,
     .highest_priority = 80,
     .devices =
-        board_devices(board_device("loom-can", "can", "twin"),
+        board_devices(board_device("loom-can", "can", "twin", bit_rate(500'000)),
                       board_device("loom-io", "gpio", "twin", line("emergency_stop", 0), line("drop_wire", 1),
                                    line("weft_detector", 2), line("button_start", 3), line("button_stop", 4),
                                    line("button_acknowledge", 5), line("weft_release", 8), line("brake", 9),

@@ -20,7 +20,7 @@ inline constexpr Board ipc_x86_64{
     .placement = placements(place("can", 3), place("io", 3), place("utility", 0), place("console", 0),
                             place("scope", 0), place("browser", 0)),
     .devices = board_devices(
-        board_device("loom-can", "can", "can0"),
+        board_device("loom-can", "can", "can0", bit_rate(500'000)),
         // By the chip's label, as gpiodetect shows it: numbers follow the order in which drivers load.
         board_device("loom-io", "gpio", "gpio_it87", line("emergency_stop", 0), line("drop_wire", 1),
                      line("weft_detector", 2), line("button_start", 3), line("button_stop", 4),

@@ -10,13 +10,13 @@ namespace tappet::can {
 /// The owner's calls are real-time; `recovery` is also used by restart().
 class Controller {
 public:
-    /// Not real-time. Begins anew, whatever was before.
-    void configure(const Settings& settings) noexcept {
+    /// Not real-time. Begins anew, whatever was before; `state` is what the bus is in now, without a fault.
+    void configure(const Settings& settings, State state = State::active) noexcept {
         transmitter_ = {};
         transmitter_.configure(settings);
         transmit_ = settings.transmit;
         recovery.reset(settings.restarts_allowed);
-        state_ = State::active;
+        state_ = state;
         count = {};
     }
     Send accept(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {

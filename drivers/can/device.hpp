@@ -65,7 +65,7 @@ struct Settings {
     Duration max_age = 20ms;        ///< a frame older than this is not sent any more
     Duration confirm_within = 50ms; ///< an unconfirmed frame older than this is a fault
     std::uint32_t restarts_allowed = 3;
-    std::uint32_t bit_rate = 0;         ///< what the controller must be set to; 0: not checked
+    std::uint32_t bit_rate = 0;         ///< what the controller must be set to, as the board says
     int receive_buffer_bytes = 1 << 20; ///< the default of Linux holds 278 frames
 };
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace tappet::can {
 
@@ -18,6 +19,17 @@ enum class State : std::uint8_t {
     bus_off,        ///< the controller left the bus; it stays away until restart()
     down,           ///< the interface is down or gone
 };
+constexpr std::string_view to_text(State state) noexcept {
+    switch (state) {
+    case State::active: return "active";
+    case State::warning: return "warning";
+    case State::passive: return "passive";
+    case State::unacknowledged: return "unacknowledged";
+    case State::bus_off: return "bus-off";
+    case State::down: return "down";
+    }
+    return "unknown";
+}
 constexpr bool faulted(State state) noexcept { return state >= State::unacknowledged; }
 
 /// The contents of an error frame.

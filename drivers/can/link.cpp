@@ -1,64 +1,16 @@
-// rtnetlink by hand: two requests do not justify a library in the firmware.
+// What an interface's answer over rtnetlink says of it, attribute by attribute.
 #include "drivers/can/link.hpp"
 
-#include <array>
+#include "drivers/can/netlink.hpp"
+
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 #include <linux/can/netlink.h>
-#include <linux/rtnetlink.h>
 #include <net/if.h>
 #include <net/if_arp.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 namespace tappet::can {
 namespace {
-
-/// A netlink socket for one request and its answer.
-class Netlink {
-public:
-    Netlink() : fd_{::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE)} {
-        const timeval patience{2, 0};
-        if (fd_ >= 0) ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    }
-    Netlink(const Netlink&) = delete;
-    Netlink& operator=(const Netlink&) = delete;
-    ~Netlink() {
-        if (fd_ >= 0) ::close(fd_);
-    }
-    /// 0 and the answer in the buffer, or an errno.
-    int ask(ifinfomsg what, std::uint16_t type, std::uint16_t flags) {
-        struct {
-            nlmsghdr header;
-            ifinfomsg info;
-        } request{};
-        request.header.nlmsg_len = sizeof request;
-        request.header.nlmsg_type = type;
-        request.header.nlmsg_flags = static_cast<std::uint16_t>(NLM_F_REQUEST | flags);
-        request.info = what;
-        if (fd_ < 0) return errno;
-        if (::send(fd_, &request, sizeof request, 0) < 0) return errno;
-        const ssize_t n = ::recv(fd_, buffer_.data(), buffer_.size(), 0);
-        if (n < 0) return errno;
-        length_ = static_cast<std::size_t>(n);
-        nlmsghdr header{};
-        if (length_ < sizeof header) return EPROTO;
-        std::memcpy(&header, buffer_.data(), sizeof header);
-        if (header.nlmsg_type != NLMSG_ERROR) return 0;
-        nlmsgerr error{};
-        if (length_ < sizeof header + sizeof error) return EPROTO;
-        std::memcpy(&error, buffer_.data() + sizeof header, sizeof error);
-        return -error.error;
-    }
-    [[nodiscard]] const std::byte* data() const { return buffer_.data(); }
-    [[nodiscard]] std::size_t length() const { return length_; }
-
-private:
-    int fd_;
-    std::array<std::byte, 16384> buffer_{};
-    std::size_t length_ = 0;
-};
 
 /// Calls visit(type, payload, length) for each attribute; stops at the first that does not fit.
 template <class Visit> void each_attribute(const std::byte* at, std::size_t left, Visit visit) {
@@ -75,10 +27,24 @@ template <class Visit> void each_attribute(const std::byte* at, std::size_t left
     }
 }
 
+State to_state(std::uint32_t told) {
+    switch (told) {
+    case CAN_STATE_ERROR_ACTIVE: return State::active;
+    case CAN_STATE_ERROR_WARNING: return State::warning;
+    case CAN_STATE_ERROR_PASSIVE: return State::passive;
+    case CAN_STATE_BUS_OFF: return State::bus_off;
+    default: return State::down; // stopped, sleeping
+    }
+}
+
 void read_can_attributes(const std::byte* at, std::size_t left, Link& link) {
     each_attribute(at, left, [&](int type, const std::byte* payload, std::size_t length) {
         if (type == IFLA_CAN_RESTART_MS && length >= sizeof link.restart_ms)
             std::memcpy(&link.restart_ms, payload, sizeof link.restart_ms);
+        if (std::uint32_t told = 0; type == IFLA_CAN_STATE && length >= sizeof told) {
+            std::memcpy(&told, payload, sizeof told);
+            link.state = to_state(told);
+        }
         can_bittiming timing{};
         if (type == IFLA_CAN_BITTIMING && length >= sizeof timing) {
             std::memcpy(&timing, payload, sizeof timing);
@@ -100,6 +66,27 @@ void read_link_info(const std::byte* at, std::size_t left, Link& link) {
 
 } // namespace
 
+std::expected<Link, Sentence> read_link(std::string_view interface, std::span<const std::byte> answer) {
+    const Sentence who{"CAN interface \"", interface, "\""};
+    ifinfomsg info{};
+    constexpr std::size_t head = sizeof(nlmsghdr) + sizeof info;
+    if (answer.size() < head)
+        return std::unexpected{
+            Sentence{who, " gave a short answer over rtnetlink; is this kernel supported?"}};
+    std::memcpy(&info, answer.data() + sizeof(nlmsghdr), sizeof info);
+    if (info.ifi_type != ARPHRD_CAN)
+        return std::unexpected{
+            Sentence{who, " is no CAN interface; name another in the board (ip link show type can)"}};
+    Link link;
+    link.index = info.ifi_index;
+    link.up = (info.ifi_flags & IFF_UP) != 0;
+    each_attribute(answer.data() + head, answer.size() - head,
+                   [&](int type, const std::byte* payload, std::size_t length) {
+                       if (type == IFLA_LINKINFO) read_link_info(payload, length, link);
+                   });
+    return link;
+}
+
 std::expected<Link, Sentence> find_link(std::string_view interface) {
     const Sentence who{"CAN interface \"", interface, "\""};
     char name[IFNAMSIZ] = {};
@@ -107,34 +94,42 @@ std::expected<Link, Sentence> find_link(std::string_view interface) {
         return std::unexpected{
             Sentence{who, " cannot exist: a name has 1 to 15 letters; correct it in the board"}};
     interface.copy(name, interface.size());
-    Link link;
-    link.index = static_cast<int>(::if_nametoindex(name));
-    if (link.index == 0)
+    ifinfomsg what{};
+    what.ifi_family = AF_UNSPEC;
+    what.ifi_index = static_cast<int>(::if_nametoindex(name));
+    if (what.ifi_index == 0)
         return std::unexpected{
             Sentence{who, " does not exist: create it (ip link add dev ", interface,
                      " type vcan, or load its controller's driver) or name another in the board"}};
     Netlink netlink;
-    ifinfomsg what{};
-    what.ifi_family = AF_UNSPEC;
-    what.ifi_index = link.index;
     if (const int error = netlink.ask(what, RTM_GETLINK, 0))
         return std::unexpected{Sentence{who, " cannot be asked for its settings: ", strerrordesc_np(error),
                                         "; the kernel must offer rtnetlink"}};
-    ifinfomsg info{};
-    constexpr std::size_t head = sizeof(nlmsghdr) + sizeof info;
-    if (netlink.length() < head)
+    return read_link(interface, netlink.data());
+}
+
+std::expected<void, Sentence> fit(const Link& link, std::string_view interface, std::uint32_t bit_rate) {
+    const Sentence who{"CAN interface \"", interface, "\""};
+    if (!link.up)
+        return std::unexpected{Sentence{who, " is down: set it up (ip link set ", interface, " up",
+                                        link.is_virtual ? "" : ", after its bitrate is set", ")"}};
+    if (link.restart_ms != 0)
         return std::unexpected{
-            Sentence{who, " gave a short answer over rtnetlink; is this kernel supported?"}};
-    std::memcpy(&info, netlink.data() + sizeof(nlmsghdr), sizeof info);
-    if (info.ifi_type != ARPHRD_CAN)
+            Sentence{who, " restarts by itself ", link.restart_ms,
+                     " ms after bus-off, and a machine restarts it deliberately: set restart-ms 0"}};
+    if (bit_rate == 0)
         return std::unexpected{
-            Sentence{who, " is no CAN interface; name another in the board (ip link show type can)"}};
-    link.up = (info.ifi_flags & IFF_UP) != 0;
-    each_attribute(netlink.data() + head, netlink.length() - head,
-                   [&](int type, const std::byte* payload, std::size_t length) {
-                       if (type == IFLA_LINKINFO) read_link_info(payload, length, link);
-                   });
-    return link;
+            Sentence{who, " is opened without its bit rate: the board says it, bit_rate(500'000)"}};
+    if (!link.is_virtual && link.bit_rate != bit_rate)
+        return std::unexpected{Sentence{who, " runs at ", link.bit_rate, " bit/s, the board says ", bit_rate,
+                                        ": correct one of them (ip link set ", interface,
+                                        " type can bitrate ...)"}};
+    if (faulted(link.state))
+        return std::unexpected{Sentence{who, link.state == State::bus_off ? " is bus-off" : " is stopped",
+                                        ": look at its wiring and at the other nodes' power, then restart it "
+                                        "(ip link set ",
+                                        interface, " down, and up)"}};
+    return {};
 }
 
 std::expected<void, Sentence> restart_link(const Link& link) {

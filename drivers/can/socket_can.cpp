@@ -81,23 +81,18 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings) {
     const auto link = find_link(settings.interface);
     if (!link) return std::unexpected{link.error()};
     const std::string_view name = settings.interface;
-    if (!link->up)
-        return std::unexpected{Sentence{"CAN interface \"", name, "\" is down: set it up (ip link set ", name,
-                                        " up", link->is_virtual ? "" : ", after its bitrate is set", ")"}};
-    if (link->restart_ms != 0)
-        return std::unexpected{
-            Sentence{"CAN interface \"", name, "\" restarts by itself ", link->restart_ms,
-                     " ms after bus-off, and a machine restarts it deliberately: set restart-ms 0"}};
-    if (settings.bit_rate != 0 && !link->is_virtual && link->bit_rate != settings.bit_rate)
-        return std::unexpected{Sentence{
-            "CAN interface \"", name, "\" runs at ", link->bit_rate, " bit/s, the board says ",
-            settings.bit_rate, ": correct one of them (ip link set ", name, " type can bitrate ...)"}};
+    if (auto good = fit(*link, name, settings.bit_rate); !good) return good;
     fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
     if (fd_ < 0)
         return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
     link_ = *link;
     drops_seen_ = 0;
-    controller_.configure(settings);
+    controller_.configure(settings, link->state);
+    found_ = Sentence{"CAN interface \"", name, "\" "};
+    if (link->is_virtual)
+        found_.add("is virtual: it has no bit rate to compare with the board's ").add(settings.bit_rate);
+    else
+        found_.add("runs at ").add(link->bit_rate).add(" bit/s, error ").add(to_text(link->state));
     auto done = set_options(settings);
     if (done) {
         sockaddr_can address{};

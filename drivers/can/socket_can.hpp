@@ -16,6 +16,8 @@ public:
     /// Not real-time. The spans in `settings` must outlive the device. On failure nothing stays open, and the
     /// error says what is wrong and how to cure it.
     std::expected<void, Sentence> open(const Settings& settings);
+    /// What open() saw of the interface and its bus, for the report of arming.
+    [[nodiscard]] const Sentence& found() const noexcept { return found_; }
     /// Not real-time. Drops what waits and leaves the bus.
     void close() noexcept;
 
@@ -41,6 +43,7 @@ private:
 
     int fd_ = -1;
     Link link_{};
+    Sentence found_{};
     std::uint32_t drops_seen_ = 0;
     Controller controller_{};
 };

@@ -17,11 +17,17 @@ struct BoardLine {
     unsigned offset = 0;
 };
 
+/// What a CAN bus of the box is wired and terminated for, in bit/s.
+struct BitRate {
+    std::uint32_t bits_per_second = 0;
+};
+
 struct BoardDevice {
     std::string_view name{};    ///< logical: what the machine table says
     std::string_view kind{};    ///< "can", "gpio", "modbus": of the component that may drive it
     std::string_view address{}; ///< "can0", "/dev/gpiochip0", "192.168.7.2:502", "/dev/ttyS1:19200:8E1"
     Bounded<BoardLine, 64> lines{};
+    BitRate bit_rate{}; ///< of a "can" device, which must say it
 };
 
 /// The processor an activity is bound to, by the activity's name.
@@ -75,15 +81,28 @@ struct Board {
     BoardBrowsing browsing{};
 };
 
-template <class... Lines>
+namespace detail {
+
+constexpr void add(BoardDevice& device, const BoardLine& line) { static_cast<void>(device.lines.push(line)); }
+constexpr void add(BoardDevice& device, BitRate rate) { device.bit_rate = rate; }
+
+} // namespace detail
+
+/// board_device("loom-can", "can", "can0", bit_rate(500'000)),
+/// board_device("loom-io", "gpio", "/dev/gpiochip0", line("brake", 9), ...)
+template <class... Facts>
 constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address,
-                                   Lines... lines) {
-    BoardDevice device{name, kind, address, {}};
-    (static_cast<void>(device.lines.push(lines)), ...);
+                                   const Facts&... facts) {
+    BoardDevice device;
+    device.name = name;
+    device.kind = kind;
+    device.address = address;
+    (detail::add(device, facts), ...);
     return device;
 }
 
 constexpr BoardLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
+constexpr BitRate bit_rate(std::uint32_t bits_per_second) noexcept { return {bits_per_second}; }
 
 constexpr BoardPlacement place(std::string_view activity, int processor) noexcept {
     return {activity, processor};

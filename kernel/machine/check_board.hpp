@@ -31,6 +31,10 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board) {
             return of_component(row.name, " drives a ", row.type->device_kind, " device but \"", row.device,
                                 "\" of board \"", board.name, "\" is of kind ", device->kind,
                                 "; name another");
+        if (device->kind == "can" && device->bit_rate.bits_per_second == 0)
+            return of_component(
+                row.name, ": device \"", row.device, "\" of board \"", board.name,
+                "\" states no bit rate; add bit_rate(500'000), or what its bus runs at, to it");
         for (std::size_t j = 0; j < c; ++j)
             if (m.components[j].device == row.device && !row.type->shares_device &&
                 !m.components[j].type->shares_device)

@@ -40,6 +40,7 @@ std::expected<void, Sentence> Devices::open(const Board& board) {
 std::expected<void, Sentence> Devices::open_can(const BoardDevice& device) {
     can::Settings settings;
     settings.interface = device.address;
+    settings.bit_rate = device.bit_rate.bits_per_second;
     settings.receive = can_signals.receives();
     settings.transmit = can_signals.transmits();
     return can_.open(settings);

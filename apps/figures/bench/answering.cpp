@@ -107,7 +107,8 @@ int run(int count, char** words) {
     static can::SocketCan can;
     static gpio::Lines io;
     can::Settings on_bus;
-    on_bus.interface = "can0";
+    on_bus.interface = board.devices[0].address;
+    on_bus.bit_rate = board.devices[0].bit_rate.bits_per_second;
     on_bus.receive = signals.receives();
     on_bus.transmit = signals.transmits();
     if (const auto opened = can.open(on_bus); !opened) return fail(opened.error().letters);

@@ -67,7 +67,7 @@ inline constexpr auto table = machine("answering",
 
 inline constexpr Board board{
     .name = "bench", .world = "bench", .memory_budget_bytes = 4 * 1024 * 1024, .processors = 1, .highest_priority = 80,
-    .devices = board_devices(board_device("can", "can", "can0"),
+    .devices = board_devices(board_device("can", "can", "can0", bit_rate(500'000)),
                              board_device("io", "gpio", "/dev/panel", line("in", wire::in), line("out", wire::out))),
     .only_warned = warn_only("clock-source", "cpu-governor", "heap-sealed")};
 // clang-format on

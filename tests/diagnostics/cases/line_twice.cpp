@@ -6,10 +6,10 @@ using namespace small;
 constexpr Board other_board{
     .name = "old box",
     .memory_budget_bytes = 1'000'000,
-    .devices = {
-        {{board_device("main_encoder", "can", "can0"), board_device("hall", "modbus", "192.168.7.2:502"),
-          board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("green", 4))}},
-        3}};
+    .devices = {{{board_device("main_encoder", "can", "can0", bit_rate(500'000)),
+                  board_device("hall", "modbus", "192.168.7.2:502"),
+                  board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("green", 4))}},
+                3}};
 
 constexpr auto table =
     loom(good_components, good_activities, good_connections, good_reactions, good_behaviours);

@@ -39,7 +39,7 @@ Frame frame(std::uint32_t id, Time made = now()) {
 }
 
 struct RealCan : testing::Test {
-    Settings settings{.interface = "can0", .receive = receives, .transmit = sends};
+    Settings settings{.interface = "can0", .receive = receives, .transmit = sends, .bit_rate = 500'000};
     SocketCan can;
     void open() {
         const auto opened = can.open(settings);
