@@ -19,6 +19,8 @@ timespec to_timespec(std::int64_t ns) noexcept TAPPET_REALTIME {
     return {static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
 }
 
+constexpr short hang_up = POLLERR | POLLHUP | POLLNVAL; // poll tells them unasked, and at once
+
 } // namespace
 
 Waiter::~Waiter() {
@@ -62,9 +64,22 @@ bool Waiter::wait_without_devices(Time until) noexcept TAPPET_REALTIME {
     return take() || wait_on_devices(0, until);
 }
 
+// An error that its driver has taken since is gone: then the device is watched as before.
+void Waiter::leave_out_hung(pollfd* polled, std::size_t count) noexcept TAPPET_REALTIME {
+    const timespec at_once{};
+    TAPPET_ESCAPE("a look that does not wait", ppoll(polled, count, &at_once, nullptr));
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool still = (polled[i].revents & hang_up) != 0;
+        if (!still) hung_ &= ~(1u << i);
+        if (still && (hung_ >> i & 1u) != 0) polled[i].fd = -1; // which poll passes over
+        polled[i].revents = 0;
+    }
+}
+
 bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME {
     pollfd polled[max_devices + 1] = {};
     for (std::size_t i = 0; i < count; ++i) polled[i] = {devices_[i], POLLIN, 0};
+    if (hung_ != 0) leave_out_hung(polled, count);
     polled[count] = {wake_descriptor_, POLLIN, 0};
     std::uint32_t expected = idle;
     if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) { // waiter.doze
@@ -74,7 +89,10 @@ bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REAL
                       ppoll(polled, count + 1, until == never ? nullptr : &timeout, nullptr));
     }
     bool ready = take();
-    for (std::size_t i = 0; i < count; ++i) ready |= polled[i].revents != 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        ready |= polled[i].revents != 0;
+        if ((polled[i].revents & hang_up) != 0) hung_ |= 1u << i;
+    }
     if (polled[count].revents != 0) {
         std::uint64_t wakes = 0;
         TAPPET_ESCAPE("taking the wake",

@@ -9,6 +9,8 @@
 #include <atomic>
 #include <cstdint>
 
+struct pollfd;
+
 namespace tappet::os {
 
 /// Waking is one atomic exchange and, only when the waiter sleeps, one system call. No wake is lost: a wake
@@ -23,7 +25,8 @@ public:
     ~Waiter();
 
     /// Sleep on this file descriptor too. Not real-time; before the first wait. False when there are too
-    /// many.
+    /// many. One that hangs up or has an error ends a wait once, and none after it until its driver has taken
+    /// the error: a chip that was removed would make its activity spin at its priority.
     [[nodiscard]] bool watch(int descriptor) noexcept;
 
     /// Wakes the waiting thread, or the next wait. Real-time, from any thread.
@@ -60,8 +63,11 @@ private:
     /// On the first `count` of them, and on the wake.
     bool wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME;
 
+    void leave_out_hung(pollfd* polled, std::size_t count) noexcept TAPPET_REALTIME;
+
     alignas(64) std::atomic<std::uint32_t> state_{idle};
     Bounded<int, max_devices> devices_{};
+    std::uint32_t hung_ = 0;   // a bit for each device: told, and not taken since
     int wake_descriptor_ = -1; // an eventfd, made when the first device is watched
 };
 

@@ -1,12 +1,18 @@
 // The wait of an activity: what ends it, and what does not.
 #include "kernel/os/waiter.hpp"
 
+#include "kernel/os/clock.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <thread>
+#include <utility>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 namespace tappet::os {
@@ -47,6 +53,81 @@ TEST(Waiter, does_not_return_for_a_ready_device_while_it_waits_for_a_wake_alone)
     waiter.wake();
     sleeper.join();
     EXPECT_TRUE(waiter.wait(never)) << "the device has not been forgotten";
+}
+
+TEST(Waiter, returns_once_for_a_device_that_hangs_up_and_does_not_spin_on_it) {
+    ReadyDevice gone;
+    char taken = 0;
+    ASSERT_EQ(::read(gone.ends[0], &taken, 1), 1);
+    ::close(std::exchange(gone.ends[1], -1));
+    Waiter waiter;
+    ASSERT_TRUE(waiter.watch(gone.ends[0]));
+    int returns = 0;
+    for (int i = 0; i < 50; ++i) returns += waiter.wait(Clock::monotonic() + 1ms) ? 1 : 0;
+    EXPECT_EQ(returns, 1);
+    const ReadyDevice other;
+    ASSERT_TRUE(waiter.watch(other.ends[0]));
+    EXPECT_TRUE(waiter.wait(never)) << "the others are watched as before";
+    waiter.wake();
+    EXPECT_TRUE(waiter.wait(never));
+}
+
+/// A socket of the loopback, alone or connected to another's port.
+struct Datagrams {
+    int descriptor = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    Datagrams() {
+        sockaddr_in anywhere = at(0);
+        EXPECT_EQ(::bind(descriptor, reinterpret_cast<sockaddr*>(&anywhere), sizeof anywhere), 0);
+    }
+    ~Datagrams() { ::close(descriptor); }
+    Datagrams(const Datagrams&) = delete;
+    Datagrams& operator=(const Datagrams&) = delete;
+    static sockaddr_in at(std::uint16_t port_in_network_order) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = port_in_network_order;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        return address;
+    }
+    [[nodiscard]] std::uint16_t port() const {
+        sockaddr_in own{};
+        socklen_t size = sizeof own;
+        EXPECT_EQ(::getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size), 0);
+        return own.sin_port;
+    }
+    void connect_to(std::uint16_t port) const {
+        sockaddr_in address = at(port);
+        EXPECT_EQ(::connect(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    }
+};
+
+TEST(Waiter, watches_a_device_again_once_its_driver_took_the_error) {
+    const Datagrams device; // as a CAN socket whose interface goes down and comes back
+    {
+        const Datagrams nobody;
+        device.connect_to(nobody.port());
+    }
+    ASSERT_EQ(::send(device.descriptor, "x", 1, 0), 1); // refused: the socket remembers it as an error
+    Waiter waiter;
+    ASSERT_TRUE(waiter.watch(device.descriptor));
+    EXPECT_TRUE(waiter.wait(never));
+    EXPECT_FALSE(waiter.wait(Clock::monotonic() + 1ms)) << "nobody took it";
+    int told = 0;
+    socklen_t size = sizeof told;
+    ASSERT_EQ(::getsockopt(device.descriptor, SOL_SOCKET, SO_ERROR, &told, &size), 0);
+    ASSERT_EQ(told, ECONNREFUSED);
+    EXPECT_FALSE(waiter.wait(Clock::monotonic() + 1ms)) << "it has nothing to say";
+    {
+        const Datagrams other;
+        device.connect_to(other.port());
+        other.connect_to(device.port());
+        ASSERT_EQ(::send(other.descriptor, "x", 1, 0), 1);
+        EXPECT_TRUE(waiter.wait(never));
+        char taken = 0;
+        ASSERT_EQ(::recv(device.descriptor, &taken, 1, 0), 1);
+    }
+    ASSERT_EQ(::send(device.descriptor, "x", 1, 0), 1);
+    EXPECT_TRUE(waiter.wait(Clock::monotonic() + 10s)) << "a new error is told anew";
 }
 
 TEST(Waiter, takes_a_wake_that_came_before_the_wait) {
