@@ -49,7 +49,11 @@ template <const auto& map> struct LineNames {
 /// read anew; one that differs from what the edges said is told as an edge of that moment, and the true edge,
 /// should it come after all, is not told again.
 ///
-/// After stop every output has its safe value and keeps it.
+/// A call that the chip refuses, be it to write or to read, is a fault: `faulted` and `line_fault` tell it.
+/// What was asked of an output last is written as soon as the chip takes it; a faulted port looks for that
+/// every now and then and rests in between.
+///
+/// At start, as after stop, every output has its safe value; after stop it keeps it.
 template <const auto& map> struct LinePort {
     static_assert(map.fault.empty(), "the line map is refused: its member `fault` says why");
     static constexpr std::size_t count = map.rows.size();
@@ -57,6 +61,7 @@ template <const auto& map> struct LinePort {
     static constexpr std::span<const std::string_view> device_lines() { return LineNames<map>::plain; }
     static constexpr std::size_t edges_per_cycle = 64;
     static constexpr std::size_t most_batches_before_start = 32; ///< twice what the kernel's buffer holds
+    static constexpr Duration look_while_faulted = 20ms;
 
     std::array<Output<bool>, count> level{};
     std::array<Event<Time>, count> rises{};
@@ -64,6 +69,9 @@ template <const auto& map> struct LinePort {
     std::array<Input<bool>, count> wanted{};
     Output<std::int64_t> edges_lost{};
     Event<> edges_were_lost{};
+    Output<bool> is_faulted{};
+    Event<> line_fault{};
+    Timer next_look{};
 
     Sentence configure(Setup& setup) {
         device_ = setup.device<Device>();
@@ -79,11 +87,18 @@ template <const auto& map> struct LinePort {
     }
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        stopped_ = known_ = doubtful_ = faulted_ = false;
+        levels_ = from_reading_ = 0;
+        lost_ = 0;
+        failures_ = device_->counters().failures;
         edges_lost.write(0);
+        is_faulted.write(false);
+        drive(outputs, safe_values);
         // What happened before the start is told by the levels, not by edges of another time.
         for (std::size_t n = 0; n < most_batches_before_start; ++n)
             if (device_->read_edges(edges_).count < edges_.size()) break;
         read_levels(cycle.now);
+        judge(cycle.now);
         waiter_->wake(); // for what arrives in between
     }
 
@@ -99,35 +114,46 @@ template <const auto& map> struct LinePort {
             take(edges_[i]);
         }
         if (!loss_told) tell_loss(batch.gap.missed);
+        doubtful_ |= faulted_; // whether the chip answers again
         if (n == edges_.size())
             waiter_->wake();
         else if (doubtful_)
             read_levels(cycle.now);
         write_outputs();
+        judge(cycle.now);
     }
 
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         stopped_ = true;
-        static_cast<void>(device_->make_safe());
+        drive(outputs, safe_values);
+        judge(cycle.now);
     }
 
-    template <std::size_t line> void set() noexcept TAPPET_REALTIME {
-        if (!stopped_) static_cast<void>(device_->write(Mask{1} << line, Mask{1} << line));
-    }
-    template <std::size_t line> void clear() noexcept TAPPET_REALTIME {
-        if (!stopped_) static_cast<void>(device_->write(Mask{1} << line, 0));
-    }
+    template <std::size_t line> void set() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, true); }
+    template <std::size_t line> void clear() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, false); }
 
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
 
     static constexpr auto interface() { return list(std::make_index_sequence<count>{}); }
 
 private:
+    static constexpr Mask outputs = [] {
+        Mask mask = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            if (map.rows[i].line.role == Role::output) mask |= Mask{1} << i;
+        return mask;
+    }();
+    static constexpr Mask safe_values = [] {
+        Mask mask = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            if (map.rows[i].line.safe_value) mask |= outputs & Mask{1} << i;
+        return mask;
+    }();
     static constexpr std::size_t facets_of(std::size_t i) noexcept {
         return map.rows[i].line.role == Role::input ? 3 : map.rows[i].driven == Driven::by_port ? 1 : 2;
     }
     static constexpr std::size_t facet_count = [] {
-        std::size_t n = 2;
+        std::size_t n = 5;
         for (std::size_t i = 0; i < count; ++i) n += facets_of(i);
         return n;
     }();
@@ -140,6 +166,11 @@ private:
                                                  "edges the kernel could not deliver, since start");
         all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost",
                                                              "edges were lost; the levels were read anew");
+        all[n++] = output<&LinePort::is_faulted>("faulted", "",
+                                                 "the chip refuses what is asked of it; written on change");
+        all[n++] = tappet::event<&LinePort::line_fault>("line_fault", "the lines can no longer be relied on");
+        all[n++] =
+            timer<&LinePort::next_look, &LinePort::step>("next_look", "whether a faulted chip answers again");
         return all;
     }
 
@@ -257,13 +288,37 @@ private:
             bool value = false;
             // Stale: the row's own answer, which is the last value or its substitute.
             if (wanted[i].read(value) == Flow::never_written) continue;
-            if (bit(written_, i) && bit(driven_, i) == value) continue;
+            if (bit(driven_, i) == value) continue;
             mask |= Mask{1} << i;
             values = with_bit(values, i, value);
         }
-        if (mask == 0 || !device_->write(mask, values)) return; // refused: tried again in the next cycle
-        written_ |= mask;
-        driven_ = (driven_ & ~mask) | values;
+        drive(mask, values);
+    }
+
+    void actuate(Mask line, bool active) noexcept TAPPET_REALTIME {
+        if (stopped_) return;
+        drive(line, active ? line : 0);
+        judge(clock_->now());
+    }
+
+    /// With it, all that was refused before.
+    void drive(Mask mask, Mask values) noexcept TAPPET_REALTIME {
+        refused_ |= mask;
+        driven_ = (driven_ & ~mask) | (values & mask);
+        if (refused_ != 0 && device_->write(refused_, driven_)) refused_ = 0;
+    }
+
+    /// After calls of the device: a fault lasts until it refuses nothing, and the outputs and levels are
+    /// known.
+    void judge(Time now) noexcept TAPPET_REALTIME {
+        const std::uint64_t failures = device_->counters().failures;
+        const bool bad = failures != failures_ || (faulted_ && (doubtful_ || refused_ != 0));
+        failures_ = failures;
+        next_look.arm(bad ? now + look_while_faulted : never);
+        if (bad == faulted_) return;
+        faulted_ = bad;
+        is_faulted.write(bad);
+        if (bad) line_fault.emit();
     }
 
     std::array<Edge, edges_per_cycle> edges_{};
@@ -273,12 +328,14 @@ private:
     Time read_at_{};        // the levels, last
     Mask levels_ = 0;       // as told
     Mask from_reading_ = 0; // told from the levels, and no edge came since
-    Mask written_ = 0;      // outputs that were written once
-    Mask driven_ = 0;       // and their values
+    Mask driven_ = 0;       // what was asked of the outputs
+    Mask refused_ = 0;      // and of which of them the chip did not take it
     bool known_ = false;    // the levels were read once
     bool doubtful_ = false; // edges were lost since, or the levels could not be read
+    bool faulted_ = false;
     bool stopped_ = false;
     std::int64_t lost_ = 0;
+    std::uint64_t failures_ = 0; // the device's, when it was looked at last
 };
 
 } // namespace tappet::gpio

@@ -19,6 +19,7 @@ void Twin::set_listener(Listener ready, void* context) noexcept {
 
 EdgeBatch Twin::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
     EdgeBatch batch;
+    if (refuses()) return batch;
     Edge edge;
     while (batch.count < edges.size() && edges_.pop(edge)) {
         edge.missed = sequence_.missed_before(edge.seqno);
@@ -30,18 +31,21 @@ EdgeBatch Twin::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
     if (batch.gap.missed != 0) {
         ++count_.gaps;
         count_.missed += batch.gap.missed;
-        batch.gap.levels_known = true;
-        batch.gap.levels = levels().mask;
+        const Levels now = levels();
+        batch.gap.levels_known = now.known;
+        batch.gap.levels = now.mask;
     }
     return batch;
 }
 
 Levels Twin::levels() noexcept TAPPET_REALTIME {
+    if (refuses()) return {};
     const Mask outputs = driven_.load(std::memory_order_relaxed);
     return {.known = true, .mask = inputs_.load(std::memory_order_acquire) | outputs};
 }
 
 bool Twin::write(Mask mask, Mask values) noexcept TAPPET_REALTIME {
+    if (refuses()) return false;
     const Mask chosen = mask & plan_.outputs;
     const Mask before = driven_.load(std::memory_order_relaxed);
     driven_.store((before & ~chosen) | (values & chosen), std::memory_order_release);

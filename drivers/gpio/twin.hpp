@@ -50,6 +50,12 @@ public:
     [[nodiscard]] Mask outputs() const noexcept TAPPET_REALTIME {
         return driven_.load(std::memory_order_acquire);
     }
+    /// Fault: the chip is gone. Writes are refused and change no output, levels are unknown, reads fail; the
+    /// listener is told, as a descriptor hangs up. Or it is back, as it was, and nobody is told.
+    void set_removed(bool removed) noexcept TAPPET_REALTIME {
+        removed_.store(removed, std::memory_order_release);
+        arrived_ |= removed;
+    }
     LineFaults& faults(std::size_t line) noexcept TAPPET_REALTIME { return faults_[line]; }
     /// The input stays at this level whatever drives it, until released.
     void stick(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
@@ -68,6 +74,12 @@ private:
         Time due{};
         bool operator==(const Late&) const = default;
     };
+    /// True, and counted, when the chip refuses the machine's call.
+    [[nodiscard]] bool refuses() noexcept TAPPET_REALTIME {
+        const bool removed = removed_.load(std::memory_order_acquire);
+        count_.failures += removed ? 1u : 0u;
+        return removed;
+    }
     bool schedule(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool next_change(Time now, Change& change) noexcept TAPPET_REALTIME;
     void settle(Time now) noexcept TAPPET_REALTIME;
@@ -80,6 +92,7 @@ private:
     twin::Ring<Edge, event_buffer> edges_{};
     std::atomic<Mask> inputs_{0};
     std::atomic<Mask> driven_{0};
+    std::atomic<bool> removed_{false};
     EdgeSequence sequence_{}; // the machine's
     Counters count_{};        // the machine's
     // The plant's.

@@ -28,6 +28,7 @@ struct Listener {
     Input<bool> stop_level{};
     Input<bool> weft_level{};
     Input<std::int64_t> lost{};
+    Input<bool> faulted{};
     Output<bool> lamp_wanted{};
     Event<> open{};
     Event<> close{};
@@ -36,7 +37,10 @@ struct Listener {
     Bounded<Heard, 512> heard{};
     int lamp_next = -1; // 0, 1: written in the next cycle
     bool opens = false;
+    bool closes = false;
+    int faults = 0;
 
+    void on_fault() noexcept TAPPET_REALTIME { ++faults; }
     void note(What what, Time when) noexcept TAPPET_REALTIME { static_cast<void>(heard.push({what, when})); }
     void stop_rose(Time when) noexcept TAPPET_REALTIME { note(What::stop_rose, when); }
     void stop_fell(Time when) noexcept TAPPET_REALTIME { note(What::stop_fell, when); }
@@ -52,18 +56,21 @@ struct Listener {
             let_go.emit();
         }
         opens = false;
+        if (closes) close.emit();
+        closes = false;
     }
     static constexpr auto interface() {
-        return facets(input<&Listener::stop_level>("stop_level", "", ""),
-                      input<&Listener::weft_level>("weft_level", "", ""),
-                      input<&Listener::lost>("lost", "", ""), output<&Listener::lamp_wanted>("lamp", "", ""),
-                      event<&Listener::open>("open", ""), event<&Listener::close>("close", ""),
-                      event<&Listener::hold>("hold", ""), event<&Listener::let_go>("let_go", ""),
-                      operation<&Listener::stop_rose>("stop_rose", ""),
-                      operation<&Listener::stop_fell>("stop_fell", ""),
-                      operation<&Listener::weft_rose>("weft_rose", ""),
-                      operation<&Listener::weft_fell>("weft_fell", ""),
-                      operation<&Listener::edges_lost>("edges_lost", ""));
+        return facets(
+            input<&Listener::stop_level>("stop_level", "", ""),
+            input<&Listener::weft_level>("weft_level", "", ""), input<&Listener::lost>("lost", "", ""),
+            output<&Listener::lamp_wanted>("lamp", "", ""), event<&Listener::open>("open", ""),
+            event<&Listener::close>("close", ""), event<&Listener::hold>("hold", ""),
+            event<&Listener::let_go>("let_go", ""), operation<&Listener::stop_rose>("stop_rose", ""),
+            operation<&Listener::stop_fell>("stop_fell", ""),
+            operation<&Listener::weft_rose>("weft_rose", ""),
+            operation<&Listener::weft_fell>("weft_fell", ""),
+            operation<&Listener::edges_lost>("edges_lost", ""), input<&Listener::faulted>("faulted", "", ""),
+            operation<&Listener::on_fault>("on_fault", ""));
     }
 };
 using What = Listener::What;
@@ -82,6 +89,7 @@ inline constexpr auto line_machine = machine("line-machine",
         data("io.stop_button", "listener.stop_level"),
         data("io.weft",        "listener.weft_level"),
         data("io.edges_lost",  "listener.lost"),
+        data("io.faulted",     "listener.faulted"),
         data("listener.lamp",  "io.lamp", wakes, stale_after(50ms), substitute(0))),
     reactions(
         when("io.stop_button.rises", tell("listener.stop_rose", queue(256))),
@@ -89,6 +97,7 @@ inline constexpr auto line_machine = machine("line-machine",
         when("io.weft.rises",        tell("listener.weft_rose", queue(256))),
         when("io.weft.falls",        tell("listener.weft_fell", queue(256))),
         when("io.edges_were_lost",   tell("listener.edges_lost", queue(256))),
+        when("io.line_fault",        tell("listener.on_fault")),
         when("listener.open",        tell("io.valve.set")),
         when("listener.close",       tell("io.valve.clear")),
         when("listener.hold",        tell("io.brake.set")),
@@ -131,6 +140,11 @@ struct Lines : testing::Test {
     [[nodiscard]] std::vector<Heard> heard() const {
         return {listener->heard.begin(), listener->heard.end()};
     }
+    void change_io(LifeChange change) {
+        const Sentence refusal = world.change_activity(0, change);
+        EXPECT_TRUE(refusal.empty()) << refusal.view();
+    }
+    [[nodiscard]] std::uint64_t io_cycles() const { return instance.engines()[0].statistics().cycles; }
     [[nodiscard]] bool driven(std::size_t line) const { return (twin.outputs() & at(line)) != 0; }
 
     os::Clock clock{os::Clock::Kind::virtual_time};
@@ -236,13 +250,16 @@ TEST_F(Lines, tell_no_edge_twice_that_arrives_after_the_levels_were_read) {
 
 TEST_F(Lines, drive_a_lamp_only_when_it_was_written_and_at_once) {
     run_until(2500us);
-    EXPECT_EQ(twin.counters().writes, 1u) << "the safe values at opening";
+    EXPECT_EQ(twin.counters().writes, 2u) << "the safe values, at opening and at start";
     listener->lamp_next = 1;
     run_until(2900us);
     EXPECT_FALSE(driven(lamp));
     run_until(3ms);
     EXPECT_TRUE(driven(lamp)) << "the row wakes the lines";
     EXPECT_TRUE(driven(brake)) << "others stay as they are";
+    listener->lamp_next = 1;
+    run_until(5ms);
+    EXPECT_EQ(twin.counters().writes, 3u) << "it is on already";
 }
 
 TEST_F(Lines, drive_what_the_row_says_when_the_wish_is_stale) {
@@ -275,6 +292,119 @@ TEST_F(Lines, leave_safe_values_behind_and_keep_them) {
     port->set<valve>();
     port->clear<brake>();
     EXPECT_EQ(twin.outputs(), safe);
+}
+
+TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
+    run_until(1ms);
+    listener->opens = true;
+    listener->lamp_next = 1;
+    twin.faults(weft).lose_next = 1;
+    EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
+    EXPECT_TRUE(twin.drive(weft, false, Time{2020us}));
+    run_until(4ms);
+    ASSERT_TRUE(driven(valve));
+    ASSERT_TRUE(driven(lamp));
+    ASSERT_EQ(listener->lost.get(), 1);
+    change_io(LifeChange::stop);
+    EXPECT_EQ(twin.outputs(), at(brake));
+    listener->heard.clear();
+    listener->opens = true; // told to nobody
+    EXPECT_TRUE(twin.drive(weft, true, Time{5010us}));
+    run_until(10ms);
+    EXPECT_EQ(twin.outputs(), at(brake));
+    change_io(LifeChange::start);
+    run_until(12ms);
+    EXPECT_TRUE(driven(lamp)) << "what is wanted is written again";
+    EXPECT_FALSE(driven(valve)) << "what was told before the start is not";
+    EXPECT_TRUE(driven(brake));
+    EXPECT_TRUE(listener->weft_level.get());
+    EXPECT_TRUE(heard().empty()) << "what happened before the start is told by its level";
+    EXPECT_EQ(listener->lost.get(), 0);
+    listener->opens = true;
+    EXPECT_TRUE(twin.drive(weft, false, Time{13010us}));
+    run_until(15ms);
+    EXPECT_TRUE(driven(valve));
+    EXPECT_FALSE(driven(brake));
+    EXPECT_EQ(heard(), (std::vector<Heard>{{What::weft_fell, Time{13010us}}}));
+    EXPECT_EQ(listener->faults, 0);
+    twin.faults(weft).lose_next = 1;
+    EXPECT_TRUE(twin.drive(weft, true, Time{15010us}));
+    EXPECT_TRUE(twin.drive(weft, false, Time{15020us}));
+    run_until(17ms);
+    EXPECT_EQ(listener->lost.get(), 1) << "since the start";
+    world.stop();
+    EXPECT_EQ(twin.outputs(), at(brake));
+}
+
+TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes) {
+    run_until(1ms);
+    EXPECT_FALSE(listener->faulted.get());
+    twin.set_removed(true);
+    run_until(5ms);
+    EXPECT_TRUE(listener->faulted.get());
+    run_until(2s);
+    EXPECT_EQ(listener->faults, 1);
+}
+
+TEST_F(Lines, tell_a_fault_when_a_write_is_refused_and_write_what_was_asked_for_last_as_soon_as_it_can_be) {
+    run_until(1ms);
+    twin.set_removed(true);
+    run_until(5ms);
+    listener->opens = true;
+    listener->lamp_next = 1;
+    run_until(8ms);
+    EXPECT_EQ(twin.outputs(), at(brake)) << "refused";
+    listener->closes = true;
+    run_until(10ms);
+    twin.set_removed(false);
+    run_until(40ms);
+    EXPECT_FALSE(listener->faulted.get());
+    EXPECT_FALSE(driven(valve)) << "it was cleared again meanwhile";
+    EXPECT_FALSE(driven(brake));
+    EXPECT_TRUE(driven(lamp));
+    twin.set_removed(true);
+    run_until(45ms);
+    EXPECT_TRUE(listener->faulted.get());
+    EXPECT_EQ(listener->faults, 2) << "a new fault is told anew";
+}
+
+TEST_F(Lines, tell_an_input_that_changed_while_the_chip_was_gone) {
+    run_until(1ms);
+    twin.faults(stop_button).lose_next = 1;
+    twin.set_removed(true);
+    EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us}));
+    run_until(5ms);
+    EXPECT_TRUE(heard().empty());
+    twin.set_removed(false);
+    run_until(40ms);
+    ASSERT_EQ(heard().size(), 1u);
+    EXPECT_EQ(heard()[0].what, What::stop_rose);
+}
+
+TEST_F(Lines, cost_next_to_nothing_while_their_chip_is_gone) {
+    run_until(1ms);
+    twin.set_removed(true);
+    run_until(5ms);
+    const auto before = io_cycles();
+    run_until(1005ms);
+    EXPECT_LE(io_cycles() - before, 50u) << "one look in 20 ms";
+}
+
+TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_stop) {
+    run_until(1ms);
+    listener->opens = true;
+    run_until(3ms);
+    twin.set_removed(true);
+    change_io(LifeChange::stop);
+    run_until(5ms);
+    EXPECT_TRUE(listener->faulted.get());
+    EXPECT_EQ(listener->faults, 1);
+    EXPECT_TRUE(driven(valve));
+    twin.set_removed(false);
+    change_io(LifeChange::start);
+    run_until(8ms);
+    EXPECT_EQ(twin.outputs(), at(brake));
+    EXPECT_FALSE(listener->faulted.get());
 }
 
 TEST_F(Lines, refuse_to_start_without_their_chip) {

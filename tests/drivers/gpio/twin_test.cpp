@@ -207,5 +207,31 @@ TEST(GpioPlan, refuses_too_many_lines_and_impossible_debounce_times) {
     EXPECT_NE(refusal(slow), "");
 }
 
+TEST_F(GpioTwin, refuses_every_call_while_its_chip_is_removed_and_changes_nothing) {
+    EXPECT_TRUE(twin.write(bit(lamp), bit(lamp)));
+    const Mask before = twin.outputs();
+    twin.set_removed(true);
+    twin.drive(drop_wire, true, Time{1ms});
+    twin.deliver_until(Time{1ms});
+    EXPECT_FALSE(twin.write(bit(lamp), 0));
+    EXPECT_FALSE(twin.make_safe());
+    EXPECT_FALSE(twin.levels().known);
+    EXPECT_EQ(read().count, 0u);
+    EXPECT_EQ(twin.counters().failures, 4u);
+    EXPECT_EQ(twin.outputs(), before);
+    twin.set_removed(false);
+    EXPECT_TRUE(twin.make_safe());
+    EXPECT_EQ(twin.outputs(), bit(brake));
+    EXPECT_TRUE(twin.levels().known);
+}
+
+TEST_F(GpioTwin, calls_its_listener_when_its_chip_is_removed) {
+    int calls = 0;
+    twin.set_listener([](void* n) noexcept TAPPET_REALTIME { ++*static_cast<int*>(n); }, &calls);
+    twin.set_removed(true);
+    twin.deliver_until(Time{1ms});
+    EXPECT_EQ(calls, 1);
+}
+
 } // namespace
 } // namespace tappet::gpio
