@@ -25,6 +25,7 @@ namespace tappet::can {
 ///
 /// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
 /// what is written after it leaves. It looks for that restart every now and then and rests in between.
+/// Likewise a bus that was stopped begins anew: what arrived, waited or was demanded before is forgotten.
 template <const auto& map> struct Bus {
     static_assert(map.fault.empty(), "the signal map is refused: its member `fault` says why");
     static constexpr std::size_t signal_count = map.signals.size();
@@ -67,6 +68,10 @@ template <const auto& map> struct Bus {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
+        may_repeat_ = {};
+        was_faulted_ = false;
+        if (was_stopped_) forget_stopped_time();
+        lost_ = taken_ = 0;
         told_ = now_told();
         write_state();
         arm(cycle.now);
@@ -87,10 +92,11 @@ template <const auto& map> struct Bus {
         device_->service(cycle.now);
         // They wait for the frames in flight, and nobody serves the device after this.
         Frame ignored;
-        for (int n = 0; n < max_passes_at_stop && device_->next_service() != never; ++n) {
+        for (int n = 0; n < max_passes && device_->next_service() != never; ++n) {
             static_cast<void>(device_->receive(ignored));
             device_->service(cycle.now);
         }
+        was_stopped_ = true;
     }
 
     /// Drops what waits to be sent.
@@ -129,8 +135,8 @@ template <const auto& map> struct Bus {
                     "state", "",
                     "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 down; written on change"),
                 output<&Bus::frames_lost>("frames_lost", "",
-                                          "arrived but never read, since start; written on change"),
-                output<&Bus::frames_received>("frames_received", "", "since start; written on change"),
+                                          "arrived but never read, since its start; written on change"),
+                output<&Bus::frames_received>("frames_received", "", "since its start; written on change"),
                 tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                 tappet::event<&Bus::bus_recovered>("bus_recovered", "the bus works again, with empty queues"),
                 operation<&Bus::purge>("purge", "drops what waits to be sent"),
@@ -143,7 +149,9 @@ template <const auto& map> struct Bus {
 
 private:
     static constexpr std::size_t fixed_facets = 9;
-    static constexpr int max_passes_at_stop = 4096; // some milliseconds; four frames at 125 kbit/s take 5 ms
+    // At stop and at start: some milliseconds. Four frames at 125 kbit/s take 5 ms; the kernel's buffer holds
+    // fewer frames.
+    static constexpr int max_passes = 4096;
 
     static constexpr bool is_cyclic(std::size_t f) noexcept {
         return map.frames[f].direction == Direction::transmit && map.frames[f].every > Duration::zero();
@@ -313,6 +321,15 @@ private:
             if (keep_inputs(f)) static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
         }
     }
+    /// What waited, what arrived and what was demanded while nobody served the bus.
+    void forget_stopped_time() noexcept TAPPET_REALTIME {
+        device_->purge();
+        Frame ignored;
+        for (int n = 0; n < max_passes; ++n)
+            if (const Receive got = device_->receive(ignored); got.what == Received::none && got.lost == 0)
+                break;
+        forget_demands();
+    }
     void forget_demands() noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
@@ -359,6 +376,7 @@ private:
     std::uint64_t pressed_ = 0;
     Told told_{};
     bool was_faulted_ = false;
+    bool was_stopped_ = false;
 };
 
 } // namespace tappet::can

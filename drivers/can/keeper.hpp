@@ -10,9 +10,9 @@
 namespace tappet::can {
 
 /// Stands beside the Bus on the same device, in a background activity that is not_real_time: a restart
-/// blocks. Connect its input to the bus' `faulted`. Attempts count from the machine's start and are never
-/// given back: a bus that fails again and again needs hands, not restarts. The device's own bound holds as
-/// well.
+/// blocks. Connect its input to the bus' `faulted`. Attempts count from its start and are never given back: a
+/// bus that fails again and again needs hands, not restarts, and whoever starts the keeper again had a look.
+/// The device's own bound holds as well, from the machine's start.
 struct Keeper {
     static constexpr std::string_view device_kind = "can";
     static constexpr bool shares_device = true;
@@ -27,7 +27,11 @@ struct Keeper {
         device_ = setup.device<Device>();
         return device_ == nullptr ? setup.no_device() : Sentence{};
     }
-    void start(const Cycle&) noexcept TAPPET_REALTIME { restarts.write(0); }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        phase_ = Phase::watching;
+        tried_ = done_ = 0;
+        restarts.write(0);
+    }
 
     void work(const Cycle& cycle) {
         if (!faulted.get()) {

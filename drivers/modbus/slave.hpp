@@ -52,13 +52,17 @@ template <const auto& map> struct Slave {
     Event<> back{};
 
     Sentence configure(Setup& setup) {
-        auto* transport = setup.device<Transport>();
-        if (transport == nullptr) return setup.no_device();
-        client_.emplace(map, *transport);
+        transport_ = setup.device<Transport>();
+        if (transport_ == nullptr) return setup.no_device();
+        client_.emplace(map, *transport_);
         return {};
     }
 
+    /// Begins anew: with its own connection, and what is wanted is written again unless it grew too old.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("this activity is not real-time", client_.emplace(map, *transport_));
+        is_set_ = {};
+        was_lost_ = false;
         connected.write(false);
         outages.write(0);
         outages_survived.write(0);
@@ -127,9 +131,13 @@ private:
 
     void exchange(const Cycle& cycle) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
+            if (!is_written(v)) continue;
             double value = 0;
-            if (is_written(v) && wanted[v].read(value) == Flow::fresh)
-                static_cast<void>(client_->set(v, value, cycle.now));
+            const Flow flow = wanted[v].read(value);
+            if (flow == Flow::fresh || (flow == Flow::old && !is_set_[v])) {
+                const Time since = flow == Flow::fresh ? cycle.now : wanted[v].stamp();
+                is_set_[v] = client_->set(v, value, since);
+            }
         }
         // The client says when a request ended; the next one begins then.
         Time at = cycle.now;
@@ -146,12 +154,14 @@ private:
         return count_now.requests + count_now.connects + count_now.refused;
     }
 
+    Transport* transport_ = nullptr;
     std::optional<Client<map.rows.size(), map.registers.size()>> client_{};
     std::array<Time, count> seen_ = [] {
         std::array<Time, count> none{};
         none.fill(Time::min());
         return none;
     }();
+    std::array<bool, count> is_set_{}; ///< in the client, since start
     bool was_lost_ = false;
 };
 

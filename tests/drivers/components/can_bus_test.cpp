@@ -248,6 +248,101 @@ TEST_F(CanBus, sends_its_safe_values_at_stop_and_repeats_no_demand) {
     EXPECT_EQ(target_rpm(heard[0]), 0.0);
 }
 
+TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
+    run_until(10ms);
+    wire.overflow(twin, 3);
+    send(0x181, 6, {1});
+    demand_each_once();
+    run_until(20300us);
+    ASSERT_EQ(master->lost.get(), 3);
+    change(0, LifeChange::stop);
+    run_until(30ms);
+    heard.clear();
+    master->word = 4;
+    demand(1, 2); // demanded of a bus that does not run
+    master->sync_next = 1;
+    for (std::uint8_t i = 0; i < 100; ++i) {
+        if (i == 50) wire.overflow(twin, 5);
+        send(0x181, 6, {9});
+        run_until(31ms + i * 1ms);
+    }
+    run_until(140300us);
+    EXPECT_TRUE(heard.empty());
+    change(0, LifeChange::start);
+    run_until(150ms);
+    ASSERT_FALSE(heard.empty());
+    EXPECT_EQ(heard[0].stamp, Time{142300us}) << "a period after the start";
+    for (const auto& frame : heard) {
+        ASSERT_EQ(frame.id, 0x201u) << "what was demanded before the start is not sent";
+        EXPECT_EQ(controlword(frame), 4);
+    }
+    EXPECT_EQ(master->statusword.get(), 1) << "what arrived before the start is no news";
+    EXPECT_EQ(master->frames, 1);
+    EXPECT_EQ(master->received.get(), 0);
+    EXPECT_EQ(master->lost.get(), 0);
+    EXPECT_EQ(master->faults + master->recoveries, 0);
+    send(0x181, 6, {2});
+    demand(1, 3);
+    run_until(155ms);
+    EXPECT_EQ(master->statusword.get(), 2);
+    EXPECT_EQ(master->received.get(), 1);
+    ASSERT_EQ(heard_of(0x000).size(), 1u);
+    EXPECT_EQ(heard_of(0x000)[0].data[1], 3);
+}
+
+TEST_F(CanBus, sends_no_values_of_the_time_before_its_stop) {
+    run_until(10ms);
+    demand_each_once();
+    run_until(20300us);
+    change(0, LifeChange::stop);
+    master->word = 5;
+    master->writes_target = false; // the two no longer agree, and what agreed last is of before the stop
+    run_until(23300us);
+    heard.clear();
+    change(0, LifeChange::start);
+    run_until(26ms);
+    ASSERT_EQ(heard.size(), 1u);
+    EXPECT_EQ(controlword(heard[0]), 5);
+}
+
+TEST_F(CanBus, drops_at_its_start_what_still_waited_to_be_sent_when_it_was_stopped) {
+    run_until(10ms);
+    demand_each_once();
+    run_until(20300us);
+    wire.set_acknowledged(false);
+    run_until(30300us); // four frames are in the controller, the safe values and this wait behind them
+    demand(1, 7);
+    run_until(33300us);
+    change(0, LifeChange::stop);
+    wire.set_acknowledged(true);
+    run_until(34300us);
+    heard.clear();
+    change(0, LifeChange::start);
+    run_until(50ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
+    for (const auto& frame : heard_of(0x201)) EXPECT_EQ(controlword(frame), 1) << "not the safe value";
+    EXPECT_EQ(master->faults, 0);
+}
+
+TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
+    run_until(10ms);
+    demand_each_once();
+    run_until(20ms);
+    wire.bus_off(twin);
+    run_until(25ms);
+    ASSERT_EQ(master->faults, 1);
+    change(0, LifeChange::stop);
+    run_until(30ms);
+    change(0, LifeChange::start);
+    run_until(35ms);
+    EXPECT_EQ(master->faults, 2);
+    EXPECT_EQ(master->recoveries, 0);
+    EXPECT_TRUE(master->was_faulted);
+    run_until(200ms); // the keeper restarted it
+    EXPECT_EQ(master->recoveries, 1);
+    EXPECT_FALSE(master->was_faulted);
+}
+
 /// A controller that asks for service in the past, or has no room for a while.
 class DifficultDevice final : public can::Device {
 public:

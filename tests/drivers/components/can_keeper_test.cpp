@@ -66,6 +66,27 @@ TEST_F(CanKeeper, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_u
     EXPECT_EQ(keeper->restarts.last(), 2);
 }
 
+TEST_F(CanKeeper, tries_anew_when_it_is_stopped_and_started_again) {
+    run_until(20ms);
+    for (int i = 0; i < 2; ++i) {
+        wire.bus_off(twin);
+        run_until(clock.now().time_since_epoch() + 300ms);
+    }
+    wire.bus_off(twin);
+    run_until(clock.now().time_since_epoch() + 1s);
+    ASSERT_EQ(master->surrenders, 1);
+    change(2, LifeChange::stop); // somebody had a look
+    run_until(clock.now().time_since_epoch() + 100ms);
+    change(2, LifeChange::start);
+    EXPECT_EQ(keeper->restarts.last(), 0);
+    run_until(clock.now().time_since_epoch() + 90ms);
+    EXPECT_EQ(master->recoveries, 2) << "not before its pause";
+    run_until(clock.now().time_since_epoch() + 300ms);
+    EXPECT_EQ(master->recoveries, 3);
+    EXPECT_EQ(keeper->restarts.last(), 1);
+    EXPECT_EQ(master->surrenders, 1);
+}
+
 TEST_F(CanKeeper, leaves_a_healthy_bus_alone) {
     run_until(3s);
     EXPECT_EQ(twin.counters().restarts, 0u);

@@ -196,6 +196,18 @@ struct CanMachine : testing::Test {
             if (frame.id == id) some.push_back(frame);
         return some;
     }
+    /// A component starts alone only when each of its inputs was written.
+    void demand_each_once() {
+        demand(1, 1);
+        master->sync_next = 1;
+        run_until(clock.now().time_since_epoch() + 2ms);
+        heard.clear();
+    }
+    /// Of the activity by its row: 0 is the bus', 2 the keeper's.
+    void change(std::size_t activity, LifeChange change) {
+        const Sentence refusal = world.change_activity(activity, change);
+        EXPECT_TRUE(refusal.empty()) << refusal.view();
+    }
     [[nodiscard]] std::uint64_t bus_cycles() const { return instance.engines()[0].statistics().cycles; }
 
     os::Clock clock{os::Clock::Kind::virtual_time};

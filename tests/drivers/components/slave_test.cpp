@@ -81,6 +81,10 @@ struct Utility : testing::Test {
         world.start();
     }
     void run_until(Duration end) { EXPECT_TRUE(world.run_until(Time{end})); }
+    void change_server(LifeChange change) {
+        const Sentence refusal = world.change_activity(0, change);
+        EXPECT_TRUE(refusal.empty()) << refusal.view();
+    }
     [[nodiscard]] bool pump_runs() const { return twin.get(modbus::Table::coils, 0) != 0; }
 
     os::Clock clock{os::Clock::Kind::virtual_time};
@@ -211,6 +215,64 @@ TEST_F(Utility, brings_what_was_written_last_to_the_server_at_stop) {
     EXPECT_TRUE(pump_runs());
     world.stop();
     EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(1500ms);
+    twin.inject(modbus::Fault::down);
+    run_until(3s);
+    twin.inject(modbus::Fault::none);
+    run_until(8s);
+    ASSERT_EQ(reader->survived.get(), 1);
+    reader->pump_next = 1;
+    run_until(8100ms);
+    ASSERT_TRUE(pump_runs());
+    change_server(LifeChange::stop);
+    twin.set(modbus::Table::coils, 0, 0); // the server was switched off and on
+    run_until(10s);
+    EXPECT_FALSE(pump_runs());
+    const auto fresh = reader->fresh;
+    change_server(LifeChange::start);
+    EXPECT_FALSE(reader->connected.get());
+    EXPECT_EQ(reader->fresh, fresh) << "no value of before the stop";
+    run_until(10200ms);
+    EXPECT_TRUE(reader->connected.get());
+    EXPECT_GT(reader->fresh, fresh);
+    EXPECT_TRUE(pump_runs()) << "what is wanted is written again";
+    EXPECT_EQ(reader->outages.get(), 0);
+    EXPECT_EQ(reader->survived.get(), 0);
+    EXPECT_EQ(reader->lost, 1);
+    EXPECT_EQ(reader->back, 1);
+}
+
+TEST_F(Utility, writes_after_a_start_nothing_that_grew_stale_before_it) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(1500ms);
+    change_server(LifeChange::stop);
+    twin.set(modbus::Table::coils, 0, 0);
+    run_until(12s); // good for 5 s
+    change_server(LifeChange::start);
+    run_until(14s);
+    EXPECT_TRUE(reader->connected.get());
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(Utility, tells_an_outage_anew_when_it_is_started_beside_a_server_that_is_down) {
+    run_until(1s);
+    reader->pump_next = 1; // it starts alone only when each of its inputs was written
+    run_until(2s);
+    twin.inject(modbus::Fault::down);
+    run_until(3s);
+    ASSERT_EQ(reader->lost, 1);
+    change_server(LifeChange::restart);
+    run_until(3100ms);
+    EXPECT_EQ(reader->lost, 2);
+    twin.inject(modbus::Fault::none);
+    run_until(10s);
+    EXPECT_EQ(reader->back, 1);
 }
 
 TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
