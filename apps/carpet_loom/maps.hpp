@@ -14,30 +14,29 @@ namespace detail {
 
 constexpr auto heartbeat(std::string_view name, std::uint8_t node) {
     return can::receive(can::standard(wires::cob::heartbeat + node), name,
-                        can::bytes(wires::length::heartbeat), can::stale_after(350ms),
-                        can::signal("state", 0, 8));
+                        can::bytes(wires::length::heartbeat), can::signal("state", 0, 8));
 }
 
 } // namespace detail
 
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(
-    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6), can::stale_after(20ms),
+    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6),
         can::signal("statusword", 0, 16),
         can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6), can::stale_after(20ms),
+    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6),
         can::signal("statusword", 0, 16),
         can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm")),
-    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4), can::stale_after(5ms),
+    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4),
         can::signal("position", 0, 16),
         can::signal("sample", 16, 16)),
-    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3), can::stale_after(20ms),
+    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3),
         can::signal("tension", 0, 16).as_signed().times(0.1).in("N"),
         can::signal("status", 16, 8)),
-    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3), can::stale_after(100ms),
+    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3),
         can::signal("status", 0, 8),
         can::signal("windings", 8, 16)),
-    can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5), can::stale_after(0ms),
+    can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5),
         can::signal("pick_taken", 0, 32),
         can::signal("level", 32, 8)),
     detail::heartbeat("heartbeat_1", 1), detail::heartbeat("heartbeat_2", 2), detail::heartbeat("heartbeat_3", 3),
@@ -73,7 +72,7 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::lamp("yarn_cutter"));
 
 inline constexpr auto utility_registers = modbus::register_map(
-    modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms), modbus::stale_after(2s),
+    modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms),
         modbus::word("temperature", wires::modbus::input_register::room_temperature).as_signed().times(0.1).in("degC"),
         modbus::word("humidity", wires::modbus::input_register::humidity).times(0.1).in("%"),
         modbus::word("oil_pressure", wires::modbus::input_register::oil_pressure).times(0.01).in("bar"),

@@ -18,9 +18,8 @@ struct FrameRow {
     std::string_view name{};
     Direction direction = Direction::receive;
     std::uint8_t length = 0;
-    Duration stale_after{}; ///< receive: older contents are stale; 0: never
-    Duration every{};       ///< transmit: the period; 0: sent on demand, and all of them in order
-    std::size_t first = 0;  ///< its signals in the map's array
+    Duration every{};      ///< transmit: the period; 0: sent on demand, and all of them in order
+    std::size_t first = 0; ///< its signals in the map's array
     std::size_t signals = 0;
 };
 
@@ -38,30 +37,26 @@ struct Bytes {
     std::uint8_t count = 0;
 };
 constexpr Bytes bytes(std::uint8_t count) noexcept { return {count}; }
-struct StaleAfter {
-    Duration age{};
-};
-constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 struct Every {
     Duration period{};
 };
 constexpr Every every(Duration period) noexcept { return {period}; }
 inline constexpr Every on_demand{};
 
-/// receive(standard(0x181), "main_drive", bytes(6), stale_after(5ms), signal("statusword", 0, 16), ...)
+/// receive(standard(0x181), "main_drive", bytes(6), signal("statusword", 0, 16), ...)
+/// How old a value may grow is said by the connection's row that reads it.
 template <class... Signals>
-constexpr auto receive(Identifier id, std::string_view name, Bytes length, StaleAfter age,
+constexpr auto receive(Identifier id, std::string_view name, Bytes length,
                        const Signals&... signals) noexcept {
     return FrameWithSignals<sizeof...(Signals)>{
-        {id, name, Direction::receive, length.count, age.age, {}, 0, sizeof...(Signals)}, {signals...}};
+        {id, name, Direction::receive, length.count, {}, 0, sizeof...(Signals)}, {signals...}};
 }
 /// transmit(standard(0x201), "main_drive_command", bytes(6), every(1ms), signal("controlword", 0, 16), ...)
 template <class... Signals>
 constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Every period,
                         const Signals&... signals) noexcept {
     return FrameWithSignals<sizeof...(Signals)>{
-        {id, name, Direction::transmit, length.count, {}, period.period, 0, sizeof...(Signals)},
-        {signals...}};
+        {id, name, Direction::transmit, length.count, period.period, 0, sizeof...(Signals)}, {signals...}};
 }
 
 inline constexpr std::size_t no_such = ~std::size_t{0};

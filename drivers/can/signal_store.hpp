@@ -20,9 +20,7 @@ struct DecodeCounters {
 /// index.
 template <std::size_t F, std::size_t S> class SignalStore {
 public:
-    explicit constexpr SignalStore(const SignalMap<F, S>& map) noexcept : map_{&map} {
-        stamp_.fill(Time::min());
-    }
+    explicit constexpr SignalStore(const SignalMap<F, S>& map) noexcept : map_{&map} {}
 
     /// Takes a received frame in, whole or not at all. `which` becomes its row.
     constexpr Decoded decode(const Frame& frame, std::size_t& which) noexcept TAPPET_REALTIME {
@@ -38,7 +36,6 @@ public:
         }
         for (std::size_t s = row.first; s < row.first + row.signals; ++s)
             raw_[s] = extract(frame.data, map_->signals[s]);
-        stamp_[f] = frame.stamp;
         ++count.decoded;
         which = f;
         return Decoded::yes;
@@ -77,12 +74,6 @@ public:
     /// Bits beyond the signal's width are cut: for control words, which are sets of bits.
     constexpr void set_bits(std::size_t s, std::uint64_t bits) noexcept TAPPET_REALTIME { raw_[s] = bits; }
 
-    /// When the frame last came; Time::min() if never.
-    [[nodiscard]] constexpr Time stamp(std::size_t f) const noexcept TAPPET_REALTIME { return stamp_[f]; }
-    [[nodiscard]] constexpr bool stale(std::size_t f, Time now) const noexcept TAPPET_REALTIME {
-        const Duration limit = map_->frames[f].stale_after;
-        return stamp_[f] == Time::min() || (limit > 0ns && now - stamp_[f] > limit);
-    }
     [[nodiscard]] constexpr const SignalMap<F, S>& map() const noexcept TAPPET_REALTIME { return *map_; }
 
     DecodeCounters count{};
@@ -90,7 +81,6 @@ public:
 private:
     const SignalMap<F, S>* map_;
     std::array<std::uint64_t, S> raw_{};
-    std::array<Time, F> stamp_{};
 };
 
 } // namespace tappet::can

@@ -12,7 +12,6 @@ namespace tappet::modbus {
 enum class Quality : std::uint8_t {
     never, ///< nothing was read yet
     good,
-    stale,     ///< good once, older than its row allows
     exception, ///< the server refuses this row; the value is the last good one
 };
 
@@ -66,14 +65,8 @@ public:
         return request(r, now);
     }
 
-    /// The value by its index in the map, as it is at `now`.
-    [[nodiscard]] Value value(std::size_t v, Time now) const noexcept {
-        Value result = values_[v];
-        const Duration limit = map_->rows[map_->row_of[v]].stale_after;
-        const bool old = limit > 0ns && result.stamp != Time::min() && now - result.stamp > limit;
-        if (result.quality == Quality::good && old) result.quality = Quality::stale;
-        return result;
-    }
+    /// The value by its index in the map; its stamp tells its age.
+    [[nodiscard]] const Value& value(std::size_t v) const noexcept { return values_[v]; }
     /// Sets a value of a written row, which is sent once all its values were set; false when it is no number,
     /// or the row is only read.
     bool set(std::size_t v, double physical, Time now) noexcept {

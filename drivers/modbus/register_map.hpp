@@ -41,9 +41,8 @@ struct Row {
     Run run{};
     bool write = false;
     Duration every{};
-    Duration
-        stale_after{}; ///< read: older values are stale; write: older values are not sent any more; 0: never
-    std::size_t first = 0; ///< its registers in the map's array
+    Duration stale_after{}; ///< write: older values are not sent any more; 0: never
+    std::size_t first = 0;  ///< its registers in the map's array
     std::size_t registers = 0;
 };
 
@@ -61,14 +60,14 @@ struct StaleAfter {
 };
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 
-/// read("climate", input_registers(0, 4), every(250ms), stale_after(2s), word("temperature",
-/// 0).as_signed().times(0.1), ...)
+/// read("climate", input_registers(0, 4), every(250ms), word("temperature", 0).as_signed().times(0.1), ...)
+/// How old a value may grow is said by the connection's row that reads it.
 template <class... Registers>
-constexpr auto read(std::string_view name, Run run, Every period, StaleAfter age,
-                    const Registers&... registers) noexcept {
+constexpr auto read(std::string_view name, Run run, Every period, const Registers&... registers) noexcept {
     return RowWithRegisters<sizeof...(Registers)>{
-        {name, run, false, period.period, age.age, 0, sizeof...(Registers)}, {registers...}};
+        {name, run, false, period.period, {}, 0, sizeof...(Registers)}, {registers...}};
 }
+/// write("setpoints", holding_registers(8, 2), every(1s), stale_after(3s), word("temperature", 0), ...)
 template <class... Registers>
 constexpr auto write(std::string_view name, Run run, Every period, StaleAfter age,
                      const Registers&... registers) noexcept {

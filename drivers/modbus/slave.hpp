@@ -71,7 +71,7 @@ template <const auto& map> struct Slave {
     void work(const Cycle& cycle) {
         exchange(cycle);
         for (std::size_t v = 0; v < count; ++v) {
-            const Value value = client_->value(v, cycle.now);
+            const Value value = client_->value(v);
             if (is_written(v) || value.stamp == seen_[v] || value.quality != Quality::good) continue;
             seen_[v] = value.stamp;
             read[v].write(value.value, value.stamp);

@@ -46,7 +46,7 @@ struct Follower {
 
 // clang-format off
 inline constexpr auto signals = can::signal_map(
-    can::receive(can::standard(wire::request), "request", can::bytes(8), can::stale_after(0ms), can::signal("number", 0, 32)),
+    can::receive(can::standard(wire::request), "request", can::bytes(8), can::signal("number", 0, 32)),
     can::transmit(can::standard(wire::answer), "answer", can::bytes(8), can::on_demand, can::signal("number", 0, 32)));
 inline constexpr auto lines = gpio::line_map(gpio::sensor("in"), gpio::actuator("out"));
 

@@ -122,9 +122,9 @@ TEST(Signals, round_to_the_nearest) {
 }
 
 constexpr auto map =
-    signal_map(receive(standard(0x181), "drive", bytes(6), stale_after(5ms), signal("statusword", 0, 16),
+    signal_map(receive(standard(0x181), "drive", bytes(6), signal("statusword", 0, 16),
                        signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-               receive(extended(0x18FF0102), "climate", bytes(2), stale_after(0ms),
+               receive(extended(0x18FF0102), "climate", bytes(2),
                        signal("temperature", 7, 16).big_endian().times(0.01).plus(-40)),
                transmit(standard(0x201), "command", bytes(6), every(1ms), signal("controlword", 0, 16),
                         signal("target", 16, 32).as_signed().times(0.1)));
@@ -146,12 +146,9 @@ Frame drive_frame(std::uint8_t length = 6) {
 
 TEST(SignalStore, decodes_a_frame_that_fits) {
     SignalStore store{map};
-    EXPECT_TRUE(store.stale(0, Time{10ms})) << "nothing came yet";
     EXPECT_EQ(store.decode(drive_frame()), Decoded::yes);
     EXPECT_EQ(store.integer(map.signal("drive.statusword")), 0x627);
     EXPECT_EQ(store.physical(map.signal("drive.velocity")), -100.0);
-    EXPECT_FALSE(store.stale(0, Time{15ms}));
-    EXPECT_TRUE(store.stale(0, Time{15ms + 1ns}));
 }
 
 TEST(SignalStore, counts_wrong_lengths_and_unknown_identifiers_and_decodes_neither) {
@@ -174,7 +171,6 @@ TEST(SignalStore, counts_wrong_lengths_and_unknown_identifiers_and_decodes_neith
     EXPECT_EQ(store.count.unknown_identifiers, 4u);
     EXPECT_EQ(store.count.decoded, 0u);
     EXPECT_EQ(store.physical(1), 0.0);
-    EXPECT_EQ(store.stamp(0), Time::min());
 }
 
 TEST(SignalStore, encodes_a_row) {
@@ -222,41 +218,36 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
 }
 
 TEST(SignalMap, refuses_overlapping_signals) {
-    EXPECT_EQ(
-        fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 16), signal("b", 15, 8))),
-        "signal \"f.b\" overlaps \"a\" at bit 15: move one of them");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 7, 16).big_endian(),
-                            signal("b", 8, 8))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 16), signal("b", 15, 8))),
+              "signal \"f.b\" overlaps \"a\" at bit 15: move one of them");
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 7, 16).big_endian(), signal("b", 8, 8))),
               "signal \"f.b\" overlaps \"a\" at bit 8: move one of them");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 7, 16).big_endian(),
-                            signal("b", 16, 8))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 7, 16).big_endian(), signal("b", 16, 8))),
               "");
 }
 
 TEST(SignalMap, refuses_signals_outside_their_frame) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), stale_after(1ms), signal("a", 8, 9))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), signal("a", 8, 9))),
               "signal \"f.a\" reaches outside its frame of 2 bytes: it starts at bit 8 (its lowest) and goes "
               "up 9 bits; move it or "
               "lengthen the frame");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(2), stale_after(1ms), signal("a", 15, 9).big_endian())),
-              "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 60000, 9))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 65))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 0))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(9), stale_after(1ms), signal("a", 0, 8))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(2), signal("a", 15, 9).big_endian())), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 60000, 9))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 65))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 0))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(9), signal("a", 0, 8))), "");
 }
 
 TEST(SignalMap, refuses_doubled_names_and_identifiers) {
     const auto row = [](std::uint32_t id, std::string_view name) {
-        return receive(standard(id), name, bytes(8), stale_after(1ms), signal("a", 0, 8));
+        return receive(standard(id), name, bytes(8), signal("a", 0, 8));
     };
     EXPECT_EQ(fault(row(1, "f"), row(2, "f")), "frame \"f\" is there twice: rename one of them");
     EXPECT_EQ(fault(row(1, "f"), row(1, "g")), "frame \"g\" has the identifier of \"f\": give it its own");
-    EXPECT_EQ(fault(row(1, "f"), receive(extended(1), "g", bytes(0), stale_after(1ms))), "")
+    EXPECT_EQ(fault(row(1, "f"), receive(extended(1), "g", bytes(0))), "")
         << "another format, another identifier";
-    EXPECT_EQ(
-        fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 8), signal("a", 8, 8))),
-        "frame \"f\" has two signals \"a\": rename one of them");
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 8), signal("a", 8, 8))),
+              "frame \"f\" has two signals \"a\": rename one of them");
     EXPECT_EQ(
         fault(row(0x800, "f")),
         "frame \"f\" has the identifier 2048: a standard one ends at 2047, an extended one at 536870911");
@@ -264,10 +255,9 @@ TEST(SignalMap, refuses_doubled_names_and_identifiers) {
 }
 
 TEST(SignalMap, refuses_a_factor_of_zero_and_odd_floats) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 8).times(0))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 8).times(0))),
               "signal \"f.a\" has the factor 0: every value would be the offset; give it another");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), stale_after(1ms), signal("a", 0, 16).as_float())),
-              "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 16).as_float())), "");
 }
 
 } // namespace

@@ -15,8 +15,7 @@
 namespace tappet::test {
 
 inline constexpr auto signals = can::signal_map(
-    can::receive(can::standard(0x181), "drive", can::bytes(6), can::stale_after(20ms),
-                 can::signal("statusword", 0, 16),
+    can::receive(can::standard(0x181), "drive", can::bytes(6), can::signal("statusword", 0, 16),
                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
     can::transmit(can::standard(0x201), "drive_command", can::bytes(6), can::every(2ms),
                   can::signal("controlword", 0, 16),

@@ -9,12 +9,12 @@
 namespace tappet::test {
 namespace {
 
-inline constexpr auto registers = modbus::register_map(
-    modbus::read("unit", modbus::input_registers(0, 2), modbus::every(100ms), modbus::stale_after(1s),
-                 modbus::word("temperature", 0).as_signed().times(0.1).in("degC"),
-                 modbus::word("pressure", 1).times(0.01).in("bar")),
-    modbus::write("pump", modbus::coils(0, 1), modbus::every(1s), modbus::stale_after(5s),
-                  modbus::bit("on", 0)));
+inline constexpr auto registers =
+    modbus::register_map(modbus::read("unit", modbus::input_registers(0, 2), modbus::every(100ms),
+                                      modbus::word("temperature", 0).as_signed().times(0.1).in("degC"),
+                                      modbus::word("pressure", 1).times(0.01).in("bar")),
+                         modbus::write("pump", modbus::coils(0, 1), modbus::every(1s),
+                                       modbus::stale_after(5s), modbus::bit("on", 0)));
 
 struct Reader {
     Input<double> temperature{};

@@ -40,7 +40,7 @@ TEST(Registers, saturate_and_refuse_what_is_no_number) {
 }
 
 constexpr auto map = register_map(
-    read("climate", input_registers(0, 4), every(250ms), stale_after(2s),
+    read("climate", input_registers(0, 4), every(250ms),
          word("temperature", 0).as_signed().times(0.1).in("degC"), double_word("hours", 2)),
     write("setpoints", holding_registers(10, 1), every(1s), stale_after(5s), word("temperature", 0)));
 static_assert(map.fault.empty());
@@ -52,7 +52,7 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
     kept = register_map(rows...).fault;
     return kept.view();
 }
-auto row(Run run, Register r) { return read("r", run, every(1s), stale_after(5s), r); }
+auto row(Run run, Register r) { return read("r", run, every(1s), r); }
 
 TEST(RegisterMap, refuses_runs_that_no_request_carries) {
     EXPECT_EQ(fault(row(holding_registers(0, 126), word("w", 0))),
@@ -79,8 +79,7 @@ TEST(RegisterMap, refuses_to_overwrite_unnamed_registers) {
 TEST(RegisterMap, refuses_registers_outside_their_row_or_over_each_other) {
     EXPECT_EQ(fault(row(holding_registers(0, 2), double_word("d", 1))),
               "register \"r.d\" reaches outside its row of 2 holding registers: move it or lengthen the row");
-    EXPECT_EQ(fault(read("r", holding_registers(0, 4), every(1s), stale_after(5s), double_word("d", 0),
-                         word("w", 1))),
+    EXPECT_EQ(fault(read("r", holding_registers(0, 4), every(1s), double_word("d", 0), word("w", 1))),
               "register \"r.w\" overlaps \"d\": move one of them");
 }
 
@@ -95,12 +94,12 @@ TEST(RegisterMap, refuses_bits_among_words_and_words_among_bits) {
 TEST(RegisterMap, refuses_doubled_names_zero_factors_and_impossible_periods) {
     EXPECT_EQ(fault(row(coils(0, 1), bit("b", 0)), row(coils(1, 1), bit("b", 0))),
               "row \"r\" is there twice: rename one of them");
-    EXPECT_EQ(fault(read("r", coils(0, 2), every(1s), stale_after(5s), bit("b", 0), bit("b", 1))),
+    EXPECT_EQ(fault(read("r", coils(0, 2), every(1s), bit("b", 0), bit("b", 1))),
               "row \"r\" has two registers \"b\": rename one of them");
     EXPECT_NE(fault(row(holding_registers(0, 1), word("w", 0).times(0))), "");
-    EXPECT_EQ(fault(read("r", coils(0, 1), every(0s), stale_after(5s), bit("b", 0))),
+    EXPECT_EQ(fault(read("r", coils(0, 1), every(0s), bit("b", 0))),
               "row \"r\" has no period: give it one, every(250ms)");
-    EXPECT_EQ(fault(read("r", coils(0, 1), every(5s), stale_after(1s), bit("b", 0))),
+    EXPECT_EQ(fault(write("r", coils(0, 1), every(5s), stale_after(1s), bit("b", 0))),
               "row \"r\" is stale before it is due again: choose stale_after at least as long as every");
 }
 
