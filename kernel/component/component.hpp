@@ -5,10 +5,8 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/interface.hpp"
-#include "kernel/component/loop.hpp"
+#include "kernel/component/life_functions.hpp"
 #include "kernel/component/operation_interface.hpp"
-#include "kernel/component/proposal.hpp"
-#include "kernel/component/setup.hpp"
 
 #include <new>
 #include <span>
@@ -17,7 +15,8 @@
 namespace tappet {
 
 // clang-format off
-/// A component is a plain struct. What it has of the following is used, in this order of its life:
+/// A component is a plain struct. What it has of the following is used, in this order of its life; a member
+/// of such a name, or nearly, that is spelled otherwise is refused by the table's check:
 ///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty sentence is consent
 ///     Sentence initialise()                               before each start of its activity, on the starter's thread; not real-time
 ///     void start(const Cycle&) noexcept TAPPET_REALTIME   in its activity, before the first step; again after each stop
@@ -43,6 +42,7 @@ struct ComponentType {
     bool records_cycles = false; ///< it is given the tapes of all activities
     bool watches_life = false;   ///< its row names an activity or an output with watches(...)
     bool slot_required = false;  ///< room for a behaviour that is loaded later
+    NeverRun never_run{};        ///< what the table's check refuses
     void (*construct)(void* memory) = nullptr;
     Sentence (*configure)(void* component, Setup&) = nullptr;
     Sentence (*initialise)(void* component) = nullptr;
@@ -78,40 +78,31 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::watches_life; }) type.watches_life = T::watches_life;
     if constexpr (requires { T::slot_required; }) type.slot_required = T::slot_required;
     if constexpr (requires { T::behaviour_required; }) type.behaviour_required = T::behaviour_required;
-    if constexpr (requires(T& t, Setup& s) { t.configure(s); })
+    if constexpr (life_configure<T>)
         type.configure = [](void* c, Setup& s) { return static_cast<T*>(c)->configure(s); };
-    if constexpr (requires(T& t) { t.initialise(); })
+    if constexpr (life_initialise<T>)
         type.initialise = [](void* c) -> Sentence { return static_cast<T*>(c)->initialise(); };
-    if constexpr (requires(T& t) { t.finalise(); })
-        type.finalise = [](void* c) { static_cast<T*>(c)->finalise(); };
-    if constexpr (requires(T& t, const Cycle& c) { t.start(c); })
+    if constexpr (life_finalise<T>) type.finalise = [](void* c) { static_cast<T*>(c)->finalise(); };
+    if constexpr (life_start<T>)
         type.start = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->start(cycle); };
-    if constexpr (requires(T& t, const Cycle& c) { t.step(c); })
+    if constexpr (life_step<T>)
         type.step = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->step(cycle); };
-    if constexpr (requires(T& t, const Cycle& c) { t.work(c); })
+    if constexpr (life_work<T>)
         type.work = [](void* c, const Cycle& cycle) { static_cast<T*>(c)->work(cycle); };
-    if constexpr (requires(T& t, LoopControl& c) { t.loop(c); })
+    if constexpr (life_loop<T>)
         type.loop = [](void* c, LoopControl& control) { static_cast<T*>(c)->loop(control); };
-    if constexpr (requires(T& t) { t.break_loop(); })
-        type.break_loop = [](void* c) { static_cast<T*>(c)->break_loop(); };
-    if constexpr (requires(T& t, const Cycle& c) { t.stop(c); })
+    if constexpr (life_break_loop<T>) type.break_loop = [](void* c) { static_cast<T*>(c)->break_loop(); };
+    if constexpr (life_stop<T>)
         type.stop = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
-    // A check of properties that is spelled wrong must not be one that never runs.
-    if constexpr (requires { &T::accepts; }) {
-        static_assert(
-            std::is_convertible_v<decltype(&T::accepts), Sentence (T::*)(const Proposal&) const noexcept>,
-            "accepts is spelled: Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME");
+    if constexpr (life_accepts<T>)
         type.accepts = [](const void* c, const Proposal& proposal) noexcept
             TAPPET_REALTIME { return static_cast<const T*>(c)->accepts(proposal); };
-    }
-    if constexpr (requires { &T::changed; }) {
-        static_assert(std::is_convertible_v<decltype(&T::changed), void (T::*)() noexcept>,
-                      "changed is spelled: void changed() noexcept TAPPET_REALTIME");
+    if constexpr (life_changed<T>)
         type.changed = [](void* c) noexcept TAPPET_REALTIME { static_cast<T*>(c)->changed(); };
-    }
+    type.never_run = first_never_run<T>(type.facets);
     return type;
 }
 

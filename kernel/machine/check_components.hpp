@@ -34,6 +34,15 @@ constexpr Sentence check_interface(const ComponentRow& row) {
                         row.type->tag->name);
 }
 
+constexpr Sentence check_life(const ComponentRow& row) {
+    const NeverRun& found = row.type->never_run;
+    if (found.member.empty()) return {};
+    return of_component(
+        row.name, ": ", row.type->tag->name, "::", found.member,
+        " looks like a function of its life but would never run; that is public and spelled \"",
+        found.spelling, "\": spell it so, or rename it");
+}
+
 /// The tapes have one reader that keeps the worst cycles in the one place for them.
 constexpr Sentence check_recorders(const MachineView& m) {
     const ComponentRow* first = nullptr;
@@ -56,6 +65,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         if (row.name.empty() || find_letter(row.name, '.') != std::string_view::npos)
             return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
+        if (Sentence fault = check_life(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
         if (Sentence fault = check_bags(row); !fault.empty()) return fault;
         if (Sentence fault = check_properties_file(m, row); !fault.empty()) return fault;

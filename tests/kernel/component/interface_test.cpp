@@ -110,6 +110,31 @@ TEST(Interface, finds_the_functions_that_a_component_has_and_no_others) {
     EXPECT_EQ(probe.steps_taken_, 1);
 }
 
+struct Siren {
+    Timer pause;
+    bool update_ = false;
+    Sentence configure(Setup&) const { return {}; }
+    void start(int) noexcept TAPPET_REALTIME {}
+    void start(const Cycle&) noexcept TAPPET_REALTIME {}
+    void step(const Cycle&) const noexcept TAPPET_REALTIME {}
+    void update(const Cycle&) noexcept TAPPET_REALTIME { update_ = true; } // its step may call it
+    void halt(const Cycle&) noexcept TAPPET_REALTIME {}
+    void stopped() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(timer<&Siren::pause, &Siren::halt>("pause", "ends the sound"),
+                      operation<&Siren::stopped>("stopped", "the machine stands"));
+    }
+};
+
+TEST(Interface, takes_functions_that_can_be_called_as_those_of_its_life_and_leaves_others_alone) {
+    const ComponentType& type = component_type<Siren>;
+    EXPECT_EQ(type.never_run.member, "");
+    EXPECT_NE(type.configure, nullptr);
+    EXPECT_NE(type.start, nullptr);
+    EXPECT_NE(type.step, nullptr);
+    EXPECT_EQ(type.stop, nullptr);
+}
+
 TEST(Operation, runs_on_packed_arguments_of_any_sizes) {
     Probe probe;
     std::array<std::byte, 48> packed{};

@@ -1,0 +1,19 @@
+// A component that cannot say why it could not be initialised.
+// refused: loom: component "horn": Horn::initialise looks like a function of its life but would never run; that is public and spelled "Sentence initialise()": spell it so, or rename it
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+
+struct Horn {
+    void initialise() {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+constexpr auto table =
+    loom(components(good_components.rows[0], good_components.rows[1], good_components.rows[2],
+                    good_components.rows[3], good_components.rows[4], good_components.rows[5],
+                    component<Horn>("horn")),
+         activities(good_activities.rows[0], good_activities.rows[1], good_activities.rows[2],
+                    good_activities.rows[3], activity("noise", every(10ms), budget(10us), runs("horn"))),
+         good_connections, good_reactions, good_behaviours);
+template struct tappet::Firmware<table, good_board>;
