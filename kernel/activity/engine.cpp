@@ -27,6 +27,7 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     steps_only_ = plan.timers.empty() && plan.behaviours.empty() && plan.guarded.empty() &&
                   (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr;
     for (EnginePart& part : plan_.parts) part.step = part.type->step;
+    for (const EngineTimer& each : plan_.timers) each.timer->serve();
 }
 
 Time Engine::earliest_wake() const noexcept TAPPET_REALTIME {

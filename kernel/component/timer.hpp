@@ -2,21 +2,32 @@
 // cycles.
 #pragma once
 
+#include "kernel/base/contract.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/current.hpp"
 
 namespace tappet {
 
-/// Owned by a component, served by its engine. From its own activity only. Real-time.
+/// Owned by a component, served by its engine because the component's interface names it. From its own
+/// activity only. Real-time.
 class Timer {
 public:
-    /// Once, at `when`; a time that is past fires at the engine's next look. Arming again moves it.
-    void arm(Time when) noexcept TAPPET_REALTIME { when_ = when; }
+    /// Once, at `when`; a time that is past fires at the engine's next look. Arming again moves it. One that
+    /// no engine serves would never fire: that breaks a contract.
+    void arm(Time when) noexcept TAPPET_REALTIME {
+        TAPPET_CONTRACT(is_served_, Contract::timer_unserved, to_ns(when), running_activity());
+        when_ = when;
+    }
     void cancel() noexcept TAPPET_REALTIME { when_ = never; }
     [[nodiscard]] Time when() const noexcept TAPPET_REALTIME { return when_; }
 
+    /// By the engine that looks at it from now on.
+    void serve() noexcept { is_served_ = true; }
+
 private:
     Time when_ = never;
+    bool is_served_ = false;
 };
 
 } // namespace tappet

@@ -10,6 +10,7 @@
 #include "kernel/machine/check_reach.hpp"
 #include "kernel/machine/check_reactions.hpp"
 #include "kernel/machine/check_time.hpp"
+#include "kernel/machine/check_wakes.hpp"
 #include "kernel/machine/check_watches.hpp"
 
 namespace tappet {
@@ -28,6 +29,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reach(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_behaviours(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
         return checks::check_schedulability(m, board, r);
     };

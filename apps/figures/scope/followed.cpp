@@ -20,7 +20,7 @@ constexpr auto followed = machine("followed",
                component<ThreadScope>("scope")),
     activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
                         runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j")),
-               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(), behaviours());
+               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
 // clang-format on
 
 constexpr std::size_t steps_each = 16; ///< in one sample

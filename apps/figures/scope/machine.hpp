@@ -16,8 +16,13 @@ namespace tappet::figures {
 /// As little as can be seen.
 struct Idle {
     std::uint64_t steps = 0;
+    Event<> kicks;
+    void kick() noexcept TAPPET_REALTIME {}
     void step(const Cycle&) noexcept TAPPET_REALTIME { ++steps; }
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+    static constexpr auto interface() {
+        return facets(event<&Idle::kicks>("kicks", "wakes another"),
+                      operation<&Idle::kick>("kick", "woke it"));
+    }
 };
 
 inline constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};

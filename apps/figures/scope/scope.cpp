@@ -14,23 +14,23 @@ constexpr auto origin = "thesis A.2.1";
 // clang-format off
 constexpr auto one_bare = machine("one",
     components(component<Idle>("a")),
-    activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns), runs("a"))), connections(), reactions(), behaviours());
+    activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns), runs("a"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
 constexpr auto one_scoped = machine("one",
     components(component<Idle>("a"), component<ThreadScope>("scope")),
     activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns), runs("a")),
-               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(), behaviours());
+               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
 constexpr auto ten_bare = machine("ten",
     components(component<Idle>("a"), component<Idle>("b"), component<Idle>("c"), component<Idle>("d"), component<Idle>("e"),
                component<Idle>("f"), component<Idle>("g"), component<Idle>("h"), component<Idle>("i"), component<Idle>("j")),
     activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
-                        runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j"))), connections(), reactions(), behaviours());
+                        runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
 constexpr auto ten_scoped = machine("ten",
     components(component<Idle>("a"), component<Idle>("b"), component<Idle>("c"), component<Idle>("d"), component<Idle>("e"),
                component<Idle>("f"), component<Idle>("g"), component<Idle>("h"), component<Idle>("i"), component<Idle>("j"),
                component<ThreadScope>("scope")),
     activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
                         runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j")),
-               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(), behaviours());
+               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
 constexpr auto one_off = one_scoped; // in memory of their own
 constexpr auto ten_off = ten_scoped;
 constexpr auto one_timeless = one_bare;

@@ -45,6 +45,7 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::single_writer), 103);
     EXPECT_EQ(static_cast<int>(Contract::single_reader), 104);
     EXPECT_EQ(static_cast<int>(Contract::command_sender), 105);
+    EXPECT_EQ(static_cast<int>(Contract::timer_unserved), 106);
     EXPECT_EQ(static_cast<int>(Contract::allocation_after_seal), 201);
     EXPECT_EQ(static_cast<int>(Contract::mapping_after_seal), 202);
     EXPECT_EQ(static_cast<int>(Contract::heap_exhausted), 203);

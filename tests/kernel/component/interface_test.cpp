@@ -151,12 +151,18 @@ TEST(Operation, runs_on_packed_arguments_of_any_sizes) {
 
 TEST(Timer, stands_still_until_armed_and_is_moved_by_arming_again) {
     Timer timer;
+    timer.serve();
     EXPECT_EQ(timer.when(), never);
     timer.arm(at_ns(10));
     timer.arm(at_ns(5));
     EXPECT_EQ(timer.when(), at_ns(5));
     timer.cancel();
     EXPECT_EQ(timer.when(), never);
+}
+
+TEST(Timer, that_no_engine_serves_breaks_a_contract_when_it_is_armed) {
+    Timer timer;
+    EXPECT_DEATH(timer.arm(at_ns(42)), "contract 106 timer-unserved: .* armed for 42 ns .* timer<");
 }
 
 TEST(Timer, runs_the_function_that_the_interface_names) {

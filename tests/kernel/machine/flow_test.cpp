@@ -341,14 +341,15 @@ inline constexpr auto told_when_stale = machine("told_when_stale",
 
 inline constexpr auto woken = machine("woken",
     components(component<Source<double>>("source"), component<Sink<double>>("by_data"), component<Sink<double>>("by_buffer"),
-               component<Sink<double>>("asleep")),
-    activities(activity("motion", every(1ms), runs("source"), budget(10us)),
+               component<Sink<double>>("asleep"), component<Source<double>>("mute")),
+    activities(activity("motion", every(1ms), runs("source", "mute"), budget(10us)),
                activity("data",   on_work(), at_most(1, 1ms), runs("by_data"),   deadline(1ms), budget(10us)),
                activity("buffer", on_work(), at_most(1, 1ms), runs("by_buffer"), deadline(1ms), budget(10us)),
                activity("asleep", on_work(), at_most(1, 1ms), runs("asleep"),    deadline(1ms), budget(10us))),
     connections(data("source.value",    "by_data.value", wakes),
                 buffer<4>("source.all", "by_buffer.all", wakes),
-                data("source.value",    "asleep.value")),
+                data("source.value",    "asleep.value"),
+                buffer<4>("mute.all",   "asleep.all", wakes)),
     reactions(), behaviours());
 // clang-format on
 

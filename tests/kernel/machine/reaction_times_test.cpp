@@ -32,7 +32,7 @@ struct Lines {
 
 /// Takes some time, then tells another.
 struct Logic {
-    Event<> stop;
+    Event<> halts;
     Input<bool> level;
     os::Clock* clock = nullptr;
     Duration load{};
@@ -43,14 +43,15 @@ struct Logic {
     }
     void on_rise(Time) noexcept TAPPET_REALTIME {
         clock->consume(load);
-        stop.emit();
+        halts.emit();
     }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         bool value = false;
         woken += level.read(value) == Flow::fresh;
     }
     static constexpr auto interface() {
-        return facets(event<&Logic::stop>("stop", "what follows"), input<&Logic::level>("level", "", "seen"),
+        return facets(event<&Logic::halts>("halts", "what follows"),
+                      input<&Logic::level>("level", "", "seen"),
                       operation<&Logic::on_rise>("on_rise", "takes its time"));
     }
 };
@@ -78,7 +79,7 @@ constexpr auto table = machine("reactions",
         activity("logic", on_work(), at_most(4, 1ms), runs("logic"), deadline(800us), budget(50us)),
         activity("brake", on_work(), at_most(4, 1ms), runs("brake"), deadline(500us), budget(50us))),
     connections(data("lines.level", "logic.level", wakes)),
-    reactions(when("lines.rises", tell("logic.on_rise")), when("logic.stop", tell("brake.set"))),
+    reactions(when("lines.rises", tell("logic.on_rise")), when("logic.halts", tell("brake.set"))),
     behaviours());
 constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on

@@ -18,6 +18,8 @@ struct Machinist {
     std::uint64_t asked_inside_a_step = 0;
     std::int64_t sum = 0;
     bool stepping = false;
+    Event<> done;
+    void on_done() noexcept TAPPET_REALTIME {}
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         stepping = true;
         ++steps;
@@ -31,7 +33,10 @@ struct Machinist {
         at.asked_inside_a_step += at.stepping ? 1u : 0u;
         at.sum += value;
     }
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+    static constexpr auto interface() {
+        return facets(event<&Machinist::done>("done", "it asks the other"),
+                      operation<&Machinist::on_done>("on_done", "takes over"));
+    }
 };
 
 struct Watcher {
@@ -61,7 +66,7 @@ constexpr auto table = machine("watched-by-one",
         activity("motion", every(1ms), budget(50us), runs("left")),
         activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("right")),
         activity("office", every(100ms), not_real_time, runs("watcher", "blind"))),
-    connections(), reactions(), behaviours());
+    connections(), reactions(when("left.done", tell("right.on_done"))), behaviours());
 constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 

@@ -39,6 +39,7 @@ struct Tension {
     std::uint64_t out_of_order = 0;
     int changes = 0;
     double gain_when_configured = 0;
+    Event<> torn;
     bool in_step = false;
     bool changed_in_a_step = false;
 
@@ -51,6 +52,7 @@ struct Tension {
         gain_when_configured = gain.get();
         return {};
     }
+    void relax() noexcept TAPPET_REALTIME {}
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         in_step = true;
         ++steps;
@@ -59,7 +61,9 @@ struct Tension {
     }
     static constexpr auto interface() {
         return facets(bag<&Tension::band>("band", "that is wanted"),
-                      property<&Tension::gain>("gain", "", "of the loop", range(0, 10)));
+                      property<&Tension::gain>("gain", "", "of the loop", range(0, 10)),
+                      event<&Tension::torn>("torn", "an end broke"),
+                      operation<&Tension::relax>("relax", "lets go"));
     }
 };
 
@@ -80,7 +84,7 @@ constexpr auto table = machine("kept",
         activity("motion", every(1ms), budget(50us), runs("warp")),
         activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("weft", "edge")),
         activity("office", every(100ms), not_real_time, runs("office"))),
-    connections(), reactions(), behaviours());
+    connections(), reactions(when("warp.torn", tell("weft.relax"))), behaviours());
 constexpr auto refused_table = machine("refused",
     components(component<Tension>("edge", set("band.low", 25.0))),
     activities(activity("motion", every(1ms), budget(50us), runs("edge"))),
