@@ -101,6 +101,7 @@ struct EnginePlan {
     std::span<Behaviour> behaviours;
     std::span<GuardedInput> guarded;
     std::span<const NeededInput> inputs;
+    std::atomic<std::uint32_t>* forced = nullptr; ///< counts the machine's forced ports; null: nobody does
 
     /// What the analysis of the table believed: the processor time of a period's cycle, or of all cycles
     /// within at_most's time, which may come together. Zero: nothing is claimed.
@@ -269,6 +270,7 @@ private:
     [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
     void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;
     void stop_part(std::uint32_t part) noexcept TAPPET_REALTIME;
+    void end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;
     void serve_requests() noexcept TAPPET_REALTIME;

@@ -94,14 +94,31 @@ void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     part.state.store(ComponentState::running, std::memory_order_release);
 }
 
-// A component that failed or stopped before has left its safe values already.
+void Engine::end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME {
+    for (const Facet& each : part.type->facets) {
+        if (each.kind != of) continue;
+        void* port = nullptr;
+        TAPPET_ESCAPE("computes an address", port = each.at(part.component, each.index));
+        const bool is_input = of == FacetKind::input;
+        if (!*each.port->places(port, is_input).forced) continue;
+        each.port->release(port, is_input);
+        if (plan_.forced != nullptr) plan_.forced->fetch_sub(1, std::memory_order_relaxed);
+    }
+}
+
+// A component that failed or stopped before has left its safe values already. Its inputs are released before
+// it stops, so that a driver sends what others left behind; its outputs after that, so that their readers get
+// nothing between the forced and the safe value.
 void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     const ComponentState state = part.state.load(std::memory_order_relaxed);
-    if (state == ComponentState::stopped || state == ComponentState::failed) return;
+    end_forces(part, FacetKind::input);
+    if (state == ComponentState::stopped || state == ComponentState::failed)
+        return end_forces(part, FacetKind::output);
     part.state.store(ComponentState::stopping, std::memory_order_release);
     commands_.fail(i);
     if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
+    end_forces(part, FacetKind::output);
     for (const EngineTimer& each : plan_.timers)
         if (each.part == i) each.timer->cancel();
     part.state.store(ComponentState::stopped, std::memory_order_release);

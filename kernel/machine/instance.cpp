@@ -99,6 +99,7 @@ void MachineInstance::place_engines() {
         engine.timers = {timers, timer_count};
         engine.behaviours = {at<Behaviour>(plan.behaviours_at), plan.behaviour_count};
         engine.inputs = {at<NeededInput>(plan.inputs_at), plan.input_count};
+        engine.forced = &observed().forced;
         engine.guarded = {at<GuardedInput>(plan.guarded_at), plan.guarded_count};
         auto* placed = new (&engines()[a]) Engine;
         placed->place(engine, *clock_);

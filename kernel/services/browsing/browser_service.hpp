@@ -78,6 +78,7 @@ private:
         std::size_t component = nowhere;
         std::size_t activity = nowhere;
         LifeTicket ticket{};
+        LifeChange change{};
     };
     struct Subscribed {
         browsing::Asker asker{};
@@ -128,6 +129,7 @@ private:
     Verdict run_errand(Client& client, const Request& request, browsing::Errand& errand, End end);
     [[nodiscard]] browsing::Errand* free_errand() noexcept;
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
+    [[nodiscard]] bool release_behind(const LifeRequest& stopped);
     void follow_errands();
     void follow_changes();
 

@@ -112,6 +112,36 @@ BrowserService::Verdict BrowserService::release(Client& client, const Request& r
     return run_errand(client, request, *errand, end);
 }
 
+// Its own forces ended with it; a forced input of another activity would still hide its safe value from
+// there. False: not all could be asked for in this cycle.
+bool BrowserService::release_behind(const LifeRequest& stopped) {
+    const AcceptedMachine& machine = machine_->machine();
+    const auto view = map::View::open(machine_->shared_memory());
+    if (!view) return true;
+    for (std::size_t x = 0; x < machine.table.connections.size(); ++x) {
+        const Link& link = machine.index.connections[x];
+        const std::size_t activity = machine.index.activity[link.to.component];
+        const bool meant = stopped.component != nowhere
+                               ? link.from.component == stopped.component
+                               : machine.index.activity[link.from.component] == stopped.activity;
+        const map::Facet& record =
+            view->facets()[view->components()[link.to.component].first_facet + link.to.facet];
+        if (!meant || record.forced_at == 0 || view->word<std::uint8_t>(record.forced_at) == 0 ||
+            !check_alive(link.to.component).good())
+            continue;
+        Errand* errand = free_errand();
+        if (errand == nullptr) return false;
+        errand->facet = &facet_at(machine.table, link.to);
+        errand->place = machine_->place_of(link.to);
+        errand->act = &release_port;
+        errand->asker = {};
+        errand->given_up = true; // nobody waits for its answer
+        if (!errand->post(activity, machine.plan.part_of[link.to.component])) return false;
+        errand->taken = true;
+    }
+    return true;
+}
+
 BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const Request& request,
                                                        std::span<std::byte> into) {
     // A command's results are part of its signature, but come back instead of going in.

@@ -88,6 +88,7 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
     place->asker = asker(client, request);
     place->component = target.component;
     place->activity = activity;
+    place->change = change;
     place->ticket = target.component != nowhere ? machine_->ask_component(target.component, change)
                                                 : machine_->ask_activity(target.activity, change);
     return {};
@@ -105,6 +106,7 @@ void BrowserService::follow_lives() {
                 each.asker, Refusal::not_now,
                 Sentence{"it has not happened yet; look at its state: what it waits for may still come"});
         } else if (answer.outcome == LifeOutcome::done) {
+            if (each.change != LifeChange::start && !release_behind(each)) continue;
             reply_good(each.asker);
         } else if (answer.outcome == LifeOutcome::superseded) {
             reply_bad(each.asker, Refusal::not_now,

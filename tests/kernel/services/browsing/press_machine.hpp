@@ -16,6 +16,7 @@ struct Ram {
     Property<double> force{10.0};
     double target = 0;
     std::int64_t strokes = 0;
+    double limit_at_stop = -1; ///< what it read when it left its safe value
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         const double now = place.last();
@@ -23,7 +24,10 @@ struct Ram {
         static_cast<void>(limit.get());
         place.write(far > speed ? now + speed : far < -speed ? now - speed : target);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { place.write(0); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        limit_at_stop = limit.get();
+        place.write(0);
+    }
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
         if (proposal.of(speed) * proposal.of(force) <= 100) return {};
         return Sentence{"speed times force is over 100; lower one of them"};

@@ -89,6 +89,46 @@ TEST_F(Press, a_forced_input_is_what_its_component_reads) {
     EXPECT_EQ(ram().limit.get(), 50.0);
 }
 
+TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_it_and_its_safe_value_flows) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force ram.place 33"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "2 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "3 stop ram"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
+    EXPECT_EQ(ram().limit_at_stop, 50.0) << "the forced 5 would hide the last word of whoever writes it";
+    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_TRUE(has(ask(talker, "5 forced"), R"("forced": [])"));
+}
+
+TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_those_that_read_it) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "2 stop table"), R"("ok": true)"));
+    run(20ms);
+    EXPECT_EQ(ram().limit.get(), 50.0) << "what the table left behind";
+    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_TRUE(has(ask(talker, "3 force ram.limit 6"), R"("ok": true)")) << "who wants it again, says so";
+    EXPECT_TRUE(has(ask(talker, "4 stop activity:slow"), R"("ok": true)"));
+    run(20ms);
+    EXPECT_EQ(ram().limit.get(), 50.0);
+}
+
+TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had_stopped_before) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force ram.place 33"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "2 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "3 force table.height 7"), R"("ok": true)"));
+    run(20ms);
+    EXPECT_EQ(instance.observed().forced.load(), 3u);
+    world.stop();
+    EXPECT_EQ(ram().place.last(), 0.0);
+    EXPECT_EQ(ram().limit_at_stop, 50.0) << "the table, which stops first, ended its force too";
+    double seen = -1;
+    PortAccess::data<double>.read(&ram().limit, true, reinterpret_cast<std::byte*>(&seen));
+    EXPECT_EQ(seen, 50.0);
+    EXPECT_EQ(instance.observed().forced.load(), 0u);
+}
+
 TEST_F(Press, what_cannot_be_forced_is_refused_with_the_reason) {
     Talker talker{path()};
     EXPECT_TRUE(has(ask(talker, "1 force table.parts 3"), "is a buffered port"));
