@@ -94,10 +94,11 @@ public:
         }
         state_.store(end, std::memory_order_release);
     }
-    /// Takes a copy of what the properties are that there is room for. Where the component runs, or while it
-    /// stands still. Real-time.
+    /// Takes a copy of what the properties are that there is room for, and asks the component whether it
+    /// would consent to them: refusal(). Where the component runs, or while it stands still. Real-time.
     void capture() noexcept TAPPET_REALTIME {
         for (const ProposedValue& each : values()) std::memcpy(place_of(each), each.target, each.size);
+        if (type_->accepts != nullptr) refusal_ = type_->accepts(component_, Proposal{values()});
         state_.store(State::done, std::memory_order_release);
     }
 
@@ -118,6 +119,14 @@ public:
     }
     [[nodiscard]] bool finished() const noexcept TAPPET_REALTIME {
         return state() == State::done || state() == State::refused;
+    }
+    /// What is wrong with the values in it, by their ranges or by the component that was asked: who proposed
+    /// them would be refused. Empty: nothing.
+    [[nodiscard]] Sentence check() const noexcept {
+        for (const ProposedValue& each : values())
+            if (Sentence fault = check_range(type_->facets[each.facet], each.value); !fault.empty())
+                return fault;
+        return refusal_;
     }
     /// Why the component did not consent; once refused.
     [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }

@@ -72,6 +72,14 @@ Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction&
     if (!name_path(row))
         return Sentence{"component \"", row.name, "\": the path of its properties file \"",
                         row.properties.name, "\" is too long; name a shorter properties directory"};
+    // A component may give itself what nobody checks; the next start would refuse to arm with it.
+    if (const Sentence refused = from.check(); !refused.empty())
+        return Sentence{std::string_view{path_.data()},
+                        ": component \"",
+                        row.name,
+                        "\": ",
+                        refused,
+                        "; its properties are not saved and the old file stands"};
     Sentence fault;
     const std::size_t length = write_cpf(from, text_, fault);
     if (!fault.empty()) return fault;

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -235,6 +236,27 @@ TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced)
     EXPECT_TRUE(there("weft.cpf")) << "the others are saved all the same";
 }
 
+TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_reading_would_refuse) {
+    put("warp.cpf", cpf(real("gain", "3.5")));
+    ASSERT_EQ(configure(), "");
+    const auto saved = [this] { return std::string{instance.save_properties().view()}; };
+    tension("warp").gain.set(10.5); // nobody looks at what a component gives itself
+    EXPECT_THAT(saved(),
+                AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\": property \"gain\""),
+                      HasSubstr("over its greatest value 10"), HasSubstr("the old file stands")));
+    EXPECT_TRUE(there("weft.cpf")) << "the others are saved all the same";
+    tension("warp").gain.set(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_THAT(saved(), HasSubstr("is no number"));
+    tension("warp").gain.set(4.0);
+    tension("warp").band.low.set(30.0);
+    EXPECT_THAT(saved(),
+                AllOf(HasSubstr("band.low is not under band.high"), HasSubstr("the old file stands")))
+        << "what the component itself would refuse";
+    EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
+    EXPECT_EQ(configure(), "") << "the next start reads it";
+    EXPECT_EQ(tension("warp").gain_when_configured, 3.5);
+}
+
 struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
     VirtualWorld world{instance};
     PropertiesOfARunningMachine() {
@@ -271,6 +293,18 @@ TEST_F(PropertiesOfARunningMachine, stay_as_they_are_when_the_component_refuses)
     EXPECT_THAT(std::string{transaction.refusal().view()}, HasSubstr("spread them"));
     EXPECT_EQ(tension("edge").gain.get(), 1.0);
     EXPECT_EQ(tension("edge").changes, 1) << "that of configuring";
+}
+
+TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_its_range) {
+    static PropertySaving saving;
+    tension("warp").gain.set(-1.0);
+    saving.begin(instance, office);
+    int steps = 0;
+    for (Time now = at_ns(0); saving.step() && steps < 100; ++steps) EXPECT_TRUE(world.run_until(now += 1ms));
+    EXPECT_EQ(saving.saved(), 1u);
+    EXPECT_THAT(std::string{saving.fault().view()},
+                AllOf(HasSubstr("property \"gain\""), HasSubstr("under its least value 0")));
+    EXPECT_EQ(get("warp.cpf"), cpf(""));
 }
 
 TEST_F(PropertiesOfARunningMachine, are_saved_while_it_runs) {
