@@ -3,6 +3,7 @@
 #include "kernel/machine/behaviour_slot.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tappet {
 
@@ -41,7 +42,7 @@ bool BehaviourSlot::is_due() noexcept TAPPET_REALTIME {
     }
     // From the wanted angle on, 0 to 360: a value that is smaller than the last one came round.
     double beyond = place_.angle->last() - moment_.angle_deg;
-    while (beyond < 0) beyond += full_turn_deg;
+    beyond -= full_turn_deg * std::floor(beyond / full_turn_deg);
     const bool passed = last_angle_ >= 0 && beyond < last_angle_;
     last_angle_ = beyond;
     return passed;

@@ -24,10 +24,11 @@ struct Oven {
     Event<> tick;
     std::vector<std::int64_t> told{};
     std::uint64_t steps = 0;
+    double from_deg = 0;
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         ++steps;
-        angle_deg.write(static_cast<double>(steps % 36 * 10));
+        angle_deg.write(from_deg + static_cast<double>(steps % 36 * 10));
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { angle_deg.write(0); }
     /// False for what no oven does.

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace tappet::bakery {
 namespace {
@@ -170,6 +171,19 @@ TEST_F(BehaviourSlotTest, it_takes_over_when_its_angle_is_passed_upwards) {
         EXPECT_LT(past, 10.0) << "wanted " << wanted << ", was " << at; // one step turns 10 degrees
         run(30ms);
     }
+}
+
+TEST_F(BehaviourSlotTest, an_angle_of_any_size_takes_no_longer_to_look_at) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(numbered(2), "85"), "");
+    for (const double astray : {-1e18, 1e18, -1e300, std::numeric_limits<double>::quiet_NaN()}) {
+        oven().from_deg = astray;
+        run(2ms); // a turn at a time this would take for ever
+    }
+    oven().from_deg = -3600.0; // ten turns back is the same angle
+    run(80ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+    EXPECT_THAT(oven().told, testing::Contains(2));
 }
 
 TEST_F(BehaviourSlotTest, a_moment_that_is_none_is_refused_with_the_nearest) {
