@@ -26,7 +26,7 @@ struct CamEvent {
     std::size_t row = 0;
     CamKind kind = CamKind::point;
     bool forward = true;
-    bool forced = false;    // left because the encoder was lost meanwhile and the shaft is elsewhere now
+    bool forced = false;    // left although no angle says so: the shaft stands, is lost or is elsewhere now
     ShaftPosition target;   // the crossing: the row's angle in the turn it was fired for
     ShaftPosition position; // of the shaft, at the firing
     ShaftPosition effect;   // predicted, at the end of the dead time
@@ -46,15 +46,16 @@ struct CamCounters {
     std::uint64_t skipped_late = 0;  // beyond skip_from
     std::uint64_t skipped_slow = 0;  // crossed below min_speed, or while coming to a stand
     std::uint64_t skipped_reset = 0; // jumped over when the encoder started anew
-    std::uint64_t forced = 0;        // windows left because of that
+    std::uint64_t forced = 0;        // windows left although their angle had not come
     double latest_deg = 0.0;
     constexpr bool operator==(const CamCounters&) const = default;
 };
 
 /// The rows of one table at run time. Each crossing fires exactly once, in the order of the angles. All calls
 /// take time bounded by the number of rows; one activity owns it. A window in which the shaft stands at the
-/// beginning is not entered: events come from crossings only. Nothing is fired on a stale estimate: what has
-/// to be safe then is the machine's business.
+/// beginning is not entered: events come from crossings only. What was entered is left, once: by its angle,
+/// or at once when that angle will not come, because the shaft stands or the estimate is stale. Else nothing
+/// is fired on a stale estimate.
 template <std::size_t N> class CamSchedule {
 public:
     /// check(table.view()) is empty.
@@ -75,9 +76,11 @@ public:
 
     /// Takes the shaft's motion over and predicts every row anew. Fires nothing. Real-time, O(N).
     void update(const ShaftEstimator& estimator, Time now) noexcept TAPPET_REALTIME {
-        next_due_ = never;
         good_until_ = estimator.valid_until();
-        if (now > good_until_) return;
+        if (now > good_until_) {
+            next_due_ = is_any_open() ? now : never;
+            return;
+        }
         motion_ = estimator.motion().from(now);
         reach_ = motion_.at(good_until_ + longest_dead_).position;
         const ShaftPosition here = motion_.state.position;
@@ -85,32 +88,40 @@ public:
         epoch_ = estimator.epoch();
         started_ = true;
         for (std::size_t i = 0; i < used_; ++i) {
+            if (estimator.standing()) edges_[i].must_leave = is_open_end(edges_[i]);
             track(edges_[i], here);
             plan(edges_[i]);
-            next_due_ = std::min(next_due_, edges_[i].due);
         }
+        find_next_due();
     }
 
     /// When to call advance() next: at or before now means at once. `never` when nothing is due for as long
-    /// as the present estimate is good: the next update will tell. Real-time.
+    /// as the present estimate is good and no window is open: the next update will tell. Real-time.
     [[nodiscard]] Time next_due() const noexcept TAPPET_REALTIME { return next_due_; }
 
     /// Calls fire(const CamEvent&) for every event that is due at `now`. Real-time when `fire` is, O(N).
     template <class Fire> void advance(Time now, Fire&& fire) noexcept TAPPET_REALTIME {
         if (next_due_ > now) return;
         if (now > good_until_) {
+            leave_all(fire);
             next_due_ = never;
             return;
         }
         motion_ = motion_.from(now);
         const bool forward = motion_.state.velocity_deg_s >= 0.0;
-        next_due_ = never;
         std::size_t i = first_due(now, forward);
         for (std::size_t n = 0; n < used_; ++n) {
             if (edges_[i].due <= now) serve(edges_[i], fire);
             i = forward ? (i + 1 == used_ ? 0 : i + 1) : (i == 0 ? used_ - 1 : i - 1);
         }
-        for (std::size_t k = 0; k < used_; ++k) next_due_ = std::min(next_due_, edges_[k].due);
+        find_next_due();
+    }
+
+    /// Leaves every open window, for who does not follow the shaft any longer. Real-time when `fire` is,
+    /// O(N).
+    template <class Fire> void leave_all(Fire&& fire) noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < used_; ++i)
+            if (is_open_end(edges_[i])) leave(edges_[i], fire);
     }
 
     /// True between the entering and the leaving of a window. Real-time.
@@ -176,6 +187,20 @@ private:
     static constexpr Duration dead(const Edge& e) noexcept TAPPET_REALTIME {
         return e.side > 0 ? e.forward_dead : e.backward_dead;
     }
+    // Of a window that is open, the one edge of the two by which it is left without its angle.
+    [[nodiscard]] constexpr bool is_open_end(const Edge& e) const noexcept TAPPET_REALTIME {
+        return e.end == End::end && inside_[e.row];
+    }
+    [[nodiscard]] constexpr bool is_any_open() const noexcept TAPPET_REALTIME {
+        for (const bool open : inside_)
+            if (open) return true;
+        return false;
+    }
+    // The estimate grows stale unseen: whoever has a window open looks again just then.
+    void find_next_due() noexcept TAPPET_REALTIME {
+        next_due_ = is_any_open() ? good_until_ + Duration{1} : never;
+        for (std::size_t i = 0; i < used_; ++i) next_due_ = std::min(next_due_, edges_[i].due);
+    }
     [[nodiscard]] constexpr bool open_ahead(const Edge& e) const noexcept TAPPET_REALTIME {
         return e.closed != (e.side > 0 ? Closed::above : Closed::below);
     }
@@ -195,7 +220,7 @@ private:
             e.closed = here - below < properties_.hysteresis ? Closed::below : Closed::none;
             e.furthest = below;
             const bool within = forward_way(e.begin, here.angle()) < e.width;
-            e.must_leave = e.end == End::end && inside_[e.row] && !within;
+            e.must_leave = is_open_end(e) && !within;
         }
     }
 
@@ -281,21 +306,27 @@ private:
         return first;
     }
 
-    template <class Fire> void serve(Edge& e, Fire& fire) noexcept TAPPET_REALTIME {
+    template <class Fire> void leave(Edge& e, Fire& fire) noexcept TAPPET_REALTIME {
         CamEvent event;
         event.row = e.row;
-        event.position = motion_.state.position;
+        event.kind = CamKind::leave;
+        event.forced = true;
+        event.position = event.target = event.effect = motion_.state.position;
+        e.must_leave = false;
+        inside_[e.row] = false;
+        ++counters_.forced;
+        fire(std::as_const(event));
+    }
+
+    template <class Fire> void serve(Edge& e, Fire& fire) noexcept TAPPET_REALTIME {
         if (e.must_leave) {
-            e.must_leave = false;
-            event.kind = CamKind::leave;
-            event.forced = true;
-            event.target = event.effect = event.position;
-            inside_[e.row] = false;
-            ++counters_.forced;
-            fire(std::as_const(event));
+            leave(e, fire);
             plan(e);
             return;
         }
+        CamEvent event;
+        event.row = e.row;
+        event.position = motion_.state.position;
         event.kind = kind(e, e.side);
         event.forward = e.side > 0;
         event.target = e.side > 0 ? above(e) : e.below;

@@ -277,6 +277,94 @@ TEST(CamSchedule, leaves_an_open_window_when_the_encoder_comes_back_elsewhere) {
     EXPECT_EQ(rig.count(0, CamKind::enter), rig.count(0, CamKind::leave));
 }
 
+// The valve of a loom: what an angle opened is closed when the closing angle will not come.
+constexpr auto valves =
+    cam_table(700_rpm, cam("valve", window(60_deg, 180_deg), dead_time(2500us, 1800us)),
+              cam("both", window(60_deg, 180_deg), direction(Direction::both), dead_time(2500us)));
+
+void expect_left_once(const CamRig<2>& rig) {
+    for (std::size_t row = 0; row < 2; ++row) {
+        EXPECT_EQ(rig.count(row, CamKind::leave), rig.count(row, CamKind::enter)) << valves.rows[row].name;
+        EXPECT_FALSE(rig.schedule.inside(row)) << valves.rows[row].name;
+    }
+}
+
+TEST(CamSchedule, leaves_a_window_in_which_the_shaft_comes_to_stand) {
+    const std::uint64_t seed = any_seed();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    TrueShaft shaft(-360.0);
+    shaft.jump(3600.0).hold(460.0 / 3600.0).brake(40.0); // from 100 to 140 degrees
+    const double stands = shaft.end_s();
+    shaft.hold(0.5).ramp(1800.0, 0.1).hold(0.5);
+    CamRig rig(valves, shaft, {.missing_one_in = 30}, seed);
+    rig.run(stands + 0.001);
+    EXPECT_TRUE(rig.schedule.inside(0));
+    rig.run(stands + 0.05);
+    expect_left_once(rig);
+    EXPECT_EQ(rig.count(0, CamKind::enter), 2u);
+    EXPECT_TRUE(rig.fired.back().event.forced);
+    rig.run(stands + 0.5);
+    EXPECT_EQ(rig.count(0, CamKind::leave), 2u) << "once";
+    EXPECT_EQ(rig.schedule.next_due(), never) << "nothing is left to look for";
+    rig.run(shaft.end_s());
+    const std::size_t open = rig.schedule.inside(0) ? 1 : 0;
+    EXPECT_EQ(rig.count(0, CamKind::enter), rig.count(0, CamKind::leave) + open);
+    EXPECT_GE(rig.count(0, CamKind::enter), 4u) << "from the next turn on it is entered as before";
+}
+
+TEST(CamSchedule, leaves_a_window_that_a_dead_time_entered_ahead_of_a_shaft_that_stops_before_it) {
+    constexpr auto table = cam_table(700_rpm, cam("slow_valve", window(180_deg, 300_deg), dead_time(20ms)));
+    TrueShaft shaft(-150.0); // 72 degrees ahead: entered at 108; braked at 120, it stands at 160
+    shaft.jump(3600.0).hold(0.075).brake(40.0).hold(0.1);
+    CamRig rig(table, shaft, {}, any_seed());
+    rig.run(shaft.end_s());
+    EXPECT_EQ(rig.count(0, CamKind::enter), 1u);
+    EXPECT_EQ(rig.count(0, CamKind::leave), 1u);
+}
+
+TEST(CamSchedule, leaves_a_window_that_was_entered_backward_and_in_which_the_shaft_stands) {
+    TrueShaft shaft(360.0);
+    shaft.hold(0.1).ramp(-1800.0, 0.05).hold(0.1).ramp(0.0, 0.02).hold(0.1); // to 117 degrees
+    CamRig rig(valves, shaft, {}, any_seed());
+    rig.run(shaft.end_s());
+    EXPECT_EQ(rig.count(1, CamKind::enter), 1u);
+    EXPECT_EQ(rig.count(0, CamKind::enter), 0u);
+    expect_left_once(rig);
+}
+
+TEST(CamSchedule, leaves_a_window_whose_shaft_turns_back_out_of_it) {
+    TrueShaft shaft(0.0);
+    shaft.hold(0.1).ramp(1800.0, 0.02).hold(0.045).ramp(-1800.0, 0.02).hold(0.08);
+    CamRig rig(valves, shaft, {}, any_seed());
+    rig.run(shaft.end_s());
+    EXPECT_EQ(rig.count(0, CamKind::enter), 1u);
+    expect_left_once(rig);
+}
+
+TEST(CamSchedule, leaves_an_open_window_as_soon_as_the_encoder_is_silent_for_too_long) {
+    // At 0.12 s the shaft is at 72 degrees, inside, and turns on in the dark.
+    CamRig rig(valves, TrueShaft(-360.0).jump(3600.0).hold(2.0), {}, any_seed());
+    rig.run(0.12 + 0.011, 0.12, 1.0); // 8 ms are the age of what is believed
+    expect_left_once(rig);
+    EXPECT_EQ(rig.count(0, CamKind::enter), 2u);
+    EXPECT_TRUE(rig.fired.back().event.forced);
+    rig.run(1.0, 0.12, 1.0);
+    EXPECT_EQ(rig.count(0, CamKind::leave), 2u) << "once";
+}
+
+TEST(CamSchedule, leaves_all_for_who_follows_the_shaft_no_longer) {
+    CamRig rig(valves, TrueShaft(0.0).jump(3600.0).hold(1.0), {}, any_seed());
+    rig.run(0.03); // 108 degrees
+    ASSERT_TRUE(rig.schedule.inside(0) && rig.schedule.inside(1));
+    std::size_t left = 0;
+    const auto count = [&left](const CamEvent& event) noexcept
+        TAPPET_REALTIME { left += event.kind == CamKind::leave && event.forced ? 1 : 0; };
+    rig.schedule.leave_all(count);
+    rig.schedule.leave_all(count);
+    EXPECT_EQ(left, 2u);
+    EXPECT_FALSE(rig.schedule.inside(0) || rig.schedule.inside(1));
+}
+
 TEST(CamSchedule, keeps_exclusive_windows_apart_when_they_touch) {
     constexpr auto table = cam_table(2200_rpm, cam("b", window(120_deg, 240_deg), exclusive("g")),
                                      cam("a", window(0_deg, 120_deg), exclusive("g")),
