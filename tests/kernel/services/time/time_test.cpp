@@ -50,6 +50,7 @@ struct Office {
     bool rearms = false;
     std::vector<Time> dues, dues_heard_at;
     std::vector<Duration> silences, revivals;
+    std::uint64_t level_stops = 0;
     std::vector<Duration> level_silences;
     os::Clock* clock = nullptr;
     Sentence configure(Setup& setup) {
@@ -69,6 +70,7 @@ struct Office {
     void on_level_silent(Duration time) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a test remembers", level_silences.push_back(time));
     }
+    void on_level_stopped() noexcept TAPPET_REALTIME { ++level_stops; }
     void wake_up() noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Office::level>("level", "", "of the worker"),
@@ -79,7 +81,8 @@ struct Office {
                       operation<&Office::on_due>("on_due", "hears"),
                       operation<&Office::on_silent>("on_silent", "hears"),
                       operation<&Office::on_revived>("on_revived", "hears"),
-                      operation<&Office::on_level_silent>("on_level_silent", "hears"));
+                      operation<&Office::on_level_silent>("on_level_silent", "hears"),
+                      operation<&Office::on_level_stopped>("on_level_stopped", "hears"));
     }
 };
 
@@ -101,7 +104,8 @@ constexpr auto table = machine("timely",
         when("bell.due",          call("office.on_due")),
         when("cycle_dog.silent",  tell("office.on_silent")),
         when("cycle_dog.revived", tell("office.on_revived")),
-        when("level_dog.silent",  tell("office.on_level_silent"))),
+        when("level_dog.silent",  tell("office.on_level_silent")),
+        when("level_dog.stopped", tell("office.on_level_stopped"))),
     behaviours());
 constexpr auto real_time_table = table; // in memory of its own
 constexpr Board board{
@@ -258,6 +262,33 @@ TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew
     EXPECT_THAT(office.level_silences, IsEmpty());
     run(10ms);
     EXPECT_EQ(office.level_silences.size(), 1u);
+}
+
+TEST_F(AWatchdog, tells_once_that_what_it_watches_was_stopped_on_purpose) {
+    run(100ms);
+    EXPECT_EQ(office.level_stops, 0);
+    for (const std::size_t times : {1u, 2u}) {
+        if (times == 1)
+            static_cast<void>(instance.ask_component(worker, LifeChange::stop));
+        else
+            EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
+        run(2 * 2ms);
+        EXPECT_EQ(office.level_stops, times);
+        run(100ms);
+        EXPECT_EQ(office.level_stops, times);
+        static_cast<void>(instance.ask_component(worker, LifeChange::start));
+        run(10ms);
+    }
+}
+
+TEST_F(AWatchdog, without_a_limit_tells_no_silence_but_a_stop) {
+    level_dog.limit.set(0ms);
+    the_worker.silent = true;
+    run(1s);
+    EXPECT_THAT(office.level_silences, IsEmpty());
+    static_cast<void>(instance.ask_component(worker, LifeChange::stop));
+    run(10ms);
+    EXPECT_EQ(office.level_stops, 1);
 }
 
 TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
