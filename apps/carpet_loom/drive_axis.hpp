@@ -28,15 +28,24 @@ public:
         const canopen::DriveState state = canopen::drive_state(status);
         const bool follows = heard && state == canopen::DriveState::operation_enabled;
         controlword.write(heard ? control_.controlword(status) : canopen::controlword::disable_voltage);
-        enabled_.write(enabled, follows);
         fault_.write(fault, !heard || state == canopen::DriveState::fault ||
                                 state == canopen::DriveState::fault_reaction_active);
+        enabled_.write(enabled, follows);
         return follows;
     }
-    /// The last word of a machine that stops.
-    static void stop(Output<std::int64_t>& controlword, Output<double>& target) noexcept TAPPET_REALTIME {
+    /// Whatever was wanted of the drive before is forgotten: it moves when it is asked for again.
+    void start(Output<std::int64_t>& controlword, Output<double>& target) noexcept TAPPET_REALTIME {
+        control_ = {};
+        controlword.write(canopen::controlword::disable_voltage);
+        target.write(0.0);
+    }
+    /// The last word of a component that stops; nobody leads the drive or knows of it any longer.
+    void stop(Output<std::int64_t>& controlword, Output<double>& target, Output<bool>& enabled,
+              Output<bool>& fault) noexcept TAPPET_REALTIME {
         controlword.write(canopen::controlword::quick_stop);
         target.write(0.0);
+        fault_.write(fault, true);
+        enabled_.write(enabled, false);
     }
 
 private:

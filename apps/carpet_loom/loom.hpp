@@ -15,7 +15,8 @@ namespace wires = loom::wires;
 struct Loom {
     static constexpr bool behaviour_required = true;
 
-    Input<bool> main_enabled, main_at_speed, main_fault;
+    Input<bool> main_enabled, main_at_speed, main_fault, main_slips;
+    Input<double> main_velocity;
     Input<bool> let_off_enabled, let_off_fault, tension_in_band;
     Input<bool> shaft_valid, shaft_standing;
     Input<bool> bus_faulted, nodes_operational;
@@ -43,12 +44,13 @@ struct Loom {
     }
     [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return first_missing() == WaitsFor::nothing; }
     [[nodiscard]] bool at_speed() noexcept TAPPET_REALTIME { return main_at_speed.get(); }
-    [[nodiscard]] bool stands() noexcept TAPPET_REALTIME { return shaft_standing.get(); }
-    [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get(); }
-    [[nodiscard]] bool emergency_is_over() noexcept TAPPET_REALTIME { return !emergency_stop.get(); }
+    /// The brake may be released: it does not hold a shaft that turns, and nothing sets it again at once.
+    [[nodiscard]] bool may_prepare() noexcept TAPPET_REALTIME {
+        return !emergency_stop.get() && !bus_faulted.get() && stands();
+    }
+    [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get() && may_prepare(); }
     [[nodiscard]] bool emergency_is_pressed() noexcept TAPPET_REALTIME { return emergency_stop.get(); }
     [[nodiscard]] bool bus_is_off() noexcept TAPPET_REALTIME { return bus_faulted.get(); }
-    [[nodiscard]] bool bus_is_back() noexcept TAPPET_REALTIME { return !bus_faulted.get(); }
     [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
     /// The drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
     [[nodiscard]] bool encoder_stands() noexcept TAPPET_REALTIME {
@@ -58,6 +60,9 @@ struct Loom {
     [[nodiscard]] bool drive_is_faulty() noexcept TAPPET_REALTIME {
         return main_fault.get() || let_off_fault.get();
     }
+    [[nodiscard]] bool drive_slips() noexcept TAPPET_REALTIME { return main_slips.get(); }
+    /// What was there since the loom began to prepare itself and is not any longer, be it back or not.
+    [[nodiscard]] bool something_is_lost() noexcept TAPPET_REALTIME { return (had_ & ~there()) != 0; }
     [[nodiscard]] bool oil_is_lost() noexcept TAPPET_REALTIME { return !oil_good(); }
     [[nodiscard]] bool stop_is_refused() noexcept TAPPET_REALTIME {
         return stop_shaft.state() == CommandState::rejected || stop_shaft.state() == CommandState::failed;
@@ -67,9 +72,17 @@ struct Loom {
     }
 
     // Programs of the state machine.
+    /// Whatever ended before: nothing moves until somebody at the machine says so.
+    void enter_locked() noexcept TAPPET_REALTIME {
+        set_cause(StopCause::none);
+        pump.write(0.0);
+        disable_drives.emit();
+        make_safe(LoomState::locked);
+    }
     void enter_preparing() noexcept TAPPET_REALTIME {
         tell(LoomState::preparing, false, false, false);
         set_cause(StopCause::none);
+        had_ = 0;
         pump.write(1.0);
         release_brake.emit();
         enable_drives.emit();
@@ -109,6 +122,10 @@ struct Loom {
     /// What grows stale makes no noise: the state machine looks at its conditions this often at least.
     void look(const Cycle& cycle) noexcept TAPPET_REALTIME {
         look_timer.arm(cycle.now + look_every.get());
+        step(cycle);
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        had_ |= there();
         waits_for_.write(waits_for, first_missing());
     }
 
@@ -126,6 +143,8 @@ struct Loom {
             input<&Loom::main_enabled>("main_enabled", "", "the main drive is enabled"),
             input<&Loom::main_at_speed>("main_at_speed", "", "the shaft turns at weaving speed"),
             input<&Loom::main_fault>("main_fault", "", "the main drive is faulty or silent"),
+            input<&Loom::main_slips>("main_slips", "", "the main drive does not keep its speed"),
+            input<&Loom::main_velocity>("main_velocity", "rpm", "of the main drive, as it says itself"),
             input<&Loom::let_off_enabled>("let_off_enabled", "", "the let-off drive is enabled"),
             input<&Loom::let_off_fault>("let_off_fault", "", "the let-off drive is faulty or silent"),
             input<&Loom::tension_in_band>("tension_in_band", "", "the warp has its tension"),
@@ -171,6 +190,7 @@ private:
     }
     [[nodiscard]] WaitsFor first_missing() noexcept TAPPET_REALTIME {
         if (emergency_stop.get()) return WaitsFor::emergency_stop;
+        if (state.last() == LoomState::locked) return WaitsFor::acknowledgement;
         if (!nodes_operational.get()) return WaitsFor::can_nodes;
         if (!shaft_valid.get()) return WaitsFor::encoder;
         if (!main_enabled.get()) return WaitsFor::main_drive;
@@ -178,6 +198,22 @@ private:
         if (!oil_good()) return WaitsFor::oil_pressure;
         if (!tension_in_band.get()) return WaitsFor::warp_tension;
         return drop_wire.get() ? WaitsFor::drop_wire : WaitsFor::nothing;
+    }
+    /// By the encoder, which a drive that says it turns puts in the wrong; without one by the drive alone.
+    [[nodiscard]] bool stands() noexcept TAPPET_REALTIME {
+        double rpm = 0.0;
+        const Flow flow = main_velocity.read(rpm);
+        const bool known = flow == Flow::fresh || flow == Flow::old;
+        const bool slow = rpm < standing_rpm && -rpm < standing_rpm;
+        if (known && !slow) return false;
+        return shaft_valid.get() ? shaft_standing.get() : known;
+    }
+    /// One bit for each that the loom is prepared with.
+    [[nodiscard]] std::uint32_t there() noexcept TAPPET_REALTIME {
+        std::uint32_t bits = nodes_operational.get() ? 1u : 0u;
+        bits |= shaft_valid.get() ? 2u : 0u;
+        bits |= main_enabled.get() ? 4u : 0u;
+        return bits | (let_off_enabled.get() ? 8u : 0u);
     }
     void set_cause(StopCause why) noexcept TAPPET_REALTIME {
         cause_ = why;
@@ -191,11 +227,15 @@ private:
     }
     void tell(LoomState now, bool run, bool stop, bool fault) noexcept TAPPET_REALTIME {
         state.write(now);
+        waits_for_.write(waits_for, first_missing());
         lamp_run.write(run);
         lamp_stop.write(stop);
         lamp_fault.write(fault);
     }
 
+    static constexpr double standing_rpm = 1.0;
+
+    std::uint32_t had_ = 0; // of there(), since it began to prepare
     StopCause cause_ = StopCause::none;
     Change<WaitsFor> waits_for_;
 };

@@ -9,7 +9,8 @@ namespace tappet::carpet {
 // clang-format off
 inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
     states(
-        state("operating", initial),
+        state("locked",    initial, entry<&Loom::enter_locked>),                     // nothing moves: acknowledge
+        state("operating"),
         state("preparing", in("operating"), initial, entry<&Loom::enter_preparing>), // drives on, tension, oil
         state("ready",     in("operating"), entry<&Loom::enter_ready>),              // the operator may start
         state("running",   in("operating")),
@@ -21,9 +22,10 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         state("fault",     entry<&Loom::enter_fault>),
         state("safe",      final, entry<&Loom::enter_safe>)),
     transitions(
+        transition("locked",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>),
         transition("preparing", "ready",     guard<&Loom::prepared>),
+        transition("preparing", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>), // asks the drives again
         transition("ready",     "run_up",    on("io.button_start.rises"), guard<&Loom::may_start>),
-        transition("ready",     "preparing", guard<&Loom::node_is_silent>),
         transition("run_up",    "weave",     guard<&Loom::at_speed>),
         transition("run_up",    "fault",     after(3s), because("the shaft did not reach its speed within 3 s")),
         transition("running",   "stopping",  on("weft.missed"), then<&Loom::because_weft>, because("the weft did not arrive")),
@@ -33,20 +35,25 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         transition("running",   "fault",     guard<&Loom::oil_is_lost>, because("the oil pressure is lost")),
         transition("running",   "fault",     guard<&Loom::node_is_silent>, because("a CAN node is silent")),
         transition("running",   "fault",     guard<&Loom::encoder_is_stale>, because("the encoder is stale")),
+        transition("running",   "fault",     guard<&Loom::drive_slips>, because("the main drive does not keep its speed")),
+        transition("running",   "fault",     on("shaft_dog.silent"), because("the shaft's activity shows no life")),
         transition("weave",     "fault",     guard<&Loom::encoder_stands>, because("the encoder stands while the drive turns")),
         transition("stopping",  "ready",     on("shaft.stopped"), guard<&Loom::operator_stopped>),
         transition("stopping",  "stopped",   on("shaft.stopped")),
         transition("stopping",  "fault",     guard<&Loom::stop_is_refused>, because("the shaft does not take the stop")),
         transition("stopping",  "fault",     after(3s), because("the shaft did not come to stand within 3 s")),
         transition("stopping",  "fault",     guard<&Loom::encoder_is_stale>, because("the encoder is stale")),
+        transition("stopping",  "fault",     on("shaft_dog.silent"), because("the shaft's activity shows no life")),
         transition("stopped",   "preparing", on("io.button_acknowledge.rises"), guard<&Loom::repaired>),
         transition("operating", "emergency", on("io.emergency_stop.rises"), because("the emergency stop was pressed")),
         transition("operating", "emergency", guard<&Loom::emergency_is_pressed>, because("the emergency stop is pressed")),
+        transition("operating", "emergency", on("io_dog.stopped"), because("the lines are driven no longer")),
         transition("operating", "fault",     on("motion_dog.silent"), because("the motion activity shows no life")),
         transition("operating", "fault",     guard<&Loom::bus_is_off>, because("the CAN bus is off")),
         transition("running",   "fault",     guard<&Loom::drive_is_faulty>, because("a drive reports a fault")),
-        transition("emergency", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::emergency_is_over>),
-        transition("fault",     "preparing", on("io.button_acknowledge.rises"), guard<&Loom::bus_is_back>)));
+        transition("operating", "fault",     guard<&Loom::something_is_lost>, because("a node, a drive or the encoder was lost")),
+        transition("emergency", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>),
+        transition("fault",     "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>)));
 // clang-format on
 
 } // namespace tappet::carpet

@@ -52,6 +52,9 @@ inline constexpr auto loom_model = chart::verification(
     chart::happens("shaft.brake_now",     chart::when_true("brake <= 1"), chart::sets("brake = 2")),
     chart::happens("shaft.stopped",       chart::when_true("brake >= 2"), chart::sets("brake = 0")),
 
+    chart::program<&Loom::enter_locked>(chart::sets("by_operator = 0"),
+                                        chart::emits("loom.disable_drives", "loom.inhibit_weft", "loom.quick_stop",
+                                                     "loom.set_brake")),
     chart::program<&Loom::enter_preparing>(chart::sets("by_operator = 0"),
                                            chart::emits("loom.release_brake", "loom.enable_drives")),
     chart::program<&Loom::enter_run_up>(chart::sets("by_operator = 0"),
@@ -69,8 +72,8 @@ inline constexpr auto loom_model = chart::verification(
 
     chart::only_when("weft.open_valve", "angle >= 2 && angle <= 4", "no weft is released while the shed is closed"),
     chart::only_when("weft.open_valve", "brake <= 1", "no weft is released while the drive is stopping"),
-    chart::always("!(in_loom_emergency || in_loom_fault || in_loom_safe) || !ready || !settled_shaft",
-                  "in emergency, fault and safe no weft is ready once the shaft's activity heard of it"));
+    chart::always("!(in_loom_locked || in_loom_emergency || in_loom_fault || in_loom_safe) || !ready || !settled_shaft",
+                  "in locked, emergency, fault and safe no weft is ready once the shaft's activity heard of it"));
 // clang-format on
 
 } // namespace tappet::carpet

@@ -12,6 +12,7 @@ namespace tappet::carpet {
 /// As the state machine in loom_cycle.hpp names them.
 enum class LoomState : std::int64_t {
     off,
+    locked,
     preparing,
     ready,
     run_up,
@@ -33,19 +34,21 @@ enum class WaitsFor : std::int64_t {
     let_off_drive,
     oil_pressure,
     warp_tension,
-    drop_wire
+    drop_wire,
+    acknowledgement
 };
 
 } // namespace tappet::carpet
 
 template <>
-inline constexpr auto tappet::names_of<tappet::carpet::LoomState> = std::array<std::string_view, 10>{
-    "off", "preparing", "ready", "run-up", "weave", "stopping", "stopped", "emergency", "fault", "safe"};
+inline constexpr auto tappet::names_of<tappet::carpet::LoomState> =
+    std::array<std::string_view, 11>{"off",      "locked",  "preparing", "ready", "run-up", "weave",
+                                     "stopping", "stopped", "emergency", "fault", "safe"};
 template <>
 inline constexpr auto tappet::names_of<tappet::carpet::StopCause> =
     std::array<std::string_view, 6>{"none", "weft", "warp", "operator", "emergency", "fault"};
 template <>
 inline constexpr auto tappet::names_of<tappet::carpet::WaitsFor> =
-    std::array<std::string_view, 9>{"nothing",      "emergency-stop", "can-nodes",
-                                    "encoder",      "main-drive",     "let-off-drive",
-                                    "oil-pressure", "warp-tension",   "drop-wire"};
+    std::array<std::string_view, 10>{"nothing",    "emergency-stop", "can-nodes",    "encoder",
+                                     "main-drive", "let-off-drive",  "oil-pressure", "warp-tension",
+                                     "drop-wire",  "acknowledgement"};

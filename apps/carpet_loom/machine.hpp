@@ -34,6 +34,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
         component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // barks when that activity hangs
+        component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
+        component<Watchdog>("io_dog", watches("io.edges_lost"), set("limit", 0s)), // lines are silent for hours: barks when stopped
         component<TimedEvent>("new_shift"),
         component<WeftRecord>("record"),                     // when the wefts arrived in this shift
         component<Console>("console"),
@@ -45,7 +47,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
-        activity("watch",   every(5ms),                        runs("motion_dog"), deadline(250us), budget(5us)),
+        activity("watch",   every(5ms),                        runs("motion_dog", "shaft_dog", "io_dog"), deadline(250us), budget(8us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
@@ -53,7 +55,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("browser", every(20ms),      runs("browser"), not_real_time, stack(224 * 1024))),
     connections( // data flow
         data("can.encoder.position",      "shaft.code",           wakes),
-        data("shaft.speed_rpm",           "warp.shaft_speed"),
+        data("shaft.speed_rpm",           "warp.shaft_speed",     stale_after(20ms), hold),
         data("can.main_drive.statusword", "main.statusword",      stale_after(50ms), hold),
         data("can.main_drive.velocity",   "main.velocity",        stale_after(50ms), hold),
         data("main.controlword",          "can.main_drive_command.controlword", stale_after(20ms), hold),
@@ -77,6 +79,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("main.enabled",              "loom.main_enabled",    wakes),
         data("main.at_speed",             "loom.main_at_speed",   wakes),
         data("main.fault",                "loom.main_fault",      wakes),
+        data("main.slips",                "loom.main_slips",      wakes),
+        data("can.main_drive.velocity",   "loom.main_velocity",   stale_after(50ms), hold), // at an acknowledgement
         data("warp.enabled",              "loom.let_off_enabled", wakes),
         data("warp.fault",                "loom.let_off_fault",   wakes),
         data("warp.in_band",              "loom.tension_in_band", wakes),
@@ -124,6 +128,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("shaft.brake_now",      tell("io.brake.set")),
         when("shaft.brake_now",      tell("main.halt")),
         when("shaft.brake_now",      call("weft.hold")),
+        when("shaft.rests",          call("weft.on_rest")),          // the yarn cutter rests, too
         when("shaft.stopped",        tell("record.on_stop", keep_latest)),
         when("record.begun",         call("new_shift.every")),
         when("new_shift.due",        call("record.forget")),
@@ -134,13 +139,15 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("loom.run_shaft",       tell("main.run")),
         uses("loom.stop_shaft",      "shaft.stop"),                  // a command: sent, executing, done
         when("loom.quick_stop",      tell("main.quick_stop")),
+        when("loom.quick_stop",      tell("warp.hold")),
         when("loom.quick_stop",      tell("shaft.brake_was_set")),
         when("loom.quick_stop",      tell("can.purge")),             // nothing stale follows an emergency stop
         when("loom.set_brake",       tell("io.brake.set")),
         when("loom.release_brake",   tell("io.brake.clear")),
         when("loom.release_brake",   tell("shaft.release")),
         when("loom.allow_weft",      tell("weft.allow")),
-        when("loom.inhibit_weft",    tell("weft.inhibit"))),
+        when("loom.inhibit_weft",    tell("weft.inhibit")),
+        when("loom.inhibit_weft",    tell("io.weft_release.clear"))), // also when the shaft's activity hangs
     behaviours(
         behaviour("loom", loom_cycle),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),

@@ -19,9 +19,11 @@ struct MainDrive {
     Output<bool> enabled;
     Output<bool> at_speed;
     Output<bool> fault;
+    Output<bool> slips;
     Property<double> speed_rpm{wires::nominal::speed_rpm};
     Property<double> at_speed_within_rpm{12.0};
     Property<Duration> brake_release{15ms};
+    Property<Duration> slip_for{100ms};
 
     void enable() noexcept TAPPET_REALTIME { axis_.enable(); }
     void disable() noexcept TAPPET_REALTIME {
@@ -36,8 +38,9 @@ struct MainDrive {
     void halt() noexcept TAPPET_REALTIME { running_ = false; }
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        controlword.write(canopen::controlword::disable_voltage);
-        target.write(0.0);
+        running_ = start_asked_ = false;
+        axis_.start(controlword, target);
+        slips_.write(slips, false);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         if (start_asked_) {
@@ -49,10 +52,14 @@ struct MainDrive {
         static_cast<void>(axis_.lead(statusword, controlword, enabled, fault));
         target.write(runs ? speed_rpm.get() : 0.0);
         const double off = velocity.get() - speed_rpm.get();
-        at_speed_.write(at_speed,
-                        runs && off < at_speed_within_rpm.get() && -off < at_speed_within_rpm.get());
+        const bool reached = runs && off < at_speed_within_rpm.get() && -off < at_speed_within_rpm.get();
+        watch_speed(cycle.now, reached);
+        at_speed_.write(at_speed, reached);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { DriveAxis::stop(controlword, target); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        axis_.stop(controlword, target, enabled, fault);
+        at_speed_.write(at_speed, false);
+    }
 
     static constexpr auto interface() {
         return facets(
@@ -63,11 +70,14 @@ struct MainDrive {
             output<&MainDrive::enabled>("enabled", "", "operation enabled; written on change"),
             output<&MainDrive::at_speed>("at_speed", "", "runs at its speed; written on change"),
             output<&MainDrive::fault>("fault", "", "the drive is faulty or silent; written on change"),
+            output<&MainDrive::slips>("slips", "",
+                                      "it has lost the speed that it had and is to keep; written on change"),
             property<&MainDrive::speed_rpm>("speed_rpm", "rpm", "weaving speed", range(30, 700)),
             property<&MainDrive::at_speed_within_rpm>("at_speed_within_rpm", "rpm",
                                                       "how near counts as at speed", range(1, 100)),
             property<&MainDrive::brake_release>("brake_release", "s",
                                                 "the brake holds so long after its line fell", range(0, 0.5)),
+            property<&MainDrive::slip_for>("slip_for", "s", "so long it may be off its speed", range(0, 10)),
             operation<&MainDrive::enable>("enable", "leads the drive to operation enabled; resets one fault",
                                           required),
             operation<&MainDrive::disable>("disable", "takes the voltage away", required),
@@ -77,11 +87,22 @@ struct MainDrive {
     }
 
 private:
+    /// A brake that grips, or a load too heavy. A run-up, or one to another speed, is none.
+    void watch_speed(Time now, bool reached) noexcept TAPPET_REALTIME {
+        if (reached) kept_rpm_ = speed_rpm.get();
+        const bool keeps = running_ && kept_rpm_ == speed_rpm.get();
+        if (!keeps) kept_rpm_ = 0.0;
+        if (reached || !keeps) kept_at_ = now;
+        slips_.write(slips, now - kept_at_ > slip_for.get());
+    }
+
     DriveAxis axis_{};
     bool running_ = false;
     bool start_asked_ = false;
     Time run_from_{};
-    Change<bool> at_speed_;
+    double kept_rpm_ = 0.0; // reached since it runs; 0: not yet
+    Time kept_at_{};
+    Change<bool> at_speed_, slips_;
 };
 
 } // namespace tappet::carpet

@@ -29,6 +29,7 @@ struct MainShaft {
     Event<> beat_up, offer_pattern, weft_opens, weft_closes, window_opens, window_closes;
     Event<> brake_now;
     Event<double> stopped;
+    Event<> rests;
     Timer cam_timer;
     Timer brake_timer;
     Timer watch_timer;
@@ -75,19 +76,22 @@ struct MainShaft {
         properties.stamp_latency = stamp_latency.get();
         properties.stamp_jitter = 30us;
         estimator_ = ShaftEstimator{properties};
-        // At the nominal speed the shaft still turns during the dead time; the rest is braking.
-        const double speed = wires::nominal::speed_rpm * 6.0;
-        deceleration_ = speed * speed / (2.0 * (first_brake_distance_deg.get() - speed * brake_dead_s));
+        deceleration_ = deceleration_for(first_brake_distance_deg.get());
         return check(properties);
     }
 
-    void start(const Cycle&) noexcept TAPPET_REALTIME {
-        valid_.write(valid, false);
-        standing_.write(standing, true);
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        release();
+        distrusted_until_ = cycle.now + settling;
         angle_deg.write(0.0);
-        speed_rpm.write(0.0);
         brake_distance_deg.write(first_brake_distance_deg.get());
         stops.write(0);
+        lose();
+    }
+    /// Nobody knows the angle any longer.
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        release();
+        lose();
     }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -132,6 +136,7 @@ struct MainShaft {
             event<&MainShaft::brake_now>(
                 "brake_now", "the brake must be driven now to stop at the stop angle", heard_by(3)),
             event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
+            event<&MainShaft::rests>("rests", "the shaft has come to stand, or its angle is lost"),
             command<&MainShaft::stop_shaft, &MainShaft::has_stopped>(
                 "stop", "comes to stand at the stop angle; results in the error in degrees"),
             command<&MainShaft::stop_shaft_at, &MainShaft::has_stopped_at>(
@@ -149,7 +154,8 @@ struct MainShaft {
             property<&MainShaft::stop_angle_deg>("stop_angle_deg", "deg",
                                                  "harnesses level, least warp tension", range(0, 359.99)),
             property<&MainShaft::first_brake_distance_deg>("first_brake_distance_deg", "deg",
-                                                           "believed before the first stop", range(30, 180)),
+                                                           "believed before the first stop",
+                                                           range(least_distance_deg, most_distance_deg)),
             property<&MainShaft::learning_rate>("learning_rate", "", "of the last stop, into the brake angle",
                                                 range(0, 1)),
             property<&MainShaft::late_deg>("late_deg", "deg",
@@ -162,6 +168,11 @@ struct MainShaft {
 private:
     enum class Phase : std::uint8_t { free, wanted, braking, foreign };
     static constexpr double brake_dead_s = 1e-6 * static_cast<double>(wires::nominal::brake_dead_us);
+    // What a brake of this loom can need at nominal speed; what is learned stays between them.
+    static constexpr double least_distance_deg = 30.0;
+    static constexpr double most_distance_deg = 180.0;
+    static_assert(least_distance_deg > wires::nominal::speed_rpm * 6.0 * brake_dead_s,
+                  "during the dead time alone the shaft turns so far");
     // Below this the brake bites at once and the distance says nothing of its torque.
     static constexpr double least_learning_deg_s = 0.5 * wires::nominal::speed_rpm * 6.0;
 
@@ -177,22 +188,43 @@ private:
 
     void follow(Time now) noexcept TAPPET_REALTIME {
         schedule_.update(estimator_, now);
-        cam_timer.arm(schedule_.next_due());
         const ShaftState state = estimator_.at(now);
         watch_jumps(now);
         const bool is_valid = estimator_.valid(now) && now >= distrusted_until_;
+        cam_timer.arm(is_valid ? schedule_.next_due() : never);
         watch_timer.arm(is_valid ? estimator_.valid_until() + 1us : never);
         motion.write(estimator_.motion(), estimator_.motion().stamp);
         angle_deg.write(state.position.angle().in_degrees());
-        speed_rpm.write(state.velocity_deg_s / 6.0);
-        valid_.write(valid, is_valid);
-        standing_.write(standing, estimator_.standing());
-        if (is_valid && phase_ == Phase::wanted) plan_brake(now, state);
+        if (is_valid)
+            tell(state);
+        else
+            lose();
+        if (!is_valid) return;
+        if (phase_ == Phase::wanted) plan_brake(now, state);
         if (phase_ == Phase::braking && estimator_.standing()) finish_stop(state);
         if (phase_ == Phase::foreign && estimator_.standing()) {
             phase_ = Phase::free;
             stopped.emit(error_of(state));
         }
+    }
+
+    void tell(const ShaftState& state) noexcept TAPPET_REALTIME {
+        speed_rpm.write(state.velocity_deg_s / 6.0);
+        valid_.write(valid, true);
+        rest(estimator_.standing());
+        standing_.write(standing, estimator_.standing());
+    }
+    /// Nobody knows where the shaft is: no cam fires, what one opened is closed, and no speed is followed.
+    void lose() noexcept TAPPET_REALTIME {
+        schedule_.leave_all([this](const CamEvent& event) noexcept TAPPET_REALTIME { fire(event); });
+        rest(true);
+        speed_rpm.write(0.0);
+        valid_.write(valid, false);
+        standing_.write(standing, false);
+    }
+    void rest(bool now) noexcept TAPPET_REALTIME {
+        if (now && !resting_) rests.emit();
+        resting_ = now;
     }
 
     /// A code that no shaft could have reached is a late frame; some of them in a row are two shafts, and
@@ -228,6 +260,12 @@ private:
         }
     }
 
+    /// Of a brake that needs this distance at nominal speed: during its dead time the shaft turns on, the
+    /// rest is braking.
+    [[nodiscard]] static double deceleration_for(double distance_deg) noexcept TAPPET_REALTIME {
+        constexpr double speed = wires::nominal::speed_rpm * 6.0;
+        return speed * speed / (2.0 * (distance_deg - speed * brake_dead_s));
+    }
     [[nodiscard]] double distance_at(double speed_deg_s) const noexcept TAPPET_REALTIME {
         return speed_deg_s * brake_dead_s + speed_deg_s * speed_deg_s / (2.0 * deceleration_);
     }
@@ -269,9 +307,13 @@ private:
         if (edge_speed_deg_s_ >= least_learning_deg_s && braked > 1.0) {
             const double seen = edge_speed_deg_s_ * edge_speed_deg_s_ / (2.0 * braked);
             deceleration_ += learning_rate.get() * (seen - deceleration_);
+            deceleration_ = std::clamp(deceleration_, deceleration_for(most_distance_deg),
+                                       deceleration_for(least_distance_deg));
         }
         brake_distance_deg.write(distance_at(wires::nominal::speed_rpm * 6.0));
-        first_brake_distance_deg.set(brake_distance_deg.last()); // saved at halt, the next start knows it
+        // Saved at halt, the next start knows it; the last digits of what was computed may lie outside.
+        first_brake_distance_deg.set(
+            std::clamp(brake_distance_deg.last(), least_distance_deg, most_distance_deg));
         stop_error_deg.write(error_of(state));
         stops.write(stops.last() + 1);
         stopped.emit(error_of(state));
@@ -288,6 +330,7 @@ private:
     static constexpr std::uint64_t most_jumps = 4;
     static constexpr Duration jumps_within = 50ms;
     static constexpr Duration distrust = 200ms; // without another jump the encoder is believed again
+    static constexpr Duration settling = 20ms;  // after a start: long enough for all to see that it was lost
     static_assert(distrust > jumps_within, "an encoder that goes on jumping stays distrusted");
 
     ShaftEstimator estimator_{ShaftProperties{}};
@@ -302,6 +345,7 @@ private:
     std::uint64_t jumps_before_ = 0; // the window's beginning
     Time jumps_since_{};
     Time distrusted_until_{};
+    bool resting_ = true;
     Change<bool> valid_, standing_;
 };
 

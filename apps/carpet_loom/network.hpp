@@ -20,9 +20,11 @@ struct Network {
     Output<std::int64_t> silent_node;
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
+        to_start_ = 0;
         operational_.write(operational, false);
         silent_.write(silent_node, 0);
     }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { operational_.write(operational, false); }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         std::int64_t silent = 0;
         bool all = true;

@@ -45,18 +45,26 @@ struct WarpTension {
         return Sentence{"band_n reaches down to no tension at all; keep it below set_point_n"};
     }
 
-    void enable() noexcept TAPPET_REALTIME { axis_.enable(); }
+    void enable() noexcept TAPPET_REALTIME {
+        held_ = false;
+        axis_.enable();
+    }
     void disable() noexcept TAPPET_REALTIME { axis_.disable(); }
+    /// Feeds what a shaft that still turns takes up, and stands with it.
+    void hold() noexcept TAPPET_REALTIME { held_ = true; }
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        controlword.write(canopen::controlword::disable_voltage);
-        target.write(0.0);
+        integral_rpm_ = 0.0;
+        axis_.start(controlword, target);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const bool on = axis_.lead(statusword, controlword, enabled, fault);
         target.write(on ? controlled(cycle) : 0.0);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { DriveAxis::stop(controlword, target); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        axis_.stop(controlword, target, enabled, fault);
+        in_band_.write(in_band, false);
+    }
 
     static constexpr auto interface() {
         return facets(
@@ -75,7 +83,9 @@ struct WarpTension {
             property<&WarpTension::beam_radius_mm>("beam_radius_mm", "mm", "of the full warp beam",
                                                    range(50, 1000)),
             operation<&WarpTension::enable>("enable", "closes the loop; resets one fault", required),
-            operation<&WarpTension::disable>("disable", "opens the loop", required));
+            operation<&WarpTension::disable>("disable", "opens the loop", required),
+            operation<&WarpTension::hold>("hold", "feeds what the shaft takes up, nothing at stand",
+                                          required));
     }
 
 private:
@@ -85,20 +95,26 @@ private:
     double controlled(const Cycle& cycle) noexcept TAPPET_REALTIME {
         double tension_n = 0.0;
         const Flow flow = measured.read(tension_n);
-        const double forward =
-            shaft_speed.get() * wires::nominal::pick_spacing_mm / (two_pi * beam_radius_mm.get());
-        if (flow == Flow::stale || flow == Flow::never_written) { // blind: the take-up alone is followed
-            in_band_.write(in_band, false);
-            return forward + integral_rpm_;
-        }
+        const double speed_rpm = known_speed();
+        const double forward = speed_rpm * wires::nominal::pick_spacing_mm / (two_pi * beam_radius_mm.get());
+        const bool blind = flow == Flow::stale || flow == Flow::never_written;
         const double error = tension_n - set_point_n.get();
+        in_band_.write(in_band, !blind && error < band_n.get() && -error < band_n.get());
+        // The take-up alone is followed: while the shaft stands, or nobody knows its speed, nothing is fed.
+        if (blind || held_) return speed_rpm > 0.0 ? forward + integral_rpm_ : 0.0;
         integral_rpm_ = std::clamp(integral_rpm_ + gains.integral.get() * error * to_seconds(cycle.period),
                                    -integral_limit_rpm, integral_limit_rpm);
-        in_band_.write(in_band, error < band_n.get() && -error < band_n.get());
         return forward + gains.proportional.get() * error + integral_rpm_;
     }
 
+    [[nodiscard]] double known_speed() noexcept TAPPET_REALTIME {
+        double rpm = 0.0;
+        const Flow flow = shaft_speed.read(rpm);
+        return flow == Flow::fresh || flow == Flow::old ? rpm : 0.0;
+    }
+
     DriveAxis axis_{};
+    bool held_ = false;
     double integral_rpm_ = 0.0;
     Change<bool> in_band_;
 };

@@ -60,6 +60,7 @@ struct WeftInsertion {
     void on_release_angle() noexcept TAPPET_REALTIME {
         if (!ready_ || released_) return;
         released_ = true;
+        turning_ = true;
         detector.connect();
         open_valve.emit();
     }
@@ -77,7 +78,12 @@ struct WeftInsertion {
         // A second pulse of the same weft is none.
         if (!arrived_) static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg}));
         arrived_ = true;
-        cutter.write(true);
+        if (turning_) cutter.write(true);
+    }
+    /// The shaft stands or is lost: the beat-up that ends the cut may never come.
+    void on_rest() noexcept TAPPET_REALTIME {
+        turning_ = false;
+        cutter.write(false);
     }
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
@@ -87,8 +93,11 @@ struct WeftInsertion {
         cutter.write(false);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        if (allowed_) missed.emit(); // a loom that turns on without us weaves nothing
+        inhibit();
+        on_rest();
         detector.disconnect();
-        cutter.write(false);
+        released_ = arrived_ = false;
     }
 
     static constexpr auto interface() {
@@ -117,6 +126,7 @@ struct WeftInsertion {
             operation<&WeftInsertion::on_window_opens>("on_window_opens", "arrivals count from now on",
                                                        required),
             operation<&WeftInsertion::on_window_closes>("on_window_closes", "judges the pick", required),
+            operation<&WeftInsertion::on_rest>("on_rest", "the shaft stands or is lost", required),
             operation<&WeftInsertion::on_arrival>("on_arrival", "the detector saw the weft at this time",
                                                   required));
     }
@@ -133,6 +143,7 @@ private:
     bool released_ = false;
     bool arrived_ = false;
     bool early_ = false;
+    bool turning_ = false;
 };
 
 } // namespace tappet::carpet

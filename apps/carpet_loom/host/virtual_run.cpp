@@ -7,32 +7,44 @@
 namespace tappet::carpet {
 
 VirtualRun::VirtualRun(const loom::Settings& settings, std::uint64_t seed, bool quiet)
-    : loom_{settings, seed}, instance_{loom_on_host(), clock_}, world_{instance_}, quiet_{quiet} {}
+    : loom_{settings, seed}, quiet_{quiet} {
+    machine_.emplace(clock_);
+}
+
+VirtualRun::Machine::Machine(os::Clock& clock) : instance{loom_on_host(), clock} {}
 
 std::expected<void, Sentence> VirtualRun::start() {
     if (auto opened = loom_.open(); !opened) return opened;
-    instance_.read_properties_from(properties_on_host());
-    if (auto configured = instance_.configure(loom_.devices()); !configured) return configured;
-    instance_.find<Console>("console")->quiet.set(quiet_);
-    world_.add({this,
-                [](void* self) {
-                    auto& run = *static_cast<VirtualRun*>(self);
-                    // Whenever the machine has run it may have put something on the wires: the plant gets it
-                    // at once.
-                    return run.seen_steps_ != run.world_.steps() ? run.clock_.now() : run.loom_.next();
-                },
-                [](void* self, Time now) {
-                    auto& run = *static_cast<VirtualRun*>(self);
-                    run.seen_steps_ = run.world_.steps();
-                    run.loom_.advance(now);
-                }});
-    if (const Sentence refusal = world_.start(); !refusal.empty()) return std::unexpected(refusal);
+    return start_again();
+}
+
+std::expected<void, Sentence> VirtualRun::start_again() {
+    machine_.emplace(clock_);
+    seen_steps_ = 0;
+    MachineInstance& instance = machine_->instance;
+    instance.read_properties_from(properties_on_host());
+    if (auto configured = instance.configure(loom_.devices()); !configured) return configured;
+    instance.find<Console>("console")->quiet.set(quiet_);
+    machine_->world.add({this,
+                         [](void* self) {
+                             auto& run = *static_cast<VirtualRun*>(self);
+                             // Whenever the machine has run it may have put something on the wires: the plant
+                             // gets it at once.
+                             return run.seen_steps_ != run.world().steps() ? run.clock_.now()
+                                                                           : run.loom_.next();
+                         },
+                         [](void* self, Time now) {
+                             auto& run = *static_cast<VirtualRun*>(self);
+                             run.seen_steps_ = run.world().steps();
+                             run.loom_.advance(now);
+                         }});
+    if (const Sentence refusal = machine_->world.start(); !refusal.empty()) return std::unexpected(refusal);
     return {};
 }
 
 bool VirtualRun::weave(std::uint64_t picks, Duration limit) {
     const Time end = clock_.now() + limit;
-    while (clock_.now() < end && !instance_.stop_asked()) {
+    while (clock_.now() < end && !instance().stop_asked()) {
         run_for(50ms);
         if (loom_.plant().picks() >= picks && loom_.plant().speed_rpm() == 0.0) return true;
     }
@@ -41,7 +53,7 @@ bool VirtualRun::weave(std::uint64_t picks, Duration limit) {
 
 std::uint64_t VirtualRun::event_log_digest() {
     Digest digest;
-    digest.add(instance_.event_log_digest());
+    digest.add(instance().event_log_digest());
     digest.add(loom_.plant().report().digest);
     return digest.value();
 }

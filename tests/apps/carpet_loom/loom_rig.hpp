@@ -39,6 +39,18 @@ public:
     bool run_until_state(std::string_view wanted, Duration limit) {
         return run_until([&] { return state() == wanted; }, limit);
     }
+    /// By hand, for a loom whose operator is away: its buttons, as long as a hand presses them.
+    void acknowledge() { press(loom::Button::acknowledge); }
+    void press(loom::Button button) {
+        plant().press(button, 100ms);
+        run_for(110ms);
+    }
+    /// Unlocked by hand after a start, and prepared.
+    bool prepare() {
+        run_for(500ms); // its nodes boot
+        acknowledge();
+        return run_until_state("ready", 5s);
+    }
     /// Prepared, started by the operator, and some picks on its way.
     bool weave(std::uint64_t picks = 5) {
         const std::uint64_t wanted = plant().picks() + picks;

@@ -57,7 +57,7 @@ TEST_P(SafeStates, an_emergency_stop_that_is_held_cannot_be_acknowledged_away) {
     loom::Settings settings;
     settings.operator_present = false;
     LoomRig rig{GetParam(), settings};
-    ASSERT_TRUE(rig.run_until_state("ready", 5s));
+    ASSERT_TRUE(rig.prepare());
     rig.plant().inject({.fault = Fault::emergency_stop, .lasts = 2s});
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms));
     rig.plant().press(loom::Button::acknowledge, 100ms);
@@ -72,7 +72,7 @@ TEST_P(SafeStates, an_emergency_stop_at_stand_still_is_obeyed_too) {
     loom::Settings settings;
     settings.operator_present = false;
     LoomRig rig{GetParam(), settings};
-    ASSERT_TRUE(rig.run_until_state("ready", 5s));
+    ASSERT_TRUE(rig.prepare());
     rig.plant().inject({.fault = Fault::emergency_stop});
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms));
     rig.plant().press(loom::Button::start, 100ms);
@@ -202,7 +202,7 @@ TEST_P(SafeStates, a_loom_without_its_operator_stays_safe) {
     loom::Settings settings;
     settings.operator_present = false;
     LoomRig rig{GetParam(), settings};
-    ASSERT_TRUE(rig.run_until_state("ready", 5s));
+    ASSERT_TRUE(rig.prepare());
     rig.plant().press(loom::Button::start, 100ms);
     ASSERT_TRUE(rig.run_until([&] { return rig.plant().picks() > 5; }, 5s));
     rig.plant().inject({.fault = Fault::node_lost, .lasts = 100ms, .node = wires::node::encoder});

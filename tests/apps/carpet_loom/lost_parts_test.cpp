@@ -1,0 +1,151 @@
+// A part of the loom's machine that is stopped, started anew or lost while the rest goes on: what is said of
+// it is not believed any longer, what it opened is closed, and what moves is stopped until acknowledged.
+#include "tests/apps/carpet_loom/loom_rig.hpp"
+
+#include <string>
+
+namespace tappet::carpet {
+namespace {
+
+using loom::Button;
+using loom::Fault;
+
+loom::Settings nobody_there() {
+    loom::Settings settings;
+    settings.operator_present = false;
+    return settings;
+}
+
+struct Parts : LoomRig {
+    explicit Parts(std::uint64_t seed = 5) : LoomRig{seed, nobody_there()} {}
+
+    bool weave_by_hand() {
+        if (!prepare()) return false;
+        press(Button::start);
+        return run_until([&] { return state() == "weave" && plant().picks() > 5; }, 5s);
+    }
+    bool at_angle(double deg) {
+        return run_until(
+            [&] {
+                const double angle = std::fmod(plant().position_deg(), 360.0);
+                return angle >= deg && angle < deg + 8.0;
+            },
+            1s);
+    }
+    /// "component:..." or "activity:...".
+    void change(const std::string& what, LifeChange how) {
+        MachineInstance& instance = run().instance();
+        const MachineView& table = instance.machine().table;
+        const std::string name = what.substr(what.find(':') + 1);
+        if (what.starts_with("component:"))
+            static_cast<void>(instance.ask_component(find_component(table, name), how));
+        else
+            static_cast<void>(instance.ask_activity(find_activity(table, name), how));
+        run_for(1ms);
+    }
+    void expect_stopped_and_staying_so(Duration within) {
+        EXPECT_TRUE(run_until([&] { return plant().speed_rpm() == 0.0; }, within)) << state();
+        run_for(200ms); // a shaft that stands shows so only by staying, and a drive that slips by going on
+        const double stood_at = plant().position_deg();
+        for (const Time end = now() + 2s; now() < end; run_for(1ms)) {
+            EXPECT_EQ(component<MainDrive>("main").target.last(), 0.0);
+            EXPECT_FALSE(output(wires::line::weft_release));
+            EXPECT_FALSE(output(wires::line::yarn_cutter));
+            if (testing::Test::HasFailure()) return;
+        }
+        EXPECT_EQ(plant().position_deg(), stood_at);
+        EXPECT_TRUE(output(wires::line::brake));
+        EXPECT_EQ(report().damage.motor_blocked, 0u);
+    }
+};
+
+class WhileWeaving : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(part, WhileWeaving,
+                         testing::Values("activity:shaft", "component:shaft", "component:weft", "activity:io",
+                                         "component:io", "activity:can", "activity:motion", "component:main",
+                                         "component:network", "activity:logic", "component:loom"));
+
+TEST_P(WhileWeaving, the_stop_of_a_part_stops_the_loom_with_its_valve_closed) {
+    for (const double deg : {100.0, 230.0}) { // the valve is open there, and the cutter on
+        Parts rig;
+        ASSERT_TRUE(rig.weave_by_hand());
+        ASSERT_TRUE(rig.at_angle(deg));
+        rig.change(GetParam(), LifeChange::stop);
+        rig.run_for(30ms); // four milliseconds of silence are the encoder's; the watchdogs look each five
+        EXPECT_FALSE(rig.output(wires::line::weft_release)) << "at " << deg << " deg";
+        EXPECT_NE(rig.state(), "weave");
+        rig.expect_stopped_and_staying_so(1s);
+        EXPECT_NE(rig.state(), "ready");
+    }
+}
+
+class StartedAnew : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(part, StartedAnew,
+                         testing::Values("activity:shaft", "component:shaft", "component:weft",
+                                         "component:io", "activity:motion", "component:main",
+                                         "component:warp", "activity:logic", "component:loom"));
+
+TEST_P(StartedAnew, a_part_that_is_restarted_while_weaving_stops_the_loom_until_acknowledged) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    ASSERT_TRUE(rig.at_angle(100.0));
+    rig.change(GetParam(), LifeChange::restart);
+    rig.expect_stopped_and_staying_so(1s);
+    EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked" || rig.state() == "stopped")
+        << rig.state() << ": " << rig.reason();
+}
+
+TEST_P(StartedAnew, a_part_that_is_restarted_while_the_loom_is_prepared_moves_nothing_until_acknowledged) {
+    if (std::string_view{GetParam()} == "component:io" || std::string_view{GetParam()} == "component:weft")
+        return; // they drive nothing: the brake is on and the valve closed, until start is pressed
+    Parts rig;
+    ASSERT_TRUE(rig.prepare());
+    rig.change(GetParam(), LifeChange::restart);
+    rig.run_for(50ms);
+    EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked") << rig.state();
+    for (const Time end = rig.now() + 2s; rig.now() < end; rig.run_for(1ms)) {
+        ASSERT_EQ(rig.component<MainDrive>("main").target.last(), 0.0);
+        ASSERT_EQ(rig.component<WarpTension>("warp").target.last(), 0.0);
+        ASSERT_TRUE(rig.output(wires::line::brake));
+    }
+    rig.press(Button::start);
+    EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
+    rig.acknowledge();
+    EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
+}
+
+TEST(LostParts, a_shaft_activity_that_hangs_is_told_by_its_watchdog_and_the_valve_closes_without_it) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    ASSERT_TRUE(rig.at_angle(85.0));
+    ASSERT_TRUE(rig.output(wires::line::weft_release));
+    MachineInstance& instance = rig.run().instance();
+    instance.engines()[find_activity(instance.machine().table, "shaft")]
+        .mark_failed(); // and runs nothing more
+    rig.run_for(30ms);
+    EXPECT_EQ(rig.state(), "fault");
+    EXPECT_EQ(rig.reason(), "the shaft's activity shows no life");
+    EXPECT_FALSE(rig.output(wires::line::weft_release));
+    EXPECT_TRUE(rig.output(wires::line::brake));
+    rig.expect_stopped_and_staying_so(1s);
+}
+
+TEST(LostParts, lines_that_are_driven_no_longer_are_an_emergency) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    rig.change("activity:io", LifeChange::stop);
+    ASSERT_TRUE(rig.run_until_state("emergency", 10ms)) << rig.state();
+    EXPECT_EQ(rig.reason(), "the lines are driven no longer");
+}
+
+TEST(LostParts, a_drive_that_pulls_against_a_brake_is_stopped) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    rig.plant().set_line(wires::line::brake, true, rig.now()); // it grips unasked
+    ASSERT_TRUE(rig.run_until_state("fault", 300ms)) << rig.state();
+    EXPECT_EQ(rig.reason(), "the main drive does not keep its speed");
+    EXPECT_EQ(rig.report().damage.motor_blocked, 0u);
+}
+
+} // namespace
+} // namespace tappet::carpet
