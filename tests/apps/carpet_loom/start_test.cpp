@@ -128,6 +128,7 @@ TEST(AnAcknowledgement, that_is_held_down_before_the_start_is_none) {
     rig.plant().press(Button::acknowledge, 10s);
     rig.run_for(100ms);
     ASSERT_TRUE(rig.run().start_again());
+    rig.run_for(5ms);
     rig.expect_nothing_moves(1s);
     EXPECT_EQ(rig.state(), "locked");
 }
