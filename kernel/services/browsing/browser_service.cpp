@@ -128,8 +128,7 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
             static_cast<unsigned char>(letter) >= 0x20 && static_cast<unsigned char>(letter) < 0x7f;
         line.add(shown ? std::string_view{&letter, 1} : std::string_view{letter == '\n' ? "" : "?"});
     }
-    os::print(line.view());
-    os::print("\n");
+    os::print(line.add("\n").view());
 }
 
 void BrowserService::reply_good(const browsing::Asker& asker) noexcept {

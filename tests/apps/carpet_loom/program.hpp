@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -34,8 +36,15 @@ inline Ended run_loom(const std::vector<std::string>& words) {
     return ended;
 }
 
+/// It is gone with the program of the tests.
 inline std::string temporary_file(const std::string& name) {
-    return testing::TempDir() + "carpet_loom_" + std::to_string(getpid()) + "_" + name;
+    struct Folder {
+        std::string path = testing::TempDir() + "carpet-loom-XXXXXX";
+        Folder() { EXPECT_NE(mkdtemp(path.data()), nullptr); }
+        ~Folder() { std::filesystem::remove_all(path); }
+    };
+    static const Folder folder;
+    return folder.path + "/" + name;
 }
 
 inline std::string contents(const std::string& path) {

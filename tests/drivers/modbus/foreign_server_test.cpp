@@ -49,7 +49,7 @@ protected:
             where = free_port();
             settings.line = Tcp{"127.0.0.1", static_cast<std::uint16_t>(std::stoi(where))};
         } else {
-            const std::string base = "/tmp/modbus_line." + std::to_string(::getpid());
+            const std::string base = testing::TempDir() + "modbus_line." + std::to_string(::getpid());
             where = base + ".server";
             ours = base + ".client";
             socat = std::make_unique<Foreign>("socat pty,raw,echo=0,link=" + where +

@@ -51,7 +51,7 @@ bool send_with_descriptors(const LocalConnection& from, std::string_view packet,
 
 class LocalSocket : public testing::Test {
 protected:
-    std::string directory = "/tmp/tappet-socket-" + std::to_string(getpid());
+    std::string directory = testing::TempDir() + "tappet-socket-" + std::to_string(getpid());
     std::string path = directory + "/machine.socket";
     LocalListener listener;
     std::array<char, 256> room{};

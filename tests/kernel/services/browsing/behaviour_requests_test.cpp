@@ -48,7 +48,7 @@ std::string in_quotes(std::string_view text) {
 
 class Behaviours : public testing::Test {
 protected:
-    std::string directory = "/tmp/tappet-behaviours-" + std::to_string(getpid());
+    std::string directory = testing::TempDir() + "tappet-behaviours-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<with_behaviours, board>::machine(), clock};
     VirtualWorld world{instance};

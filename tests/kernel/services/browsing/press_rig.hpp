@@ -46,7 +46,7 @@ private:
 
 class Press : public testing::Test {
 protected:
-    std::string directory = "/tmp/tappet-browsing-" + std::to_string(getpid());
+    std::string directory = testing::TempDir() + "tappet-browsing-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<table, board>::machine(), clock};
     VirtualWorld world{instance};
