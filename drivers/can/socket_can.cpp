@@ -18,20 +18,13 @@
 namespace tappet::can {
 namespace {
 
+Time to_time(const timespec& t) noexcept TAPPET_REALTIME {
+    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+}
 Time read(clockid_t clock) noexcept TAPPET_REALTIME {
     timespec t{};
     TAPPET_ESCAPE("the vDSO reads the clock without entering the kernel", ::clock_gettime(clock, &t));
-    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-}
-
-/// The kernel stamps frames by the wall clock; the machine counts on CLOCK_MONOTONIC. A stamp from the future
-/// or from long ago shows a wall clock that was set in between: then the frame counts as arrived now.
-Time to_machine_time(const timespec& wall) noexcept TAPPET_REALTIME {
-    const Time now = read(CLOCK_MONOTONIC);
-    if (wall.tv_sec == 0 && wall.tv_nsec == 0) return now;
-    const Time wall_now = read(CLOCK_REALTIME);
-    const Duration age = wall_now - at_ns(std::int64_t{wall.tv_sec} * 1'000'000'000 + wall.tv_nsec);
-    return age < 0ns || age > 1s ? now : now - age;
+    return to_time(t);
 }
 
 Sentence failure(std::string_view interface, std::string_view what, std::string_view cure) {
@@ -70,7 +63,7 @@ struct SocketCan::Raw {
                 drops_known = true;
             } else if (c->cmsg_type == SCM_TIMESTAMPING) {
                 std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
-                stamped = true;
+                stamped = stamp.tv_sec != 0 || stamp.tv_nsec != 0;
             }
         }
     }
@@ -87,6 +80,7 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings) {
         return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
     link_ = *link;
     drops_seen_ = 0;
+    arrivals_.begin(read(CLOCK_REALTIME), read(CLOCK_MONOTONIC));
     controller_.configure(settings, link->state);
     found_ = Sentence{"CAN interface \"", name, "\" "};
     if (link->is_virtual)
@@ -175,7 +169,8 @@ Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME 
         drops_seen_ = raw.drops;
         controller_.count.lost_in_kernel += answer.lost;
     }
-    const Time arrived = to_machine_time(raw.stamped ? raw.stamp : timespec{});
+    const Time now = read(CLOCK_MONOTONIC);
+    const Time arrived = raw.stamped ? arrivals_.of(to_time(raw.stamp), read(CLOCK_REALTIME), now) : now;
     Frame candidate;
     if (raw.bytes != CAN_MTU || !wire::decode(raw.frame, controller_.state(), candidate)) {
         ++controller_.count.malformed;

@@ -1,6 +1,7 @@
 // The CAN controller behind a Linux network interface (SocketCAN, a raw socket).
 #pragma once
 
+#include "drivers/can/arrival.hpp"
 #include "drivers/can/controller.hpp"
 #include "drivers/can/link.hpp"
 
@@ -45,6 +46,7 @@ private:
     Link link_{};
     Sentence found_{};
     std::uint32_t drops_seen_ = 0;
+    Arrivals arrivals_{};
     Controller controller_{};
 };
 

@@ -1,0 +1,39 @@
+// When a frame arrived, in the machine's time: the kernel stamps frames by the wall clock, which people and
+// daemons set.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <algorithm>
+
+namespace tappet::can {
+
+/// Of one socket. A wall clock that was set since the last frame shows in its distance from the machine's:
+/// the frame then counts as arrived now, and what was stamped before it cannot have arrived earlier than
+/// that.
+class Arrivals {
+public:
+    /// What a wall clock that is only steered does not differ by between two frames.
+    static constexpr Duration most_drift = 1ms;
+
+    /// `wall` and `now` are the two clocks at one time, before the first frame.
+    constexpr void begin(Time wall, Time now) noexcept {
+        distance_ = wall - now;
+        last_ = Time::min();
+    }
+    /// `stamp` is the frame's by the wall clock; the answer is never before the last one, nor after `now`.
+    constexpr Time of(Time stamp, Time wall, Time now) noexcept TAPPET_REALTIME {
+        const Duration change = (wall - now) - distance_;
+        distance_ += change;
+        const bool was_set = change > most_drift || change < -most_drift;
+        last_ = std::max(last_, was_set ? now : std::min(now, now - (wall - stamp)));
+        return last_;
+    }
+
+private:
+    Duration distance_{};
+    Time last_ = Time::min();
+};
+
+} // namespace tappet::can
