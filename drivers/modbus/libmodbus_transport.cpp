@@ -75,12 +75,13 @@ std::expected<void, Sentence> LibmodbusTransport::open(const TransportSettings& 
                     modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE) == 0 &&
                     modbus_set_response_timeout(m, seconds(settings.answer_within),
                                                 rest_us(settings.answer_within)) == 0 &&
-                    modbus_set_byte_timeout(m, seconds(settings.between_bytes_within),
-                                            rest_us(settings.between_bytes_within)) == 0;
+                    // Without one between bytes, which would begin anew with each of them, libmodbus takes
+                    // the time for the whole answer out of the one above.
+                    modbus_set_byte_timeout(m, 0, 0) == 0;
     if (ok) return {};
     close();
     return std::unexpected{Sentence{"Modbus unit ", settings.unit, " cannot be set up: ",
-                                    modbus_strerror(errno), "; its time-outs must be above 1 us"}};
+                                    modbus_strerror(errno), "; its time-out must be above 1 us"}};
 }
 
 void LibmodbusTransport::close() noexcept {

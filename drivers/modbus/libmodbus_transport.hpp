@@ -27,9 +27,10 @@ struct Serial {
 
 struct TransportSettings {
     std::variant<Tcp, Serial> line{};
-    int unit = 1;                   ///< the server's address: 1 to 247; TCP also 255
-    Duration answer_within = 300ms; ///< to connect, and from a request to its answer's first byte
-    Duration between_bytes_within = 50ms;
+    int unit = 1; ///< the server's address: 1 to 247; TCP also 255
+    /// To connect, and from a request to the end of its answer, however its bytes come. A serial line needs
+    /// the time of the longest answer too: 255 bytes take 150 ms at 19200 baud.
+    Duration answer_within = 300ms;
 };
 
 class LibmodbusTransport final : public Transport {

@@ -66,7 +66,7 @@ std::expected<void, Sentence> Devices::open_utility(const BoardDevice& device) {
     if (error != std::errc{} || end != digits.data() + digits.size())
         return std::unexpected(Sentence{"the address has no port; write it as 192.168.7.2:502"});
     return utility_.open(
-        {modbus::Tcp{device.address.substr(0, colon), port}, loom::wires::modbus::unit, 300ms, 100ms});
+        {modbus::Tcp{device.address.substr(0, colon), port}, loom::wires::modbus::unit, 300ms});
 }
 
 } // namespace tappet::carpet

@@ -18,7 +18,7 @@ namespace {
 class Wire : public testing::TestWithParam<RawServer::Line> {
 protected:
     Wire() {
-        TransportSettings settings{.unit = 17, .answer_within = 100ms, .between_bytes_within = 40ms};
+        TransportSettings settings{.unit = 17, .answer_within = 100ms};
         if (GetParam() == RawServer::Line::tcp)
             settings.line = Tcp{"127.0.0.1", server.port()};
         else
@@ -80,6 +80,14 @@ TEST_P(Wire, waits_no_longer_than_told_for_the_rest_of_an_answer) {
     const Answer answer = read();
     EXPECT_NE(answer.outcome, Outcome::ok);
     EXPECT_LT(answer.took, 250ms);
+}
+
+TEST_P(Wire, waits_no_longer_than_told_for_an_answer_that_dribbles) {
+    server.manner = Manner::dribble;
+    std::array<std::uint16_t, 120> many{}; // two seconds' worth of bytes
+    const Answer answer = transport.read(Table::holding_registers, 0, many);
+    EXPECT_EQ(answer.outcome, Outcome::timeout);
+    EXPECT_LT(answer.took, 1s);
 }
 
 TEST_P(Wire, never_takes_a_late_answer_for_the_next_one) {

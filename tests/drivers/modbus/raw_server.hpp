@@ -29,7 +29,8 @@ enum class Manner {
     late,
     close,
     wrong_checksum,
-    drip
+    drip,   ///< half of the answer, and no more
+    dribble ///< all of it, a byte every 10 ms
 };
 
 using Bytes = std::vector<std::uint8_t>;
@@ -175,7 +176,13 @@ private:
         }
         if (how == Manner::late) std::this_thread::sleep_for(std::chrono::milliseconds{250});
         if (how == Manner::drip) answer.resize(answer.size() / 2);
-        if (::write(peer_, answer.data(), answer.size()) < 0) return;
+        const std::size_t at_once = how == Manner::dribble ? 1 : answer.size();
+        for (std::size_t i = 0; i < answer.size() && !stop_ && put(answer.data() + i, at_once); i += at_once)
+            if (how == Manner::dribble) std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    [[nodiscard]] bool put(const std::uint8_t* bytes, std::size_t count) const {
+        return (line_ == Line::tcp ? ::send(peer_, bytes, count, MSG_NOSIGNAL)
+                                   : ::write(peer_, bytes, count)) > 0;
     }
 
     Line line_;
