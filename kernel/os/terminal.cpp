@@ -151,6 +151,25 @@ bool write_all(int file, std::string_view text) noexcept {
 
 void print(std::string_view text) noexcept { static_cast<void>(write_all(STDOUT_FILENO, text)); }
 
+namespace {
+
+/// Of a file in it: a name that was given is on the disk only when its directory is.
+bool sync_directory(const char* path) noexcept {
+    char directory[4096] = ".";
+    if (const char* slash = std::strrchr(path, '/'); slash != nullptr) {
+        const std::size_t length = slash == path ? 1 : static_cast<std::size_t>(slash - path);
+        std::memcpy(directory, path, length);
+        directory[length] = '\0';
+    }
+    const int file = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool synced = fsync(file) == 0 || errno == EINVAL; // some file systems know none of directories
+    close(file);
+    return synced;
+}
+
+} // namespace
+
 bool replace_file(const char* path, std::string_view text) noexcept {
     char beside[4096];
     const std::size_t length = std::strlen(path);
@@ -160,8 +179,9 @@ bool replace_file(const char* path, std::string_view text) noexcept {
     const int file = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file < 0) return false;
     const bool written = write_all(file, text) && fsync(file) == 0;
-    close(file);
-    return written && rename(beside, path) == 0;
+    if (close(file) == 0 && written && rename(beside, path) == 0) return sync_directory(path);
+    unlink(beside);
+    return false;
 }
 
 } // namespace tappet::os

@@ -22,8 +22,9 @@ bool never_wait() noexcept;
 /// Texts dropped since never_wait(). Any thread.
 [[nodiscard]] std::uint64_t dropped_texts() noexcept;
 
-/// Replaces a file's contents at once: an old or a new file is there, never half of one. False: `path` cannot
-/// be written.
+/// Replaces a file's contents at once and for good: an old or a new file is there, never half of one, and
+/// after true the new one, though the power fails. False: `path` cannot be written; nothing else stays
+/// behind.
 bool replace_file(const char* path, std::string_view text) noexcept;
 
 } // namespace tappet::os

@@ -89,11 +89,11 @@ void Thread::abandon() noexcept {
 bool Thread::join_within(int milliseconds) noexcept {
     if (!started_) return true;
     timespec end{};
-    clock_gettime(CLOCK_REALTIME, &end);
+    clock_gettime(CLOCK_MONOTONIC, &end); // people and daemons set the wall clock
     end.tv_nsec += static_cast<long>(milliseconds % 1000) * 1'000'000;
     end.tv_sec += milliseconds / 1000 + end.tv_nsec / 1'000'000'000;
     end.tv_nsec %= 1'000'000'000;
-    if (pthread_timedjoin_np(handle_, nullptr, &end) != 0) return false;
+    if (pthread_clockjoin_np(handle_, nullptr, CLOCK_MONOTONIC, &end) != 0) return false;
     started_ = false;
     return true;
 }
