@@ -32,8 +32,6 @@ struct Loom {
     Event<> set_brake, release_brake;
     Event<> allow_weft, inhibit_weft;
     CommandCall<double&> stop_shaft;
-    Timer look_timer;
-    Property<Duration> look_every{5ms};
     Property<double> least_oil_bar{wires::nominal::oil_pressure_least_bar};
     Property<std::int64_t> colour{1};
 
@@ -119,18 +117,13 @@ struct Loom {
     void because_warp() noexcept TAPPET_REALTIME { set_cause(StopCause::warp); }
     void because_operator() noexcept TAPPET_REALTIME { set_cause(StopCause::operator_stop); }
 
-    /// What grows stale makes no noise: the state machine looks at its conditions this often at least.
-    void look(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        look_timer.arm(cycle.now + look_every.get());
-        step(cycle);
-    }
+    /// Whatever it decides by wakes it, what grows stale too.
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         had_ |= there();
         waits_for_.write(waits_for, first_missing());
     }
 
-    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        look(cycle);
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
         feeder_colour.write(colour.get());
         feeder_speed.write(feeder_windings_per_minute);
         pump.write(0.0);
@@ -173,8 +166,6 @@ struct Loom {
             event<&Loom::release_brake>("release_brake", "brake off"),
             event<&Loom::allow_weft>("allow_weft", "wefts may be released"),
             event<&Loom::inhibit_weft>("inhibit_weft", "no weft, valve closed"),
-            timer<&Loom::look_timer, &Loom::look>("look_timer", "the next look at the conditions"),
-            property<&Loom::look_every>("look_every", "s", "longest time between two looks at the conditions", range(0.001, 0.1)),
             property<&Loom::least_oil_bar>("least_oil_bar", "bar", "below it the loom does not run", range(0, 10)),
             property<&Loom::colour>("colour", "", "yarn of the feeder", range(0, 7)));
     }
