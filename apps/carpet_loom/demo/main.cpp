@@ -4,6 +4,7 @@
 #include "apps/carpet_loom/demo/options.hpp"
 #include "apps/carpet_loom/demo/story.hpp"
 #include "apps/carpet_loom/demo/terminal.hpp"
+#include "apps/carpet_loom/demo/troubles.hpp"
 #include "apps/carpet_loom/demo/verdict.hpp"
 #include "board/bench/bench.hpp"
 
@@ -83,10 +84,10 @@ std::vector<std::string> change_of_weaves() {
             "@signal carpet-loom-plant USR1"};
 }
 
-/// Breaks by chance, one Modbus outage, and one emergency stop in the middle, so that a viewer sees each of
-/// them.
 bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folder) {
-    const std::string middle = std::to_string(std::max<std::int64_t>(options.picks / 2, 1));
+    std::string plant = "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --fifo 1 --seed " +
+                        std::to_string(options.seed) + " --picks " + std::to_string(options.picks);
+    for (const std::string& word : troubles(options.picks)) plant += " " + word;
     bench::Scenario scenario;
     scenario.init = options.init;
     scenario.files = {{options.firmware, "/bin/carpet_loom"},
@@ -100,11 +101,7 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
     // through, and some picks more.
     const bool changes_weaves = options.picks >= least_picks_for_weaves;
     scenario.commands = {
-        "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --seed " + std::to_string(options.seed) +
-            " --picks " + std::to_string(options.picks) +
-            " --weft-break-one-in 40 --warp-break-one-in 150 --operator-reaction 500ms --stop-modbus-at "
-            "3s/2s --fifo 1 --emergency-stop-at " +
-            middle + (changes_weaves ? " --picks-after-usr1 20" : "") + " --report " + plant_report + " &",
+        plant + (changes_weaves ? " --picks-after-usr1 20" : "") + " --report " + plant_report + " &",
         "@sleep 1",
         std::string{"carpet_loom --summary "} + machine_report + " &",
     };

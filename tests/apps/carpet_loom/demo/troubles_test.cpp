@@ -1,0 +1,51 @@
+// What the demo shows: a break of each kind, whatever its seed and however many picks it weaves.
+#include "apps/carpet_loom/demo/options.hpp"
+#include "apps/carpet_loom/demo/troubles.hpp"
+#include "apps/carpet_loom/host/virtual_run.hpp"
+#include "apps/carpet_loom/plant/bench/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace tappet::demo {
+namespace {
+
+/// The demo's plant at the host's loom.
+loom::Report report_of(std::int64_t picks, std::uint64_t seed) {
+    const std::vector<std::string> words = troubles(picks);
+    std::vector<const char*> letters{"carpet-loom-plant"};
+    for (const std::string& word : words) letters.push_back(word.c_str());
+    const auto options = loom::parse_options(static_cast<int>(letters.size()), letters.data());
+    EXPECT_TRUE(options) << (options ? "" : options.error());
+    loom::Settings settings = options->settings;
+    settings.last_pick = static_cast<std::uint64_t>(picks);
+    carpet::VirtualRun run{settings, seed};
+    EXPECT_TRUE(run.start());
+    EXPECT_TRUE(run.weave(static_cast<std::uint64_t>(picks), 400s)) << "seed " << seed;
+    const loom::Report report = run.loom().plant().report();
+    run.stop();
+    return report;
+}
+
+TEST(TheDemo, shows_a_stop_for_a_weft_a_warp_end_and_an_emergency_whatever_chance_brings) {
+    const Options by_default;
+    for (const std::int64_t picks : {by_default.picks, std::int64_t{60}})
+        for (std::uint64_t seed = by_default.seed; seed < by_default.seed + 5; ++seed) {
+            const loom::Report report = report_of(picks, seed);
+            const auto count = [&report](loom::StopCause cause) {
+                return std::ranges::count_if(report.stops,
+                                             [cause](const loom::Stop& stop) { return stop.cause == cause; });
+            };
+            EXPECT_GE(report.weft_breaks_injected, 1u) << "seed " << seed;
+            EXPECT_GE(report.warp_breaks_injected, 1u) << "seed " << seed;
+            for (const loom::StopCause cause :
+                 {loom::StopCause::weft, loom::StopCause::warp, loom::StopCause::emergency})
+                EXPECT_GE(count(cause), 1)
+                    << "seed " << seed << ", " << picks << " picks, " << loom::name_of(cause);
+            EXPECT_EQ(report.damage.total(), 0u) << "seed " << seed;
+        }
+}
+
+} // namespace
+} // namespace tappet::demo
