@@ -48,6 +48,13 @@ std::string value_with_unit(Work& work, std::uint32_t index) {
            (reading.forced ? " FORCED" : "");
 }
 
+/// Who may set, call or send it; empty: nobody.
+std::string role_of(const MapReader& map, const map::Facet& facet, std::string_view before,
+                    std::string_view after) {
+    const std::string_view role = map.text(facet.role);
+    return role.empty() ? std::string{} : std::string{before} + std::string{role} + std::string{after};
+}
+
 void list_component(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     const map::Component& component = map.components()[index];
@@ -56,7 +63,8 @@ void list_component(Work& work, std::uint32_t index) {
         if (work.line.json) {
             work.out << "{\"name\": " << in_quotes(map.full_name(i))
                      << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
-                     << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc));
+                     << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
+                     << role_of(map, facet, ", \"role\": \"", "\"");
             if (facet.value_at != 0)
                 work.out << ", \"value\": " << value_of(map, work.session.observer().read(i), Style::json);
             work.out << "}\n";
@@ -66,6 +74,8 @@ void list_component(Work& work, std::uint32_t index) {
                            padded(std::string{map.text(facet.kind)}, 10) + " " +
                            padded(type_of(map, facet), 14) + " " + padded(value_with_unit(work, i), 16) +
                            " " + std::string{map.text(facet.doc)};
+        // Who sets a property is the same for all of them.
+        if (map.text(facet.kind) != "property") line += role_of(map, facet, " [", "]");
         line.erase(line.find_last_not_of(' ') + 1);
         work.out << line << "\n";
     }
@@ -211,7 +221,8 @@ void tell_facet(Work& work, const FoundFacet& found) {
         work.out << "{\"name\": " << in_quotes(map.full_name(found.index))
                  << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
                  << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
-                 << json_text("activity", activity_name(map, map.activity_of(facet)));
+                 << json_text("activity", activity_name(map, map.activity_of(facet)))
+                 << role_of(map, facet, ", \"role\": \"", "\"");
         if ((facet.flags & map::facet_has_range) != 0)
             work.out << ", \"low\": " << facet.low << ", \"high\": " << facet.high;
         work.out << "}\n";
@@ -219,7 +230,7 @@ void tell_facet(Work& work, const FoundFacet& found) {
     }
     work.out << map.full_name(found.index) << ": " << map.text(facet.kind) << " " << type_of(map, facet)
              << " " << map.text(facet.unit) << "\n    " << map.text(facet.doc) << "\n    in activity "
-             << activity_name(map, map.activity_of(facet)) << "\n";
+             << activity_name(map, map.activity_of(facet)) << role_of(map, facet, ", for the ", "") << "\n";
     if (const std::string range = range_of(facet); !range.empty()) work.out << "    from " << range << "\n";
     if (has_value) work.out << "    " << line_of(map, work.session.observer().read(found.index)) << "\n";
     tell_connections(work, found.index, "    ");

@@ -138,9 +138,11 @@ struct MainShaft {
             event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
             event<&MainShaft::rests>("rests", "the shaft has come to stand, or its angle is lost"),
             command<&MainShaft::stop_shaft, &MainShaft::has_stopped>(
-                "stop", "comes to stand at the stop angle; results in the error in degrees"),
+                "stop", "comes to stand at the stop angle; results in the error in degrees",
+                for_people(Role::machine_operator)),
             command<&MainShaft::stop_shaft_at, &MainShaft::has_stopped_at>(
-                "stop_at", "comes to stand at this angle in degrees; results in the error in degrees"),
+                "stop_at", "comes to stand at this angle in degrees; results in the error in degrees",
+                for_people(Role::machine_operator)),
             method<&MainShaft::angle_at>("angle_at", "the angle in degrees at a time near the last sample"),
             operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle",
                                                  required),

@@ -13,6 +13,7 @@
 #include "kernel/component/operation.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/component/property.hpp"
+#include "kernel/component/role.hpp"
 #include "kernel/component/timer.hpp"
 
 #include <algorithm>
@@ -110,6 +111,7 @@ struct Facet {
     bool valid_to_start = false;      ///< an input: its component does not start before it has a valid value
     std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
+    Role least_role = Role::engineer; ///< that may ask for a property, an operation, a method or a command
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
     std::size_t members = 0; ///< of a bag: so many facets behind it are in it, those of bags in it too

@@ -14,6 +14,7 @@
 #include "kernel/component/facet.hpp"
 #include "kernel/component/property_interface.hpp"
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 
@@ -37,6 +38,12 @@ struct HeardBy {
     std::uint8_t reactions = 1;
 };
 constexpr HeardBy heard_by(std::uint8_t reactions) noexcept { return {reactions}; }
+/// Marks an operation, a method or a command that a person at the machine may ask for, who has this role at
+/// least. Without it only an engineer may: it is a part of something that the machine does by itself.
+struct ForPeople {
+    Role least;
+};
+constexpr ForPeople for_people(Role least) noexcept { return {std::max(least, Role::machine_operator)}; }
 
 namespace detail {
 
@@ -79,6 +86,7 @@ constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
 constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start = true; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
+constexpr void apply(Facet& facet, ForPeople people) noexcept { facet.least_role = people.least; }
 
 template <class... Options>
 constexpr Facet with(Facet facet, Options... options) noexcept {

@@ -4,6 +4,7 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/role.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -35,18 +36,6 @@ struct BoardPlacement {
     std::string_view activity{};
     int processor = 0;
 };
-
-/// What a peer of the machine's socket may do; each role may do all that the ones before it may.
-enum class Role : std::uint8_t { observer, machine_operator, engineer };
-
-constexpr std::string_view to_text(Role role) noexcept {
-    switch (role) {
-    case Role::observer: return "observer";
-    case Role::machine_operator: return "operator";
-    case Role::engineer: return "engineer";
-    }
-    return "nobody";
-}
 
 /// Whoever is this user, or in this group, has this role at least.
 struct BoardRole {

@@ -171,6 +171,7 @@ constexpr void Cartographer::draw_facet(End end) {
     const bool is_data = facet.kind == FacetKind::input || facet.kind == FacetKind::output;
     const bool can_request = facet.property != nullptr || facet.operation != nullptr ||
                              facet.method != nullptr || facet.command != nullptr;
+    record.role = text(can_request ? to_text(facet.least_role) : std::string_view{});
     record.flags = flag(facet.required, facet_required) | flag(facet.any_thread, facet_any_thread) |
                    flag(ranged, facet_has_range) | flag(is_data, facet_can_force) |
                    flag(can_request, facet_can_request);

@@ -18,7 +18,7 @@
 namespace tappet::map {
 
 inline constexpr std::array<char, 8> magic{'T', 'A', 'P', 'P', 'E', 'T', 'M', 'P'};
-inline constexpr std::uint32_t layout_version = 2;
+inline constexpr std::uint32_t layout_version = 3;
 /// Of an index: there is none.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
@@ -106,6 +106,8 @@ struct Facet {
     std::uint64_t writes_at = 0;
     std::uint64_t forced_at = 0;       ///< byte: 0, or 1 while the port is forced
     std::uint64_t forced_value_at = 0; ///< the value it then has
+    /// The least that may set, call or send it: "operator", "engineer"; empty: nobody reaches it so.
+    Text role;
 };
 
 struct Activity {
@@ -241,7 +243,7 @@ inline constexpr bool is_plain =
 static_assert(is_plain<Header> && is_plain<Component> && is_plain<Facet> && is_plain<Activity> &&
               is_plain<Connection> && is_plain<Reaction> && is_plain<Times> && is_plain<Behaviour> &&
               is_plain<Type> && is_plain<Field> && is_plain<Enumerator> && is_plain<Figure>);
-static_assert(sizeof(Header) == 312 && sizeof(Component) == 56 && sizeof(Facet) == 104 &&
+static_assert(sizeof(Header) == 312 && sizeof(Component) == 56 && sizeof(Facet) == 112 &&
                   sizeof(Activity) == 80 && sizeof(Connection) == 48 && sizeof(Reaction) == 40 &&
                   sizeof(Times) == 88 && sizeof(Behaviour) == 24 && sizeof(Type) == 56 &&
                   sizeof(Field) == 24 && sizeof(Enumerator) == 16 && sizeof(Figure) == 48,

@@ -167,6 +167,14 @@ BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const
     return {};
 }
 
+BrowserService::Verdict BrowserService::check_role(const Client& client, const Request& request,
+                                                   const Facet& facet) {
+    if (client.role >= facet.least_role) return {};
+    return {Refusal::denied,
+            Sentence{"\"", request.arguments[0], "\" needs the role of an ", to_text(facet.least_role),
+                     ", you are an ", to_text(client.role), "; ask for it in the board's list of roles"}};
+}
+
 BrowserService::Verdict BrowserService::call(Client& client, const Request& request) {
     End end;
     const MachineView& table = machine_->machine().table;
@@ -174,6 +182,7 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
         browsing::find_facet(table, request.arguments[0], {FacetKind::method, FacetKind::operation}, end);
     if (!unknown.empty()) return {Refusal::unknown, unknown};
     const Facet& facet = facet_at(table, end);
+    if (Verdict role = check_role(client, request, facet); !role.good()) return role;
     Errand* errand = free_errand();
     if (errand == nullptr) return {Refusal::not_now, Sentence{"too many requests are under way; ask again"}};
     if (Verdict read = read_arguments(facet, request, errand->value); !read.good()) return read;

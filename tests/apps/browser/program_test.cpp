@@ -49,9 +49,11 @@ TEST_F(Program, lists_components_and_their_facets) {
     const Outcome one = run({"list", "shaft"});
     EXPECT_THAT(one.out, HasSubstr("shaft.stop"));
     EXPECT_THAT(one.out, HasSubstr("(double)"));
+    EXPECT_THAT(one.out, HasSubstr(" [operator]\n")) << "who may send it";
     EXPECT_THAT(one.out, HasSubstr("0 deg            of the main shaft"));
     EXPECT_THAT(run({"list", "shaft", "--json"}).out,
-                HasSubstr(R"("name": "shaft.angle", "kind": "output")"));
+                testing::AllOf(HasSubstr(R"("name": "shaft.angle", "kind": "output")"),
+                               testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator")")));
 }
 
 TEST_F(Program, keeps_no_descriptor_of_the_machine_beyond_the_end_of_its_session) {

@@ -83,6 +83,7 @@ std::uint32_t SampleMap::facet(std::string_view name, std::string_view kind, std
     each.doc = text(doc);
     each.type = type;
     each.flags = flags;
+    each.role = text(kind == "command" ? "operator" : kind == "property" ? "engineer" : "");
     each.component = static_cast<std::uint32_t>(components_.size() - 1);
     if (kind == "input" || kind == "output" || kind == "property") each.value_at = take(types_[type].size);
     if (kind == "input" || kind == "output") {

@@ -153,6 +153,9 @@ TEST_F(Map, names_every_component_with_its_activity_and_its_facets) {
             EXPECT_EQ(view.text(each.name), row.type->facets[f].name);
             EXPECT_EQ(view.text(each.unit), row.type->facets[f].unit);
             EXPECT_EQ(view.text(each.doc), row.type->facets[f].doc);
+            EXPECT_EQ(view.text(each.role), (each.flags & map::facet_can_request) != 0
+                                                ? to_text(row.type->facets[f].least_role)
+                                                : "");
             EXPECT_EQ(each.component, c);
         }
     }

@@ -66,6 +66,28 @@ TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
     EXPECT_TRUE(has(ask(talker, "5 get ram.speed"), R"("ok": true)"));
 }
 
+TEST_F(Press, an_operator_asks_for_what_the_interface_has_for_people_and_for_nothing_else) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    ASSERT_EQ(seteuid(1001), 0);
+    Talker talker{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    EXPECT_TRUE(has(ask(talker, "1 hello"), R"("role": "operator")"));
+    EXPECT_TRUE(has(ask(talker, "2 call ram.halt"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "3 send ram.move_to 10"), R"("state": "sent")"));
+    run(100ms);
+    while (!talker.receive().empty()) {
+    }
+    const std::string answer = ask(talker, "4 call ram.let_go");
+    EXPECT_TRUE(has(answer, R"("code": "denied")")) << answer;
+    EXPECT_TRUE(has(answer, R"(\"ram.let_go\" needs the role of an engineer, you are an operator)"))
+        << answer;
+    EXPECT_EQ(ram().let_goes, 0);
+    EXPECT_TRUE(has(ask(talker, "5 call ram.distance 3"), R"("code": "denied")"));
+    Talker engineer{path()};
+    EXPECT_TRUE(has(ask(engineer, "1 call ram.let_go"), R"("ok": true)"));
+    EXPECT_EQ(ram().let_goes, 1);
+}
+
 TEST_F(Press, a_client_that_floods_is_served_its_share_and_no_more) {
     Talker flood{path()};
     Talker quiet{path()};

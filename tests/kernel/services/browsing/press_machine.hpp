@@ -16,6 +16,7 @@ struct Ram {
     Property<double> force{10.0};
     double target = 0;
     std::int64_t strokes = 0;
+    int let_goes = 0;
     double limit_at_stop = -1; ///< what it read when it left its safe value
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
@@ -45,6 +46,7 @@ struct Ram {
     }
     double distance(double to) noexcept TAPPET_REALTIME { return to - place.last(); }
     void halt() noexcept TAPPET_REALTIME { target = place.last(); }
+    void let_go() noexcept TAPPET_REALTIME { ++let_goes; }
 
     static constexpr auto interface() {
         return facets(output<&Ram::place>("place", "mm", "of the ram"),
@@ -52,9 +54,11 @@ struct Ram {
                       event<&Ram::arrived>("arrived", "it is where it was told to be"),
                       property<&Ram::speed>("speed", "mm/ms", "", range(0.1, 20)),
                       property<&Ram::force>("force", "kN", "", range(0, 100)),
-                      command<&Ram::move_to, &Ram::moved_to>("move_to", "goes there"),
+                      command<&Ram::move_to, &Ram::moved_to>("move_to", "goes there",
+                                                             for_people(Role::machine_operator)),
                       method<&Ram::distance>("distance", "from here"),
-                      operation<&Ram::halt>("halt", "stays"));
+                      operation<&Ram::halt>("halt", "stays", for_people(Role::machine_operator)),
+                      operation<&Ram::let_go>("let_go", "opens the clamp"));
     }
 };
 
@@ -78,7 +82,7 @@ inline constexpr auto table = machine("press",
     connections(data("table.height", "ram.limit", stale_after(1s), hold)),
     reactions(), behaviours());
 inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,
-                             .browsing = {.mode = 0666}};
+                             .browsing = {.mode = 0666, .roles = roles(user(1001, Role::machine_operator))}};
 // clang-format on
 
 } // namespace tappet::press
