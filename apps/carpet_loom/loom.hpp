@@ -49,7 +49,6 @@ struct Loom {
     [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get() && may_prepare(); }
     [[nodiscard]] bool emergency_is_pressed() noexcept TAPPET_REALTIME { return emergency_stop.get(); }
     /// A valve or a brake may not be what the loom believes: only the drive's quick stop can be relied on.
-    [[nodiscard]] bool io_is_lost() noexcept TAPPET_REALTIME { return io_faulted.get(); }
     [[nodiscard]] bool bus_is_off() noexcept TAPPET_REALTIME { return bus_faulted.get(); }
     [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
     /// The drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
@@ -146,7 +145,7 @@ struct Loom {
             input<&Loom::shaft_valid>("shaft_valid", "", "the encoder can be relied on"),
             input<&Loom::shaft_standing>("shaft_standing", "", "the shaft stands"),
             input<&Loom::bus_faulted>("bus_faulted", "", "the CAN bus cannot be relied on"),
-            input<&Loom::io_faulted>("io_faulted", "", "an output line could not be written"),
+            input<&Loom::io_faulted>("io_faulted", "", "the lines cannot be relied on"),
             input<&Loom::nodes_operational>("nodes_operational", "", "every CAN node works"),
             input<&Loom::drop_wire>("drop_wire", "", "a warp end is broken"),
             input<&Loom::emergency_stop>("emergency_stop", "", "the emergency stop is pressed"),

@@ -35,7 +35,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
         component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // barks when that activity hangs
         component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
-        component<Watchdog>("io_dog", watches("io.edges_lost"), set("limit", 0s)), // lines are silent for hours: barks when stopped
+        component<Watchdog>("io_dog", watches("io"), set("limit", 20ms)), // silent: woken, and it does not come
+        component<Watchdog>("logic_dog", watches("logic"), set("limit", 20ms)),
         component<TimedEvent>("new_shift"),
         component<WeftRecord>("record"),                     // when the wefts arrived in this shift
         component<Console>("console"),
@@ -47,7 +48,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
-        activity("watch",   every(5ms),                        runs("motion_dog", "shaft_dog", "io_dog"), deadline(250us), budget(8us)),
+        activity("watch",   every(5ms),                        runs("motion_dog", "shaft_dog", "io_dog", "logic_dog"), deadline(250us), budget(10us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
@@ -148,7 +149,11 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("loom.release_brake",   tell("shaft.release")),
         when("loom.allow_weft",      tell("weft.allow")),
         when("loom.inhibit_weft",    tell("weft.inhibit")),
-        when("loom.inhibit_weft",    tell("io.weft_release.clear"))), // also when the shaft's activity hangs
+        when("loom.inhibit_weft",    tell("io.weft_release.clear")), // also when the shaft's activity hangs
+        when("logic_dog.silent",     tell("io.brake.set")),          // the states of the whole cannot say it any more
+        when("logic_dog.silent",     tell("io.weft_release.clear")),
+        when("logic_dog.silent",     tell("main.quick_stop")),
+        when("logic_dog.silent",     tell("warp.hold"))),
     behaviours(
         behaviour("loom", loom_cycle),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),

@@ -127,6 +127,9 @@ template <const auto& map> struct LinePort {
         stopped_ = true;
         drive(outputs, safe_values);
         judge(cycle.now);
+        // Lines that nobody drives cannot be relied on, though the chip be well.
+        if (!faulted_) line_fault.emit();
+        is_faulted.write(true);
     }
 
     template <std::size_t line> void set() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, true); }

@@ -203,6 +203,8 @@ public:
     [[nodiscard]] std::string_view name() const noexcept TAPPET_REALTIME { return plan_.name; }
     [[nodiscard]] const EnginePlan& plan() const noexcept TAPPET_REALTIME { return plan_; }
     [[nodiscard]] os::Waiter& waiter() noexcept TAPPET_REALTIME { return waiter_; }
+    /// Somebody woke it, and it has not begun the cycle for that.
+    [[nodiscard]] bool is_woken() const noexcept TAPPET_REALTIME { return waiter_.is_woken(); }
     [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
     [[nodiscard]] CommandProcessor& commands() noexcept TAPPET_REALTIME { return commands_; }
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }

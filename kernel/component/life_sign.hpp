@@ -14,6 +14,9 @@ struct LifeSign {
     std::uint64_t (*count)(const void* watched) noexcept TAPPET_REALTIME = nullptr;
     /// False while it was stopped on purpose: its silence means nothing.
     bool (*expected)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
+    /// True while it rests and nobody has woken it: an activity without a period may be silent for hours.
+    /// Null: it never rests.
+    bool (*rests)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
 };
 
 } // namespace tappet

@@ -24,6 +24,11 @@ bool is_engine_expected(const void* self) noexcept TAPPET_REALTIME {
            engine.plan().parts.front().state.load(std::memory_order_acquire) == ComponentState::failed;
 }
 
+bool rests(const void* self) noexcept TAPPET_REALTIME {
+    const auto& engine = *static_cast<const Engine*>(self);
+    return engine.generation() % 2 == 0 && !engine.is_woken();
+}
+
 } // namespace
 
 void MachineInstance::place_needed_inputs() {
@@ -48,7 +53,8 @@ void MachineInstance::place_needed_inputs() {
 LifeSign MachineInstance::life_sign_of(std::string_view watched) noexcept {
     if (watched.empty()) return {};
     if (const std::size_t a = find_activity(machine_.table, watched); a != nowhere)
-        return {&engines()[a], &engines()[a], &cycles_of, &is_engine_expected};
+        return {&engines()[a], &engines()[a], &cycles_of, &is_engine_expected,
+                engines()[a].plan().periodic ? nullptr : &rests};
     End output;
     static_cast<void>(resolve(machine_.table, machine_.index.by_name, watched, FacetKind::output, output));
     for (std::size_t x = 0; x < machine_.table.connections.size(); ++x)

@@ -103,14 +103,14 @@ constexpr const char *bare = "switch by hand", *kept = "switch by hand that keep
 
 template <class Events>
 std::vector<Candidate> event_forms() {
-    return {{bare, Role::floor, &drive<Events, Bare>},
-            {kept, Role::floor, &drive<Events, Kept>},
-            {table_compiled, Role::ours, &drive<Events, TableCompiled>},
-            {script_compiled, Role::ours, &drive<Events, ScriptCompiled>},
-            {script_loaded, Role::ours, &drive<Events, ScriptLoaded>},
-            {table_walked, Role::ours, &drive<Events, TableWalked>},
-            {msm, Role::peer, &drive<Events, Msm<Events::peer>>},
-            {statechart, Role::peer, &drive<Events, Statechart<Events::peer>>}};
+    return {{bare, Standing::floor, &drive<Events, Bare>},
+            {kept, Standing::floor, &drive<Events, Kept>},
+            {table_compiled, Standing::ours, &drive<Events, TableCompiled>},
+            {script_compiled, Standing::ours, &drive<Events, ScriptCompiled>},
+            {script_loaded, Standing::ours, &drive<Events, ScriptLoaded>},
+            {table_walked, Standing::ours, &drive<Events, TableWalked>},
+            {msm, Standing::peer, &drive<Events, Msm<Events::peer>>},
+            {statechart, Standing::peer, &drive<Events, Statechart<Events::peer>>}};
 }
 
 // ---- steps
@@ -135,11 +135,11 @@ void step_ours(std::size_t times) {
 }
 template <class ByHand, const auto& table, const auto& script, std::int64_t period>
 std::vector<Candidate> step_forms() {
-    return {{kept, Role::floor, &step_by_hand<ByHand, period>},
-            {table_compiled, Role::ours, &step_ours<table, Form::compiled, period>},
-            {script_compiled, Role::ours, &step_ours<script, Form::compiled, period>},
-            {script_loaded, Role::ours, &step_ours<script, Form::loaded, period>},
-            {table_walked, Role::ours, &step_ours<table, Form::loaded, period>}};
+    return {{kept, Standing::floor, &step_by_hand<ByHand, period>},
+            {table_compiled, Standing::ours, &step_ours<table, Form::compiled, period>},
+            {script_compiled, Standing::ours, &step_ours<script, Form::compiled, period>},
+            {script_loaded, Standing::ours, &step_ours<script, Form::loaded, period>},
+            {table_walked, Standing::ours, &step_ours<table, Form::loaded, period>}};
 }
 constexpr std::int64_t millisecond = 1'000'000;
 
@@ -197,9 +197,9 @@ int main(int argc, char** argv) {
          "a statement of a program, in a loop",
          "thesis 5.1",
          statements_of_sums,
-         {{kept, Role::floor, &sums_by_hand},
-          {script_compiled, Role::ours, &sums_compiled},
-          {script_loaded, Role::ours, &sums_loaded}}}};
+         {{kept, Standing::floor, &sums_by_hand},
+          {script_compiled, Standing::ours, &sums_compiled},
+          {script_loaded, Standing::ours, &sums_loaded}}}};
     const std::string event =
         "state-machine event, compiled, random events, hierarchical machine of 7 states "
         "and 8 events: ";

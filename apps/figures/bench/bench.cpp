@@ -62,8 +62,8 @@ void judge(const std::string& id, const std::string& title, const Told& told, Re
          .how = "one answer, seen from the other end of the wire; in turns in one boot; the guest's time is "
                 "the instructions it executes: a ratio of times is one of instructions, those of the kernel "
                 "included",
-         .rows = {{"Tappet: driver, components, driver", Role::ours, ours.summary(), {}},
-                  {"bare: wait, read, write", Role::floor, bare.summary(), {}}}});
+         .rows = {{"Tappet: driver, components, driver", Standing::ours, ours.summary(), {}},
+                  {"bare: wait, read, write", Standing::floor, bare.summary(), {}}}});
     for (const auto& [q, name] : {std::pair{0.5, "median"}, std::pair{0.99, "p99"}}) {
         const Comparison found = compare(told.pairs, q, margin);
         char text[160];
@@ -81,8 +81,8 @@ void judge(const std::string& id, const std::string& title, const Told& told, Re
                             true,
                             false,
                             true,
-                            {histogram("Tappet", Role::ours, ours, 100, 0.995),
-                             histogram("bare", Role::floor, bare, 100, 0.995)}});
+                            {histogram("Tappet", Standing::ours, ours, 100, 0.995),
+                             histogram("bare", Standing::floor, bare, 100, 0.995)}});
 }
 
 } // namespace

@@ -189,29 +189,29 @@ void add_calls(std::vector<Group>& groups) {
                       "a method of a peer, called",
                       "thesis 4.5.1",
                       64,
-                      {{"MethodCall", Role::ours, &method},
-                       {"call through a function pointer", Role::floor, &call_pointer},
-                       {"std::function", Role::peer, &call_function}}});
+                      {{"MethodCall", Standing::ours, &method},
+                       {"call through a function pointer", Standing::floor, &call_pointer},
+                       {"std::function", Standing::peer, &call_function}}});
     groups.push_back({"dispatch.properties",
                       "four properties changed as one",
                       "thesis 4.7.1",
                       64,
-                      {{"commit, in the engine", Role::ours, &commit, &propose},
-                       {"proposed and committed", Role::ours, &propose_and_commit},
-                       {"compare and copy", Role::floor, &copy_four},
-                       {"compare and copy under std::mutex", Role::peer, &copy_under_mutex}}});
+                      {{"commit, in the engine", Standing::ours, &commit, &propose},
+                       {"proposed and committed", Standing::ours, &propose_and_commit},
+                       {"compare and copy", Standing::floor, &copy_four},
+                       {"compare and copy under std::mutex", Standing::peer, &copy_under_mutex}}});
     groups.push_back({"dispatch.cam.row",
                       "a cam row predicted anew upon a sample of the shaft, one of 16",
                       "thesis 3.1, 5.2",
                       cam_rows,
-                      {{"update", Role::ours, &predict_rows, &estimate},
-                       {"angle over an even speed, and the least", Role::floor, &predict_line}}});
+                      {{"update", Standing::ours, &predict_rows, &estimate},
+                       {"angle over an even speed, and the least", Standing::floor, &predict_line}}});
     groups.push_back({"dispatch.cam.fire",
                       "a cam row of 16 fired when it is due",
                       "thesis 3.1, 5.2",
                       1,
-                      {{"advance", Role::ours, &fire_row, &next_sample},
-                       {"compare and call through a function pointer", Role::floor, &fire_bare}}});
+                      {{"advance", Standing::ours, &fire_row, &next_sample},
+                       {"compare and call through a function pointer", Standing::floor, &fire_bare}}});
 }
 
 } // namespace tappet::figures

@@ -140,11 +140,11 @@ void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
          "a command sent to another activity",
          "thesis 4.5.2",
          senders,
-         {{"send", Role::ours, &send<&Sender::note>, &carry_out},
-          {"send, the first one wakes", Role::ours, &send<&Sender::note>, &carry_out_and_rest},
-          {"send to a periodic activity", Role::ours, &send<&Sender::clocked>, &carry_out_clocked},
-          {"boost spsc_queue push of 16 bytes and atomic OR", Role::floor, &push_notices, &take_notices},
-          {"std::mutex and std::deque", Role::peer, &push_locked, &take_locked}}});
+         {{"send", Standing::ours, &send<&Sender::note>, &carry_out},
+          {"send, the first one wakes", Standing::ours, &send<&Sender::note>, &carry_out_and_rest},
+          {"send to a periodic activity", Standing::ours, &send<&Sender::clocked>, &carry_out_clocked},
+          {"boost spsc_queue push of 16 bytes and atomic OR", Standing::floor, &push_notices, &take_notices},
+          {"std::mutex and std::deque", Standing::peer, &push_locked, &take_locked}}});
     goals.push_back({"command send <= one boost spsc_queue push plus one atomic OR",
                      "dispatch.command.send",
                      "send",
@@ -154,16 +154,16 @@ void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       "a command carried out by its engine, one of 32 in a cycle, time stamps excluded",
                       "thesis 4.5.2",
                       senders,
-                      {{"engine step", Role::ours, &run_receiver, &send_all},
-                       {"boost spsc_queue pop, call through a function pointer, store", Role::floor,
+                      {{"engine step", Standing::ours, &run_receiver, &send_all},
+                       {"boost spsc_queue pop, call through a function pointer, store", Standing::floor,
                         &execute_bare, &prepare_jobs}}});
     groups.push_back({"dispatch.command.whole",
                       "a command sent, carried out and asked for its end, time stamps excluded",
                       "thesis 4.5.2",
                       senders,
-                      {{"32 in a cycle", Role::ours, &whole, &carry_out},
-                       {"one in a cycle", Role::ours, &whole_one, &carry_out},
-                       {"boost spsc_queue, atomic word, function pointer, 32 in a turn", Role::floor,
+                      {{"32 in a cycle", Standing::ours, &whole, &carry_out},
+                       {"one in a cycle", Standing::ours, &whole_one, &carry_out},
+                       {"boost spsc_queue, atomic word, function pointer, 32 in a turn", Standing::floor,
                         &whole_bare, &take_notices}}});
 }
 

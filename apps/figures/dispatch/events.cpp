@@ -95,10 +95,10 @@ Group synchronous(std::string name) {
             "emission to " + name + " synchronous subscriber" + (n == 1 ? "" : "s"),
             "thesis 4.6.2",
             n == 64 ? std::size_t{8} : std::size_t{64},
-            {{"emit", Role::ours, &emit<event>},
-             {"loop over function pointers", Role::floor, &call_pointers<n>},
-             {"loop over std::function", Role::peer, &call_functions<n>},
-             {"boost signals2", Role::peer, &call_signal<n>}}};
+            {{"emit", Standing::ours, &emit<event>},
+             {"loop over function pointers", Standing::floor, &call_pointers<n>},
+             {"loop over std::function", Standing::peer, &call_functions<n>},
+             {"boost signals2", Standing::peer, &call_signal<n>}}};
 }
 
 // ---- asynchronous: each subscriber's message is left in its engine's mailbox
@@ -135,8 +135,8 @@ Group asynchronous(std::string name, std::size_t batch) {
             "emission to " + name + " asynchronous subscriber" + (n == 1 ? "" : "s") + " of another activity",
             "thesis 4.6.2",
             batch,
-            {{"emit", Role::ours, &emit<event>, &serve},
-             {"boost spsc_queue push of 72 bytes and atomic OR, for each", Role::floor, &push_parcels<n>,
+            {{"emit", Standing::ours, &emit<event>, &serve},
+             {"boost spsc_queue push of 72 bytes and atomic OR, for each", Standing::floor, &push_parcels<n>,
               &take_parcels}}};
 }
 
@@ -171,10 +171,10 @@ void add_events(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       "emission while nobody is connected",
                       "thesis 4.6.2",
                       64,
-                      {{"emit", Role::ours, &emit<&Emitter::none>},
-                       {"call through a function pointer", Role::floor, &single_call},
-                       {"loop over no function pointer", Role::floor, &call_pointers<0>},
-                       {"boost signals2", Role::peer, &call_signal<0>}}});
+                      {{"emit", Standing::ours, &emit<&Emitter::none>},
+                       {"call through a function pointer", Standing::floor, &single_call},
+                       {"loop over no function pointer", Standing::floor, &call_pointers<0>},
+                       {"boost signals2", Standing::peer, &call_signal<0>}}});
     goals.push_back({"emit with no subscriber connected <= 1 ns where a function-pointer call costs 2",
                      "dispatch.emit.none",
                      "emit",
@@ -199,10 +199,10 @@ void add_events(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       "disconnect and connect",
                       "thesis 4.6.2",
                       64,
-                      {{"a synchronous row", Role::ours, &change<&Emitter::calling>},
-                       {"an asynchronous row", Role::ours, &change<&Emitter::telling>},
-                       {"two atomic operations", Role::floor, &two_operations},
-                       {"boost signals2", Role::peer, &change_signal}}});
+                      {{"a synchronous row", Standing::ours, &change<&Emitter::calling>},
+                       {"an asynchronous row", Standing::ours, &change<&Emitter::telling>},
+                       {"two atomic operations", Standing::floor, &two_operations},
+                       {"boost signals2", Standing::peer, &change_signal}}});
 }
 
 } // namespace tappet::figures

@@ -165,14 +165,15 @@ constexpr auto with = os::Clock::Kind::real;
 
 template <std::size_t components>
 Group crowd_of(std::string name) {
-    return {"dispatch.step." + name,
-            "engine time for one of " + name + " components",
-            "thesis 5.3",
-            components,
-            {{"one activity, time stamps excluded", Role::ours, &step_crowd<without, components, components>},
-             {"activities of ten, time stamps excluded", Role::ours, &step_crowd<without, components, 10>},
-             {"one activity, with its time stamps", Role::ours, &step_crowd<with, components, components>},
-             {"loop over function pointers", Role::floor, &call_crowd<components>}}};
+    return {
+        "dispatch.step." + name,
+        "engine time for one of " + name + " components",
+        "thesis 5.3",
+        components,
+        {{"one activity, time stamps excluded", Standing::ours, &step_crowd<without, components, components>},
+         {"activities of ten, time stamps excluded", Standing::ours, &step_crowd<without, components, 10>},
+         {"one activity, with its time stamps", Standing::ours, &step_crowd<with, components, components>},
+         {"loop over function pointers", Standing::floor, &call_crowd<components>}}};
 }
 
 } // namespace
@@ -182,10 +183,10 @@ void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       "a complete engine step of one component without pending work",
                       "thesis 5.3",
                       64,
-                      {{"step, time stamps excluded", Role::ours, &step_without_stamps},
-                       {"step, with its two time stamps", Role::ours, &step_with_stamps},
-                       {"two calls through a function pointer", Role::floor, &two_calls},
-                       {"two readings of the clock", Role::floor, &two_readings}}});
+                      {{"step, time stamps excluded", Standing::ours, &step_without_stamps},
+                       {"step, with its two time stamps", Standing::ours, &step_with_stamps},
+                       {"two calls through a function pointer", Standing::floor, &two_calls},
+                       {"two readings of the clock", Standing::floor, &two_readings}}});
     goals.push_back({"empty engine step of a component without pending work, time stamps excluded and shown "
                      "beside it <= 2 function-pointer calls",
                      "dispatch.step.empty",

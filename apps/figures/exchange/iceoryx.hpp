@@ -15,7 +15,7 @@ void stop_iceoryx();
 template <std::size_t bytes, bool queue>
 struct Iceoryx {
     static constexpr const char* name = queue ? "iceoryx, 16 places" : "iceoryx, the newest";
-    static constexpr Role role = Role::peer;
+    static constexpr Standing role = Standing::peer;
     static bool give(const Packet<bytes>& value) noexcept;
     static bool take(Packet<bytes>& into) noexcept;
 };

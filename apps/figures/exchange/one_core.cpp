@@ -16,7 +16,7 @@ Packet<bytes> into{};
 template <std::size_t bytes>
 struct TwoCopies {
     static constexpr const char* name = "two struct copies";
-    static constexpr Role role = Role::floor;
+    static constexpr Standing role = Standing::floor;
     static bool give(const Packet<bytes>& value) noexcept {
         between = value;
         keep(between);

@@ -19,7 +19,7 @@ template <std::size_t bytes, bool flag_on_its_own_line>
 struct BareHandOver {
     static constexpr const char* name =
         flag_on_its_own_line ? "bare loop, flag on a line of its own" : "bare loop, flag beside the data";
-    static constexpr Role role = Role::floor;
+    static constexpr Standing role = Standing::floor;
 
     static bool give(const Packet<bytes>& value) noexcept {
         place.value = value;
@@ -49,7 +49,7 @@ private:
 template <std::size_t bytes>
 struct NearPort {
     static constexpr const char* name = "Tappet data port, same activity";
-    static constexpr Role role = Role::ours;
+    static constexpr Standing role = Standing::ours;
     static bool give(const Packet<bytes>& value) noexcept {
         Ends<bytes>::writer->near.write(value);
         return true;
@@ -62,7 +62,7 @@ struct NearPort {
 template <std::size_t bytes>
 struct FarPort {
     static constexpr const char* name = "Tappet data port";
-    static constexpr Role role = Role::ours;
+    static constexpr Standing role = Standing::ours;
     static bool give(const Packet<bytes>& value) noexcept {
         Ends<bytes>::writer->far.write(value);
         return true;
@@ -75,7 +75,7 @@ struct FarPort {
 template <std::size_t bytes>
 struct NearBuffer {
     static constexpr const char* name = "Tappet buffer port, same activity";
-    static constexpr Role role = Role::ours;
+    static constexpr Standing role = Standing::ours;
     static bool give(const Packet<bytes>& value) noexcept {
         return Ends<bytes>::writer->near_each.push(value);
     }
@@ -85,7 +85,7 @@ struct NearBuffer {
 template <std::size_t bytes>
 struct FarBuffer {
     static constexpr const char* name = "Tappet buffer port";
-    static constexpr Role role = Role::ours;
+    static constexpr Standing role = Standing::ours;
     static bool give(const Packet<bytes>& value) noexcept {
         return Ends<bytes>::writer->far_each.push(value);
     }
@@ -125,7 +125,7 @@ private:
 template <std::size_t bytes, class Lock>
 struct LockedValue {
     static constexpr const char* name = Lock::name;
-    static constexpr Role role = Role::peer;
+    static constexpr Standing role = Standing::peer;
     static bool give(const Packet<bytes>& value) noexcept {
         const std::lock_guard guard{lock};
         held = value;
@@ -150,7 +150,7 @@ private:
 template <std::size_t bytes, class Lock>
 struct LockedQueue {
     static constexpr const char* name = Lock::name;
-    static constexpr Role role = Role::peer;
+    static constexpr Standing role = Standing::peer;
     static bool give(const Packet<bytes>& value) noexcept {
         const std::lock_guard guard{lock};
         if (pushed - popped == queue_places) return false;
@@ -173,7 +173,7 @@ private:
 template <std::size_t bytes>
 struct BoostSpsc {
     static constexpr const char* name = "boost::lockfree::spsc_queue";
-    static constexpr Role role = Role::peer;
+    static constexpr Standing role = Standing::peer;
     static bool give(const Packet<bytes>& value) noexcept { return queue().push(value); }
     static bool take(Packet<bytes>& into) noexcept { return queue().pop(into); }
 
@@ -186,7 +186,7 @@ private:
 template <std::size_t bytes>
 struct BoostQueue {
     static constexpr const char* name = "boost::lockfree::queue";
-    static constexpr Role role = Role::peer;
+    static constexpr Standing role = Standing::peer;
     static bool give(const Packet<bytes>& value) noexcept { return queue().bounded_push(value); }
     static bool take(Packet<bytes>& into) noexcept { return queue().pop(into); }
 

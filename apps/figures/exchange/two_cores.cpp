@@ -21,7 +21,7 @@ using Meet = Meeting (*)(const MeetingPlan&, double ahead);
 /// How one subject is measured in one way, and what was found in each round.
 struct Entry {
     const char* name = nullptr;
-    Role role = Role::ours;
+    Standing role = Standing::ours;
     bool queue = false;
     Way way = Way::paced;
     Meet run = nullptr;
@@ -189,7 +189,7 @@ void show(const Findings& found, const Clocks& clocks, Result& result) {
     };
     add("data.seen", "data: write to value seen", false, Way::paced, &Meeting::seen, paced);
     result.figures.back().rows.push_back(
-        {"a line written in turns, one way", Role::floor, clocks.one_way_ns.summary()});
+        {"a line written in turns, one way", Standing::floor, clocks.one_way_ns.summary()});
     add("data.write_alone", "data: write, undisturbed", false, Way::alone, &Meeting::give,
         "one write each microsecond");
     add("data.write_polled", "data: write while a reader polls", false, Way::paced, &Meeting::give, paced);

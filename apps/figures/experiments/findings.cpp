@@ -7,9 +7,9 @@ namespace tappet::experiments {
 
 using figures::Figure;
 using figures::Plot;
-using figures::Role;
 using figures::Row;
 using figures::Samples;
+using figures::Standing;
 
 Experiment& Findings::at(std::string_view application, Setting setting) {
     for (Experiment& each : experiments_)
@@ -42,7 +42,7 @@ namespace {
 
 const char* application_names[] = {"minimal", "small", "concurrent", "large"};
 
-Row row_of(std::string name, Role role, const Samples& samples) {
+Row row_of(std::string name, Standing role, const Samples& samples) {
     return {std::move(name), role, samples.summary()};
 }
 
@@ -50,12 +50,12 @@ using Select = Samples TaskResult::*;
 
 /// What is known without measuring.
 Row stated(std::string name, double value) {
-    return {std::move(name), Role::floor, {value, value, value, value, value, 1}};
+    return {std::move(name), Standing::floor, {value, value, value, value, value, 1}};
 }
 
 void add(std::vector<Figure>& figures, Figure figure) {
     std::erase_if(figure.rows, [](const Row& row) { return row.summary.count == 0; });
-    const bool has_ours = std::ranges::find(figure.rows, Role::ours, &Row::role) != figure.rows.end();
+    const bool has_ours = std::ranges::find(figure.rows, Standing::ours, &Row::role) != figure.rows.end();
     if (has_ours) figures.push_back(std::move(figure));
 }
 
@@ -67,14 +67,14 @@ void add_times(std::vector<Figure>& figures, const Experiment& experiment, const
                      "thesis 4.2.3, figure 4.10", "from the beginning of an execution to its end"};
     for (const TaskResult& task : experiment.tasks) {
         if (!task.real_time) continue;
-        periods.rows.push_back(row_of(task.name, Role::ours, task.periods));
+        periods.rows.push_back(row_of(task.name, Standing::ours, task.periods));
         periods.rows.push_back(stated(task.name + ", as its row says", task.period_us));
-        latencies.rows.push_back(row_of(task.name, Role::ours, task.latencies));
+        latencies.rows.push_back(row_of(task.name, Standing::ours, task.latencies));
         latencies.rows.push_back(stated(task.name + ", its load", task.load_us));
     }
     if (bare != nullptr) {
-        periods.rows.push_back(row_of("high, a bare thread alone", Role::floor, bare->periods));
-        latencies.rows.push_back(row_of("high, a bare thread alone", Role::floor, bare->latencies));
+        periods.rows.push_back(row_of("high, a bare thread alone", Standing::floor, bare->periods));
+        latencies.rows.push_back(row_of("high, a bare thread alone", Standing::floor, bare->latencies));
     }
     add(figures, std::move(periods));
     add(figures, std::move(latencies));
@@ -98,13 +98,13 @@ void add_with_communication(std::vector<Figure>& figures, const Findings& findin
                           : "from the beginning of an execution to its end"};
     for (const TaskResult& task : experiment->tasks) {
         if (!task.real_time) continue;
-        figure.rows.push_back(row_of(task.name, Role::ours, task.*samples));
+        figure.rows.push_back(row_of(task.name, Standing::ours, task.*samples));
         if (setting == Setting::data)
             if (const TaskResult* locked = findings.find(application, Setting::locked, task.name))
-                figure.rows.push_back(
-                    row_of(task.name + ", mutex with priority inheritance", Role::peer, locked->*samples));
+                figure.rows.push_back(row_of(task.name + ", mutex with priority inheritance", Standing::peer,
+                                             locked->*samples));
         if (const TaskResult* none = findings.find(application, Setting::none, task.name))
-            figure.rows.push_back(row_of(task.name + ", no communication", Role::floor, none->*samples));
+            figure.rows.push_back(row_of(task.name + ", no communication", Standing::floor, none->*samples));
     }
     add(figures, std::move(figure));
 }
@@ -116,13 +116,14 @@ void add_exchanges(std::vector<Figure>& figures, const Findings& findings, const
         Figure figure{"experiments." + application + ".exchange." + task.name,
                       application + ": data flow of the task \"" + task.name + "\" in one execution", "ns",
                       "thesis 4.4.4", "all reads and writes of one execution, packets of 160 bytes"};
-        figure.rows.push_back(row_of("connectors", Role::ours, task.exchanges));
+        figure.rows.push_back(row_of("connectors", Standing::ours, task.exchanges));
         if (const TaskResult* locked = findings.find(application, Setting::locked, task.name))
-            figure.rows.push_back(row_of("mutex with priority inheritance", Role::peer, locked->exchanges));
+            figure.rows.push_back(
+                row_of("mutex with priority inheritance", Standing::peer, locked->exchanges));
         if (const TaskResult* none = findings.find(application, Setting::none, task.name);
             none != nullptr && application != "large")
             figure.rows.push_back(
-                row_of("the same packets, copied by one thread", Role::floor, none->copies));
+                row_of("the same packets, copied by one thread", Standing::floor, none->copies));
         add(figures, std::move(figure));
     }
 }
@@ -138,22 +139,22 @@ void add_messages(std::vector<Figure>& figures, const Findings& findings, const 
                   "from the end of the execution, taking them out of their queue included"};
     const Experiment* const none = findings.find(experiment.application, Setting::none);
     for (const TaskResult& task : experiment.tasks) {
-        sent.rows.push_back(row_of(task.name, Role::ours, task.sends));
+        sent.rows.push_back(row_of(task.name, Standing::ours, task.sends));
         if (!task.real_time) continue;
         const auto in_us = [](const Samples& ns) {
             Samples us;
             for (const double value : ns.values()) us.add(value / 1e3);
             return us;
         };
-        served.rows.push_back(row_of(task.name + ": one", Role::ours, in_us(task.one_served)));
-        served.rows.push_back(row_of(task.name + ": two", Role::ours, in_us(task.two_served)));
+        served.rows.push_back(row_of(task.name + ": one", Standing::ours, in_us(task.one_served)));
+        served.rows.push_back(row_of(task.name + ": two", Standing::ours, in_us(task.two_served)));
         served.rows.push_back(stated(task.name + ": one, its load", task.load_us / 10));
         served.rows.push_back(stated(task.name + ": two, their load", task.load_us / 5));
     }
     if (none != nullptr)
         for (const TaskResult& task : none->tasks)
             sent.rows.push_back(row_of(task.name + (commands ? ", one bare message" : ", two bare messages"),
-                                       Role::floor, commands ? task.one_message : task.two_messages));
+                                       Standing::floor, commands ? task.one_message : task.two_messages));
     add(figures, std::move(sent));
     add(figures, std::move(served));
 }
@@ -165,7 +166,7 @@ void add_plot(std::vector<Plot>& plots, const Experiment* experiment, std::strin
     Plot plot{std::move(id), std::move(title), std::move(x), "executions", true, true, true, {}};
     for (const TaskResult& task : experiment->tasks)
         if (task.real_time && !(task.*samples).empty())
-            plot.series.push_back(figures::log_histogram(task.name, Role::ours, task.*samples));
+            plot.series.push_back(figures::log_histogram(task.name, Standing::ours, task.*samples));
     if (!plot.series.empty()) plots.push_back(std::move(plot));
 }
 
@@ -187,7 +188,7 @@ void add_period_plot(std::vector<Plot>& plots, const Findings& findings, const s
         Samples shown;
         for (const double period : task.periods.values())
             if (period >= from && period <= to) shown.add(period - task.period_us);
-        plot.series.push_back(figures::histogram(task.name, Role::ours, shown));
+        plot.series.push_back(figures::histogram(task.name, Standing::ours, shown));
     }
     if (!plot.series.empty()) plots.push_back(std::move(plot));
 }
@@ -216,8 +217,8 @@ void add_exchange_plot(std::vector<Plot>& plots, const Findings& findings, const
          true,
          true,
          true,
-         {figures::log_histogram("connectors", Role::ours, ours->exchanges),
-          figures::log_histogram("mutex with priority inheritance", Role::peer, locked->exchanges)}});
+         {figures::log_histogram("connectors", Standing::ours, ours->exchanges),
+          figures::log_histogram("mutex with priority inheritance", Standing::peer, locked->exchanges)}});
 }
 
 } // namespace

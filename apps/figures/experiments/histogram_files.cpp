@@ -26,7 +26,7 @@ void write(std::ostream& file, const Block& block, const TaskResult& task) {
          << all.mean << ", p99 " << all.p99 << ", p99.9 " << all.p999 << ", worst " << all.max << '\n';
     constexpr int bins_in_a_decade = 200;
     for (const auto& [from, count] :
-         figures::log_histogram({}, figures::Role::ours, samples, bins_in_a_decade).points)
+         figures::log_histogram({}, figures::Standing::ours, samples, bins_in_a_decade).points)
         file << from << ' ' << count << '\n';
     file << "\n\n";
 }

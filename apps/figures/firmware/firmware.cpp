@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr double megabyte = 1e6;
 
-Row single(const std::string& name, Role role, double value) {
+Row single(const std::string& name, Standing role, double value) {
     return {name, role, {value, value, value, value, value, 1}};
 }
 
@@ -52,14 +52,14 @@ std::optional<nlohmann::json> weave(const fs::path& folder) {
 void tell(const nlohmann::json& summary, Result& result) {
     const auto number = [&](const char* key) { return summary.value(key, 0.0); };
     const double resident = number("rss_bytes") / megabyte;
-    result.figures.push_back(
-        {"firmware.memory",
-         "memory of the loom's firmware, weaving on the bench",
-         "MB",
-         "",
-         "once, at the end of 20 picks",
-         {single("resident", Role::ours, resident), single("static: the machine with its stacks", Role::ours,
-                                                           number("static_memory_bytes") / megabyte)}});
+    result.figures.push_back({"firmware.memory",
+                              "memory of the loom's firmware, weaving on the bench",
+                              "MB",
+                              "",
+                              "once, at the end of 20 picks",
+                              {single("resident", Standing::ours, resident),
+                               single("static: the machine with its stacks", Standing::ours,
+                                      number("static_memory_bytes") / megabyte)}});
     result.goals.push_back(
         {"firmware of the loom: resident memory <= 4 MB", 4, resident, "MB", "firmware.memory: resident"});
     if (summary.contains("start_to_armed_ms")) {
@@ -69,7 +69,7 @@ void tell(const nlohmann::json& summary, Result& result) {
                                   "ms",
                                   "",
                                   "once, on the bench's emulated processor",
-                                  {single("start to armed", Role::ours, armed)}});
+                                  {single("start to armed", Standing::ours, armed)}});
         result.goals.push_back({"firmware of the loom: start to armed <= 50 ms without device time-outs", 50,
                                 armed, "ms", "firmware.start; on the bench's emulated processor"});
     } else {
@@ -99,8 +99,8 @@ int main(int argc, char** argv) {
                               "MB",
                               "",
                               "one static binary with kernel, drivers, script compiler and behaviours",
-                              {single("carpet loom for the bench", Role::ours, size),
-                               single("a static program that opens a GPIO chip and a thread", Role::floor,
+                              {single("carpet loom for the bench", Standing::ours, size),
+                               single("a static program that opens a GPIO chip and a thread", Standing::floor,
                                       stripped_bytes(TAPPET_EMPTY, folder) / megabyte)}});
     result.goals.push_back({"firmware of the loom: <= 1 MB stripped", 1, size, "MB", "firmware.size"});
     if (!options.only.empty() && std::string{"firmware.size"}.contains(options.only)) {

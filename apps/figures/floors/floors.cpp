@@ -89,26 +89,26 @@ int main(int argc, char** argv) {
                       "copy of a struct",
                       "",
                       64,
-                      {{"8 bytes", Role::floor, &struct_copy<8>},
-                       {"160 bytes", Role::floor, &struct_copy<160>},
-                       {"4096 bytes", Role::floor, &struct_copy<4096>}}});
+                      {{"8 bytes", Standing::floor, &struct_copy<8>},
+                       {"160 bytes", Standing::floor, &struct_copy<160>},
+                       {"4096 bytes", Standing::floor, &struct_copy<4096>}}});
     groups.push_back({"floors.word",
                       "one word, one core",
                       "",
                       64,
-                      {{"release store", Role::floor, &release_store},
-                       {"seq_cst store", Role::floor, &ordered_store},
-                       {"exchange", Role::floor, &exchange},
-                       {"compare_exchange", Role::floor, &compare_exchange},
-                       {"fetch_or, result unused", Role::floor, &atomic_or},
-                       {"std::mutex, lock and unlock, nobody else there", Role::floor, &lock_and_unlock},
-                       {"call through a function pointer", Role::floor, &function_pointer_call}}});
+                      {{"release store", Standing::floor, &release_store},
+                       {"seq_cst store", Standing::floor, &ordered_store},
+                       {"exchange", Standing::floor, &exchange},
+                       {"compare_exchange", Standing::floor, &compare_exchange},
+                       {"fetch_or, result unused", Standing::floor, &atomic_or},
+                       {"std::mutex, lock and unlock, nobody else there", Standing::floor, &lock_and_unlock},
+                       {"call through a function pointer", Standing::floor, &function_pointer_call}}});
     groups.push_back({"floors.system",
                       "the operating system, one thread",
                       "",
                       16,
-                      {{"clock_gettime(CLOCK_MONOTONIC)", Role::floor, &read_clock},
-                       {"shortest system call (getppid)", Role::floor, &system_call}}});
+                      {{"clock_gettime(CLOCK_MONOTONIC)", Standing::floor, &read_clock},
+                       {"shortest system call (getppid)", Standing::floor, &system_call}}});
     run_candidates(options, argv, groups, {}, result);
     measure_two_threads(options, result);
     return finish(options, result);

@@ -176,7 +176,7 @@ void measure(Figure figure, const std::array<Kind, count>& kinds, std::size_t sa
             std::this_thread::sleep_for(std::chrono::milliseconds{5}); // real-time threads rest
         }
     for (std::size_t i = 0; i < count; ++i)
-        figure.rows.push_back({kinds[i].name, Role::floor, all[i].summary()});
+        figure.rows.push_back({kinds[i].name, Standing::floor, all[i].summary()});
     result.figures.push_back(std::move(figure));
 }
 

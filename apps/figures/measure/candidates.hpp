@@ -15,7 +15,7 @@ namespace tappet::figures {
 /// (static storage).
 struct Candidate {
     std::string name;
-    Role role = Role::ours;
+    Standing role = Standing::ours;
     void (*run)(std::size_t times) = nullptr;
     /// Before each sample of `times`, neither timed nor counted: it takes back what run() did. Null: nothing.
     void (*prepare)(std::size_t times) = nullptr;

@@ -18,9 +18,9 @@ double number(const json& value) {
 }
 double number(const json& object, const char* name) { return number(object.at(name)); }
 
-Role role(const json& object) {
+Standing role(const json& object) {
     const std::string& word = object.at("role").get_ref<const std::string&>();
-    return word == "floor" ? Role::floor : word == "peer" ? Role::peer : Role::ours;
+    return word == "floor" ? Standing::floor : word == "peer" ? Standing::peer : Standing::ours;
 }
 
 Row row(const json& j) {

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-const char* word(Role role) {
+const char* word(Standing role) {
     constexpr std::array words{"ours", "floor", "peer"};
     return words[static_cast<std::size_t>(role)];
 }
@@ -81,7 +81,7 @@ void Result::print() const {
                     "p99.9", "max", "instr.", "ratio");
         double ours = 0;
         for (const Row& row : figure.rows)
-            if (row.role == Role::ours && ours == 0) ours = row.summary.median;
+            if (row.role == Standing::ours && ours == 0) ours = row.summary.median;
         for (const Row& row : figure.rows) {
             const Summary& s = row.summary;
             std::printf("  %-44s %-6s %10.2f %10.2f %10.2f %10.2f %12.1f ", row.name.c_str(), word(row.role),
@@ -108,7 +108,7 @@ void Result::print() const {
     std::fflush(stdout);
 }
 
-Series histogram(std::string name, Role role, const Samples& samples, std::size_t bins, double upto) {
+Series histogram(std::string name, Standing role, const Samples& samples, std::size_t bins, double upto) {
     Series series{std::move(name), role, {}};
     if (samples.empty() || bins == 0) return series;
     const double from = samples.quantile(0), to = samples.quantile(upto);
@@ -122,7 +122,7 @@ Series histogram(std::string name, Role role, const Samples& samples, std::size_
     return series;
 }
 
-Series log_histogram(std::string name, Role role, const Samples& samples, int in_a_decade) {
+Series log_histogram(std::string name, Standing role, const Samples& samples, int in_a_decade) {
     Series series{std::move(name), role, {}};
     const auto bin_of = [&](double value) {
         return static_cast<int>(std::floor(std::log10(value) * in_a_decade));

@@ -13,12 +13,12 @@
 namespace tappet::figures {
 
 /// Ours, the physical or the bare limit that it stands beside, or what others offer for the same task.
-enum class Role : std::uint8_t { ours, floor, peer };
+enum class Standing : std::uint8_t { ours, floor, peer };
 
 /// One measured thing.
 struct Row {
     std::string name;
-    Role role = Role::ours;
+    Standing role = Standing::ours;
     Summary summary;                         ///< in the figure's unit
     std::optional<double> instructions = {}; ///< for one operation, counted under callgrind
 };
@@ -52,7 +52,7 @@ struct Statement {
 
 struct Series {
     std::string name;
-    Role role = Role::ours;
+    Standing role = Standing::ours;
     std::vector<std::pair<double, double>> points; ///< of a histogram: lower end of the bin, how many
 };
 
@@ -84,11 +84,11 @@ struct Result {
 
 /// Samples as a histogram of `bins` bins of equal width between the smallest and the quantile `upto`; the
 /// last bin holds the rest.
-Series histogram(std::string name, Role role, const Samples& samples, std::size_t bins = 100,
+Series histogram(std::string name, Standing role, const Samples& samples, std::size_t bins = 100,
                  double upto = 1);
 
 /// As above, of positive samples, over all of them: each bin is so wide that `in_a_decade` of them make a
 /// factor of ten, so that a peak and a worst case far away from it are both seen. For a plot with log_x.
-Series log_histogram(std::string name, Role role, const Samples& samples, int in_a_decade = 40);
+Series log_histogram(std::string name, Standing role, const Samples& samples, int in_a_decade = 40);
 
 } // namespace tappet::figures

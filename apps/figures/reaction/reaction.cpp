@@ -115,14 +115,14 @@ void measure_periodic(Rig& rig, const Options& options, Result& result) {
                   .title = "periodic wake-up: how late the user's code begins",
                   .source = "thesis A.2; the method of cyclictest",
                   .how = "one cycle of 500 us, in blocks of 100 in turns, both with the latency lock",
-                  .rows = {{"Tappet: step of a periodic activity", Role::ours, ours.summary(), {}},
-                           {"clock_nanosleep, clock_gettime", Role::floor, theirs.summary(), {}}}};
+                  .rows = {{"Tappet: step of a periodic activity", Standing::ours, ours.summary(), {}},
+                           {"clock_nanosleep, clock_gettime", Standing::floor, theirs.summary(), {}}}};
     const std::size_t loops =
         options.setting == "smoke" ? 50 : static_cast<std::size_t>(10'000 * options.scale());
     const Outcome packaged = run_cyclictest(there, rig.priority(reaction::ticker),
                                             static_cast<std::size_t>(period.count() / 1000), loops);
     if (packaged.why_not.empty())
-        figure.rows.push_back({"cyclictest, afterwards", Role::peer, packaged.late_ns.summary(), {}});
+        figure.rows.push_back({"cyclictest, afterwards", Standing::peer, packaged.late_ns.summary(), {}});
     else
         result.notes.push_back(packaged.why_not);
     result.figures.push_back(figure);
@@ -140,8 +140,8 @@ void measure_periodic(Rig& rig, const Options& options, Result& result) {
                             true,
                             false,
                             true,
-                            {histogram("Tappet", Role::ours, ours, 100, 0.999),
-                             histogram("clock_nanosleep", Role::floor, theirs, 100, 0.999)}});
+                            {histogram("Tappet", Standing::ours, ours, 100, 0.999),
+                             histogram("clock_nanosleep", Standing::floor, theirs, 100, 0.999)}});
 }
 
 // ---- from one activity to another
@@ -180,8 +180,8 @@ void measure_handover(Rig& rig, const Options& options, Sender::Way way, Result&
              "event into a sleeping activity, " + where + ": emission to the first line of its operation",
          .source = "thesis 4.6.2",
          .how = "one emission; ours and the bare one by turns, in an order drawn by chance",
-         .rows = {{"Tappet: emit to operation", Role::ours, ours.summary(), {}},
-                  {"bare futex: store and wake to load", Role::floor, theirs.summary(), {}}}});
+         .rows = {{"Tappet: emit to operation", Standing::ours, ours.summary(), {}},
+                  {"bare futex: store and wake to load", Standing::floor, theirs.summary(), {}}}});
     const Comparison found = compare(pairs, 0.5, margin);
     result.goals.push_back({"wake of an event-driven activity, " + where + ": <= 1.05 x the bare futex", 1.05,
                             found.ratio, "x", interval(found)});
@@ -192,8 +192,8 @@ void measure_handover(Rig& rig, const Options& options, Sender::Way way, Result&
                             true,
                             false,
                             true,
-                            {histogram("Tappet", Role::ours, ours, 100, 0.995),
-                             histogram("bare futex", Role::floor, theirs, 100, 0.995)}});
+                            {histogram("Tappet", Standing::ours, ours, 100, 0.995),
+                             histogram("bare futex", Standing::floor, theirs, 100, 0.995)}});
 }
 
 int run(int argc, char** argv) {

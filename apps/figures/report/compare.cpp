@@ -19,7 +19,7 @@ constexpr std::array student{63.657, 9.925, 5.841, 4.604, 4.032, 3.707, 3.499, 3
                              3.106,  3.055, 3.012, 2.977, 2.947, 2.921, 2.898, 2.878, 2.861, 2.845};
 
 struct Pairs {
-    Role role = Role::ours;
+    Standing role = Standing::ours;
     std::size_t before = 0, after = 0; ///< rounds that have it
     std::vector<double> ratios = {};
     std::optional<double> instructions_before = {}, instructions_after = {};
@@ -86,13 +86,13 @@ Comparison compare(const std::vector<Round>& rounds, double margin) {
         comparison.changes.push_back({key.first, key.second, pairs.role, interval.mean, interval.low,
                                       interval.high, pairs.ratios.size(), pairs.instructions_before,
                                       pairs.instructions_after});
-        if (pairs.role != Role::ours) controls.add(std::exp(std::abs(std::log(interval.mean))) - 1);
+        if (pairs.role != Standing::ours) controls.add(std::exp(std::abs(std::log(interval.mean))) - 1);
     }
     constexpr std::size_t enough_controls = 5;
     if (controls.count() >= enough_controls) comparison.noise = controls.quantile(0.95);
     const double bound = 1 + comparison.threshold();
     for (Change& change : comparison.changes) {
-        if (change.role != Role::ours) continue;
+        if (change.role != Standing::ours) continue;
         if (change.low > 1 && change.ratio > bound) change.verdict = Verdict::slower;
         if (change.high < 1 && change.ratio < 1 / bound) change.verdict = Verdict::faster;
     }
@@ -121,13 +121,13 @@ std::string comparison_text(const Comparison& comparison, const std::string& bef
     const std::size_t faster = list(Verdict::faster, "faster");
     std::size_t ours = 0, rounds = 0;
     for (const Change& change : comparison.changes) {
-        ours += change.role == Role::ours ? 1u : 0u;
+        ours += change.role == Standing::ours ? 1u : 0u;
         rounds = std::max(rounds, change.rounds);
     }
     std::string counted;
     constexpr double least = 0.005; // of the instructions; less is the loop's own rest
     for (const Change& change : comparison.changes) {
-        if (change.verdict != Verdict::same || change.role != Role::ours) continue;
+        if (change.verdict != Verdict::same || change.role != Standing::ours) continue;
         if (!change.instructions_before || !change.instructions_after) continue;
         const double before_it = *change.instructions_before, after_it = *change.instructions_after;
         if (std::abs(after_it - before_it) > least * before_it)
@@ -137,7 +137,7 @@ std::string comparison_text(const Comparison& comparison, const std::string& bef
     if (!counted.empty()) text += "\nother instructions, no other time\n" + counted;
     std::string restless;
     for (const Change& change : comparison.changes)
-        if (change.role != Role::ours && std::abs(std::log(change.ratio)) > std::log1p(comparison.margin))
+        if (change.role != Standing::ours && std::abs(std::log(change.ratio)) > std::log1p(comparison.margin))
             restless += "  " + number_text(change.ratio) + " x  " + change.figure + ": " + change.row + "\n";
     if (!restless.empty()) text += "\nfloors and peers that differ, the same code in both\n" + restless;
     for (const std::string& row : comparison.only_one) text += row + "\n";

@@ -20,7 +20,7 @@ enum class Verdict : std::uint8_t { same, slower, faster };
 struct Change {
     std::string figure; ///< id
     std::string row;
-    Role role = Role::ours;
+    Standing role = Standing::ours;
     double ratio = 1;         ///< after / before, the geometric mean over the rounds
     double low = 1, high = 1; ///< 99 % confidence interval of it
     std::size_t rounds = 0;

@@ -20,10 +20,10 @@ constexpr std::array ours_colours{"#2b7de0", "#12a594", "#8e5cd9", "#d6409f", "#
 constexpr std::array peer_colours{"#e5832a", "#d9484f", "#b8860b", "#a0674b", "#c2577a", "#96772b"};
 constexpr std::array floor_colours{"#8a9099", "#6f7a88", "#a4a9b0", "#5f6b7a"};
 
-const char* colour(Role role, std::size_t nth) {
-    return role == Role::ours   ? ours_colours[nth % ours_colours.size()]
-           : role == Role::peer ? peer_colours[nth % peer_colours.size()]
-                                : floor_colours[nth % floor_colours.size()];
+const char* colour(Standing role, std::size_t nth) {
+    return role == Standing::ours   ? ours_colours[nth % ours_colours.size()]
+           : role == Standing::peer ? peer_colours[nth % peer_colours.size()]
+                                    : floor_colours[nth % floor_colours.size()];
 }
 
 std::string quoted(const std::string& text) {

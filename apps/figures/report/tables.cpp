@@ -24,8 +24,8 @@ std::string linked(const std::string& detail, const Run& run) {
                        escaped(detail.substr(figure.id.size()));
     return escaped(detail);
 }
-constexpr const char* class_of(Role role) {
-    return role == Role::ours ? "ours" : role == Role::floor ? "floor" : "peer";
+constexpr const char* class_of(Standing role) {
+    return role == Standing::ours ? "ours" : role == Standing::floor ? "floor" : "peer";
 }
 
 /// Which columns a figure has.
@@ -37,8 +37,8 @@ struct Columns {
         : spread{std::ranges::any_of(figure.rows, [](const Row& row) { return row.summary.count > 1; })},
           counted{
               std::ranges::any_of(figure.rows, [](const Row& row) { return row.instructions.has_value(); })},
-          ours{std::ranges::any_of(figure.rows, [](const Row& row) { return row.role == Role::ours; }) &&
-               std::ranges::any_of(figure.rows, [](const Row& row) { return row.role != Role::ours; })} {}
+          ours{std::ranges::any_of(figure.rows, [](const Row& row) { return row.role == Standing::ours; }) &&
+               std::ranges::any_of(figure.rows, [](const Row& row) { return row.role != Standing::ours; })} {}
 
     [[nodiscard]] std::string head() const {
         return std::string{"<tr><th></th><th>role</th>"} +
@@ -79,7 +79,7 @@ std::string table(const Figure& figure) {
         if (columns.counted) cells += row.instructions ? cell(*row.instructions) : element("td", "-");
         if (columns.ours)
             cells +=
-                element("td", row.role == Role::ours
+                element("td", row.role == Standing::ours
                                   ? ""
                                   : number_text(s.median / ours_beside(figure, row).summary.median) + " x");
         rows += element("tr", cells, "class=\"" + role + (others.empty() ? "\"" : " joined\""));

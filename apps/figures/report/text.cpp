@@ -50,7 +50,7 @@ const Row& ours_beside(const Figure& figure, const Row& other) {
     const Row* first = &figure.rows.front();
     bool found = false;
     for (const Row& row : figure.rows) {
-        if (row.role != Role::ours) continue;
+        if (row.role != Standing::ours) continue;
         if (key_of(row) == key_of(other)) return row;
         if (!found) first = &row;
         found = true;
@@ -60,9 +60,9 @@ const Row& ours_beside(const Figure& figure, const Row& other) {
 
 std::vector<Beside> beside(const Figure& figure, const Row& row) {
     std::vector<Beside> all;
-    if (row.role != Role::ours) return all;
+    if (row.role != Standing::ours) return all;
     for (const Row& other : figure.rows) {
-        if (other.role == Role::ours || !(other.summary.median > 0)) continue;
+        if (other.role == Standing::ours || !(other.summary.median > 0)) continue;
         const std::string key = key_of(ours_beside(figure, other));
         if (key == key_of(other) && key != key_of(row)) continue;
         all.push_back({other.name, other.role, row.summary.median / other.summary.median,

@@ -20,7 +20,7 @@ std::string quantity(double value, const std::string& unit);
 /// What one of ours takes beside a floor or a peer of the same figure.
 struct Beside {
     std::string name;
-    Role role;
+    Standing role;
     double median, p99; ///< ours / the other
     std::optional<double> instructions = {};
 };

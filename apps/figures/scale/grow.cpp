@@ -45,7 +45,7 @@ enum class What : std::uint8_t {
 struct Column {
     What what;
     const char* row;
-    Role role;
+    Standing role;
 };
 struct Subject {
     const char* id;
@@ -55,7 +55,7 @@ struct Subject {
     std::vector<Column> columns;
 };
 
-Row row_of(std::string name, Role role, const Summary& summary, std::optional<double> instructions = {}) {
+Row row_of(std::string name, Standing role, const Summary& summary, std::optional<double> instructions = {}) {
     return {.name = std::move(name), .role = role, .summary = summary, .instructions = instructions};
 }
 Summary one(double value) { return {value, value, value, value, value, 1}; }
@@ -220,34 +220,34 @@ const std::vector<Subject> subjects{
      "s",
      "processor time of one compilation of one translation unit that holds types, table, checks, plan and "
      "code",
-     {{What::gcc_seconds, "g++", Role::ours}, {What::clang_seconds, clang, Role::ours}}},
+     {{What::gcc_seconds, "g++", Standing::ours}, {What::clang_seconds, clang, Standing::ours}}},
     {"compile.memory",
      "memory of the compiler",
      "MB",
      "its largest resident size",
-     {{What::gcc_memory, "g++", Role::ours}, {What::clang_memory, clang, Role::ours}}},
+     {{What::gcc_memory, "g++", Standing::ours}, {What::clang_memory, clang, Standing::ours}}},
     {"firmware",
      "the static firmware, stripped",
      "kB",
      "size of the file: machine, framework and C library",
-     {{What::firmware, "file", Role::ours}}},
+     {{What::firmware, "file", Standing::ours}}},
     {"memory",
      "static memory of the machine",
      "kB",
      "as planned by the compiler, stacks included",
-     {{What::memory, "all", Role::ours}, {What::stacks, "of it stacks", Role::ours}}},
+     {{What::memory, "all", Standing::ours}, {What::stacks, "of it stacks", Standing::ours}}},
     {"start",
      "start-up",
      "us",
      "one start; from exec: of the static firmware, until every thread is there and the box was looked at",
-     {{What::configured, "constructed, wired, configured", Role::ours},
-      {What::armed, "from exec to armed", Role::ours},
-      {What::started, "from exec to every activity started", Role::ours}}},
+     {{What::configured, "constructed, wired, configured", Standing::ours},
+      {What::armed, "from exec to armed", Standing::ours},
+      {What::started, "from exec to every activity started", Standing::ours}}},
     {"step",
      "one component's step, all activities due",
      "ns",
      "a whole round of all engines in virtual time (no clock readings), divided by the components",
-     {{What::step, probe_engines, Role::ours}, {What::bare, probe_steps, Role::floor}}}};
+     {{What::step, probe_engines, Standing::ours}, {What::bare, probe_steps, Standing::floor}}}};
 
 void Growing::report_subject(const Subject& subject) {
     Plot plot{.id = std::string{"scale."} + subject.id,

@@ -91,14 +91,14 @@ std::vector<Group> jacquard_groups() {
              "a pick of 12288 hooks in 192 CAN frames over four buses: shaft, head and field engines",
              "",
              1,
-             {{"engines", Role::ours, &picks_of<over_can>},
-              {"two loops over an array of frames", Role::floor, &frames_by_hand}}},
+             {{"engines", Standing::ours, &picks_of<over_can>},
+              {"two loops over an array of frames", Standing::floor, &frames_by_hand}}},
             {"scale.jacquard.registers",
              "a pick of 12288 hooks as 192 register blocks, written when they change: shaft, head and field",
              "",
              1,
-             {{"engines", Role::ours, &picks_of<over_registers>},
-              {"two copies of the row", Role::floor, &two_copies}}}};
+             {{"engines", Standing::ours, &picks_of<over_registers>},
+              {"two copies of the row", Standing::floor, &two_copies}}}};
 }
 
 } // namespace tappet::figures

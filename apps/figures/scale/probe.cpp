@@ -79,11 +79,12 @@ int measure(int argc, char** argv) {
     const std::size_t components = first.instance.machine().table.components.size();
     Result result{.program = "probe", .setting = options.setting};
     std::vector<Group> groups;
-    groups.push_back({"probe.step",
-                      "one component's step",
-                      "",
-                      std::max<std::size_t>(components, 200),
-                      {{probe_engines, Role::ours, &run_engines}, {probe_steps, Role::floor, &run_steps}}});
+    groups.push_back(
+        {"probe.step",
+         "one component's step",
+         "",
+         std::max<std::size_t>(components, 200),
+         {{probe_engines, Standing::ours, &run_engines}, {probe_steps, Standing::floor, &run_steps}}});
     run_candidates(options, argv, groups, {}, result);
     result.figures.push_back({.id = "probe.memory",
                               .title = "static memory",

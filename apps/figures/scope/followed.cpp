@@ -105,9 +105,9 @@ void add_followed(const Options& options, Result& result) {
                               "ns",
                               "thesis A.2.1",
                               "mean of 16 in a row; steps that are followed and not in turns",
-                              {{"read each 100 us", Role::ours, samples[1].summary()},
-                               {"each cycle is read at once", Role::ours, samples[2].summary()},
-                               {"nobody reads", Role::floor, samples[0].summary()}}});
+                              {{"read each 100 us", Standing::ours, samples[1].summary()},
+                               {"each cycle is read at once", Standing::ours, samples[2].summary()},
+                               {"nobody reads", Standing::floor, samples[0].summary()}}});
     const auto tell = [&](std::size_t manner) {
         std::array<char, 200> text{};
         const double share =

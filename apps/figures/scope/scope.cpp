@@ -104,37 +104,37 @@ std::vector<Group> groups() {
                    "step of an engine with one component",
                    origin,
                    64,
-                   {{"recorded", Role::ours, &step<one_scoped, Kind::real>},
-                    {"recording switched off", Role::ours, &step<one_off, Kind::real, true>},
-                    {"no scope in the table", Role::floor, &step<one_bare, Kind::real>},
-                    {"its two time stamps alone", Role::floor, &read_clock<2>}}});
+                   {{"recorded", Standing::ours, &step<one_scoped, Kind::real>},
+                    {"recording switched off", Standing::ours, &step<one_off, Kind::real, true>},
+                    {"no scope in the table", Standing::floor, &step<one_bare, Kind::real>},
+                    {"its two time stamps alone", Standing::floor, &read_clock<2>}}});
     all.push_back({"scope.step.10",
                    "step of an engine with ten components",
                    origin,
                    16,
-                   {{"recorded", Role::ours, &step<ten_scoped, Kind::real>},
-                    {"recording switched off", Role::ours, &step<ten_off, Kind::real, true>},
-                    {"no scope in the table", Role::floor, &step<ten_bare, Kind::real>},
-                    {"its eleven time stamps alone", Role::floor, &read_clock<11>}}});
+                   {{"recorded", Standing::ours, &step<ten_scoped, Kind::real>},
+                    {"recording switched off", Standing::ours, &step<ten_off, Kind::real, true>},
+                    {"no scope in the table", Standing::floor, &step<ten_bare, Kind::real>},
+                    {"its eleven time stamps alone", Standing::floor, &read_clock<11>}}});
     all.push_back({"scope.step.timeless",
                    "step of an engine with one component whose clock costs nothing",
                    origin,
                    64,
-                   {{"recorded", Role::ours, &step<one_timeless_scoped, Kind::virtual_time>},
-                    {"no scope in the table", Role::floor, &step<one_timeless, Kind::virtual_time>}}});
+                   {{"recorded", Standing::ours, &step<one_timeless_scoped, Kind::virtual_time>},
+                    {"no scope in the table", Standing::floor, &step<one_timeless, Kind::virtual_time>}}});
     all.push_back({"scope.mark",
                    "mark of one function on its activity's tape",
                    origin,
                    64,
-                   {{"mark", Role::ours, &mark},
-                    {"store of one word", Role::floor, &plain_store},
-                    {"time stamp", Role::floor, &read_clock<1>}}});
+                   {{"mark", Standing::ours, &mark},
+                    {"store of one word", Standing::floor, &plain_store},
+                    {"time stamp", Standing::floor, &read_clock<1>}}});
     all.push_back({"scope.look",
                    "background: one recorded cycle of ten functions looked at",
                    origin,
                    64,
-                   {{"judged by the flight recorder", Role::ours, &look, &run_cycles},
-                    {"walked over", Role::floor, &walk_words, &run_cycles}}});
+                   {{"judged by the flight recorder", Standing::ours, &look, &run_cycles},
+                    {"walked over", Standing::floor, &walk_words, &run_cycles}}});
     return all;
 }
 

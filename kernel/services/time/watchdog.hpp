@@ -12,16 +12,14 @@ namespace tappet {
 /// never before it, and at most two of its own periods later. An activity shows life when a cycle begins and
 /// when it ends, so that one that hangs in a cycle falls silent; give the watchdog a shorter deadline than
 /// what it watches, or another processor, so that the hanging one cannot keep it from looking. What was
-/// stopped by a request is not expected to live: that is told once, and the limit counts anew when it starts.
-/// A limit of 0 is for an output that is written only when there is something to say: no silence of it is
-/// told. Real-time.
+/// stopped by a request is not expected to live; the limit counts anew when it starts. An activity without a
+/// period is silent when it does not begin or does not end what it was woken for. Real-time.
 struct Watchdog {
     static constexpr bool watches_life = true;
 
     Output<bool> alive;
     Event<Duration> silent; ///< once in each silence, with how long it has lasted
     Event<Duration> revived;
-    Event<> stopped; ///< by a request
     Property<Duration> limit{100ms};
 
     Sentence configure(Setup& setup) {
@@ -32,23 +30,19 @@ struct Watchdog {
         count_ = sign_.count(sign_.watched);
         last_life_ = cycle.now;
         silent_ = false;
-        expected_ = sign_.expected(sign_.owner);
         alive.write(true);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const std::uint64_t count = sign_.count(sign_.watched);
         const bool lives = count != count_;
         const Duration silence = cycle.now - last_life_;
-        const bool was_expected = expected_;
-        expected_ = sign_.expected(sign_.owner);
         count_ = count;
-        if (was_expected && !expected_) stopped();
-        if (lives || !expected_) last_life_ = cycle.now;
+        const bool rests = sign_.rests != nullptr && sign_.rests(sign_.owner);
+        if (lives || rests || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
         if (lives && silent_) {
             silent_ = false;
             revived(silence);
-        } else if (!lives && !silent_ && limit.get() > Duration::zero() &&
-                   cycle.now - last_life_ >= limit.get()) {
+        } else if (!lives && !silent_ && cycle.now - last_life_ >= limit.get()) {
             silent_ = true;
             silent(silence);
         }
@@ -61,9 +55,7 @@ struct Watchdog {
             output<&Watchdog::alive>("alive", "", "what it watches has shown life within the limit"),
             event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
             event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),
-            event<&Watchdog::stopped>("stopped", "what it watches was stopped by a request"),
-            property<&Watchdog::limit>("limit", "s", "the longest time without life; 0: none is too long",
-                                       range(0, 3600)));
+            property<&Watchdog::limit>("limit", "s", "the longest time without life", range(0, 3600)));
     }
 
 private:
@@ -71,7 +63,6 @@ private:
     std::uint64_t count_ = 0;
     Time last_life_{};
     bool silent_ = false;
-    bool expected_ = true;
 };
 
 } // namespace tappet

@@ -91,18 +91,20 @@ TEST_P(StartedAnew, a_part_that_is_restarted_while_weaving_stops_the_loom_until_
     ASSERT_TRUE(rig.at_angle(100.0));
     rig.change(GetParam(), LifeChange::restart);
     rig.expect_stopped_and_staying_so(1s);
-    EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked" || rig.state() == "stopped")
+    EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked" || rig.state() == "stopped" ||
+                rig.state() == "emergency")
         << rig.state() << ": " << rig.reason();
 }
 
 TEST_P(StartedAnew, a_part_that_is_restarted_while_the_loom_is_prepared_moves_nothing_until_acknowledged) {
-    if (std::string_view{GetParam()} == "component:io" || std::string_view{GetParam()} == "component:weft")
-        return; // they drive nothing: the brake is on and the valve closed, until start is pressed
+    if (std::string_view{GetParam()} == "component:weft")
+        return; // it drives nothing: the valve is closed until start is pressed
     Parts rig;
     ASSERT_TRUE(rig.prepare());
     rig.change(GetParam(), LifeChange::restart);
     rig.run_for(50ms);
-    EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked") << rig.state();
+    EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked" || rig.state() == "emergency")
+        << rig.state();
     for (const Time end = rig.now() + 2s; rig.now() < end; rig.run_for(1ms)) {
         ASSERT_EQ(rig.component<MainDrive>("main").target.last(), 0.0);
         ASSERT_EQ(rig.component<WarpTension>("warp").target.last(), 0.0);
@@ -135,7 +137,23 @@ TEST(LostParts, lines_that_are_driven_no_longer_are_an_emergency) {
     ASSERT_TRUE(rig.weave_by_hand());
     rig.change("activity:io", LifeChange::stop);
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms)) << rig.state();
-    EXPECT_EQ(rig.reason(), "the lines are driven no longer");
+    EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
+}
+
+TEST(LostParts, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    rig.wires().lines().set_removed(true);
+    ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
+    EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
+    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "by the drive alone";
+    rig.run_for(200ms);
+    rig.acknowledge();
+    EXPECT_EQ(rig.state(), "emergency");
+    rig.wires().lines().set_removed(false);
+    rig.run_for(100ms);
+    rig.acknowledge();
+    EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
 }
 
 TEST(LostParts, a_drive_that_pulls_against_a_brake_is_stopped) {

@@ -13,7 +13,7 @@ TEST(BehaviourFigures, stand_beside_switches_by_hand_and_judge_each_goal) {
                            "behaviour.condition", "behaviour.timeout", "behaviour.statement"}) {
         const auto found = std::ranges::find(result.figures, id, &Figure::id);
         ASSERT_NE(found, result.figures.end()) << id;
-        EXPECT_GT(std::ranges::count(found->rows, Role::floor, &Row::role), 0) << id;
+        EXPECT_GT(std::ranges::count(found->rows, Standing::floor, &Row::role), 0) << id;
     }
     EXPECT_EQ(result.goals.size(), 6u);
 }

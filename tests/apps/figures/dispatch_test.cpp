@@ -18,7 +18,7 @@ TEST(DispatchFigures, stand_beside_their_floors_and_judge_each_goal) {
                            "dispatch.step.10",       "dispatch.step.100",     "dispatch.step.1000"}) {
         const auto found = std::ranges::find(result.figures, id, &Figure::id);
         ASSERT_NE(found, result.figures.end()) << id;
-        EXPECT_GT(std::ranges::count(found->rows, Role::floor, &Row::role), 0) << id;
+        EXPECT_GT(std::ranges::count(found->rows, Standing::floor, &Row::role), 0) << id;
     }
     EXPECT_EQ(result.goals.size(), 7u);
 }

@@ -6,7 +6,7 @@
 namespace tappet::figures {
 namespace {
 
-std::size_t rows_of(const Figure& figure, Role role) {
+std::size_t rows_of(const Figure& figure, Standing role) {
     return static_cast<std::size_t>(
         std::ranges::count_if(figure.rows, [&](const Row& row) { return row.role == role; }));
 }
@@ -21,8 +21,8 @@ TEST(ExchangeFigures, stand_beside_floors_and_peers_and_judge_each_goal) {
             EXPECT_EQ(std::ranges::count(result.figures, id, &Figure::id), 1) << id;
         }
     for (const Figure& figure : result.figures) {
-        EXPECT_EQ(rows_of(figure, Role::ours), 1u) << figure.id;
-        EXPECT_GE(rows_of(figure, Role::floor) + rows_of(figure, Role::peer), 1u) << figure.id;
+        EXPECT_EQ(rows_of(figure, Standing::ours), 1u) << figure.id;
+        EXPECT_GE(rows_of(figure, Standing::floor) + rows_of(figure, Standing::peer), 1u) << figure.id;
         for (const Row& row : figure.rows) EXPECT_GT(row.summary.count, 0u) << figure.id << ": " << row.name;
     }
     EXPECT_EQ(result.figures.size(), two_cores ? 22u : 12u);

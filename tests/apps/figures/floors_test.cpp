@@ -20,7 +20,7 @@ TEST(FloorsFigures, are_whole_and_none_of_them_is_ours) {
     for (const Figure& figure : result.figures) {
         ids.push_back(figure.id);
         for (const Row& row : figure.rows) {
-            EXPECT_EQ(row.role, Role::floor) << figure.id << ": " << row.name;
+            EXPECT_EQ(row.role, Standing::floor) << figure.id << ": " << row.name;
             EXPECT_GT(row.summary.count, 0u) << figure.id << ": " << row.name;
             EXPECT_GT(row.summary.median, 0) << figure.id << ": " << row.name;
             EXPECT_LE(row.summary.median, row.summary.max) << figure.id << ": " << row.name;

@@ -14,8 +14,8 @@ TEST(ReactionFigures, stand_beside_bare_programs_and_judge_each_goal) {
     EXPECT_EQ(result.figures[1].id, "reaction.event.two_cores");
     EXPECT_EQ(result.figures[2].id, "reaction.periodic");
     for (const Figure& figure : result.figures) {
-        EXPECT_EQ(figure.rows[0].role, Role::ours);
-        EXPECT_EQ(figure.rows[1].role, Role::floor);
+        EXPECT_EQ(figure.rows[0].role, Standing::ours);
+        EXPECT_EQ(figure.rows[1].role, Standing::floor);
         EXPECT_EQ(figure.rows[0].summary.count, figure.rows[1].summary.count) << "samples come in pairs";
     }
     EXPECT_EQ(result.goals.size(), 4u);

@@ -31,7 +31,7 @@ TEST(ScaleFigures, measure_a_machine_from_its_source_to_its_step) {
     expect_between("scale.step.10", "engines", 1, 1e5);
     for (const char* figure : {"scale.jacquard.can", "scale.jacquard.registers", "scale.step.10"})
         EXPECT_TRUE(std::ranges::any_of(result.figures, [&](const Figure& each) {
-            return each.id == figure && std::ranges::count(each.rows, Role::floor, &Row::role) == 1;
+            return each.id == figure && std::ranges::count(each.rows, Standing::floor, &Row::role) == 1;
         })) << figure;
     EXPECT_EQ(result.statements.size(), 2u);
 }

@@ -13,7 +13,7 @@ TEST(ScopeFigures, stand_beside_a_step_that_records_nothing) {
                            "scope.followed"}) {
         const auto found = std::ranges::find(result.figures, id, &Figure::id);
         ASSERT_NE(found, result.figures.end()) << id;
-        EXPECT_GT(std::ranges::count(found->rows, Role::floor, &Row::role), 0) << id;
+        EXPECT_GT(std::ranges::count(found->rows, Standing::floor, &Row::role), 0) << id;
     }
     EXPECT_EQ(result.statements.size(), 6u);
 }

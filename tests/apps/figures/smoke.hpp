@@ -31,7 +31,7 @@ inline void expect_sound(const Result& result) {
         bool has_ours = false;
         EXPECT_GE(figure.rows.size(), 2u) << figure.id;
         for (const Row& row : figure.rows) {
-            has_ours |= row.role == Role::ours;
+            has_ours |= row.role == Standing::ours;
             const Summary& s = row.summary;
             EXPECT_GT(s.count, 0u) << figure.id << ": " << row.name;
             EXPECT_GT(s.median, 0) << figure.id << ": " << row.name;

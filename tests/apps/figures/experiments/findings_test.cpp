@@ -14,8 +14,8 @@
 namespace tappet::experiments {
 namespace {
 
-using figures::Role;
 using figures::Samples;
+using figures::Standing;
 using figures::Statement;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -86,10 +86,10 @@ TEST(Figures, put_the_mutex_and_the_bare_copies_beside_the_connectors) {
     const auto found = std::ranges::find(figures, "experiments.small.exchange.high", &figures::Figure::id);
     ASSERT_NE(found, figures.end());
     ASSERT_EQ(found->rows.size(), 3u);
-    EXPECT_EQ(found->rows[0].role, Role::ours);
+    EXPECT_EQ(found->rows[0].role, Standing::ours);
     EXPECT_EQ(found->rows[0].summary.median, 100);
-    EXPECT_EQ(found->rows[1].role, Role::peer);
-    EXPECT_EQ(found->rows[2].role, Role::floor);
+    EXPECT_EQ(found->rows[1].role, Standing::peer);
+    EXPECT_EQ(found->rows[2].role, Standing::floor);
 }
 
 TEST(Plots, show_both_ways_of_exchange_in_the_figure_of_the_thesis) {
@@ -105,14 +105,14 @@ TEST(Plots, show_both_ways_of_exchange_in_the_figure_of_the_thesis) {
 TEST(Plots, show_a_peak_and_a_worst_case_far_away_alike) {
     Samples samples = always(101);
     samples.add(20'100);
-    const auto series = figures::log_histogram("", Role::ours, samples, 10);
+    const auto series = figures::log_histogram("", Standing::ours, samples, 10);
     ASSERT_EQ(series.points.size(), 24u) << "ten bins for each factor of ten";
     EXPECT_DOUBLE_EQ(series.points.front().first, 100);
     EXPECT_EQ(series.points.front().second, 1000);
     EXPECT_LE(series.points.back().first, 20'100);
     EXPECT_EQ(series.points.back().second, 1);
     EXPECT_EQ(series.points[10].second, 0);
-    EXPECT_TRUE(figures::log_histogram("", Role::ours, {}).points.empty());
+    EXPECT_TRUE(figures::log_histogram("", Standing::ours, {}).points.empty());
 }
 
 TEST(Plots, show_periods_by_what_they_differ_from_the_row) {

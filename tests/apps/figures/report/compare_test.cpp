@@ -26,7 +26,7 @@ std::vector<Round> rounds(double factor, double noise, std::size_t count = 6) {
 }
 const Change& ours(const Comparison& comparison) {
     for (const Change& change : comparison.changes)
-        if (change.role == Role::ours) return change;
+        if (change.role == Standing::ours) return change;
     throw std::logic_error("nothing of ours was compared");
 }
 
@@ -59,8 +59,8 @@ TEST(Compare, floors_and_peers_say_how_much_is_noise) {
     auto all = rounds(1.2, 0.01);
     for (Round& round : all)
         for (int i = 0; i < 10; ++i) { // the same code in both, and yet 30 % apart
-            round.before[0].figures[0].rows.push_back(row("floor " + std::to_string(i), Role::floor, 10));
-            round.after[0].figures[0].rows.push_back(row("floor " + std::to_string(i), Role::floor, 13));
+            round.before[0].figures[0].rows.push_back(row("floor " + std::to_string(i), Standing::floor, 10));
+            round.after[0].figures[0].rows.push_back(row("floor " + std::to_string(i), Standing::floor, 13));
         }
     const Comparison comparison = compare(all, 0.05);
     EXPECT_NEAR(comparison.threshold(), 0.3, 0.01);

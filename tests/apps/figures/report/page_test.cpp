@@ -62,7 +62,7 @@ TEST_F(Page, no_text_of_a_program_becomes_a_tag) {
     told.goals = {{tag, 1, 1, "x", tag}};
     told.statements = {{tag, true, tag}};
     told.notes = {tag};
-    told.plots = {{"p", tag, tag, tag, false, false, false, {{tag, Role::ours, {{1, 1}, {2, 2}}}}}};
+    told.plots = {{"p", tag, tag, tag, false, false, false, {{tag, Standing::ours, {{1, 1}, {2, 2}}}}}};
     run.programs.push_back(ran(told));
     run.machine = {{tag, tag}};
     EXPECT_THAT(text(), AllOf(HasSubstr("&lt;script&gt;&quot;&amp;&#39;"), Not(HasSubstr("<script"))));
@@ -71,7 +71,7 @@ TEST_F(Page, no_text_of_a_program_becomes_a_tag) {
 TEST_F(Page, needs_nothing_from_elsewhere) {
     Result told = result("exchange", 12);
     told.plots = {
-        {"p", "a plot", "x", "y", true, false, true, {{"ours", Role::ours, {{1, 3}, {2, 0}, {3, 9}}}}}};
+        {"p", "a plot", "x", "y", true, false, true, {{"ours", Standing::ours, {{1, 3}, {2, 0}, {3, 9}}}}}};
     run.programs.push_back(ran(told));
     const std::string html = text();
     EXPECT_THAT(html, AllOf(Not(HasSubstr(" src=")), Not(HasSubstr("<link")), Not(HasSubstr("@import")),
@@ -91,13 +91,14 @@ TEST_F(Page, statements_are_true_or_false_as_measured) {
 }
 
 TEST(Plots, a_name_with_quotes_ends_no_string_of_gnuplot) {
-    Plot plot{"p", "t", "x's", "y", false, false, false, {{"it's", Role::ours, {{1, 1}}}}};
+    Plot plot{"p", "t", "x's", "y", false, false, false, {{"it's", Standing::ours, {{1, 1}}}}};
     EXPECT_THAT(gnuplot_script(plot, "p0", "out.svg"), AllOf(HasSubstr("'it''s'"), HasSubstr("'x''s'")));
 }
 
 TEST(Plots, points_that_an_axis_cannot_show_are_left_out) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    Plot plot{"p", "t", "x", "y", false, true, true, {{"s", Role::ours, {{0, 1}, {1, 0}, {nan, 1}, {7, 5}}}}};
+    Plot plot{"p",   "t",  "x",  "y",
+              false, true, true, {{"s", Standing::ours, {{0, 1}, {1, 0}, {nan, 1}, {7, 5}}}}};
     EXPECT_THAT(gnuplot_script(plot, "p0", "out.svg"), HasSubstr("<< END\n7 5\nEND"));
     plot.series[0].points.pop_back();
     EXPECT_EQ(gnuplot_script(plot, "p0", "out.svg"), "") << "nothing is left to draw";
@@ -121,9 +122,9 @@ TEST(Text, a_floor_of_one_row_of_ours_stands_beside_that_alone) {
                         "us",
                         "",
                         "",
-                        {row("high, one", Role::ours, 20), row("high, its load", Role::floor, 10),
-                         row("low", Role::ours, 60), row("low, its load", Role::floor, 30),
-                         row("mutex", Role::peer, 40)}};
+                        {row("high, one", Standing::ours, 20), row("high, its load", Standing::floor, 10),
+                         row("low", Standing::ours, 60), row("low, its load", Standing::floor, 30),
+                         row("mutex", Standing::peer, 40)}};
     const auto names = [&](std::size_t i) {
         std::vector<std::string> all;
         for (const Beside& other : beside(figure, figure.rows[i])) all.push_back(other.name);
@@ -174,7 +175,7 @@ TEST(Merged, a_run_comes_back_from_its_json_as_it_was) {
     told.figures[0].rows[0].instructions = 40;
     told.goals = {{"goal", 1.2, std::numeric_limits<double>::quiet_NaN(), "x", "detail"}};
     told.statements = {{"statement", true, "as measured"}};
-    told.plots = {{"p", "t", "x", "y", true, false, true, {{"s", Role::peer, {{1, 2}}}}}};
+    told.plots = {{"p", "t", "x", "y", true, false, true, {{"s", Standing::peer, {{1, 2}}}}}};
     told.notes = {"note"};
     run.programs = {ran(told), {"scale", "could not be started"}};
     run.programs[0].usage.seconds = 3;

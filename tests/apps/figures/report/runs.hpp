@@ -5,20 +5,20 @@
 
 namespace tappet::figures {
 
-inline Row row(const std::string& name, Role role, double median) {
+inline Row row(const std::string& name, Standing role, double median) {
     return {name, role, {median, median, median * 2, median * 3, median * 4, 100}};
 }
 
 /// One figure of ours, one floor and one peer.
 inline Result result(const std::string& program, double ours, double floor = 10, double peer = 40) {
     Result result{program};
-    result.figures.push_back(
-        {program + ".write",
-         "a write",
-         "ns",
-         "thesis 4.4",
-         "mean of 64",
-         {row("port", Role::ours, ours), row("copy", Role::floor, floor), row("mutex", Role::peer, peer)}});
+    result.figures.push_back({program + ".write",
+                              "a write",
+                              "ns",
+                              "thesis 4.4",
+                              "mean of 64",
+                              {row("port", Standing::ours, ours), row("copy", Standing::floor, floor),
+                               row("mutex", Standing::peer, peer)}});
     return result;
 }
 

@@ -50,7 +50,6 @@ struct Office {
     bool rearms = false;
     std::vector<Time> dues, dues_heard_at;
     std::vector<Duration> silences, revivals;
-    std::uint64_t level_stops = 0;
     std::vector<Duration> level_silences;
     os::Clock* clock = nullptr;
     Sentence configure(Setup& setup) {
@@ -70,7 +69,6 @@ struct Office {
     void on_level_silent(Duration time) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a test remembers", level_silences.push_back(time));
     }
-    void on_level_stopped() noexcept TAPPET_REALTIME { ++level_stops; }
     void wake_up() noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Office::level>("level", "", "of the worker"),
@@ -81,8 +79,7 @@ struct Office {
                       operation<&Office::on_due>("on_due", "hears"),
                       operation<&Office::on_silent>("on_silent", "hears"),
                       operation<&Office::on_revived>("on_revived", "hears"),
-                      operation<&Office::on_level_silent>("on_level_silent", "hears"),
-                      operation<&Office::on_level_stopped>("on_level_stopped", "hears"));
+                      operation<&Office::on_level_silent>("on_level_silent", "hears"));
     }
 };
 
@@ -104,8 +101,7 @@ constexpr auto table = machine("timely",
         when("bell.due",          call("office.on_due")),
         when("cycle_dog.silent",  tell("office.on_silent")),
         when("cycle_dog.revived", tell("office.on_revived")),
-        when("level_dog.silent",  tell("office.on_level_silent")),
-        when("level_dog.stopped", tell("office.on_level_stopped"))),
+        when("level_dog.silent",  tell("office.on_level_silent"))),
     behaviours());
 constexpr auto real_time_table = table; // in memory of its own
 constexpr Board board{
@@ -264,33 +260,6 @@ TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew
     EXPECT_EQ(office.level_silences.size(), 1u);
 }
 
-TEST_F(AWatchdog, tells_once_that_what_it_watches_was_stopped_on_purpose) {
-    run(100ms);
-    EXPECT_EQ(office.level_stops, 0);
-    for (const std::size_t times : {1u, 2u}) {
-        if (times == 1)
-            static_cast<void>(instance.ask_component(worker, LifeChange::stop));
-        else
-            EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
-        run(2 * 2ms);
-        EXPECT_EQ(office.level_stops, times);
-        run(100ms);
-        EXPECT_EQ(office.level_stops, times);
-        static_cast<void>(instance.ask_component(worker, LifeChange::start));
-        run(10ms);
-    }
-}
-
-TEST_F(AWatchdog, without_a_limit_tells_no_silence_but_a_stop) {
-    level_dog.limit.set(0ms);
-    the_worker.silent = true;
-    run(1s);
-    EXPECT_THAT(office.level_silences, IsEmpty());
-    static_cast<void>(instance.ask_component(worker, LifeChange::stop));
-    run(10ms);
-    EXPECT_EQ(office.level_stops, 1);
-}
-
 TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
     Engine& engine = instance.engines()[motion];
     engine.stop(clock.now()); // as the supervisor does in the place of a hung thread
@@ -298,6 +267,74 @@ TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
     run(100ms);
     EXPECT_EQ(office.silences.size(), 1u);
     EXPECT_FALSE(cycle_dog.alive.last());
+}
+
+/// Runs when it is told to, and hangs when it is told to.
+struct Sleeper {
+    std::atomic<bool> hangs{false};
+    os::Clock* clock = nullptr;
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void rouse() noexcept TAPPET_REALTIME {
+        if (hangs.exchange(false)) clock->consume(200ms);
+    }
+    static constexpr auto interface() { return facets(operation<&Sleeper::rouse>("rouse", "runs")); }
+};
+/// Rouses it, and hears its watchdog.
+struct Rouser {
+    Event<> now;
+    std::atomic<bool> rouses{false};
+    std::vector<Duration> silences, revivals;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (rouses.exchange(false)) now.emit();
+    }
+    void on_silent(Duration time) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", silences.push_back(time));
+    }
+    void on_revived(Duration time) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", revivals.push_back(time));
+    }
+    static constexpr auto interface() {
+        return facets(event<&Rouser::now>("now", "run"), operation<&Rouser::on_silent>("on_silent", "hears"),
+                      operation<&Rouser::on_revived>("on_revived", "hears"));
+    }
+};
+// clang-format off
+constexpr auto sleeping_table = machine("sleeping",
+    components(component<Sleeper>("sleeper"), component<Rouser>("rouser"), component<Watchdog>("dog", watches("sleep"), set("limit", 20ms))),
+    activities(
+        activity("watch", every(2ms), runs("dog"), budget(20us)),
+        activity("rouse", every(3ms), runs("rouser"), budget(50us), stack(64 * 1024)),
+        activity("sleep", on_work(), at_most(1, 100ms), runs("sleeper"), deadline(100ms), budget(50us))),
+    connections(),
+    reactions(
+        when("rouser.now",  tell("sleeper.rouse")),
+        when("dog.silent",  tell("rouser.on_silent")),
+        when("dog.revived", tell("rouser.on_revived"))),
+    behaviours());
+// clang-format on
+
+TEST(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) {
+    if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{Firmware<sleeping_table, board>::machine(), clock};
+    RealWorld world{instance};
+    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
+    const int nowhere_to_print = open("/dev/null", O_WRONLY);
+    ASSERT_TRUE(instance.configure({}).has_value() && world.arm(report, nowhere_to_print) && world.start());
+    close(nowhere_to_print);
+    Rouser& rouser = *instance.find<Rouser>("rouser");
+    EXPECT_TRUE(world.supervise(300ms)); // fifteen times the limit
+    EXPECT_TRUE(rouser.silences.empty()) << "nobody woke it";
+    instance.find<Sleeper>("sleeper")->hangs = true;
+    rouser.rouses = true;
+    EXPECT_TRUE(world.supervise(500ms));
+    EXPECT_EQ(world.stop(), 0);
+    ASSERT_FALSE(rouser.silences.empty());
+    EXPECT_GE(rouser.silences[0], 20ms);
+    EXPECT_EQ(rouser.revivals.size(), rouser.silences.size());
 }
 
 TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
