@@ -165,6 +165,9 @@ Result<std::optional<ordered_json>> Link::receive(Milliseconds within) {
     if (!parsed.is_object())
         return failure(Fault::no_machine, "the machine's answer is no JSON object: " +
                                               std::string{packet.data(), static_cast<std::size_t>(count)});
+    // Our own requests count from 1: the door tells us that we have no place, or lost it.
+    if (parsed.value("id", std::int64_t{-1}) == 0 && parsed.contains("error"))
+        return failure(Fault::refused, parsed.value("error", std::string{}));
     return std::optional{std::move(parsed)};
 }
 

@@ -48,10 +48,16 @@ void BrowserService::work(const Cycle& cycle) {
 }
 
 void BrowserService::welcome() {
-    while (Client* client = door_.welcome()) note(*client, "connected", {}, {});
+    for (std::size_t i = 0; i < browsing::Door::most_each_cycle; ++i) {
+        const Client* client = door_.welcome();
+        if (client == nullptr) break;
+        note(*client, "connected", {}, {});
+    }
     if (turned_away_ == door_.turned_away()) return;
     turned_away_ = door_.turned_away();
-    if (log) os::print("browser: a client was turned away: all places are taken\n");
+    if (log)
+        os::print("browser: a client was turned away: all places are taken, or one of a higher role took its "
+                  "own\n");
 }
 
 void BrowserService::hear(Client& client) {

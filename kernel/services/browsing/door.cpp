@@ -18,23 +18,51 @@ void Door::close() noexcept {
 }
 
 Client* Door::welcome() noexcept {
-    os::LocalConnection connection = listener_.accept();
-    if (!connection.open()) return nullptr;
-    const auto peer = connection.peer();
-    for (Client& each : clients_) {
-        if (each.serial != 0 || !peer) continue;
-        each.connection = std::move(connection);
-        each.peer = *peer;
-        each.role = role_of(*peer, board_);
-        each.serial = ++serials_;
-        each.dropped = each.told_dropped = 0;
-        return &each;
+    for (std::size_t i = 0; i < most_each_cycle; ++i) {
+        os::LocalConnection connection = listener_.accept();
+        if (!connection.open()) return nullptr;
+        const auto peer = connection.peer();
+        if (!peer) continue; // it is gone already
+        const Role role = role_of(*peer, board_);
+        Client* place = place_for(role);
+        if (place == nullptr) {
+            turn_away(connection, Sentence{"all ", max_clients,
+                                           " places are taken; end another browser of this machine"});
+            continue;
+        }
+        if (place->serial != 0) {
+            turn_away(place->connection,
+                      Sentence{"an ", to_text(role), " needs this place; connect again later"});
+            dismiss(*place);
+        }
+        place->connection = std::move(connection);
+        place->peer = *peer;
+        place->role = role;
+        place->serial = ++serials_;
+        place->heard = ++heard_;
+        place->dropped = place->told_dropped = 0;
+        return place;
     }
-    ++turned_away_;
-    Reply reply{0, Refusal::not_now,
-                Sentence{"all ", max_clients, " places are taken; end another browser of this machine"}};
-    static_cast<void>(connection.send(reply.finish()));
     return nullptr;
+}
+
+/// A free one, or that of a lower role.
+Client* Door::place_for(Role role) noexcept {
+    Client* best = nullptr;
+    for (Client& each : clients_) {
+        if (each.serial == 0) return &each;
+        if (each.role >= role) continue;
+        if (best == nullptr || each.role < best->role ||
+            (each.role == best->role && each.heard < best->heard))
+            best = &each;
+    }
+    return best;
+}
+
+void Door::turn_away(const os::LocalConnection& connection, const Sentence& why) noexcept {
+    ++turned_away_;
+    Reply reply{0, Refusal::not_now, why};
+    static_cast<void>(connection.send(reply.finish())); // who does not read it is let go all the same
 }
 
 Client* Door::find(std::uint64_t serial) noexcept {
@@ -49,6 +77,7 @@ std::optional<std::string_view> Door::receive(Client& client, std::span<char> in
     const auto received = client.connection.receive(into);
     if (received.what == What::closed) dismiss(client);
     if (received.what != What::packet) return std::nullopt;
+    client.heard = ++heard_;
     cut = received.cut;
     return std::string_view{into.data(), received.bytes};
 }

@@ -17,6 +17,7 @@ struct Client {
     os::Peer peer{};
     Role role = Role::observer;
     std::uint64_t serial = 0; ///< 0: the place is free
+    std::uint64_t heard = 0;  ///< rises with each packet of anybody: the lowest is the longest idle
     std::uint64_t dropped = 0;
     std::uint64_t told_dropped = 0;
 };
@@ -26,13 +27,16 @@ class Door {
 public:
     /// What a client gets of a cycle's time; the rest waits in its own socket.
     static constexpr std::size_t packets_each_cycle = 4;
+    /// Of those who wait at the door; more than its listener lets wait.
+    static constexpr std::size_t most_each_cycle = 16;
 
     std::expected<void, Sentence> open(std::string_view directory, std::string_view machine,
                                        const BoardBrowsing& board) noexcept;
     void close() noexcept;
     [[nodiscard]] bool is_open() const noexcept { return listener_.open(); }
 
-    /// Someone who wants in and is let in. Whoever comes when all places are taken is told so and let go:
+    /// Someone who wants in and is let in. When all places are taken, one of a higher role gets the place of
+    /// the longest idle of the lowest; whoever loses a place, or gets none, is told so and let go:
     /// `turned_away` counts them.
     [[nodiscard]] Client* welcome() noexcept;
     [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
@@ -47,10 +51,14 @@ public:
     void dismiss(Client& client) noexcept;
 
 private:
+    [[nodiscard]] Client* place_for(Role role) noexcept;
+    void turn_away(const os::LocalConnection& connection, const Sentence& why) noexcept;
+
     os::LocalListener listener_{};
     BoardBrowsing board_{};
     std::array<Client, max_clients> clients_{};
     std::uint64_t serials_ = 0;
+    std::uint64_t heard_ = 0;
     std::uint64_t turned_away_ = 0;
 };
 

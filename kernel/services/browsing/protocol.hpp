@@ -36,6 +36,9 @@
 /// it. What a client does not read is not kept for it: beyond its socket's buffer packets are dropped, and
 /// the next that it gets says "dropped": n.
 ///
+/// A packet of number 0 that is not "ok" is the door's: no place was free, or one of a higher role took this
+/// one. The connection ends behind it.
+///
 /// Times are the machine's: nanoseconds of CLOCK_MONOTONIC on a box, virtual ones under virtual time.
 namespace tappet::browsing {
 

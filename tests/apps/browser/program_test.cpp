@@ -56,6 +56,14 @@ TEST_F(Program, lists_components_and_their_facets) {
                                testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator")")));
 }
 
+TEST_F(Program, says_why_the_machine_lets_it_go) {
+    machine.answer("save",
+                   {R"({"id": 0, "ok": false, "code": "not_now", "error": "an engineer needs this place"})"});
+    const Outcome outcome = run({"save"});
+    EXPECT_NE(outcome.code, 0);
+    EXPECT_THAT(outcome.errors, HasSubstr("an engineer needs this place"));
+}
+
 TEST_F(Program, keeps_no_descriptor_of_the_machine_beyond_the_end_of_its_session) {
     const auto of_its_memory = [] {
         std::size_t count = 0;

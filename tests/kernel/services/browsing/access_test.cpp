@@ -133,6 +133,43 @@ TEST_F(Press, one_client_too_many_is_told_so_and_those_that_are_in_stay) {
     EXPECT_TRUE(has(ask(next, "1 hello"), R"("ok": true)")) << "a place that was left is given again";
 }
 
+/// Connected as somebody whom the board does not list; only root can do that.
+std::unique_ptr<Talker> observer(const std::string& path) {
+    if (seteuid(65534) != 0) return nullptr;
+    auto talker = std::make_unique<Talker>(path);
+    return seteuid(0) == 0 ? std::move(talker) : nullptr;
+}
+
+TEST_F(Press, who_has_a_higher_role_gets_the_place_of_the_longest_idle_of_a_lower_one) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    std::vector<std::unique_ptr<Talker>> observers;
+    for (std::size_t i = 0; i < browsing::max_clients; ++i) observers.push_back(observer(path()));
+    run(40ms);
+    EXPECT_TRUE(has(ask(*observers[0], "1 hello"), R"("role": "observer")")) << "it is idle no longer";
+    Talker engineer{path()};
+    EXPECT_TRUE(has(ask(engineer, "1 hello"), R"("role": "engineer")"));
+    EXPECT_TRUE(has(observers[1]->receive(), "an engineer needs this place"));
+    EXPECT_TRUE(observers[1]->gone());
+    for (const std::size_t each : {0u, 2u, 7u})
+        EXPECT_TRUE(has(ask(*observers[each], "2 hello"), R"("ok": true)")) << each << " stays";
+    const auto late = observer(path());
+    run(40ms);
+    EXPECT_TRUE(has(late->receive(), "places are taken")) << "one of no higher role does not";
+    EXPECT_TRUE(has(ask(engineer, "2 set ram.speed 3"), R"("ok": true)"));
+}
+
+TEST_F(Press, idle_observers_at_the_door_lock_nobody_out) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    std::vector<std::unique_ptr<Talker>> crowd;
+    for (int round = 0; round < 3; ++round) {
+        for (std::size_t i = 0; i < browsing::max_clients; ++i) crowd.push_back(observer(path()));
+        run(20ms); // one cycle sees to all that wait
+    }
+    EXPECT_TRUE(has(crowd.back()->receive(), "places are taken"));
+    Talker engineer{path()};
+    EXPECT_TRUE(has(ask(engineer, "1 hello"), R"("role": "engineer")"));
+}
+
 TEST_F(Press, a_client_that_dies_in_the_middle_leaves_nothing_behind) {
     for (int i = 0; i < 40; ++i) {
         Talker talker{path()};
