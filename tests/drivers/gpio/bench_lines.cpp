@@ -1,6 +1,7 @@
 // The real GPIO device on a real kernel's simulated chip, with libgpiod's tools as peers. Runs on the bench:
 // /dev/panel with 16 lines, its outside below /sim/panel.
 #include "drivers/gpio/lines.hpp"
+#include "kernel/os/waiter.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
@@ -194,6 +195,26 @@ TEST_F(RealLines, allocate_nothing_while_they_run) {
     }
     EXPECT_EQ(::mallinfo2().uordblks, before);
     EXPECT_EQ(got, 200u);
+}
+
+/// The last test: nothing brings the chip back.
+TEST_F(RealLines, refuse_and_count_every_call_once_the_chip_is_removed_and_nobody_spins) {
+    open();
+    os::Waiter waiter;
+    ASSERT_TRUE(waiter.watch(device.wait_handle()));
+    EXPECT_FALSE(waiter.wait(now() + 5ms));
+    std::ofstream{"/sys/kernel/config/gpio-sim/panel/live"} << "0";
+    int returns = 0;
+    for (int i = 0; i < 50; ++i) {
+        returns += waiter.wait(now() + 2ms) ? 1 : 0;
+        EXPECT_EQ(device.read_edges(edges).count, 0u);
+    }
+    EXPECT_EQ(returns, 1) << "its descriptor hangs up for ever";
+    EXPECT_EQ(device.counters().failures, 50u);
+    EXPECT_FALSE(device.levels().known);
+    EXPECT_FALSE(device.write(bit(lamp), bit(lamp)));
+    EXPECT_FALSE(device.make_safe());
+    EXPECT_EQ(device.counters().failures, 53u);
 }
 
 } // namespace
