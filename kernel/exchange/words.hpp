@@ -27,8 +27,11 @@ inline constexpr bool copied_as_bytes = std::is_trivially_copyable_v<T> || Fixed
 template <class T>
 concept Exchangeable = copied_as_bytes<T> && std::is_trivially_destructible_v<T>;
 
-// Two words at once where the processor keeps the order of such accesses, and where nobody watches them one
-// by one: what the thread sanitizer sees must be atomics.
+// Two words at once where the processor keeps the order of such accesses. Nothing relies on such a move being
+// whole: a copy is thrown away unless the number behind it says that nobody wrote, so a torn pair is two
+// words of the model, in which every word may be torn from the next. For the thread sanitizer, to which a
+// move that is no atomic is a race, the words go one by one; a test's Atomic may take part in pairs by
+// before_pair().
 #if defined(__SANITIZE_THREAD__)
 #define TAPPET_MOVES_PAIRS 0
 #elif defined(__has_feature)
@@ -111,7 +114,7 @@ inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
 /// with acquire (on x86-64 the same plain moves as relaxed ones): a reader that met one word of a newer value
 /// therefore also sees whatever the writer stored before it began, and needs no fence, which the thread
 /// sanitizer cannot follow. A larger value goes two words at once. Atomic is std::atomic; tests put one in
-/// its place that lets the other side run between any two accesses.
+/// its place that lets the other side run between any two accesses, also between two pairs.
 template <Exchangeable T, template <class> class Atomic = std::atomic> class Words {
 public:
     static constexpr std::size_t count = (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
@@ -121,8 +124,10 @@ private:
     // those stores have left the processor's buffer. So would one of a large value's last words: there lies
     // the stamp.
     static constexpr std::size_t fewest_for_pairs = 12;
-    static constexpr bool moves_pairs = TAPPET_MOVES_PAIRS != 0 && count >= fewest_for_pairs &&
-                                        std::is_same_v<Atomic<std::uint64_t>, std::atomic<std::uint64_t>>;
+    static constexpr bool is_told_of_pairs = requires { Atomic<std::uint64_t>::before_pair(); };
+    static constexpr bool moves_pairs =
+        TAPPET_MOVES_PAIRS != 0 && count >= fewest_for_pairs &&
+        (is_told_of_pairs || std::is_same_v<Atomic<std::uint64_t>, std::atomic<std::uint64_t>>);
     static constexpr std::size_t pairs = moves_pairs ? (count - 1) / 2 : 0;
     static constexpr std::size_t singles = count - 2 * pairs;
 
@@ -145,7 +150,7 @@ public:
         if constexpr (pairs != 0) {
             std::atomic_signal_fence(std::memory_order_acq_rel);
 #pragma GCC unroll 16
-            for (std::size_t i = 0; i < pairs; ++i) detail::store_pair(pair(i), from.paired[i]);
+            for (std::size_t i = 0; i < pairs; ++i) put_pair(i, from.paired[i]);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
         for (std::size_t i = 0; i < singles; ++i)
@@ -156,7 +161,7 @@ public:
         if constexpr (pairs != 0) {
             std::atomic_signal_fence(std::memory_order_acq_rel);
 #pragma GCC unroll 16
-            for (std::size_t i = 0; i < pairs; ++i) detail::store_pair(pair(i), detail::pair_at(bytes, i));
+            for (std::size_t i = 0; i < pairs; ++i) put_pair(i, detail::pair_at(bytes, i));
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
         for (std::size_t i = 2 * pairs; i < count; ++i)
@@ -166,7 +171,7 @@ public:
         if constexpr (pairs != 0) {
             std::atomic_signal_fence(std::memory_order_acq_rel);
 #pragma GCC unroll 16
-            for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = detail::load_pair(pair(i));
+            for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = take_pair(i);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
         for (std::size_t i = 0; i < singles; ++i)
@@ -178,7 +183,7 @@ public:
         if constexpr (pairs != 0) {
             std::atomic_signal_fence(std::memory_order_acq_rel);
 #pragma GCC unroll 16
-            for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = detail::load_pair(pair(i));
+            for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = take_pair(i);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
         for (std::size_t i = 2 * pairs; i < count; ++i)
@@ -195,11 +200,15 @@ private:
     static constexpr std::size_t whole = sizeof(T) / sizeof(std::uint64_t);
     static constexpr std::size_t rest = sizeof(T) % sizeof(std::uint64_t);
 
-    [[nodiscard]] detail::PlacedPair& pair(std::size_t i) noexcept TAPPET_REALTIME {
-        return reinterpret_cast<detail::PlacedPair&>(words_[2 * i]);
+    void put_pair(std::size_t i, detail::Pair from) noexcept TAPPET_REALTIME {
+        if constexpr (is_told_of_pairs) Atomic<std::uint64_t>::before_pair();
+        auto& place = reinterpret_cast<detail::PlacedPair&>(words_[2 * i]);
+        detail::store_pair(place, from); // words.store
     }
-    [[nodiscard]] const detail::PlacedPair& pair(std::size_t i) const noexcept TAPPET_REALTIME {
-        return reinterpret_cast<const detail::PlacedPair&>(words_[2 * i]);
+    [[nodiscard]] detail::Pair take_pair(std::size_t i) const noexcept TAPPET_REALTIME {
+        if constexpr (is_told_of_pairs) Atomic<std::uint64_t>::before_pair();
+        const auto& place = reinterpret_cast<const detail::PlacedPair&>(words_[2 * i]);
+        return detail::load_pair(place); // words.load
     }
     [[nodiscard]] static std::uint64_t word_of(const T& from, std::size_t i) noexcept TAPPET_REALTIME {
         const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));

@@ -5,6 +5,8 @@
    Shown: no value is torn or mixed with another one's number; a reader never goes backwards; an attempt fails only when
    the writer has begun to write into that very slot again; with the writer at rest a reader gets the last value; and
    every call ends within its bound of steps.
+   A word stands for whatever the processor moves at once: of a larger value two words, which may also come apart. Nothing
+   shown depends on how much that is, since a value of two pieces is accepted or refused by its number alone.
    Steps interleave in program order. The processor lets a load pass an earlier store of its own, and nothing else: here
    the writer loads nothing and a reader stores nothing, so there is no such pair. Readers do not meet: one stands for
    all. */

@@ -103,11 +103,13 @@ Labels labels_of_source(const std::string& text) {
 }
 
 std::vector<std::string> unlabelled_accesses(const std::string& text) {
-    static const std::regex access{"\\b(load|store|exchange|compare_exchange_\\w+|fetch_\\w+)\\("};
+    static const std::regex access{
+        "\\b((?:load|store)(?:_pair)?|exchange|compare_exchange_\\w+|fetch_\\w+)\\("};
     static const std::regex excused{"// ([a-z]+\\.[a-z_]+|no step: \\S+ \\S+ .*)$"};
     // A value of several words is written and read by Words, whose own accesses bear the labels;
     // std::exchange is of one thread.
-    static const std::regex composed{"\\bvalue\\.(load|store)\\(|void (load|store)\\(|std::exchange\\("};
+    static const std::regex composed{
+        "\\bvalue\\.(load|store)\\(|(?:void|Pair) (?:load|store)(?:_pair)?\\(|std::exchange\\("};
     std::vector<std::string> found;
     for (const std::string& line : lines_of(text)) {
         const std::string code = line.substr(0, line.find("//"));

@@ -116,6 +116,7 @@ TEST(Labels, are_found_at_the_end_of_a_line_only) {
 TEST(Labels, are_missed_on_any_access_that_has_none) {
     EXPECT_EQ(unlabelled_accesses("head_.store(1, order);\n").size(), 1u);
     EXPECT_EQ(unlabelled_accesses("x.fetch_or(1); // no step\n").size(), 1u);
+    EXPECT_EQ(unlabelled_accesses("store_pair(place, from);\n").size(), 1u);
     EXPECT_TRUE(unlabelled_accesses("head_.store(1, order); // ring.release\n").empty());
     EXPECT_TRUE(unlabelled_accesses("x.load(); // no step: a count that nobody acts upon\n").empty());
     EXPECT_TRUE(unlabelled_accesses("cell.value.load(copy);\n").empty());

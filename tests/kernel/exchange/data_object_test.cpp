@@ -80,28 +80,43 @@ TEST(DataObject, keeps_the_writers_private_line_and_the_published_one_apart) {
     EXPECT_GE(alignof(DataObject<int>), line_pair_bytes);
 }
 
+/// Values of a few words, of pairs that stay in registers, and of more pairs than that.
+template <class T, template <class> class A> struct Carried {
+    using Value = T;
+    template <std::size_t slots, std::size_t attempts> using Object = DataObject<T, slots, attempts, A>;
+};
+template <class> class InterruptedDataObject : public testing::Test {};
+using Carriages =
+    testing::Types<Carried<Sealed<24>, Preemptible>, Carried<Sealed<160>, Preemptible>,
+                   Carried<Sealed<160>, PreemptiblePair>, Carried<Sealed<320>, PreemptiblePair>>;
+TYPED_TEST_SUITE(InterruptedDataObject, Carriages);
+
 // One reader's call, interrupted at each of its accesses by each number of whole writes.
-TEST(DataObject, withstands_any_burst_of_writes_at_any_point_of_a_read) {
+TYPED_TEST(InterruptedDataObject, withstands_any_burst_of_writes_at_any_point_of_a_read) {
+    using Value = typename TypeParam::Value;
     constexpr std::size_t slots = 4;
-    using Object = DataObject<Sealed<24>, slots, 3, Preemptible>;
-    for (std::size_t at = 0; at < 6; ++at) {
+    std::size_t accesses = 1;
+    for (std::size_t at = 0; at < accesses; ++at) {
         for (std::uint64_t burst = 0; burst <= 2 * slots + 1; ++burst) {
-            Object object;
+            typename TypeParam::template Object<slots, 3> object;
             std::uint64_t written = 0;
-            for (int i = 0; i < 5; ++i) object.write(Sealed<24>::of(++written));
-            Sealed<24> value{};
+            for (int i = 0; i < 5; ++i) object.write(Value::of(++written));
+            Value value{};
             std::uint64_t generation = 4;
             bool fresh = false;
             const auto intruder = [&] {
-                for (std::uint64_t i = 0; i < burst; ++i) object.write(Sealed<24>::of(++written));
+                for (std::uint64_t i = 0; i < burst; ++i) object.write(Value::of(++written));
             };
-            Preemption::here().run(at, intruder, [&] { fresh = object.read(value, generation); });
+            const std::size_t made =
+                Preemption::here().run(at, intruder, [&] { fresh = object.read(value, generation); });
+            if (burst == 0) accesses = made;
             ASSERT_TRUE(fresh) << "one burst costs one attempt; access " << at << ", burst " << burst;
             ASSERT_TRUE(value.whole()) << "access " << at << ", burst " << burst;
             ASSERT_EQ(value.number(), generation);
             ASSERT_GE(generation, 5u);
         }
     }
+    EXPECT_GE(accesses, 5u) << "index, some of the value, number";
 }
 
 TEST(DataObject, lets_a_reader_finish_in_its_first_attempt_while_fewer_than_slots_values_are_written) {
@@ -166,23 +181,24 @@ TEST(DataObject, lets_readers_run_at_any_point_of_a_write) {
 
 // Every order in which two cores may make their accesses, sampled: both sides may stand in the middle of a
 // copy.
-TEST(DataObject, never_tears_and_never_goes_backwards_under_random_interleavings) {
+TYPED_TEST(InterruptedDataObject, never_tears_and_never_goes_backwards_under_random_interleavings) {
+    using Value = typename TypeParam::Value;
     Random random{stress_seed()};
     Interleaving interleaving;
     for (int round = 0; round < 400; ++round) {
-        DataObject<Sealed<24>, 2, 2, Preemptible> object;
+        typename TypeParam::template Object<2, 2> object;
         const std::uint64_t seed = random.next();
         bool whole = true;
         bool forwards = true;
         interleaving.run(
             seed,
             [&] {
-                for (std::uint64_t number = 1; number <= 20; ++number) object.write(Sealed<24>::of(number));
+                for (std::uint64_t number = 1; number <= 20; ++number) object.write(Value::of(number));
             },
             [&] {
                 std::uint64_t generation = 0;
                 for (int i = 0; i < 15; ++i) {
-                    Sealed<24> value;
+                    Value value;
                     const std::uint64_t before = generation;
                     if (!object.read(value, generation)) continue;
                     whole = whole && value.whole();

@@ -119,4 +119,12 @@ private:
     T value_{};
 };
 
+/// The same for values that go two words at once.
+template <class T> class PreemptiblePair : public Preemptible<T> {
+public:
+    static void before_pair() noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's schedule", Preemption::here().access(); Interleaving::access());
+    }
+};
+
 } // namespace tappet
