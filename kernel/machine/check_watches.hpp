@@ -15,9 +15,6 @@ constexpr Duration limit_of(const ComponentRow& row) noexcept {
 constexpr Sentence check_watched_activity(const MachineView& m, const ComponentRow& row,
                                           std::size_t watched) {
     const ActivityRow& activity = m.activities[watched];
-    if (activity.trigger == Trigger::on_work)
-        return of_component(row.name, " watches activity \"", activity.name,
-                            "\", which runs only when there is work; watch an output that it must write");
     const Duration limit = limit_of(row);
     if (limit <= Duration::zero())
         return of_component(row.name, " watches activity \"", activity.name,
