@@ -160,6 +160,9 @@ TEST_F(LoomBrowser, lets_an_observer_look_and_refuses_clearly_what_is_not_his) {
     EXPECT_THAT(refused.text, HasSubstr("engineer"));
     EXPECT_EQ(value_of("warp.set_point_n"), before);
     EXPECT_EQ(browse({"force", "loom.lamp_run", "false"}, an_operator).code, 1);
+    const Outcome raw = browse({"call", "io.brake.clear"}, an_operator);
+    EXPECT_EQ(raw.code, 1) << "a line of the machine's is no operator's";
+    EXPECT_THAT(raw.text, HasSubstr("needs the role of an engineer, you are an operator"));
     EXPECT_THAT(browse({"info"}, an_operator).text, HasSubstr("you are its operator"));
 }
 
