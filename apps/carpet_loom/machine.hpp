@@ -150,10 +150,10 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("loom.allow_weft",      tell("weft.allow")),
         when("loom.inhibit_weft",    tell("weft.inhibit")),
         when("loom.inhibit_weft",    tell("io.weft_release.clear")), // also when the shaft's activity hangs
-        when("logic_dog.silent",     tell("io.brake.set")),          // the states of the whole cannot say it any more
-        when("logic_dog.silent",     tell("io.weft_release.clear")),
-        when("logic_dog.silent",     tell("main.quick_stop")),
-        when("logic_dog.silent",     tell("warp.hold"))),
+        when("logic_dog.lost",       tell("io.brake.set")),          // the states of the whole cannot say it any more
+        when("logic_dog.lost",       tell("io.weft_release.clear")),
+        when("logic_dog.lost",       tell("main.quick_stop")),
+        when("logic_dog.lost",       tell("warp.hold"))),
     behaviours(
         behaviour("loom", loom_cycle),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),

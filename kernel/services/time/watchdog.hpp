@@ -19,6 +19,7 @@ struct Watchdog {
 
     Output<bool> alive;
     Event<Duration> silent; ///< once in each silence, with how long it has lasted
+    Event<> lost;           ///< the same, for operations that take nothing
     Event<Duration> revived;
     Property<Duration> limit{100ms};
 
@@ -45,6 +46,7 @@ struct Watchdog {
         } else if (!lives && !silent_ && cycle.now - last_life_ >= limit.get()) {
             silent_ = true;
             silent(silence);
+            lost();
         }
         alive.write(!silent_);
     }
@@ -54,6 +56,7 @@ struct Watchdog {
         return facets(
             output<&Watchdog::alive>("alive", "", "what it watches has shown life within the limit"),
             event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
+            event<&Watchdog::lost>("lost", "no life for longer than the limit"),
             event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),
             property<&Watchdog::limit>("limit", "s", "the longest time without life", range(0, 3600)));
     }
