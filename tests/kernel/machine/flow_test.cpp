@@ -322,21 +322,24 @@ inline constexpr auto guarded = machine("guarded",
                        : data("source.value", "near.value", stale_after(20ms), stop_machine)),
     reactions(), behaviours());
 
-/// The same into an activity that nothing but the value's age could wake.
+/// The same into an activity that nothing but the value's age could wake: what else would, never comes.
 inline constexpr auto guarded_asleep = machine("guarded_asleep",
-    components(component<Source<double>>("source"), component<Sink<double>>("far")),
-    activities(activity("motion", every(1ms), runs("source"), budget(10us)),
+    components(component<Source<double>>("source"), component<Source<double>>("mute"), component<Sink<double>>("far")),
+    activities(activity("motion", every(1ms), runs("source", "mute"), budget(10us)),
                activity("logic",  on_work(), at_most(1, 1ms), runs("far"), deadline(1ms), budget(10us))),
-    connections(data("source.value", "far.value", stale_after(20ms), stop_machine)),
+    connections(data("source.value", "far.value", stale_after(20ms), stop_machine),
+                buffer<4>("mute.all", "far.all", wakes)),
     reactions(), behaviours());
 
 inline constexpr auto told_when_stale = machine("told_when_stale",
-    components(component<Source<double>>("source"), component<Sink<double>>("told"), component<Sink<double>>("untold")),
-    activities(activity("motion", every(1ms), runs("source"), budget(10us)),
+    components(component<Source<double>>("source"), component<Source<double>>("mute"),
+               component<Sink<double>>("told"), component<Sink<double>>("untold")),
+    activities(activity("motion", every(1ms), runs("source", "mute"), budget(10us)),
                activity("told",   on_work(), at_most(1, 1ms), runs("told"),   deadline(1ms), budget(10us)),
                activity("untold", on_work(), at_most(1, 1ms), runs("untold"), deadline(1ms), budget(10us))),
     connections(data("source.value", "told.value",   stale_after(20ms), hold, wakes),
-                data("source.value", "untold.value", stale_after(20ms), hold)),
+                data("source.value", "untold.value", stale_after(20ms), hold),
+                buffer<4>("mute.all", "untold.all", wakes)),
     reactions(), behaviours());
 
 inline constexpr auto woken = machine("woken",
