@@ -18,7 +18,8 @@ struct Loom {
     Input<bool> main_enabled, main_at_speed, main_fault, main_slips;
     Input<double> main_velocity;
     Input<bool> let_off_enabled, let_off_fault, tension_in_band;
-    Input<bool> shaft_valid, shaft_standing;
+    Input<bool> shaft_valid, shaft_standing, weft_working;
+    Input<bool> motion_alive, shaft_alive, io_alive;
     Input<bool> bus_faulted, io_faulted, nodes_operational;
     Input<bool> drop_wire, emergency_stop;
     Input<double> oil_pressure;
@@ -44,7 +45,7 @@ struct Loom {
     [[nodiscard]] bool at_speed() noexcept TAPPET_REALTIME { return main_at_speed.get(); }
     /// The brake may be released: it does not hold a shaft that turns, and nothing sets it again at once.
     [[nodiscard]] bool may_prepare() noexcept TAPPET_REALTIME {
-        return !emergency_stop.get() && !bus_faulted.get() && !io_faulted.get() && stands();
+        return !emergency_stop.get() && before_acknowledgement() == WaitsFor::acknowledgement;
     }
     [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get() && may_prepare(); }
     [[nodiscard]] bool emergency_is_pressed() noexcept TAPPET_REALTIME { return emergency_stop.get(); }
@@ -81,7 +82,7 @@ struct Loom {
     void enter_preparing() noexcept TAPPET_REALTIME {
         tell(LoomState::preparing, false, false, false);
         set_cause(StopCause::none);
-        had_ = 0;
+        had_ = there();
         pump.write(1.0);
         release_brake.emit();
         enable_drives.emit();
@@ -109,10 +110,10 @@ struct Loom {
         make_safe(LoomState::fault);
     }
     void enter_safe() noexcept TAPPET_REALTIME {
+        disable_drives.emit(); // the quick stop that follows is what a shaft that turns is given
         make_safe(LoomState::safe);
         lamp_fault.write(false);
         pump.write(0.0);
-        disable_drives.emit();
     }
     void because_weft() noexcept TAPPET_REALTIME { set_cause(StopCause::weft); }
     void because_warp() noexcept TAPPET_REALTIME { set_cause(StopCause::warp); }
@@ -144,6 +145,10 @@ struct Loom {
             input<&Loom::tension_in_band>("tension_in_band", "", "the warp has its tension"),
             input<&Loom::shaft_valid>("shaft_valid", "", "the encoder can be relied on"),
             input<&Loom::shaft_standing>("shaft_standing", "", "the shaft stands"),
+            input<&Loom::weft_working>("weft_working", "", "wefts can be released and are judged"),
+            input<&Loom::motion_alive>("motion_alive", "", "the activity that leads the drives shows life"),
+            input<&Loom::shaft_alive>("shaft_alive", "", "the activity of the shaft shows life"),
+            input<&Loom::io_alive>("io_alive", "", "the activity of the lines shows life"),
             input<&Loom::bus_faulted>("bus_faulted", "", "the CAN bus cannot be relied on"),
             input<&Loom::io_faulted>("io_faulted", "", "the lines cannot be relied on"),
             input<&Loom::nodes_operational>("nodes_operational", "", "every CAN node works"),
@@ -183,14 +188,35 @@ private:
     }
     [[nodiscard]] WaitsFor first_missing() noexcept TAPPET_REALTIME {
         if (emergency_stop.get()) return WaitsFor::emergency_stop;
-        if (state.last() == LoomState::locked) return WaitsFor::acknowledgement;
+        switch (state.last()) {
+        case LoomState::stopped:
+            if (drop_wire.get()) return WaitsFor::drop_wire;
+            [[fallthrough]];
+        case LoomState::locked:
+        case LoomState::emergency:
+        case LoomState::fault: return before_acknowledgement();
+        default: break;
+        }
         if (!nodes_operational.get()) return WaitsFor::can_nodes;
-        if (!shaft_valid.get()) return WaitsFor::encoder;
+        if (!shaft_is_known()) return WaitsFor::encoder;
+        if (!weft_working.get()) return WaitsFor::machine_part;
         if (!main_enabled.get()) return WaitsFor::main_drive;
         if (!let_off_enabled.get()) return WaitsFor::let_off_drive;
         if (!oil_good()) return WaitsFor::oil_pressure;
         if (!tension_in_band.get()) return WaitsFor::warp_tension;
         return drop_wire.get() ? WaitsFor::drop_wire : WaitsFor::nothing;
+    }
+    /// What an acknowledgement would be refused for; the acknowledgement itself when there is nothing.
+    [[nodiscard]] WaitsFor before_acknowledgement() noexcept TAPPET_REALTIME {
+        if (bus_faulted.get()) return WaitsFor::bus;
+        if (io_faulted.get()) return WaitsFor::lines;
+        if (!motion_alive.get() || !io_alive.get()) return WaitsFor::machine_part;
+        if (stands()) return WaitsFor::acknowledgement;
+        const bool heard = shaft_valid.get() || main_velocity.flow() != Flow::stale;
+        return heard ? WaitsFor::shaft_to_stand : WaitsFor::encoder;
+    }
+    [[nodiscard]] bool shaft_is_known() noexcept TAPPET_REALTIME {
+        return shaft_valid.get() && shaft_alive.get();
     }
     /// By the encoder, which a drive that says it turns puts in the wrong; without one by the drive alone.
     [[nodiscard]] bool stands() noexcept TAPPET_REALTIME {
@@ -204,8 +230,9 @@ private:
     /// One bit for each that the loom is prepared with.
     [[nodiscard]] std::uint32_t there() noexcept TAPPET_REALTIME {
         std::uint32_t bits = nodes_operational.get() ? 1u : 0u;
-        bits |= shaft_valid.get() ? 2u : 0u;
+        bits |= shaft_is_known() ? 2u : 0u;
         bits |= main_enabled.get() ? 4u : 0u;
+        bits |= weft_working.get() ? 16u : 0u;
         return bits | (let_off_enabled.get() ? 8u : 0u);
     }
     void set_cause(StopCause why) noexcept TAPPET_REALTIME {

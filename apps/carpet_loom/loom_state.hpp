@@ -35,7 +35,11 @@ enum class WaitsFor : std::int64_t {
     oil_pressure,
     warp_tension,
     drop_wire,
-    acknowledgement
+    acknowledgement,
+    bus,
+    lines,
+    machine_part,
+    shaft_to_stand
 };
 
 } // namespace tappet::carpet
@@ -49,6 +53,7 @@ inline constexpr auto tappet::names_of<tappet::carpet::StopCause> =
     std::array<std::string_view, 6>{"none", "weft", "warp", "operator", "emergency", "fault"};
 template <>
 inline constexpr auto tappet::names_of<tappet::carpet::WaitsFor> =
-    std::array<std::string_view, 10>{"nothing",    "emergency-stop", "can-nodes",    "encoder",
-                                     "main-drive", "let-off-drive",  "oil-pressure", "warp-tension",
-                                     "drop-wire",  "acknowledgement"};
+    std::array<std::string_view, 14>{"nothing",      "emergency-stop",  "can-nodes",    "encoder",
+                                     "main-drive",   "let-off-drive",   "oil-pressure", "warp-tension",
+                                     "drop-wire",    "acknowledgement", "bus",          "lines",
+                                     "machine-part", "shaft-to-stand"};

@@ -33,7 +33,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<Loom>("loom"),                             // the states of the whole
         component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times
         component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
-        component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // barks when that activity hangs
+        component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // once that activity hangs
         component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
         component<Watchdog>("io_dog", watches("io"), set("limit", 20ms)), // silent: woken, and it does not come
         component<Watchdog>("logic_dog", watches("logic"), set("limit", 20ms)),
@@ -87,6 +87,10 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("warp.in_band",              "loom.tension_in_band", wakes),
         data("shaft.valid",               "loom.shaft_valid",     wakes),
         data("shaft.standing",            "loom.shaft_standing",  wakes),
+        data("weft.working",              "loom.weft_working",    wakes),
+        data("motion_dog.alive",          "loom.motion_alive",    wakes),
+        data("shaft_dog.alive",           "loom.shaft_alive",     wakes),
+        data("io_dog.alive",              "loom.io_alive",        wakes),
         data("can.faulted",               "loom.bus_faulted",     wakes),
         data("can.faulted",               "keeper.faulted"),
         data("io.faulted",                "loom.io_faulted",      wakes),

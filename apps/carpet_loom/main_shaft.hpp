@@ -180,7 +180,7 @@ private:
 
     /// False: the brake was set by somebody else. A stop that has begun keeps its angle.
     bool want_stop(double at_deg) noexcept TAPPET_REALTIME {
-        if (phase_ == Phase::foreign) return false;
+        if (phase_ == Phase::foreign || !valid.last()) return false;
         if (phase_ != Phase::free) return true;
         phase_ = Phase::wanted;
         wanted_deg_ = at_deg;
@@ -202,6 +202,8 @@ private:
         else
             lose();
         if (!is_valid) return;
+        // What the stand closes is closed, and judged, before it is told: a weft that is missed by it counts.
+        if (estimator_.standing() && schedule_.next_due() <= now) fire_cams({.now = now});
         if (phase_ == Phase::wanted) plan_brake(now, state);
         if (phase_ == Phase::braking && estimator_.standing()) finish_stop(state);
         if (phase_ == Phase::foreign && estimator_.standing()) {

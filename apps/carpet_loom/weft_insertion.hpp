@@ -23,6 +23,7 @@ struct WeftInsertion {
     Output<double> arrival_deg;
     BufferOutput<Arrival> arrivals;
     Output<bool> cutter;
+    Output<bool> working;
     Event<> open_valve, close_valve, missed;
     EventHandle detector;
 
@@ -91,8 +92,10 @@ struct WeftInsertion {
         pattern.write(patterns[0]);
         picks_woven.write(0);
         cutter.write(false);
+        working.write(true);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        working.write(false);
         if (allowed_) missed.emit(); // a loom that turns on without us weaves nothing
         inhibit();
         on_rest();
@@ -109,6 +112,7 @@ struct WeftInsertion {
             output<&WeftInsertion::arrival_deg>("arrival_deg", "deg", "of the last weft"),
             output<&WeftInsertion::arrivals>("arrivals", "", "every weft that arrived, with its angle"),
             output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
+            output<&WeftInsertion::working>("working", "", "wefts can be released and are judged"),
             event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
             event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
             event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive", heard_by(1)),

@@ -28,8 +28,10 @@ constinit std::atomic<ContractHandler> installed{nullptr};
 static_assert(std::atomic<ContractHandler>::is_always_lock_free,
               "contracts are broken on real-time paths too");
 
-// A handler that itself breaks a contract cannot be trusted with a second one.
-constinit thread_local bool inside_handler = false;
+// A handler that itself breaks a contract cannot be trusted with a second one, but for one after which it
+// goes on: the way to the safe state may allocate.
+constinit thread_local int inside_handler = 0;
+constexpr int most_inside = 4;
 
 // Addresses are read by tools that want hexadecimal.
 void add_address(Sentence& text, std::uint64_t address) noexcept {
@@ -81,15 +83,15 @@ ContractHandler install_contract_handler(ContractHandler handler) noexcept TAPPE
 
 void break_contract(const Breach& breach) noexcept TAPPET_REALTIME {
     const ContractHandler handler = installed.load(std::memory_order_acquire);
-    bool nested = false;
+    const ContractText* row = find_text(breach.id);
+    const bool goes_on = row != nullptr && row->after == AfterBreach::thread_goes_on;
+    int depth = 0;
     TAPPET_ESCAPE("constant-initialised and in the program's own block of thread storage: never allocated",
-                  nested = inside_handler;
-                  inside_handler = true);
-    if (handler != nullptr && !nested) {
+                  depth = ++inside_handler);
+    if (handler != nullptr && depth <= (goes_on ? most_inside : 1)) {
         handler(breach);
-        const ContractText* row = find_text(breach.id);
-        if (row != nullptr && row->after == AfterBreach::thread_goes_on) {
-            TAPPET_ESCAPE("constant-initialised thread storage, as at the entry", inside_handler = false);
+        if (goes_on) {
+            TAPPET_ESCAPE("constant-initialised thread storage, as at the entry", --inside_handler);
             return;
         }
     }

@@ -15,7 +15,8 @@ struct LifeSign {
     /// False while it was stopped on purpose: its silence means nothing.
     bool (*expected)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
     /// True while it rests and nobody has woken it: an activity without a period may be silent for hours.
-    /// Null: it never rests.
+    /// That its device is ready or a time is due while it gets no processor is not seen. Null: it never
+    /// rests.
     bool (*rests)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
 };
 

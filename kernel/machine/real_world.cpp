@@ -8,6 +8,8 @@
 #include "kernel/os/sleep.hpp"
 #include "kernel/os/terminal.hpp"
 
+#include <cstdlib>
+
 namespace tappet {
 
 namespace {
@@ -57,7 +59,9 @@ void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
     TAPPET_ESCAPE("thread-local memory of the main program", is_supervisor = supervises);
     if (!is_supervisor) Activity::sleep_for_ever(); // the supervisor stops the machine
     // Nobody else would stop the machine: it is done here, and the process ends when it stands.
-    TAPPET_ESCAPE("the supervisor's thread is not real-time", static_cast<void>(world->stop()));
+    // It says why without waiting for who reads it.
+    TAPPET_ESCAPE("the supervisor's thread is not real-time", static_cast<void>(world->stop());
+                  static_cast<void>(os::write_all(2, describe(breach).add("\n").view())); std::abort());
 }
 
 void RealWorld::keep(const Breach& breach) noexcept TAPPET_REALTIME {
@@ -75,11 +79,7 @@ Sentence RealWorld::describe_breach(std::size_t index) const noexcept {
 
 bool RealWorld::arm(os::ArmingReport& report, int file) {
     const auto& machine = instance_.machine();
-    if (!os::never_wait())
-        report.warning(
-            "terminal", Sentence{"standard output or standard error cannot be opened anew"},
-            Sentence{"nothing is written there: give the machine a pipe, a file or a terminal that is "
-                     "its user's"});
+    os::never_wait();
     os::touch(machine.memory); // before there are threads: their stacks are part of it
     const auto engines = instance_.engines();
     int highest = 1;
@@ -155,16 +155,23 @@ int RealWorld::stop() {
     };
     int hung = 0;
     const Time grace = os::Clock::monotonic() + grace_ms * 1ms;
-    Bounded<std::size_t, checks::max_activities> late;
+    Bounded<std::size_t, checks::max_activities> asked;
     for (std::size_t a = instance_.engines().size(); a-- > 0;) {
-        if (!instance_.engines()[a].plan().real_time && instance_.engines()[a].is_active()) {
-            activities_[a].ask_to_stop();
-            const Duration left = std::max(grace - os::Clock::monotonic(), Duration::zero());
-            if (!activities_[a].is_stopped_within(static_cast<int>(left / 1ms)) && late.push(a)) continue;
+        const Engine& engine = instance_.engines()[a];
+        if (engine.plan().real_time || !engine.is_active() || !asked.push(a)) {
+            hung += stop_now(a);
+            continue;
         }
-        hung += stop_now(a);
+        activities_[a].ask_to_stop();
+        const Duration left = std::max(grace - os::Clock::monotonic(), Duration::zero());
+        static_cast<void>(activities_[a].is_stopped_within(static_cast<int>(left / 1ms)));
     }
-    for (const std::size_t a : late) hung += stop_now(a);
+    // What they do on this thread at their end may block, too: the others stand by now.
+    for (const std::size_t a : asked)
+        if (activities_[a].is_stopped_within(patience_ms))
+            instance_.engines()[a].finalise();
+        else
+            hung += stop_now(a);
     for (std::size_t a = instance_.engines().size(); a-- > 0;)
         if (!activities_[a].end(patience_ms)) activities_[a].abandon();
     os::heap::release();

@@ -3,8 +3,10 @@
 
 #include "kernel/base/text.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <mutex>
@@ -26,11 +28,11 @@ public:
 
     // A pipe or a terminal is opened anew, so that it can be asked not to wait: O_NONBLOCK on the file as it
     // was given would hold for everybody who shares it, the shell included, and outlive a process that is
-    // killed. A socket cannot be opened anew, but is asked in each call. A device that may be open once only
-    // (a port of a virtual machine) is asked before each: another writer to it could take the room in
-    // between, if it had one. A regular file does not wait for a reader, and opened anew it would be written
-    // at another place.
-    bool never_wait() noexcept {
+    // killed. A socket cannot be opened anew, but is asked in each call. What this process may not open (the
+    // terminal of another user, a device that is open once only) is asked before each piece for which room is
+    // known to be there: only another writer to it could take that in between. A regular file does not wait
+    // for a reader, and opened anew it would be written at another place.
+    void never_wait() noexcept {
         const std::lock_guard lock{mutex_};
         if (own_ >= 0) ::close(own_);
         own_ = -1;
@@ -38,20 +40,18 @@ public:
         untold_ = 0;
         struct stat facts{};
         if (fstat(file_, &facts) != 0) {
-            how_ = How::not_at_all; // it was closed before the start: nobody wants to read
-            return true;
-        }
-        if (S_ISREG(facts.st_mode)) {
+            how_ = How::not_at_all;
+        } else if (S_ISREG(facts.st_mode)) {
             how_ = How::as_given;
         } else if (S_ISSOCK(facts.st_mode)) {
             how_ = How::as_socket;
         } else {
             const Sentence path{"/proc/self/fd/", file_};
             own_ = open(path.letters, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-            how_ = own_ >= 0 ? How::opened_anew : errno == EBUSY ? How::asked_first : How::not_at_all;
-            return how_ != How::not_at_all || errno == ENXIO; // a pipe whose reader is gone already
+            // ENXIO: a pipe whose reader is gone already.
+            how_ = own_ >= 0 ? How::opened_anew : errno == ENXIO ? How::not_at_all : How::asked_first;
+            piece_ = isatty(file_) != 0 ? 1 : PIPE_BUF;
         }
-        return true;
     }
     [[nodiscard]] bool waits() const noexcept { return how_ == How::waiting; }
 
@@ -74,10 +74,14 @@ private:
             case How::as_given: written = write(file_, text.data(), text.size()); break;
             case How::opened_anew: written = write(own_, text.data(), text.size()); break;
             case How::asked_first: {
-                pollfd room{file_, POLLOUT, 0};
-                if (poll(&room, 1, 0) != 1 || room.revents != POLLOUT) return 0;
-                written = write(file_, text.data(), text.size());
-                break;
+                std::size_t all = 0;
+                for (pollfd room{file_, POLLOUT, 0};
+                     all < text.size() && poll(&room, 1, 0) == 1 && room.revents == POLLOUT;) {
+                    written = write(file_, text.data() + all, std::min(piece_, text.size() - all));
+                    if (written <= 0) break;
+                    all += static_cast<std::size_t>(written);
+                }
+                return all;
             }
             case How::as_socket:
                 written = send(file_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -118,20 +122,25 @@ private:
     int file_;
     int own_ = -1;
     How how_ = How::waiting;
+    std::size_t piece_ = 1;
     std::uint64_t untold_ = 0;
     std::size_t rest_length_ = 0;
     char rest_[4096] = {};
 };
 
 constinit std::atomic<std::uint64_t> Outlet::dropped{0};
+// A machine that is started without them opens a bus or a valve in their place, and would print to it.
+[[gnu::constructor]] void occupy_standard_files() noexcept {
+    for (int file = STDIN_FILENO; file <= STDERR_FILENO; ++file)
+        if (fcntl(file, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDWR));
+}
+
 constinit Outlet outlets[] = {Outlet{STDOUT_FILENO}, Outlet{STDERR_FILENO}};
 
 } // namespace
 
-bool never_wait() noexcept {
-    bool all = true;
-    for (Outlet& each : outlets) all &= each.never_wait();
-    return all;
+void never_wait() noexcept {
+    for (Outlet& each : outlets) each.never_wait();
 }
 
 std::uint64_t dropped_texts() noexcept { return Outlet::dropped.load(std::memory_order_relaxed); }

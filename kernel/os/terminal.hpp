@@ -15,10 +15,9 @@ bool write_all(int file, std::string_view text) noexcept;
 
 /// For a machine that may move: a text for standard output or standard error is written whole, or dropped and
 /// counted when its reader is slow, stopped (Ctrl-S) or gone. Once there is room again, a line says how many
-/// were dropped. For the rest of the process; it may be called again, when these files were replaced. False:
-/// one of them is neither a file, a pipe, a terminal nor a socket that this process may open; all texts for it
-/// are dropped. A regular file is trusted not to wait. Not real-time.
-bool never_wait() noexcept;
+/// were dropped; of a text beyond 4096 bytes the end may be. For the rest of the process; it may be called
+/// again, when these files were replaced. A regular file is trusted not to wait. Not real-time.
+void never_wait() noexcept;
 /// Texts dropped since never_wait(). Any thread.
 [[nodiscard]] std::uint64_t dropped_texts() noexcept;
 

@@ -16,7 +16,10 @@ bool is_forced(const Errand& errand) noexcept TAPPET_REALTIME {
     return *errand.facet->port->places(errand.place, is_input(*errand.facet)).forced;
 }
 
+// What a component left behind when it stopped is its safe value: nothing is laid over that.
 void force_port(Errand& errand) noexcept TAPPET_REALTIME {
+    errand.refused = errand.component_state->load(std::memory_order_acquire) >= ComponentState::stopping;
+    if (errand.refused) return;
     // The count is for observers: nobody decides by it, so its sum is not used here.
     if (!is_forced(errand)) errand.machine->observed().forced.fetch_add(1, std::memory_order_relaxed);
     errand.facet->port->force(errand.place, is_input(*errand.facet), errand.value.data());
@@ -74,6 +77,11 @@ BrowserService::Verdict BrowserService::run_errand(Client& client, const Request
                                                    End end) {
     const AcceptedMachine& machine = machine_->machine();
     if (Verdict alive = check_alive(end.component); !alive.good()) return alive;
+    errand.refused = false;
+    errand.component_state = &machine_->engines()[machine.index.activity[end.component]]
+                                  .plan()
+                                  .parts[machine.plan.part_of[end.component]]
+                                  .state;
     errand.facet = &facet_at(machine.table, end);
     errand.place =
         errand.facet->port != nullptr ? machine_->place_of(end) : machine_->component(end.component);
@@ -134,7 +142,7 @@ bool BrowserService::release_behind(const LifeRequest& stopped) {
         errand->facet = &facet_at(machine.table, link.to);
         errand->place = machine_->place_of(link.to);
         errand->act = &release_port;
-        errand->asker = {};
+        errand->asker = {.since = now_};
         errand->given_up = true; // nobody waits for its answer
         if (!errand->post(activity, machine.plan.part_of[link.to.component])) return false;
         errand->taken = true;
@@ -203,6 +211,12 @@ void BrowserService::follow_errands() {
             each.taken = false;
             Client* client = each.given_up ? nullptr : door_.find(each.asker.client);
             if (client == nullptr || finish_behave(each)) continue;
+            if (each.refused) {
+                reply_bad(
+                    each.asker, Refusal::not_now,
+                    Sentence{"its component is stopped, and what it left behind is safe; start it first"});
+                continue;
+            }
             Reply reply{each.asker.number, true};
             if (each.act == &run_method && each.facet->method->result_bytes != 0) {
                 alignas(16) std::array<std::byte, Errand::max_value_bytes> result{};
@@ -212,7 +226,7 @@ void BrowserService::follow_errands() {
                 reply.value(*each.facet->method->result, result.data());
             }
             finish(*client, reply);
-        } else if (!each.given_up && now_ - each.asker.since > patience && each.withdraw()) {
+        } else if (now_ - each.asker.since > patience && each.withdraw() && !each.given_up) {
             each.given_up = true;
             reply_bad(each.asker, Refusal::not_now,
                       Sentence{"its engine did not come to it; nothing was done: look at its activity"});

@@ -17,7 +17,7 @@ namespace tappet {
 struct Watchdog {
     static constexpr bool watches_life = true;
 
-    Output<bool> alive;
+    Output<bool> alive;     ///< written on change
     Event<Duration> silent; ///< once in each silence, with how long it has lasted
     Event<> lost;           ///< the same, for operations that take nothing
     Event<Duration> revived;
@@ -48,13 +48,14 @@ struct Watchdog {
             silent(silence);
             lost();
         }
-        alive.write(!silent_);
+        if (alive.last() == silent_) alive.write(!silent_);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { alive.write(false); }
 
     static constexpr auto interface() {
         return facets(
-            output<&Watchdog::alive>("alive", "", "what it watches has shown life within the limit"),
+            output<&Watchdog::alive>("alive", "",
+                                     "what it watches has shown life within the limit; written on change"),
             event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
             event<&Watchdog::lost>("lost", "no life for longer than the limit"),
             event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),

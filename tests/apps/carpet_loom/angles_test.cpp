@@ -48,6 +48,17 @@ TEST_P(Angles, the_valve_closes_when_the_shaft_stops_inside_its_window) {
     EXPECT_FALSE(rig.output(wires::line::weft_release));
 }
 
+TEST_P(Angles, a_weft_that_is_missed_by_a_stop_inside_its_window_is_told) {
+    ByHand rig{GetParam()};
+    ASSERT_TRUE(rig.weave_by_hand());
+    rig.plant().inject({.fault = Fault::weft_break});
+    rig.stop_at(235.0);
+    ASSERT_TRUE(rig.stands());
+    rig.run_for(1s);
+    EXPECT_EQ(rig.state(), "stopped") << rig.reason();
+    EXPECT_EQ(rig.cause(), StopCause::weft);
+}
+
 TEST_P(Angles, the_cutter_is_off_when_the_shaft_stands) {
     for (const double deg : {260.0, 310.0}) { // behind the weft's arrival and before the beat-up
         ByHand rig{GetParam()};

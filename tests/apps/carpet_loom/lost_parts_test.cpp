@@ -156,6 +156,36 @@ TEST(LostParts, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
 }
 
+TEST(LostParts, a_loom_without_a_brake_is_stopped_by_its_drive_though_the_machine_ends) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    rig.wires().lines().set_removed(true);
+    ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
+    rig.change("activity:logic", LifeChange::stop); // as the first of an orderly stop
+    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "it does not coast";
+}
+
+TEST(LostParts, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_it_from_its_start) {
+    Parts rig;
+    ASSERT_TRUE(rig.prepare());
+    MachineInstance& instance = rig.run().instance();
+    instance.engines()[find_activity(instance.machine().table, "shaft")].mark_failed();
+    rig.run_for(50ms);
+    rig.press(Button::start);
+    rig.run_for(1s);
+    EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
+    EXPECT_EQ(rig.state(), "fault") << rig.reason();
+}
+
+TEST(LostParts, without_the_part_that_judges_the_wefts_the_loom_does_not_start) {
+    Parts rig;
+    ASSERT_TRUE(rig.prepare());
+    rig.change("component:weft", LifeChange::stop);
+    rig.press(Button::start);
+    rig.run_for(1s);
+    EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
+}
+
 TEST(LostParts, a_drive_that_pulls_against_a_brake_is_stopped) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());

@@ -57,7 +57,24 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::time_went_backwards), 301);
     EXPECT_EQ(static_cast<int>(Contract::step_limit_exceeded), 401);
     EXPECT_EQ(static_cast<int>(Contract::state_unknown), 402);
-    EXPECT_EQ(contract_texts.size(), 19u) << "a new contract gets its line here";
+    EXPECT_EQ(contract_texts.size(), 20u) << "a new contract gets its line here";
+}
+
+/// As the way to the safe state may: it allocates, which is a breach of its own.
+void allocates(const Breach& breach) noexcept TAPPET_REALTIME {
+    remember(breach);
+    if (breach.id == Contract::precondition) TAPPET_CONTRACT(false, Contract::allocation_after_seal, 1, 2);
+    if (breach.id == Contract::precondition)
+        TAPPET_ESCAPE("what the handler does at its end", std::_Exit(calls));
+}
+
+TEST(ContractDeathTest, that_goes_on_is_heard_also_inside_the_handler_of_another) {
+    EXPECT_EXIT(
+        {
+            const Handler handler{allocates};
+            TAPPET_CONTRACT(false, Contract::precondition, 7);
+        },
+        testing::ExitedWithCode(2), "");
 }
 
 TEST(Contract, holds_in_a_constant_expression_or_does_not_compile) {

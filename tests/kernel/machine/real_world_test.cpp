@@ -173,6 +173,7 @@ TEST_F(InRealTime, what_is_not_real_time_and_blocks_does_not_hold_up_the_stop_of
     console.until_safe = &rig.worker("logic").at_wire;
     while (!console.blocks) os::sleep_for(1ms);
     EXPECT_EQ(rig.world->stop(), 0) << "waited for, it would have hung until it was given up";
+    EXPECT_TRUE(console.finalised);
 }
 
 TEST_F(InRealTime, asks_the_processor_time_and_not_the_clock_whether_a_budget_is_kept) {

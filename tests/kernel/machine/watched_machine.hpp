@@ -72,6 +72,8 @@ struct Worker {
 struct Blocking {
     const std::atomic<std::int64_t>* until_safe = nullptr;
     std::atomic<bool> blocks{false};
+    bool finalised = false;
+    void finalise() { finalised = true; }
     void work(const Cycle&) {
         if (until_safe == nullptr) return;
         blocks.store(true);
