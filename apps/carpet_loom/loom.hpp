@@ -168,11 +168,11 @@ struct Loom {
             event<&Loom::disable_drives>("disable_drives", "drives off"),
             event<&Loom::run_shaft>("run_shaft", "turn at weaving speed"),
             sends<&Loom::stop_shaft>("stop_shaft", "come to stand at the stop angle"),
-            event<&Loom::quick_stop>("quick_stop", "come to stand at once", heard_by(3)),
+            event<&Loom::quick_stop>("quick_stop", "come to stand at once", heard_by(4)),
             event<&Loom::set_brake>("set_brake", "brake on", heard_by(1)),
             event<&Loom::release_brake>("release_brake", "brake off"),
             event<&Loom::allow_weft>("allow_weft", "wefts may be released"),
-            event<&Loom::inhibit_weft>("inhibit_weft", "no weft, valve closed"),
+            event<&Loom::inhibit_weft>("inhibit_weft", "no weft, valve closed", heard_by(2)),
             property<&Loom::least_oil_bar>("least_oil_bar", "bar", "below it the loom does not run", range(0, 10)),
             property<&Loom::colour>("colour", "", "yarn of the feeder", range(0, 7)));
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "apps/carpet_loom/console.hpp"
+#include "apps/carpet_loom/last_resort.hpp"
 #include "apps/carpet_loom/loom.hpp"
 #include "apps/carpet_loom/loom_cycle.hpp"
 #include "apps/carpet_loom/main_drive.hpp"
@@ -37,6 +38,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
         component<Watchdog>("io_dog", watches("io"), set("limit", 20ms)), // silent: woken, and it does not come
         component<Watchdog>("logic_dog", watches("logic"), set("limit", 20ms)),
+        component<LastResort>("last_resort"),                // when logic hangs
         component<TimedEvent>("new_shift"),
         component<WeftRecord>("record"),                     // when the wefts arrived in this shift
         component<Console>("console"),
@@ -44,11 +46,11 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<BrowserService>("browser")),               // who looks in from outside: see tappet-browse
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
         activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
-        activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(12us)),
+        activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(16us)),
         activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(600us), budget(20us)),
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
-        activity("watch",   every(5ms),                        runs("motion_dog", "shaft_dog", "io_dog", "logic_dog"), deadline(250us), budget(10us)),
+        activity("watch",   every(5ms),                        runs("motion_dog", "shaft_dog", "io_dog", "logic_dog", "last_resort"), deadline(250us), budget(10us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
         activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
         activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
@@ -154,10 +156,11 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("loom.allow_weft",      tell("weft.allow")),
         when("loom.inhibit_weft",    tell("weft.inhibit")),
         when("loom.inhibit_weft",    tell("io.weft_release.clear")), // also when the shaft's activity hangs
-        when("logic_dog.lost",       tell("io.brake.set")),          // the states of the whole cannot say it any more
-        when("logic_dog.lost",       tell("io.weft_release.clear")),
-        when("logic_dog.lost",       tell("main.quick_stop")),
-        when("logic_dog.lost",       tell("warp.hold"))),
+        when("logic_dog.silent",     call("last_resort.act")),       // the states of the whole cannot say it any more
+        when("last_resort.set_brake",   tell("io.brake.set")),
+        when("last_resort.close_valve", tell("io.weft_release.clear")),
+        when("last_resort.quick_stop",  tell("main.quick_stop")),
+        when("last_resort.quick_stop",  tell("warp.hold"))),
     behaviours(
         behaviour("loom", loom_cycle),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),

@@ -114,7 +114,7 @@ struct WeftInsertion {
             output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
             output<&WeftInsertion::working>("working", "", "wefts can be released and are judged"),
             event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
-            event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close"),
+            event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close", heard_by(1)),
             event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive", heard_by(1)),
             handle<&WeftInsertion::detector>("detector", "of the detector, while a weft is on its way"),
             method<&WeftInsertion::lift>("lift", "the harnesses of the picks to come, one bit each"),

@@ -19,7 +19,6 @@ struct Watchdog {
 
     Output<bool> alive;     ///< written on change
     Event<Duration> silent; ///< once in each silence, with how long it has lasted
-    Event<> lost;           ///< the same, for operations that take nothing
     Event<Duration> revived;
     Property<Duration> limit{100ms};
 
@@ -46,7 +45,6 @@ struct Watchdog {
         } else if (!lives && !silent_ && cycle.now - last_life_ >= limit.get()) {
             silent_ = true;
             silent(silence);
-            lost();
         }
         if (alive.last() == silent_) alive.write(!silent_);
     }
@@ -57,7 +55,6 @@ struct Watchdog {
             output<&Watchdog::alive>("alive", "",
                                      "what it watches has shown life within the limit; written on change"),
             event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
-            event<&Watchdog::lost>("lost", "no life for longer than the limit"),
             event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),
             property<&Watchdog::limit>("limit", "s", "the longest time without life", range(0, 3600)));
     }
