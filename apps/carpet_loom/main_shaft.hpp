@@ -86,6 +86,7 @@ struct MainShaft {
         angle_deg.write(0.0);
         brake_distance_deg.write(first_brake_distance_deg.get());
         stops.write(0);
+        stop_error_deg.write(0.0);
         lose();
     }
     /// Nobody knows the angle any longer.

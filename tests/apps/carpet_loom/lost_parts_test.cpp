@@ -132,6 +132,30 @@ TEST(LostParts, a_shaft_activity_that_hangs_is_told_by_its_watchdog_and_the_valv
     rig.expect_stopped_and_staying_so(1s);
 }
 
+TEST(LostParts, every_component_runs_again_after_it_was_stopped_and_started) {
+    Parts rig;
+    ASSERT_TRUE(rig.prepare());
+    MachineInstance& instance = rig.run().instance();
+    for (std::size_t c = 0; c < instance.machine().table.components.size(); ++c) {
+        const std::string_view name = instance.machine().table.components[c].name;
+        static_cast<void>(instance.ask_component(c, LifeChange::stop));
+        rig.run_for(300ms); // a period of the slowest activity
+        EXPECT_EQ(instance.state_of(c), ComponentState::stopped) << name;
+        const LifeTicket ticket = instance.ask_component(c, LifeChange::start);
+        rig.run_for(300ms);
+        EXPECT_EQ(instance.state_of(c), ComponentState::running)
+            << name << ": "
+            << instance
+                   .describe(instance.machine().index.activity[c], instance.answer_of_component(c, ticket))
+                   .view();
+    }
+    rig.acknowledge();
+    ASSERT_TRUE(rig.run_until_state("ready", 20s)) << rig.state() << ": " << rig.reason();
+    rig.press(Button::start);
+    EXPECT_TRUE(rig.run_until([&] { return rig.state() == "weave" && rig.plant().picks() > 5; }, 5s))
+        << rig.state() << ": " << rig.reason();
+}
+
 TEST(LostParts, lines_that_are_driven_no_longer_are_an_emergency) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
