@@ -107,6 +107,8 @@ struct NeverRun {
 
 namespace detail {
 
+// What a requires-expression lists cannot stand in parentheses.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define TAPPET_X(name, parameters, call, spelling)                                                           \
     template <class T>                                                                                       \
     concept life_##name =                                                                                    \
@@ -170,6 +172,7 @@ constexpr NeverRun first_never_run(std::span<const Facet> facets) {
     }
         TAPPET_OTHERWISE_NAMED_LIFE_FUNCTIONS(TAPPET_X)
 #undef TAPPET_X
+        // NOLINTEND(bugprone-macro-parentheses)
     }
     return {};
 }

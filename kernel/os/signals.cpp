@@ -11,7 +11,8 @@ namespace {
 // nobody can catch and those that tell of a fault in the program: these are no request.
 constexpr int ask_to_end[] = {SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT,   SIGTSTP, SIGUSR1, SIGUSR2,
                               SIGALRM, SIGVTALRM, SIGPROF, SIGSTKFLT, SIGPOLL, SIGPWR,  SIGXCPU};
-// A reader that went away, a terminal that others use, a file that may not grow: the call that meets them says so.
+// A reader that went away, a terminal that others use, a file that may not grow: the call that meets them
+// says so.
 constexpr int told_by_the_call[] = {SIGPIPE, SIGTTIN, SIGTTOU, SIGXFSZ};
 
 void act(int number, void (*handler)(int)) noexcept {

@@ -21,12 +21,13 @@ void* enter(void* context) noexcept {
     return nullptr;
 }
 
-// What asks the process to end is the starter's business: no handler takes time out of this thread's cycles, and
-// no call of it is interrupted. What tells of a fault of its own it gets.
+// What asks the process to end is the starter's business: no handler takes time out of this thread's cycles,
+// and no call of it is interrupted. What tells of a fault of its own it gets.
 int block_signals(pthread_attr_t& attributes) noexcept {
     sigset_t blocked;
     sigfillset(&blocked);
-    for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT, SIGSYS}) sigdelset(&blocked, own);
+    for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT, SIGSYS})
+        sigdelset(&blocked, own);
     return pthread_attr_setsigmask_np(&attributes, &blocked);
 }
 

@@ -15,12 +15,16 @@ VirtualRun::Machine::Machine(os::Clock& clock) : instance{loom_on_host(), clock}
 
 std::expected<void, Sentence> VirtualRun::start() {
     if (auto opened = loom_.open(); !opened) return opened;
-    return start_again();
+    return start_machine();
 }
 
 std::expected<void, Sentence> VirtualRun::start_again() {
     machine_.emplace(clock_);
     seen_steps_ = 0;
+    return start_machine();
+}
+
+std::expected<void, Sentence> VirtualRun::start_machine() {
     MachineInstance& instance = machine_->instance;
     instance.read_properties_from(properties_on_host());
     if (auto configured = instance.configure(loom_.devices()); !configured) return configured;

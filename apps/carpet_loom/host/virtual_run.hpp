@@ -30,6 +30,7 @@ public:
     [[nodiscard]] std::uint64_t event_log_digest();
 
 private:
+    std::expected<void, Sentence> start_machine();
     struct Machine {
         explicit Machine(os::Clock& clock);
         MachineInstance instance;
