@@ -70,14 +70,15 @@ struct Worker {
 /// May block, and does until another component is safe: as a reader of a terminal that stands still would
 /// hold it up.
 struct Blocking {
-    const std::atomic<std::int64_t>* until_safe = nullptr;
+    std::atomic<const std::atomic<std::int64_t>*> until_safe{nullptr};
     std::atomic<bool> blocks{false};
     bool finalised = false;
     void finalise() { finalised = true; }
     void work(const Cycle&) {
-        if (until_safe == nullptr) return;
+        const auto* const wire = until_safe.load();
+        if (wire == nullptr) return;
         blocks.store(true);
-        while (until_safe->load() != 0) os::sleep_for(1ms);
+        while (wire->load() != 0) os::sleep_for(1ms);
     }
     static constexpr auto interface() { return facets(); }
 };
