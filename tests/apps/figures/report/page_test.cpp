@@ -183,7 +183,9 @@ TEST(Merged, a_run_comes_back_from_its_json_as_it_was) {
     const auto again = parse_run(merged(run), "it");
     ASSERT_TRUE(again) << again.error();
     EXPECT_EQ(merged(*again), merged(run));
-    EXPECT_EQ(page(*again, testing::TempDir() + "merged"), page(run, testing::TempDir() + "merged"));
+    const std::string place = testing::TempDir() + "merged";
+    EXPECT_EQ(page(*again, place), page(run, place));
+    std::filesystem::remove_all(place);
     EXPECT_EQ(again->programs[1].failure, "could not be started");
     EXPECT_TRUE(std::isnan(again->programs[0].result.goals[0].measured));
 }
