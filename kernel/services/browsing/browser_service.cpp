@@ -79,17 +79,19 @@ void BrowserService::handle(Client& client, std::string_view packet, bool cut) {
     if (cut)
         verdict.why = Sentence{"a request has at most ", browsing::max_packet_bytes, " bytes; send several"};
     if (verdict.good()) verdict.why = browsing::parse_request(packet, request);
-    if (verdict.good() && client.role < request.verb->role)
-        verdict = {Refusal::denied,
-                   Sentence{"\"", request.verb->name, "\" needs the role of an ", to_text(request.verb->role),
-                            ", you are an ", to_text(client.role),
-                            "; ask for it in the board's list of roles"}};
+    if (verdict.good()) verdict = check_role(client, request.verb->name, request.verb->role);
     if (verdict.good()) verdict = answer(client, request);
     ++(verdict.good() ? accepted_ : refused_);
     note(client, verdict.good() ? "accepted" : "refused", packet, verdict);
     if (verdict.good()) return;
     Reply reply{request.number, verdict.code, verdict.why};
     finish(client, reply);
+}
+
+BrowserService::Verdict BrowserService::check_role(const Client& client, std::string_view what, Role least) {
+    if (client.role >= least) return {};
+    return {Refusal::denied, Sentence{"\"", what, "\" needs the role of an ", to_text(least), ", you are an ",
+                                      to_text(client.role), "; ask for it in the board's list of roles"}};
 }
 
 BrowserService::Verdict BrowserService::answer(Client& client, const Request& request) {

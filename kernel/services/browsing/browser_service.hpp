@@ -124,7 +124,7 @@ private:
     Verdict force(Client& client, const Request& request);
     Verdict release(Client& client, const Request& request);
     Verdict call(Client& client, const Request& request);
-    [[nodiscard]] static Verdict check_role(const Client& client, const Request& request, const Facet& facet);
+    [[nodiscard]] static Verdict check_role(const Client& client, std::string_view what, Role least);
     [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
                                          std::span<std::byte> into);
     Verdict run_errand(Client& client, const Request& request, browsing::Errand& errand, End end);

@@ -26,8 +26,8 @@ struct Errand {
     bool taken = false;    ///< the service's: this place is in use
     bool given_up = false; ///< its client was told that nobody answers
     MachineInstance* machine = nullptr;
-    const AtomicComponentState* component_state = nullptr; ///< of whose port or operation it touches
-    bool refused = false; ///< the engine's: the component had stopped by then
+    std::size_t component = 0; ///< whose port or operation it touches
+    bool refused = false;      ///< the engine's: the component had stopped by then
     const Facet* facet = nullptr;
     void* place = nullptr; ///< of the port, or the component
     void (*act)(Errand&) noexcept TAPPET_REALTIME = nullptr;

@@ -18,7 +18,7 @@ bool is_forced(const Errand& errand) noexcept TAPPET_REALTIME {
 
 // What a component left behind when it stopped is its safe value: nothing is laid over that.
 void force_port(Errand& errand) noexcept TAPPET_REALTIME {
-    errand.refused = errand.component_state->load(std::memory_order_acquire) >= ComponentState::stopping;
+    errand.refused = errand.machine->state_of(errand.component) >= ComponentState::stopping;
     if (errand.refused) return;
     // The count is for observers: nobody decides by it, so its sum is not used here.
     if (!is_forced(errand)) errand.machine->observed().forced.fetch_add(1, std::memory_order_relaxed);
@@ -57,7 +57,7 @@ Sentence find_port(const MachineView& table, std::string_view name, End& end) no
 Errand* BrowserService::free_errand() noexcept {
     for (Errand& each : errands_) {
         if (each.taken) continue;
-        each.given_up = false;
+        each.given_up = each.refused = false;
         each.machine = machine_;
         return &each;
     }
@@ -77,11 +77,7 @@ BrowserService::Verdict BrowserService::run_errand(Client& client, const Request
                                                    End end) {
     const AcceptedMachine& machine = machine_->machine();
     if (Verdict alive = check_alive(end.component); !alive.good()) return alive;
-    errand.refused = false;
-    errand.component_state = &machine_->engines()[machine.index.activity[end.component]]
-                                  .plan()
-                                  .parts[machine.plan.part_of[end.component]]
-                                  .state;
+    errand.component = end.component;
     errand.facet = &facet_at(machine.table, end);
     errand.place =
         errand.facet->port != nullptr ? machine_->place_of(end) : machine_->component(end.component);
@@ -175,14 +171,6 @@ BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const
     return {};
 }
 
-BrowserService::Verdict BrowserService::check_role(const Client& client, const Request& request,
-                                                   const Facet& facet) {
-    if (client.role >= facet.least_role) return {};
-    return {Refusal::denied,
-            Sentence{"\"", request.arguments[0], "\" needs the role of an ", to_text(facet.least_role),
-                     ", you are an ", to_text(client.role), "; ask for it in the board's list of roles"}};
-}
-
 BrowserService::Verdict BrowserService::call(Client& client, const Request& request) {
     End end;
     const MachineView& table = machine_->machine().table;
@@ -190,7 +178,7 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
         browsing::find_facet(table, request.arguments[0], {FacetKind::method, FacetKind::operation}, end);
     if (!unknown.empty()) return {Refusal::unknown, unknown};
     const Facet& facet = facet_at(table, end);
-    if (Verdict role = check_role(client, request, facet); !role.good()) return role;
+    if (Verdict role = check_role(client, request.arguments[0], facet.least_role); !role.good()) return role;
     Errand* errand = free_errand();
     if (errand == nullptr) return {Refusal::not_now, Sentence{"too many requests are under way; ask again"}};
     if (Verdict read = read_arguments(facet, request, errand->value); !read.good()) return read;

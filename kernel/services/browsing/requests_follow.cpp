@@ -12,7 +12,9 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     const MachineView& table = machine_->machine().table;
     const Sentence unknown = browsing::find_facet(table, request.arguments[0], {FacetKind::command}, end);
     if (!unknown.empty()) return {Refusal::unknown, unknown};
-    if (Verdict role = check_role(client, request, facet_at(table, end)); !role.good()) return role;
+    if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
+        !role.good())
+        return role;
     CommandInFlight* place = nullptr;
     for (CommandInFlight& each : commands_)
         if (!each.taken) place = &each;
