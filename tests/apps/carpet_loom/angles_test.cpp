@@ -8,19 +8,8 @@ namespace {
 using loom::Button;
 using loom::Fault;
 
-loom::Settings nobody_there() {
-    loom::Settings settings;
-    settings.operator_present = false;
-    return settings;
-}
-
 struct ByHand : LoomRig {
     explicit ByHand(std::uint64_t seed = 5) : LoomRig{seed, nobody_there()} {}
-    bool weave_by_hand() {
-        if (!prepare()) return false;
-        press(Button::start);
-        return run_until([&] { return state() == "weave" && plant().picks() > 5; }, 5s);
-    }
     /// As from the box: shaft.stop_at.
     void stop_at(double deg) {
         double error = 0.0;

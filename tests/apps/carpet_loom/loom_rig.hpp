@@ -16,6 +16,12 @@ namespace tappet::carpet {
 
 /// Only what a test asks for goes wrong; the operator is at work.
 inline loom::Settings no_faults() { return {}; }
+/// The same, and nobody presses a button but the test.
+inline loom::Settings nobody_there() {
+    loom::Settings settings;
+    settings.operator_present = false;
+    return settings;
+}
 
 class LoomRig {
 public:
@@ -50,6 +56,12 @@ public:
         run_for(500ms); // its nodes boot
         acknowledge();
         return run_until_state("ready", 5s);
+    }
+    /// The same, started by hand and some picks on its way.
+    bool weave_by_hand() {
+        if (!prepare()) return false;
+        press(loom::Button::start);
+        return run_until([&] { return state() == "weave" && plant().picks() > 5; }, 5s);
     }
     /// Prepared, started by the operator, and some picks on its way.
     bool weave(std::uint64_t picks = 5) {

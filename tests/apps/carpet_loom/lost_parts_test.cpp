@@ -10,20 +10,9 @@ namespace {
 using loom::Button;
 using loom::Fault;
 
-loom::Settings nobody_there() {
-    loom::Settings settings;
-    settings.operator_present = false;
-    return settings;
-}
-
 struct Parts : LoomRig {
     explicit Parts(std::uint64_t seed = 5) : LoomRig{seed, nobody_there()} {}
 
-    bool weave_by_hand() {
-        if (!prepare()) return false;
-        press(Button::start);
-        return run_until([&] { return state() == "weave" && plant().picks() > 5; }, 5s);
-    }
     bool at_angle(double deg) {
         return run_until(
             [&] {

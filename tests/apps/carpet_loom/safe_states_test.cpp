@@ -54,9 +54,7 @@ TEST_P(SafeStates, the_loom_weaves_again_after_an_emergency_stop_was_released_an
 }
 
 TEST_P(SafeStates, an_emergency_stop_that_is_held_cannot_be_acknowledged_away) {
-    loom::Settings settings;
-    settings.operator_present = false;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), nobody_there()};
     ASSERT_TRUE(rig.prepare());
     rig.plant().inject({.fault = Fault::emergency_stop, .lasts = 2s});
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms));
@@ -69,9 +67,7 @@ TEST_P(SafeStates, an_emergency_stop_that_is_held_cannot_be_acknowledged_away) {
 }
 
 TEST_P(SafeStates, an_emergency_stop_at_stand_still_is_obeyed_too) {
-    loom::Settings settings;
-    settings.operator_present = false;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), nobody_there()};
     ASSERT_TRUE(rig.prepare());
     rig.plant().inject({.fault = Fault::emergency_stop});
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms));
@@ -199,9 +195,7 @@ TEST_P(SafeStates, the_loom_weaves_again_after_the_bus_was_restarted_and_the_fau
 }
 
 TEST_P(SafeStates, a_loom_without_its_operator_stays_safe) {
-    loom::Settings settings;
-    settings.operator_present = false;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), nobody_there()};
     ASSERT_TRUE(rig.prepare());
     rig.plant().press(loom::Button::start, 100ms);
     ASSERT_TRUE(rig.run_until([&] { return rig.plant().picks() > 5; }, 5s));

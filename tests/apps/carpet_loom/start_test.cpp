@@ -6,13 +6,6 @@ namespace {
 
 using loom::Button;
 
-/// Nobody presses a button but the test.
-loom::Settings nobody_there() {
-    loom::Settings settings;
-    settings.operator_present = false;
-    return settings;
-}
-
 struct Start : LoomRig {
     Start() : LoomRig{11, nobody_there()} {}
 
@@ -56,11 +49,6 @@ struct Start : LoomRig {
         press(Button::start);
         EXPECT_TRUE(run_until([&] { return state() == "weave"; }, 5s)) << state() << ": " << reason();
         EXPECT_EQ(report().damage.total(), 0u);
-    }
-    bool weave_by_hand() {
-        if (!prepare()) return false;
-        press(Button::start);
-        return run_until([&] { return state() == "weave" && plant().picks() > 5; }, 5s);
     }
 };
 
