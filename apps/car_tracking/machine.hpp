@@ -3,8 +3,8 @@
 #pragma once
 
 #include "apps/car_tracking/behaviour.hpp"
-#include "kernel/machine/compiled.hpp"
-#include "kernel/machine/machine.hpp"
+#include "kernel/machine/table/compiled.hpp"
+#include "kernel/machine/table/machine.hpp"
 
 namespace tappet::car_tracking {
 

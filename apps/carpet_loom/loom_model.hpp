@@ -1,9 +1,9 @@
 // What the loom's verification knows beside its table: the weft's release, the shaft's angles and its brake,
-// as a handful of truths, and what must never happen. See apps/chart/model.hpp.
+// as a handful of truths, and what must never happen. See toolchain/tools/chart/model.hpp.
 #pragma once
 
 #include "apps/carpet_loom/machine.hpp"
-#include "apps/chart/model.hpp"
+#include "toolchain/tools/chart/model.hpp"
 
 namespace tappet::carpet {
 

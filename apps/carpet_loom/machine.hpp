@@ -13,7 +13,7 @@
 #include "apps/carpet_loom/warp_tension.hpp"
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "drivers/can/keeper.hpp"
-#include "kernel/machine/machine.hpp"
+#include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
 #include "kernel/services/time/timed_event.hpp"

@@ -1,7 +1,7 @@
 // Writes the summary: activities, budgets, stops and counters, as the machine has them at the end.
 #include "apps/carpet_loom/summary.hpp"
 
-#include "kernel/machine/behaviour_slot.hpp"
+#include "kernel/machine/slots/behaviour_slot.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/memory.hpp"

@@ -2,7 +2,7 @@
 // object.
 #pragma once
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 
 #include <cstdint>
 #include <span>

@@ -2,7 +2,7 @@
 // real kernel interfaces, no real wires.
 #pragma once
 
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 
 namespace tappet::board {
 

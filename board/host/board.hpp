@@ -1,7 +1,7 @@
 // The host: a developer's machine. Devices are in-process twins; nothing of it is fit for steel.
 #pragma once
 
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 
 namespace tappet::board {
 

@@ -2,7 +2,7 @@
 // controller, 16 to 32 digital lines on an isolated GPIO chip, two Ethernet ports and a serial port.
 #pragma once
 
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 
 namespace tappet::board {
 

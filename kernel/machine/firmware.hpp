@@ -2,9 +2,9 @@
 // cannot work does not compile; the first error is one sentence that names the row, the fault and the cure.
 #pragma once
 
-#include "kernel/machine/check.hpp"
-#include "kernel/machine/map.hpp"
-#include "kernel/machine/plan.hpp"
+#include "kernel/machine/check/check.hpp"
+#include "kernel/machine/map/map.hpp"
+#include "kernel/machine/plan/plan.hpp"
 
 namespace tappet {
 

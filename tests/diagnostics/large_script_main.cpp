@@ -38,7 +38,7 @@ void write_state(std::ostream& file, int number) {
 }
 
 void write_source(std::ostream& file) {
-    file << "// Written by large_script.\n#include \"kernel/machine/compiled.hpp\"\n"
+    file << "// Written by large_script.\n#include \"kernel/machine/table/compiled.hpp\"\n"
             "#include \"kernel/script/compiled.hpp\"\n\nnamespace tappet {\n\n"
             "struct Large {\n    Event<> beat;\n    static constexpr auto interface() {\n"
             "        return facets(event<&Large::beat>(\"beat\", \"on\"));\n    }\n};\n"

@@ -2,7 +2,7 @@
 // changed. The check that runs in the compiler runs here on the changed copies.
 #pragma once
 
-#include "kernel/machine/check.hpp"
+#include "kernel/machine/check/check.hpp"
 
 #include <cstddef>
 #include <deque>

@@ -2,7 +2,7 @@
 // as the second interpreter reads it (thesis 5.1, 5.2). TAPPET_SEED chooses other days.
 #include "tests/differential/random_day.hpp"
 
-#include "kernel/machine/compiled.hpp"
+#include "kernel/machine/table/compiled.hpp"
 #include "kernel/script/compiled.hpp"
 
 #include <gtest/gtest.h>

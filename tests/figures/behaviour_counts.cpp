@@ -2,8 +2,8 @@
 // against a switch written by hand.
 //     behaviour_counts                started by the test: starts valgrind on itself, once for each form
 //     behaviour_counts FORM EVENTS    drives that form by so many events, of which the last two are measured
-#include "apps/figures/behaviour/by_hand.hpp"
-#include "apps/figures/behaviour/steps.hpp"
+#include "tests/figures/behaviour/by_hand.hpp"
+#include "tests/figures/behaviour/steps.hpp"
 
 #include <array>
 #include <cstdio>

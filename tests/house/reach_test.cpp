@@ -35,7 +35,7 @@ std::vector<std::regex> sources_of(const File& cmake) {
 /// The cases of tests/diagnostics are found by their program, in their folder.
 bool has_no_target(const File& file) {
     return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/gpio_sim") ||
-           file.is_under("toolchain");
+           file.is_under("toolchain/libmodbus");
 }
 
 Findings dead(const Tree& files) {

@@ -1,5 +1,5 @@
 /* Another process reads an activity's values out of the machine's memory, which does not notice (thesis 4.8).
-   Source: kernel/activity/engine.hpp kernel/activity/engine.cpp kernel/machine/map_view.hpp
+   Source: kernel/activity/engine.hpp kernel/activity/engine.cpp kernel/machine/map/view.hpp
    Twins: EVEN_ALL_THE_TIME NO_SECOND_LOOK ODD_IGNORED START_UNGUARDED
 
    Shown: what the observer takes is whole and of one cycle, whether the activity starts, runs or stops meanwhile; it gives

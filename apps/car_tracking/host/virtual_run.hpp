@@ -3,7 +3,7 @@
 
 #include "apps/car_tracking/scene/scene.hpp"
 #include "apps/car_tracking/sighting.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <string>
 #include <vector>

@@ -6,7 +6,7 @@
 #include "apps/carpet_loom/demo/terminal.hpp"
 #include "apps/carpet_loom/demo/troubles.hpp"
 #include "apps/carpet_loom/demo/verdict.hpp"
-#include "board/bench/bench.hpp"
+#include "toolchain/tools/bench/bench.hpp"
 
 #include <algorithm>
 #include <chrono>

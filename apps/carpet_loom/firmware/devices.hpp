@@ -5,7 +5,7 @@
 #include "drivers/can/socket_can.hpp"
 #include "drivers/gpio/lines.hpp"
 #include "drivers/modbus/libmodbus_transport.hpp"
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 
 #include <array>
 #include <expected>

@@ -3,7 +3,7 @@
 #include "apps/carpet_loom/machine.hpp"
 #include "apps/carpet_loom/summary.hpp"
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/real_world.hpp"
+#include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/terminal.hpp"

@@ -9,7 +9,7 @@
 #include "drivers/gpio/twin.hpp"
 #include "drivers/modbus/twin.hpp"
 #include "kernel/component/setup.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <array>
 #include <cstdint>

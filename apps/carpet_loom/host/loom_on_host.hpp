@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/property_store.hpp"
+#include "kernel/machine/instance/property_store.hpp"
 
 namespace tappet::carpet {
 

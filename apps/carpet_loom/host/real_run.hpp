@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/carpet_loom/host/in_process_loom.hpp"
-#include "kernel/machine/real_world.hpp"
+#include "kernel/machine/worlds/real_world.hpp"
 
 #include <array>
 #include <atomic>

@@ -1,7 +1,7 @@
 // Who may do what (thesis 4.8): the role of a peer, from its credentials and the board's list.
 #pragma once
 
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 #include "kernel/os/local_socket.hpp"
 
 namespace tappet::browsing {

@@ -1,7 +1,7 @@
 // What a browser tells a behaviour to do, on its way to the engine that runs it.
 #pragma once
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/errand.hpp"
 
 #include <cstdint>

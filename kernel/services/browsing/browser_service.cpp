@@ -1,7 +1,7 @@
 // One cycle of the service: let in, hear, answer, follow what is under way.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/os/terminal.hpp"
 
 namespace tappet {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/component/component.hpp"
-#include "kernel/machine/map_view.hpp"
+#include "kernel/machine/map/view.hpp"
 #include "kernel/services/browsing/behaviour_order.hpp"
 #include "kernel/services/browsing/door.hpp"
 #include "kernel/services/browsing/errand.hpp"

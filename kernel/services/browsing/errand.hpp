@@ -2,7 +2,7 @@
 // the answer.
 #pragma once
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 
 #include <array>
 #include <atomic>

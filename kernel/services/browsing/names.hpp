@@ -1,7 +1,7 @@
 // Names as a request spells them: "component.facet", "component", "activity:NAME".
 #pragma once
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 
 #include <initializer_list>
 #include <string_view>

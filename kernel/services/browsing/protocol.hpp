@@ -5,7 +5,7 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 
 #include <array>
 #include <charconv>
@@ -91,7 +91,7 @@ inline constexpr auto verbs = std::to_array<VerbRow>({
     {Verb::hello,       "hello",       Role::observer,         "hello",                            0, 0,
      R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "time_ns": T)"},
     {Verb::map,         "map",         Role::observer,         "map",                              0, 0,
-     R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map_layout.hpp)"},
+     R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map/layout.hpp)"},
     {Verb::get,         "get",         Role::observer,         "get NAME...",                      1, max_words,
      R"("values": [{"name": "...", "value": .., "flow": "fresh|stale|never_written", "forced": true|false, "time_ns": T}])"},
     {Verb::subscribe,   "subscribe",   Role::observer,         "subscribe EVENT",                  1, 1, ""},

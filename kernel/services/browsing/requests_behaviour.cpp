@@ -1,7 +1,7 @@
 // Requests about behaviours (thesis 5.1.2, 5.2.5): they are seen, commanded and, into a slot, loaded.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 
 #include <charconv>
 #include <cstring>

@@ -1,7 +1,7 @@
 // Requests that change something: prepared here, done by the engine that owns it, answered when it is done.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/names.hpp"
 
 namespace tappet {

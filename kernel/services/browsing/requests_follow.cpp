@@ -2,7 +2,7 @@
 // of the machine.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/names.hpp"
 
 namespace tappet {

@@ -1,7 +1,7 @@
 // Requests that only look: they are answered at once.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/names.hpp"
 
 namespace tappet {

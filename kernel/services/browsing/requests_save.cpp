@@ -1,7 +1,7 @@
 // Properties to their files (thesis 4.7.1): copied by the engines that own them, written by this activity.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 
 namespace tappet {
 

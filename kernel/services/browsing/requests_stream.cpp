@@ -1,7 +1,7 @@
 // Events (thesis 4.6), told to whoever subscribed to them.
 #include "kernel/services/browsing/browser_service.hpp"
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/names.hpp"
 
 #include <cstring>

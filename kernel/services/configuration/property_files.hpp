@@ -2,7 +2,7 @@
 // configuring, replaced as a whole when saved.
 #pragma once
 
-#include "kernel/machine/property_store.hpp"
+#include "kernel/machine/instance/property_store.hpp"
 #include "kernel/services/configuration/cpf.hpp"
 
 #include <array>

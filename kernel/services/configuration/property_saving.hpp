@@ -2,7 +2,7 @@
 // and written by whoever asked.
 #pragma once
 
-#include "kernel/machine/instance.hpp"
+#include "kernel/machine/instance/instance.hpp"
 
 namespace tappet {
 

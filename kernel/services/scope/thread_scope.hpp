@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/component/component.hpp"
-#include "kernel/machine/scope_layout.hpp"
+#include "kernel/machine/plan/scope_layout.hpp"
 
 namespace tappet {
 

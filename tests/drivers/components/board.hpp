@@ -1,7 +1,7 @@
 // The box that the small machines of these tests run on.
 #pragma once
 
-#include "kernel/machine/board.hpp"
+#include "kernel/machine/table/board.hpp"
 
 namespace tappet::test {
 

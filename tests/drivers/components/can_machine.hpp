@@ -5,7 +5,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/keeper.hpp"
 #include "drivers/can/twin_bus.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 
 #include <gtest/gtest.h>

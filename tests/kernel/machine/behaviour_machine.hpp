@@ -3,8 +3,8 @@
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/script/compiled.hpp"
 
 #include <gtest/gtest.h>

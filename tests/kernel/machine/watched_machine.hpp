@@ -4,8 +4,8 @@
 
 #include "kernel/base/contract.hpp"
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance.hpp"
-#include "kernel/machine/machine.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/table/machine.hpp"
 #include "kernel/os/sleep.hpp"
 
 #include <atomic>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 
 namespace tappet::press {

@@ -2,7 +2,7 @@
 // outside, is done by the component's own engine, and what is wrong is refused with the cure.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
-#include "kernel/machine/map_view.hpp"
+#include "kernel/machine/map/view.hpp"
 
 namespace tappet::press {
 namespace {

@@ -3,7 +3,7 @@
 #include "kernel/services/configuration/property_files.hpp"
 
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/configuration/property_saving.hpp"
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 // what its components consume.
 #include "kernel/services/scope/thread_scope.hpp"
 
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include "kernel/services/time/watchdog.hpp"
 
 #include "kernel/base/random.hpp"
-#include "kernel/machine/real_world.hpp"
-#include "kernel/machine/virtual_world.hpp"
+#include "kernel/machine/worlds/real_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

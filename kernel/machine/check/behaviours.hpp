@@ -1,0 +1,212 @@
+// Checks of the section behaviours: a behaviour drives a component of its own type, hears events that exist,
+// and touches nothing of another activity but what is safe there; a slot reserves what exists.
+#pragma once
+
+#include "kernel/machine/check/events.hpp"
+#include "kernel/machine/table/unit_rows.hpp"
+#include "kernel/program/check_rows.hpp"
+#include "kernel/script/room.hpp"
+#include "kernel/statechart/check.hpp"
+
+namespace tappet::checks {
+
+template <class... Pieces> constexpr Sentence of_behaviour(const BehaviourRow& row, const Pieces&... fault) {
+    return Sentence{row.is_slot() ? "slot of \"" : "behaviour of \"", row.component, "\"", fault...};
+}
+
+/// "component.event", or "event" of the behaviour's own component.
+constexpr Sentence resolve_trigger(const MachineView& m, const BehaviourRow& row, std::string_view name,
+                                   End& found) {
+    if (name.find('.') == std::string_view::npos) {
+        const std::size_t own = find_component(m, row.component);
+        const std::size_t facet = find_facet(m.components[own], name);
+        if (facet != nowhere && m.components[own].type->facets[facet].kind == FacetKind::event) {
+            found = {own, facet};
+            return {};
+        }
+        Nearest nearest{name};
+        for (const auto& each : m.components[own].type->facets)
+            if (each.kind == FacetKind::event) nearest.consider(each.name);
+        Sentence text{"component \"", row.component, "\" has no event \"", name, "\""};
+        detail::add_suggestion(text, nearest, "name it, or another component's as component.event");
+        return text;
+    }
+    if (Sentence fault = resolve(m, name, FacetKind::event, found); !fault.empty()) return fault;
+    if (facet_at(m, found).kind != FacetKind::event)
+        return Sentence{"\"", name, "\" is ", to_text(facet_at(m, found).kind),
+                        ", not an event; name an event in on(...)"};
+    return {};
+}
+
+/// Of the activity that compiles what is loaded: what the compiler takes, and what called it.
+inline constexpr std::size_t slot_stack_bytes = script_stack_bytes + 64 * 1024;
+
+constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
+    const Slot& slot = row.slot;
+    if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
+        return of_behaviour(row, " reserves no nodes, data or depth; state all three");
+    for (const auto& peer : slot.peers)
+        if (find_component(m, peer) == nowhere)
+            return of_behaviour(row, ": among its peers, ", unknown_component(m, peer));
+    End found;
+    for (const auto& name : slot.operations) {
+        if (Sentence fault = resolve(m, name, FacetKind::operation, found); !fault.empty())
+            return of_behaviour(row, ": among its operations, ", fault);
+        const FacetKind kind = facet_at(m, found).kind;
+        if (kind != FacetKind::operation && kind != FacetKind::method && kind != FacetKind::command)
+            return of_behaviour(row, ": among its operations, \"", name, "\" is ", to_text(kind),
+                                ", not an operation; name an operation");
+    }
+    for (const auto& name : slot.events) {
+        if (Sentence fault = resolve(m, name, FacetKind::event, found); !fault.empty())
+            return of_behaviour(row, ": among its events, ", fault);
+        const Facet& event = facet_at(m, found);
+        if (event.kind != FacetKind::event)
+            return of_behaviour(row, ": among its events, \"", name, "\" is ", to_text(event.kind),
+                                ", not an event; name an event");
+        if (event.type->size > sizeof(Message::arguments))
+            return of_behaviour(row, ": among its events, \"", name, "\" has ", event.type->size,
+                                " bytes of arguments, more than the ", sizeof(Message::arguments),
+                                " of a message; read its component's ports instead");
+    }
+    for (std::size_t c = 0; c < m.components.size(); ++c) {
+        if (!m.components[c].type->sees_machine || r.activity[c] == nowhere) continue;
+        const ActivityRow& activity = m.activities[r.activity[c]];
+        if (activity.stack < slot_stack_bytes)
+            return of_behaviour(row, ": scripts are compiled in activity \"", activity.name,
+                                "\", whose stack of ", activity.stack, " bytes is under ", slot_stack_bytes,
+                                "; enlarge its stack(...)");
+    }
+    if (slot.angle.empty()) return {};
+    if (Sentence fault = resolve(m, r.by_name, slot.angle, FacetKind::output, found); !fault.empty())
+        return of_behaviour(row, ": its angle: ", fault);
+    if (facet_at(m, found).kind != FacetKind::output || facet_at(m, found).type != type_id<double>)
+        return of_behaviour(row, ": its angle \"", slot.angle, "\" is ", to_text(facet_at(m, found).kind),
+                            " of ", facet_at(m, found).type->name, "; name an output of double, in degrees");
+    if (r.activity[found.component] != r.activity[find_component(m, row.component)])
+        return of_behaviour(row, ": its angle \"", slot.angle,
+                            "\" is written in another activity; name an output of activity \"",
+                            m.activities[r.activity[find_component(m, row.component)]].name, "\"");
+    return {};
+}
+
+/// A compiled script was compiled for components of some types, some of them in its own activity.
+constexpr Sentence check_unit_reach(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
+    const ScriptUnit unit = row.unit();
+    const std::size_t driven = find_component(m, row.component);
+    for (std::size_t i = 0; i < unit.reach.size(); ++i) {
+        const Reachable& peer = unit.reach[i];
+        const std::size_t c = component_of(m, row.component, unit, i);
+        if (c == nowhere)
+            return of_behaviour(row, ": script \"", unit.name, "\": among its peers, ",
+                                unknown_component(m, peer.name));
+        if (peer.type->tag != m.components[c].type->tag)
+            return of_behaviour(row, ": script \"", unit.name, "\" was compiled for ", peer.type->tag->name,
+                                " but \"", m.components[c].name, "\" is a ", m.components[c].type->tag->name,
+                                "; give its reach that type");
+        if (peer.same_activity && r.activity[c] != r.activity[driven])
+            return of_behaviour(row, ": script \"", unit.name, "\" touches \"", peer.name,
+                                "\" as one of its own activity, but activity \"",
+                                m.activities[r.activity[c]].name,
+                                "\" runs it; compile it with a reach that says so, or run both in one "
+                                "activity");
+    }
+    return {};
+}
+
+/// What a unit's programs act on must be safe in the activity that runs them.
+constexpr Sentence check_unit_links(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
+    const ScriptUnit unit = row.unit();
+    const std::size_t here = r.activity[find_component(m, row.component)];
+    for (const BehaviourType& type : unit.types)
+        for (const LinkRow& link : type.tables.links) {
+            const std::size_t c = component_of(m, row.component, unit, link.peer);
+            if (link.facet == LinkRow::component_itself) continue;
+            if (link.facet >= m.components[c].type->facets.size())
+                return of_behaviour(row, ": script \"", unit.name, "\" names facet ", link.facet, " of \"",
+                                    m.components[c].name, "\", which has fewer; compile it anew");
+            const Facet& facet = m.components[c].type->facets[link.facet];
+            if (r.activity[c] == here || facet.any_thread) continue;
+            if (facet.kind == FacetKind::command && link.needs_slot) continue;
+            return of_behaviour(row, ": script \"", unit.name, "\" touches \"", m.components[c].name, ".",
+                                facet.name, "\" (", to_text(facet.kind), ") of activity \"",
+                                m.activities[r.activity[c]].name,
+                                "\"; send it a command, or declare the operation any_thread if it is safe "
+                                "there");
+        }
+    return {};
+}
+
+constexpr Sentence check_unit(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
+    const ScriptUnit unit = row.unit();
+    const std::size_t driven = find_component(m, row.component);
+    if (unit.instances.empty())
+        return of_behaviour(row, ": script \"", unit.name,
+                            "\" has nothing to run; add a RootStateMachine or a program");
+    if (Sentence fault = check_unit_reach(m, r, row); !fault.empty()) return fault;
+    if (Sentence fault = check_unit_links(m, r, row); !fault.empty()) return fault;
+    for (const BehaviourType& type : unit.types) {
+        const StateMachineTable& machine = type.machine;
+        const bool is_program = type.is_program() && !type.tables.nodes.empty();
+        if (machine.component != nullptr && machine.component != m.components[driven].type->tag)
+            return of_behaviour(row, is_program ? ": program \"" : ": state machine \"", machine.name,
+                                "\" is written for ", machine.component->name, " but \"", row.component,
+                                "\" is a ", m.components[driven].type->tag->name,
+                                "; name a component of its type");
+        if (!row.program.nodes.empty())
+            if (Sentence fault = check(row.program); !fault.empty()) return of_behaviour(row, ": ", fault);
+        if (is_program) continue;
+        if (Sentence fault = check(machine); !fault.empty()) return of_behaviour(row, ": ", fault);
+        for (std::size_t t = 0; t < machine.transitions.size(); ++t) {
+            const TransitionRow& transition = machine.transitions[t];
+            if (!transition.on_event) continue;
+            End found;
+            Sentence fault = resolve_trigger(m, row, transition.event, found);
+            if (fault.empty() && facet_at(m, found).type->size > sizeof(Message::arguments))
+                fault = Sentence{"its ", facet_at(m, found).type->size, " bytes of arguments exceed the ",
+                                 sizeof(Message::arguments), " bytes of a message; send them through a port"};
+            if (!fault.empty())
+                return of_behaviour(row, ": state machine \"", machine.name, "\": transition ", t + 1, " (\"",
+                                    transition.from, "\" to \"", transition.to, "\" on \"", transition.event,
+                                    "\"): ", fault);
+        }
+    }
+    if (events_of(unit).too_many)
+        return of_behaviour(row, ": script \"", unit.name, "\" hears more than ", max_state_events,
+                            " events; split it");
+    return {};
+}
+
+constexpr Sentence check_behaviours(const MachineView& m, const TableIndexView& r) {
+    for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
+        const BehaviourRow& row = m.behaviours[b];
+        if (find_component(m, row.component) == nowhere)
+            return of_behaviour(row, ": ", unknown_component(m, row.component));
+        for (std::size_t j = 0; j < b; ++j)
+            if (m.behaviours[j].component == row.component && (m.behaviours[j].is_slot() == row.is_slot()))
+                return of_behaviour(row, " stands in behaviours(...) twice; a component has one ",
+                                    row.is_slot() ? "slot" : "behaviour", ": remove one");
+        Sentence fault = row.is_slot() ? check_slot(m, r, row) : check_unit(m, r, row);
+        if (!fault.empty()) return fault;
+    }
+    for (const auto& row : m.components) {
+        if (row.type->slot_required) {
+            bool reserved = false;
+            for (const auto& behaviour : m.behaviours)
+                reserved |= behaviour.component == row.name && behaviour.is_slot();
+            if (!reserved)
+                return of_component(row.name, ": no slot is reserved for it; add behaviour(\"", row.name,
+                                    "\", slot(...)) to behaviours(...)");
+        }
+        if (!row.type->behaviour_required) continue;
+        bool driven = false;
+        for (const auto& behaviour : m.behaviours)
+            driven |= behaviour.component == row.name && !behaviour.is_slot();
+        if (!driven)
+            return of_component(row.name, ": no behaviour drives it; add behaviour(\"", row.name,
+                                "\", ...) to behaviours(...)");
+    }
+    return {};
+}
+
+} // namespace tappet::checks

@@ -1,0 +1,40 @@
+// The check of a whole table on a board: empty, or the one sentence that names the row, the fault and the
+// cure. The same function runs in the compiler and in tests.
+#pragma once
+
+#include "kernel/machine/check/behaviours.hpp"
+#include "kernel/machine/check/board.hpp"
+#include "kernel/machine/check/components.hpp"
+#include "kernel/machine/check/flow.hpp"
+#include "kernel/machine/check/operations.hpp"
+#include "kernel/machine/check/reach.hpp"
+#include "kernel/machine/check/reactions.hpp"
+#include "kernel/machine/check/time.hpp"
+#include "kernel/machine/check/wakes.hpp"
+#include "kernel/machine/check/watches.hpp"
+
+namespace tappet {
+
+/// Checks in the order in which a reader would look, and fills `r`, which holds only as far as the checks
+/// went.
+constexpr Sentence check(const MachineView& m, const Board& board, TableIndexView r) {
+    const auto first_fault = [&]() -> Sentence {
+        if (Sentence fault = checks::check_components(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_activities(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_observers(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_connections(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_watches(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_reactions(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_reach(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_behaviours(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
+        return checks::check_schedulability(m, board, r);
+    };
+    const Sentence fault = first_fault();
+    return fault.empty() ? fault : Sentence{m.name, ": ", fault};
+}
+
+} // namespace tappet

@@ -1,0 +1,212 @@
+// Checks of the sections components and activities: every component once, in exactly one activity, with
+// properties it has.
+#pragma once
+
+#include "kernel/activity/engine.hpp"
+#include "kernel/machine/check/properties.hpp"
+
+namespace tappet::checks {
+
+/// The engine remembers so many wakes to hold a sporadic activity to its promise.
+inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
+
+/// The first facet without a name, or with the name of one before it; nowhere: there is none. Of the type
+/// alone, so that a compiler which remembers its constant calls looks at each type once.
+constexpr std::size_t faulty_facet(const ComponentType* type) noexcept {
+    const auto& facets = type->facets;
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        if (facets[f].name.empty()) return f;
+        for (std::size_t g = 0; g < f; ++g)
+            if (same_letters(facets[f].name, facets[g].name)) return f;
+    }
+    return nowhere;
+}
+
+constexpr Sentence check_interface(const ComponentRow& row) {
+    const std::size_t faulty = faulty_facet(row.type);
+    if (faulty == nowhere) return {};
+    const Facet& facet = row.type->facets[faulty];
+    // A facet's name may have dots: a table row's path is cut at its first one, behind the component.
+    if (facet.name.empty())
+        return of_component(row.name, ": its interface has a facet without a name; name it in ",
+                            row.type->tag->name);
+    return of_component(row.name, ": its interface names \"", facet.name, "\" twice; rename one in ",
+                        row.type->tag->name);
+}
+
+constexpr Sentence check_life(const ComponentRow& row) {
+    const NeverRun& found = row.type->never_run;
+    if (found.member.empty()) return {};
+    return of_component(
+        row.name, ": ", row.type->tag->name, "::", found.member,
+        " looks like a function of its life but would never run; that is public and spelled \"",
+        found.spelling, "\": spell it so, or rename it");
+}
+
+/// The tapes have one reader that keeps the worst cycles in the one place for them.
+constexpr Sentence check_recorders(const MachineView& m) {
+    const ComponentRow* first = nullptr;
+    for (const ComponentRow& row : m.components) {
+        if (!row.type->records_cycles) continue;
+        if (first != nullptr)
+            return of_component(row.name, " records the machine's cycles as \"", first->name,
+                                "\" does already; remove one of them");
+        first = &row;
+    }
+    return {};
+}
+
+/// Fills the list by name.
+constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
+    if (m.components.empty())
+        return Sentence{"the table has no components; add component<Type>(\"name\") rows to components(...)"};
+    for (std::size_t i = 0; i < m.components.size(); ++i) {
+        const ComponentRow& row = m.components[i];
+        if (row.name.empty() || find_letter(row.name, '.') != std::string_view::npos)
+            return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
+        if (Sentence fault = check_interface(row); !fault.empty()) return fault;
+        if (Sentence fault = check_life(row); !fault.empty()) return fault;
+        if (Sentence fault = check_settings(row); !fault.empty()) return fault;
+        if (Sentence fault = check_bags(row); !fault.empty()) return fault;
+        if (Sentence fault = check_properties_file(m, row); !fault.empty()) return fault;
+        if (!row.type->device_kind.empty() && row.device.empty())
+            return of_component(row.name, " drives a ", row.type->device_kind,
+                                " device but its row names none; add device(\"...\")");
+        if (row.type->device_kind.empty() && !row.device.empty())
+            return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
+    }
+    if (Sentence fault = check_recorders(m); !fault.empty()) return fault;
+    sort_by_name(m, r.by_name);
+    for (std::size_t i = 1; i < r.by_name.size(); ++i)
+        if (const std::string_view name = m.components[r.by_name[i]].name;
+            name == m.components[r.by_name[i - 1]].name)
+            return of_component(name, " stands in components(...) twice (rows ", r.by_name[i - 1] + 1,
+                                " and ", r.by_name[i] + 1, "); rename or remove one");
+    return {};
+}
+
+/// How many rows of the other sections name a component, in any of their places.
+constexpr std::size_t count_uses(const MachineView& m, std::string_view name) noexcept {
+    const auto starts = [name](std::string_view path) {
+        return path.size() > name.size() && path[name.size()] == '.' && path.substr(0, name.size()) == name;
+    };
+    std::size_t uses = 0;
+    for (const auto& row : m.activities) {
+        uses += row.device == name;
+        for (const auto& each : row.runs) uses += each == name;
+    }
+    for (const auto& row : m.connections) uses += starts(row.from) || starts(row.to);
+    for (const auto& row : m.reactions) uses += starts(row.event) || starts(row.target.operation);
+    for (const auto& row : m.behaviours) uses += row.component == name;
+    return uses;
+}
+
+/// Where an activity names no component: when several rows agree on the name and none uses the nearest, it is
+/// the row in components(...) that is misspelt.
+constexpr Sentence unknown_to_activity(const MachineView& m, const ActivityRow& row, std::string_view name) {
+    Nearest nearest{name};
+    for (const auto& each : m.components)
+        if (count_uses(m, each.name) == 0) nearest.consider(each.name);
+    const std::size_t uses = count_uses(m, name);
+    if (nearest.best().empty() || uses < 2) return of_activity(row.name, ": ", unknown_component(m, name));
+    return of_component(nearest.best(), " is named by no other row, but ", uses, " rows name \"", name,
+                        "\", which components(...) has not; rename it to that");
+}
+
+constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
+    if (!row.twice.empty()) return of_activity(row.name, " is given ", row.twice, " twice; keep one");
+    if (!row.has_trigger)
+        return of_activity(row.name, ": nothing wakes it; add every(...), on_work() or on_device(\"...\")");
+    if (row.too_many_runs)
+        return of_activity(row.name, " runs more than ", ActivityRow::max_runs, " components; divide it");
+    if (row.runs.empty())
+        return of_activity(row.name, " runs no component; add runs(\"...\") or remove the row");
+    if (row.periodic() && row.period <= Duration::zero())
+        return of_activity(row.name, ": its period is not positive; write every(1ms) or the like");
+    if (row.trigger == Trigger::on_device) {
+        const std::size_t driver = find_component(m, row.device);
+        if (driver == nowhere) return unknown_to_activity(m, row, row.device);
+        if (m.components[driver].type->device_kind.empty())
+            return of_activity(row.name, ": component \"", row.device,
+                               "\" drives no device to wake it; name a driver in on_device(...)");
+        bool runs_it = false;
+        for (const auto& name : row.runs) runs_it |= name == row.device;
+        if (!runs_it)
+            return of_activity(row.name, " is woken by the device of \"", row.device,
+                               "\" but does not run it; add it to runs(...)");
+    }
+    if (row.real_time) {
+        if (row.shortest_period() <= Duration::zero())
+            return of_activity(row.name, " does not say how often it may be woken; add at_most(n, per)");
+        if (row.at_most_n < 1)
+            return of_activity(row.name, ": at_most needs at least one wake; write at_most(1, ...)");
+        if (row.at_most_n > max_wakes_together)
+            return of_activity(row.name, " promises more than ", max_wakes_together,
+                               " wakes in one window; shorten the window of at_most");
+        if (row.budget_each <= Duration::zero())
+            return of_activity(row.name, " has no budget; add budget(...), or not_real_time");
+        if (row.deadline_after < Duration::zero())
+            return of_activity(row.name, ": its deadline is negative; correct deadline(...)");
+    }
+    if (row.stack < 16 * 1024)
+        return of_activity(row.name, ": its stack of ", row.stack,
+                           " bytes is under 16384; enlarge stack(...)");
+    return {};
+}
+
+constexpr Sentence check_loop(const ActivityRow& row, std::string_view name, const ComponentType& type) {
+    if (type.loop == nullptr) return {};
+    if (type.step != nullptr || type.work != nullptr)
+        return of_component(name, " has loop() and also ", type.step != nullptr ? "step()" : "work()",
+                            "; keep one of them");
+    if (row.real_time)
+        return of_activity(row.name, " is real-time but component \"", name,
+                           "\" may block (it has loop()); run it in an activity that is not_real_time");
+    if (row.periodic())
+        return of_activity(row.name, " is periodic but component \"", name,
+                           "\" decides itself when it runs (it has loop()); run it on_work()");
+    if (row.runs.size() != 1)
+        return of_activity(row.name, " runs others beside component \"", name,
+                           "\", which keeps the thread (it has loop()); run it in an activity of its own");
+    return {};
+}
+
+/// Fills the activity of each component.
+constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
+    for (auto& each : r.activity) each = nowhere;
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        const ActivityRow& row = m.activities[a];
+        for (std::size_t j = 0; j < a; ++j)
+            if (m.activities[j].name == row.name)
+                return of_activity(row.name, " stands in activities(...) twice (rows ", j + 1, " and ", a + 1,
+                                   "); rename or remove one");
+        if (Sentence fault = check_trigger(m, row); !fault.empty()) return fault;
+        for (const auto& name : row.runs) {
+            const std::size_t c = find_component(m, r.by_name, name);
+            if (c == nowhere) return unknown_to_activity(m, row, name);
+            if (r.activity[c] == a)
+                return of_component(name, " is run twice by activity \"", row.name, "\"; remove it once");
+            if (r.activity[c] != nowhere)
+                return of_component(name, " is run by activity \"", m.activities[r.activity[c]].name,
+                                    "\" and by activity \"", row.name, "\"; keep it in one");
+            r.activity[c] = a;
+            for (const auto& facet : m.components[c].type->facets)
+                if (facet.kind == FacetKind::timer && row.real_time && row.periodic())
+                    return of_activity(row.name, " is periodic but component \"", name, "\" has the timer \"",
+                                       facet.name,
+                                       "\", which runs between periods; run it on_work() with at_most(n, "
+                                       "per), so that the analysis counts it");
+            if (Sentence fault = check_loop(row, name, *m.components[c].type); !fault.empty()) return fault;
+            if (m.components[c].type->work != nullptr && row.real_time)
+                return of_activity(
+                    row.name, " is real-time but component \"", name,
+                    "\" may block (it has work()); run it in an activity that is not_real_time");
+        }
+    }
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        if (r.activity[c] == nowhere)
+            return of_component(m.components[c].name, ": no activity runs it; add it to runs(...) of one");
+    return {};
+}
+
+} // namespace tappet::checks

@@ -1,0 +1,295 @@
+// Checks of the section connections: both ends exist, point the right way, carry the same type; every input
+// has one writer; and inside an activity an order exists in which every component sees this cycle's values.
+#pragma once
+
+#include "kernel/machine/check/components.hpp"
+
+namespace tappet::checks {
+
+template <class... Pieces>
+constexpr Sentence of_connection(const ConnectionRow& row, const Pieces&... fault) {
+    return Sentence{"connection \"", row.from, "\" -> \"", row.to, "\"", fault...};
+}
+
+constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, const Facet& to) {
+    const bool from_is_input = from.kind == FacetKind::input || from.kind == FacetKind::buffer_input;
+    const bool to_is_output = to.kind == FacetKind::output || to.kind == FacetKind::buffer_output;
+    if (from_is_input && to_is_output)
+        return of_connection(row, " runs from an input to an output; exchange the two");
+    const FacetKind wanted_from = row.buffered ? FacetKind::buffer_output : FacetKind::output;
+    const FacetKind wanted_to = row.buffered ? FacetKind::buffer_input : FacetKind::input;
+    if (from.kind != wanted_from)
+        return of_connection(row, ": \"", row.from, "\" is ", to_text(from.kind), ", not ",
+                             to_text(wanted_from),
+                             from.kind == FacetKind::buffer_output ? "; write buffer<n>(...)"
+                             : from.kind == FacetKind::output      ? "; write data(...)"
+                                                                   : "; name an output first");
+    if (to.kind != wanted_to)
+        return of_connection(row, ": \"", row.to, "\" is ", to_text(to.kind), ", not ", to_text(wanted_to),
+                             to.kind == FacetKind::buffer_input ? "; write buffer<n>(...)"
+                             : to.kind == FacetKind::input      ? "; write data(...)"
+                                                                : "; name an input second");
+    if (from.type != to.type)
+        return of_connection(row, ": \"", row.from, "\" is of type ", from.type->name, " but \"", row.to,
+                             "\" is of type ", to.type->name, "; connect ports of one type");
+    return {};
+}
+
+/// A number must be one that the port's type can hold exactly, but for the rounding of a float.
+constexpr bool holds(const TypeTag& type, double number) noexcept {
+    if (type.kind == ValueKind::real) return true;
+    if (type.kind == ValueKind::truth) return number == 0 || number == 1;
+    if (!type.arithmetic || type.size > 8) return false;
+    double past = type.kind == ValueKind::whole ? 128 : 256; // the first number beyond one byte
+    for (std::size_t bytes = 1; bytes < type.size; ++bytes) past *= 256;
+    const double least = type.kind == ValueKind::whole ? -past : 0;
+    if (!(number >= least && number < past)) return false;
+    return number >= 0 ? number == static_cast<double>(static_cast<std::uint64_t>(number))
+                       : number == static_cast<double>(static_cast<std::int64_t>(number));
+}
+
+constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view option, const RowValue& value,
+                                   const Facet& to) {
+    if (!value.given) return {};
+    if (value.constant != nullptr)
+        return value.type == to.type ? Sentence{}
+                                     : of_connection(row, ": ", option, " gives a value of type ",
+                                                     value.type->name, ", but \"", row.to, "\" is of type ",
+                                                     to.type->name, "; name a constant of the port's type");
+    if (!to.type->arithmetic)
+        return of_connection(row, ": a value of type ", to.type->name, " is no number; write ", option,
+                             "<constant>() with a constant of that type");
+    if (!holds(*to.type, value.number))
+        return of_connection(row, ": the number in ", option, " does not fit \"", row.to, "\" of type ",
+                             to.type->name, "; write one that it can hold");
+    return {};
+}
+
+constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row, const Facet& to,
+                                  std::size_t writer, std::size_t reader) {
+    if (row.buffered && row.capacity == 0)
+        return of_connection(row, " holds no value; write buffer<n> with n of at least 1");
+    if (row.buffered && (row.max_age != Duration::zero() || row.stale_answers != 0 || row.before_first.given))
+        return of_connection(
+            row, ": values in a buffer have no age and no initial value; remove what says so from the row");
+    if (Sentence fault = check_row_value(row, "substitute", row.substitute, to); !fault.empty()) return fault;
+    if (Sentence fault = check_row_value(row, "initially", row.before_first, to); !fault.empty())
+        return fault;
+    if (row.stale_answers > 1)
+        return of_connection(row, " says more than once what a stale value means; keep one of hold, "
+                                  "substitute and stop_machine");
+    if (row.when_stale == WhenStale::stop && row.max_age == Duration::zero())
+        return of_connection(row,
+                             " says what a stale value means but not when it is stale; add stale_after(...)");
+    if (row.wakes_reader && m.activities[reader].periodic())
+        return of_connection(row, " wakes activity \"", m.activities[reader].name,
+                             "\", which is periodic; remove wakes");
+    if (row.wakes_reader && writer == reader)
+        return of_connection(row, " wakes its own activity \"", m.activities[reader].name,
+                             "\"; remove wakes");
+    if (row.delayed_step && writer != reader)
+        return of_connection(row, ": delayed means one cycle of one activity, but this row crosses from \"",
+                             m.activities[writer].name, "\" to \"", m.activities[reader].name,
+                             "\"; remove delayed");
+    return {};
+}
+
+/// A row against those before it: an input has one writer, a port not too many buffers.
+constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, std::size_t x) {
+    const ConnectionRow& row = m.connections[x];
+    const Link& link = r.connections[x];
+    std::size_t rows_there = 0;
+    for (std::size_t j = r.connections_into.first[link.to.component]; j != nowhere;
+         j = r.connections_into.next[j]) {
+        if (!(r.connections[j].to == link.to)) continue;
+        if (r.connections[j].from == link.from)
+            return of_connection(row, " stands in connections(...) twice (rows ", j + 1, " and ", x + 1,
+                                 "); remove one");
+        if (!row.buffered)
+            return of_connection(row, ": \"", row.to, "\" is written by \"", m.connections[j].from,
+                                 "\" already; an input has one writer: remove one row, or use a buffer");
+        ++rows_there;
+    }
+    if (!row.buffered) return {};
+    std::size_t rows_here = 0;
+    for (std::size_t j = r.connections_from.first[link.from.component]; j != nowhere;
+         j = r.connections_from.next[j])
+        if (m.connections[j].buffered && r.connections[j].from == link.from) ++rows_here;
+    if (rows_here >= max_buffer_rows || rows_there >= max_buffer_rows)
+        return of_connection(row, " is one more than the ", max_buffer_rows,
+                             " buffer rows a port may have; merge some");
+    return {};
+}
+
+/// Fills the ends of each connection.
+constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
+    r.connections_into.clear();
+    r.connections_from.clear();
+    for (std::size_t x = 0; x < m.connections.size(); ++x) {
+        const ConnectionRow& row = m.connections[x];
+        Link& link = r.connections[x];
+        const FacetKind from_kind = row.buffered ? FacetKind::buffer_output : FacetKind::output;
+        const FacetKind to_kind = row.buffered ? FacetKind::buffer_input : FacetKind::input;
+        if (Sentence fault = resolve(m, r.by_name, row.from, from_kind, link.from); !fault.empty())
+            return of_connection(row, ": ", fault);
+        if (Sentence fault = resolve(m, r.by_name, row.to, to_kind, link.to); !fault.empty())
+            return of_connection(row, ": ", fault);
+        const Facet& to = facet_at(m, link.to);
+        if (Sentence fault = check_direction(row, facet_at(m, link.from), to); !fault.empty()) return fault;
+        if (Sentence fault =
+                check_policies(m, row, to, r.activity[link.from.component], r.activity[link.to.component]);
+            !fault.empty())
+            return fault;
+        if (Sentence fault = check_writers(m, r, x); !fault.empty()) return fault;
+        r.connections_into.add(x, link.to.component);
+        r.connections_from.add(x, link.from.component);
+    }
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
+            const Facet& facet = m.components[c].type->facets[f];
+            if (!facet.required || (facet.kind != FacetKind::input && facet.kind != FacetKind::buffer_input))
+                continue;
+            bool connected = false;
+            for (std::size_t x = r.connections_into.first[c]; x != nowhere && !connected;
+                 x = r.connections_into.next[x])
+                connected = r.connections[x].to.facet == f;
+            if (!connected)
+                return of_component(m.components[c].name, ": its required input \"", facet.name,
+                                    "\" is not connected; add ",
+                                    facet.kind == FacetKind::input ? "data" : "buffer<n>", "(\"...\", \"",
+                                    m.components[c].name, ".", facet.name, "\")");
+        }
+    return {};
+}
+
+/// Orders the components of each activity by data flow (thesis 3.2: the kernel's data-flow order). A delayed
+/// row turns round: its reader runs before its writer, so that it sees the last cycle's value, always.
+class DataFlowOrder {
+public:
+    constexpr DataFlowOrder(const MachineView& m, const TableIndexView& r) noexcept : m_{m}, r_{r} {}
+
+    /// `begin`: where the activity's components stand in r.in_order.
+    constexpr Sentence order(std::size_t activity, std::size_t begin) {
+        activity_ = activity;
+        members_.used = 0;
+        for (const auto& name : m_.activities[activity].runs)
+            static_cast<void>(members_.push(find_component(m_, r_.by_name, name)));
+        for (const std::size_t c : members_) r_.waits_for[c] = 0;
+        if (Sentence fault = check_own_outputs(); !fault.empty()) return fault;
+        for (const std::size_t reader : members_)
+            for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))
+                ++r_.waits_for[after(row)];
+        for (std::size_t placed = 0; placed < members_.size(); ++placed) {
+            // Of those that may run now, the first one of the activity's row.
+            std::size_t next = 0;
+            while (next < members_.size() && (!waits(members_[next]) || r_.waits_for[members_[next]] != 0))
+                ++next;
+            if (next == members_.size()) return cycle();
+            r_.position[members_[next]] = placed;
+            r_.in_order[begin + placed] = members_[next];
+            release_those_behind(members_[next]);
+        }
+        return {};
+    }
+
+private:
+    [[nodiscard]] constexpr bool waits(std::size_t component) const noexcept {
+        return r_.position[component] == nowhere;
+    }
+
+    // A row between two components of the activity orders them.
+    [[nodiscard]] constexpr std::size_t writer(std::size_t row) const noexcept {
+        return r_.connections[row].from.component;
+    }
+    [[nodiscard]] constexpr std::size_t reader(std::size_t row) const noexcept {
+        return r_.connections[row].to.component;
+    }
+    [[nodiscard]] constexpr std::size_t before(std::size_t row) const noexcept {
+        return m_.connections[row].delayed_step ? reader(row) : writer(row);
+    }
+    [[nodiscard]] constexpr std::size_t after(std::size_t row) const noexcept {
+        return m_.connections[row].delayed_step ? writer(row) : reader(row);
+    }
+    [[nodiscard]] constexpr bool orders(std::size_t row) const noexcept {
+        return writer(row) != reader(row) && r_.activity[writer(row)] == activity_ &&
+               r_.activity[reader(row)] == activity_;
+    }
+    /// The rows that order the reader and another, one by one.
+    [[nodiscard]] constexpr std::size_t first_row(std::size_t reader) const noexcept {
+        return ordering(r_.connections_into.first[reader], r_.connections_into);
+    }
+    [[nodiscard]] constexpr std::size_t next_row(std::size_t row) const noexcept {
+        return ordering(r_.connections_into.next[row], r_.connections_into);
+    }
+    [[nodiscard]] constexpr std::size_t ordering(std::size_t row,
+                                                 const RowsByComponent& rows) const noexcept {
+        while (row != nowhere && !orders(row)) row = rows.next[row];
+        return row;
+    }
+
+    constexpr void release_those_behind(std::size_t component) const noexcept {
+        for (const RowsByComponent* rows : {&r_.connections_into, &r_.connections_from})
+            for (std::size_t row = rows->first[component]; row != nowhere; row = rows->next[row])
+                if (orders(row) && before(row) == component) --r_.waits_for[after(row)];
+    }
+
+    [[nodiscard]] constexpr Sentence check_own_outputs() const {
+        for (const std::size_t c : members_)
+            for (std::size_t x = r_.connections_into.first[c]; x != nowhere; x = r_.connections_into.next[x])
+                if (r_.connections[x].from.component == c && !m_.connections[x].delayed_step &&
+                    !m_.connections[x].buffered)
+                    return of_connection(
+                        m_.connections[x],
+                        ": a component's own output feeds its own input; add delayed, or keep "
+                        "the value in the component");
+        return {};
+    }
+
+    /// Walks against the flow from a member that waits until it meets itself: every row on the way is one of
+    /// the cycle.
+    [[nodiscard]] constexpr Sentence cycle() const {
+        std::size_t first = 0;
+        while (!waits(members_[first])) ++first;
+        std::size_t at = members_[first];
+        // After as many steps as there are members the walk is inside a cycle, whatever led to it.
+        for (std::size_t steps = 0; steps < members_.size(); ++steps) at = before(row_into(at));
+        const std::size_t met = at;
+        std::size_t last = row_into(at);
+        for (at = before(last); at != met; at = before(row_into(at)))
+            if (row_into(at) > last) last = row_into(at);
+        at = after(last);
+        Sentence way{m_.components[at].name};
+        do {
+            at = before(row_into(at));
+            way = Sentence{m_.components[at].name, " -> ", way};
+        } while (at != after(last));
+        return of_connection(m_.connections[last], " closes a data-flow cycle inside activity \"",
+                             m_.activities[activity_].name, "\" (", way,
+                             "); add delayed to the row whose reader shall see the last cycle's value");
+    }
+    /// A row behind which the component waits for one that waits too.
+    [[nodiscard]] constexpr std::size_t row_into(std::size_t component) const noexcept {
+        for (const std::size_t reader : members_)
+            for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))
+                if (after(row) == component && waits(before(row))) return row;
+        return nowhere;
+    }
+
+    const MachineView& m_;
+    const TableIndexView& r_;
+    std::size_t activity_ = nowhere;
+    Bounded<std::size_t, ActivityRow::max_runs> members_{}; ///< in the order of the activity's row
+};
+
+constexpr Sentence order_components(const MachineView& m, const TableIndexView& r) {
+    for (auto& each : r.position) each = nowhere;
+    DataFlowOrder flow{m, r};
+    std::size_t begin = 0;
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        if (Sentence fault = flow.order(a, begin); !fault.empty()) return fault;
+        begin += m.activities[a].runs.size();
+    }
+    return {};
+}
+
+} // namespace tappet::checks

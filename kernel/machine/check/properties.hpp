@@ -1,0 +1,217 @@
+// Checks of the properties that component rows set: names, types, ranges, bags, and the file they come from.
+#pragma once
+
+#include "kernel/base/decimal.hpp"
+#include "kernel/component/property_transaction.hpp"
+#include "kernel/machine/table/index.hpp"
+
+namespace tappet::checks {
+
+/// What is said of a row: which one, and what is wrong with it.
+template <class... Pieces> constexpr Sentence of_component(std::string_view name, const Pieces&... fault) {
+    return Sentence{"component \"", name, "\"", fault...};
+}
+template <class... Pieces> constexpr Sentence of_activity(std::string_view name, const Pieces&... fault) {
+    return Sentence{"activity \"", name, "\"", fault...};
+}
+
+/// The fault of one value, as the part of a sentence that stands behind "sets property ... to ...".
+constexpr bool of_kind(const PropertyOperations& wanted, const PropertySetting& setting,
+                       TypeId element) noexcept {
+    using Kind = PropertySetting::Kind;
+    if (wanted.kind == Kind::enumeration) return setting.kind == Kind::enumeration && setting.type == element;
+    return wanted.kind == setting.kind || (wanted.kind == Kind::real && setting.kind == Kind::whole);
+}
+
+constexpr bool fits(const Facet& property, const PropertySetting& setting) {
+    const PropertyOperations& wanted = *property.property;
+    if (!wanted.is_list) return of_kind(wanted, setting, wanted.element);
+    if (setting.kind != PropertySetting::Kind::list) return false;
+    for (std::size_t i = 0; i < setting.list->size; ++i)
+        if (!of_kind(wanted, setting.list->at(i), wanted.element)) return false;
+    return true;
+}
+
+/// In the unit of a range: seconds for a time.
+constexpr double value_of(const PropertySetting& setting) noexcept {
+    if (setting.kind == PropertySetting::Kind::real) return setting.real;
+    const auto whole = static_cast<double>(setting.whole);
+    return setting.kind == PropertySetting::Kind::duration ? whole * 1e-9 : whole;
+}
+
+constexpr Sentence value_text(const PropertySetting& setting) {
+    using Kind = PropertySetting::Kind;
+    switch (setting.kind) {
+    case Kind::real: return decimal(setting.real);
+    case Kind::duration: return decimal(value_of(setting)).add(" s");
+    case Kind::truth: return Sentence{setting.whole != 0 ? "true" : "false"};
+    case Kind::text: return Sentence{"\"", setting.text, "\""};
+    case Kind::enumeration: return Sentence{setting.type->name, " ", setting.whole};
+    case Kind::list: return Sentence{"a list of ", setting.list->size};
+    case Kind::whole: break;
+    }
+    return Sentence{setting.whole};
+}
+
+constexpr std::string_view kind_text(PropertySetting::Kind kind) noexcept {
+    using Kind = PropertySetting::Kind;
+    switch (kind) {
+    case Kind::real: return "a number";
+    case Kind::whole: return "a whole number";
+    case Kind::truth: return "true or false";
+    case Kind::text: return "a text";
+    case Kind::enumeration: return "an enumeration";
+    case Kind::duration:
+    case Kind::list: break;
+    }
+    return "a time";
+}
+
+/// What the property is, and how its row would be written.
+constexpr Sentence wanted_text(const PropertyOperations& wanted) {
+    using Kind = PropertySetting::Kind;
+    if (wanted.is_list) {
+        Sentence text{"a list"};
+        if (wanted.least_size == wanted.most_size) text.add(" of ").add(wanted.most_size);
+        return text.add(", each ")
+            .add(kind_text(wanted.kind))
+            .add("; write set<values>(...) with an array of such, constant at namespace scope");
+    }
+    Sentence text{kind_text(wanted.kind)};
+    switch (wanted.kind) {
+    case Kind::real: return text.add("; write it like 2.5");
+    case Kind::whole: return text.add("; write it like 2");
+    case Kind::truth: return text.add("; write true or false");
+    case Kind::text: return text.add("; write it in quotes, like \"left\"");
+    case Kind::enumeration: return text.add("; write a value of ").add(wanted.element->name);
+    case Kind::duration:
+    case Kind::list: break;
+    }
+    return text.add("; write it with its unit, like 2ms");
+}
+
+constexpr Sentence unknown_property(const ComponentRow& row, std::string_view name) {
+    Nearest nearest{name};
+    for (const auto& facet : row.type->facets)
+        if (facet.kind == FacetKind::property) nearest.consider(facet.name);
+    Sentence text = of_component(row.name, " has no property \"", name, "\"");
+    detail::add_suggestion(text, nearest, "add it to the component's interface");
+    return text;
+}
+
+/// Of one value, which is of the kind that is wanted: too large, too small or too long.
+constexpr Sentence check_value(const ComponentRow& row, std::string_view name, const Facet& facet,
+                               const PropertySetting& setting) {
+    using Kind = PropertySetting::Kind;
+    const PropertyOperations& wanted = *facet.property;
+    const auto sets = [&] {
+        return of_component(row.name, " sets property \"", name, "\" to ", value_text(setting),
+                            ", which is ");
+    };
+    if (wanted.kind == Kind::text)
+        return setting.text.size() <= wanted.most_letters
+                   ? Sentence{}
+                   : sets().add("longer than its ").add(wanted.most_letters).add(" letters; shorten it");
+    if (wanted.kind == Kind::whole && (setting.whole < wanted.least || setting.whole > wanted.most))
+        return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
+    const double value = value_of(setting);
+    if (value >= facet.range.low && value <= facet.range.high) return {};
+    Sentence text = sets();
+    if (value < facet.range.low)
+        text.add("under its least value ").add(decimal(facet.range.low));
+    else
+        text.add("over its greatest value ").add(decimal(facet.range.high));
+    if (wanted.kind == Kind::duration) text.add(" s");
+    return text.add("; set a value in its range, or widen range(...) in the interface of ")
+        .add(row.type->tag->name);
+}
+
+constexpr Sentence check_setting(const ComponentRow& row, const PropertyRow& setting) {
+    const std::size_t found = find_facet(row, setting.name);
+    if (found == nowhere) return unknown_property(row, setting.name);
+    const Facet& facet = row.type->facets[found];
+    if (facet.kind == FacetKind::bag)
+        return of_component(row.name, " sets \"", setting.name,
+                            "\", which is a bag; set the properties in it, each by its whole name");
+    if (facet.kind != FacetKind::property)
+        return of_component(row.name, " sets \"", setting.name, "\", which is ", to_text(facet.kind),
+                            ", not a property; set one of its properties");
+    const PropertyOperations& wanted = *facet.property;
+    if (!fits(facet, setting.setting))
+        return of_component(row.name, " sets property \"", setting.name, "\" to ",
+                            value_text(setting.setting), ", but it is ", wanted_text(wanted));
+    if (!wanted.is_list) return check_value(row, setting.name, facet, setting.setting);
+    const ListSetting& list = *setting.setting.list;
+    if (list.size < wanted.least_size || list.size > wanted.most_size)
+        return of_component(row.name, " sets property \"", setting.name, "\" to a list of ", list.size,
+                            wanted.least_size == wanted.most_size ? ", but it has " : ", but it has at most ",
+                            wanted.most_size, "; give it so many");
+    for (std::size_t i = 0; i < list.size; ++i)
+        if (Sentence fault = check_value(row, setting.name, facet, list.at(i)); !fault.empty()) return fault;
+    return {};
+}
+
+constexpr Sentence check_settings(const ComponentRow& row) {
+    if (row.too_many_settings)
+        return of_component(row.name, " sets more than ", ComponentRow::max_settings,
+                            " properties; give the others their default in the component");
+    for (std::size_t i = 0; i < row.settings.size(); ++i) {
+        const PropertyRow& setting = row.settings[i];
+        for (std::size_t j = 0; j < i; ++j)
+            if (same_letters(row.settings[j].name, setting.name))
+                return of_component(row.name, " sets property \"", setting.name, "\" twice; keep one");
+        if (Sentence fault = check_setting(row, setting); !fault.empty()) return fault;
+    }
+    return {};
+}
+
+/// A property's dots are those of its bags, and all properties together fit one transaction.
+constexpr Sentence check_bags(const ComponentRow& row) {
+    std::size_t properties = 0;
+    std::size_t bytes = 0;
+    std::string_view bag{};
+    std::size_t bag_ends = 0;
+    for (std::size_t f = 0; f < row.type->facets.size(); ++f) {
+        const Facet& facet = row.type->facets[f];
+        if (facet.kind == FacetKind::bag && f >= bag_ends) bag = facet.name, bag_ends = f + 1 + facet.members;
+        if (facet.kind != FacetKind::property) {
+            if (f < bag_ends && facet.kind != FacetKind::bag)
+                return of_component(row.name, ": its bag \"", bag, "\" holds \"", facet.name, "\", which is ",
+                                    to_text(facet.kind), "; a bag holds properties and bags");
+            continue;
+        }
+        if (f >= bag_ends && find_letter(facet.name, '.') != std::string_view::npos)
+            return of_component(row.name, ": its property \"", facet.name,
+                                "\" has a dot in its name; put it into a bag(...) in ", row.type->tag->name);
+        ++properties;
+        bytes += PropertyTransaction::bytes_for(facet);
+    }
+    if (properties > PropertyTransaction::max_values || bytes > PropertyTransaction::max_bytes)
+        return of_component(row.name, " has ", properties, " properties of ", bytes,
+                            " bytes, but a transaction holds ", PropertyTransaction::max_values, " of ",
+                            PropertyTransaction::max_bytes, "; divide the component");
+    return {};
+}
+
+constexpr Sentence check_properties_file(const MachineView& m, const ComponentRow& row) {
+    if (!row.has_properties_file) return {};
+    const std::string_view name = row.properties.name;
+    if (name.empty() || name.find('/') != std::string_view::npos || name == "." || name == "..")
+        return of_component(row.name, ": its properties file \"", name,
+                            "\" is not the plain name of a file; the board's properties_directory says where "
+                            "it lies");
+    bool has_properties = false;
+    for (const Facet& facet : row.type->facets) has_properties |= facet.kind == FacetKind::property;
+    if (!has_properties)
+        return of_component(row.name, " has no properties but a properties file \"", name,
+                            "\"; remove properties_file(...)");
+    for (const ComponentRow& other : m.components) {
+        if (&other == &row) break;
+        if (other.has_properties_file && other.properties.name == name)
+            return of_component(row.name, " has the properties file \"", name, "\" of component \"",
+                                other.name, "\"; each needs a file of its own");
+    }
+    return {};
+}
+
+} // namespace tappet::checks

@@ -1,0 +1,97 @@
+// Urgency and time: priorities follow from deadlines (deadline monotonic; Leung and Whitehead 1982), and
+// response-time analysis says on each processor whether every deadline holds with the declared budgets.
+#pragma once
+
+#include "kernel/machine/table/board.hpp"
+#include "kernel/machine/check/components.hpp"
+#include "kernel/machine/check/schedulability.hpp"
+
+namespace tappet::checks {
+
+// A receiver marks each sending activity, and the requests of what sees the machine, in one 64-bit word.
+inline constexpr std::size_t max_activities = 63;
+static_assert(max_activities < Inbox::max_senders);
+
+constexpr int processor_of(const Board& board, std::string_view activity) noexcept {
+    for (const auto& each : board.placement)
+        if (each.activity == activity) return each.processor;
+    return board.default_processor;
+}
+
+/// A number of nanoseconds as an engineer reads it.
+constexpr Sentence in_us(std::int64_t ns) { return Sentence{ns / 1000, " us"}; }
+
+/// Fills the ranks and their order: the shortest deadline first, then the order of the table; what is not
+/// real-time last.
+constexpr void rank_activities(const MachineView& m, TableIndexView r) {
+    const auto more_urgent = [&m](std::size_t a, std::size_t b) {
+        const ActivityRow& x = m.activities[a];
+        const ActivityRow& y = m.activities[b];
+        if (x.real_time != y.real_time) return x.real_time;
+        if (x.real_time && x.deadline() != y.deadline()) return x.deadline() < y.deadline();
+        return a < b;
+    };
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        r.rank[a] = 0;
+        for (std::size_t b = 0; b < m.activities.size(); ++b)
+            if (a != b && more_urgent(b, a)) ++r.rank[a];
+        r.by_rank[r.rank[a]] = a;
+    }
+}
+
+/// Fills the worst response times.
+constexpr Sentence check_schedulability(const MachineView& m, const Board& board, TableIndexView r) {
+    if (m.activities.size() > max_activities)
+        return Sentence{"the table has more than ", max_activities,
+                        " activities; merge those of equal period"};
+    for (std::size_t i = 0; i < board.placement.size(); ++i) {
+        const BoardPlacement& place = board.placement[i];
+        if (find_activity(m, place.activity) == nowhere) {
+            Nearest nearest{place.activity};
+            for (const auto& row : m.activities) nearest.consider(row.name);
+            Sentence text{"board \"", board.name, "\" places activity \"", place.activity,
+                          "\", which the table has not"};
+            detail::add_suggestion(text, nearest, "remove the placement");
+            return text;
+        }
+        if (place.processor < 0 || place.processor >= board.processors)
+            return of_activity(place.activity, ": board \"", board.name, "\" places it on processor ",
+                               place.processor, " but has processors 0 to ", board.processors - 1,
+                               "; correct its placement");
+    }
+    rank_activities(m, r);
+    std::array<int, max_activities> processors{};
+    for (std::size_t a = 0; a < m.activities.size(); ++a)
+        processors[a] = processor_of(board, m.activities[a].name);
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        r.worst_response_ns[a] = 0;
+        const ActivityRow& row = m.activities[a];
+        if (!row.real_time) continue;
+        std::array<TaskTiming, max_activities> tasks{};
+        std::size_t count = 0;
+        for (const std::size_t b : r.by_rank.first(r.rank[a] + 1)) {
+            if (processors[b] != processors[a]) continue;
+            // n wakes in a window may come together: they count as one job of n budgets.
+            const ActivityRow& other = m.activities[b];
+            const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
+            tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
+                              other.deadline().count()};
+        }
+        const Response response = response_time(std::span{tasks}.first(count), count - 1);
+        if (!response.bounded)
+            return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
+                               board.name,
+                               "\": the activities there take more than all of its time; lower budgets, "
+                               "lengthen periods, or place it elsewhere");
+        if (!response.within(row.deadline().count()))
+            return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
+                               board.name, "\": its worst response is ", in_us(response.worst_ns),
+                               ", its deadline ", in_us(row.deadline().count()),
+                               "; lower the budget of it or of a more urgent activity, lengthen its "
+                               "deadline, or place it elsewhere");
+        r.worst_response_ns[a] = response.worst_ns;
+    }
+    return {};
+}
+
+} // namespace tappet::checks

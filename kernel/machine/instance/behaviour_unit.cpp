@@ -1,0 +1,329 @@
+// Gives a unit of behaviour its memory and steps what is in it.
+#include "kernel/machine/slots/behaviour_unit.hpp"
+
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/program/check_tables.hpp"
+#include "kernel/statechart/check_references.hpp"
+
+#include <algorithm>
+#include <new>
+
+namespace tappet {
+
+namespace {
+
+template <class T>
+T* make(detail::UnitGround& ground, std::size_t count) noexcept {
+    T* memory = ground.take<T>(count);
+    for (std::size_t i = 0; i < count && memory != nullptr; ++i) new (memory + i) T{};
+    return memory;
+}
+
+/// The addresses behind an instance's links, and slots for the commands that it sends to other activities.
+void bind_links(const ScriptUnit& unit, UnitPart& part, detail::UnitGround& ground, MachineInstance& machine,
+                std::size_t driven) {
+    const MachineView& table = machine.machine().table;
+    const std::string_view name = table.components[driven].name;
+    const auto rows = part.type->tables.links;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::size_t c = component_of(table, name, unit, rows[i].peer);
+        ProgramLink& link = part.links[i];
+        link.component = link.place = machine.component(c);
+        link.type = table.components[c].type;
+        if (rows[i].facet == LinkRow::component_itself) continue;
+        if (void* place = machine.place_of({c, rows[i].facet}); place != nullptr) link.place = place;
+    }
+    std::size_t slot = 0;
+    const std::size_t sender = machine.machine().index.activity[driven];
+    detail::for_each_slot_link(unit, *part.type, [&](std::size_t i, const Facet& facet) {
+        std::byte* values = ground.take(facet.command->value_bytes(), data_alignment);
+        if (values == nullptr) return;
+        const std::size_t c = component_of(table, name, unit, rows[i].peer);
+        part.slots[slot].place(machine.command_route({c, rows[i].facet}, sender), values);
+        part.links[i].slot = &part.slots[slot++];
+    });
+}
+
+/// The number of an event among those that a unit may hear, spelled as the script spells it.
+std::size_t find_event(std::span<const std::string_view> events, std::string_view name,
+                       std::string_view driven) noexcept {
+    for (std::size_t e = 0; e < events.size(); ++e)
+        if (events[e] == name) return e;
+    for (std::size_t e = 0; e < events.size(); ++e)
+        if (is_named(name, driven, events[e])) return e;
+    return nowhere;
+}
+
+Sentence too_small(std::string_view what) {
+    return Sentence{"its ", what, " take more than the slot has room for; make the slot larger"};
+}
+
+} // namespace
+
+Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourCode> code,
+                              const BehaviourOptions& options, std::span<std::byte> memory,
+                              std::span<const std::string_view> events, MachineInstance& machine,
+                              std::size_t driven) {
+    *this = {};
+    unit_ = unit;
+    options_ = options;
+    machine_ = &machine;
+    engine_ = &machine.engines()[machine.machine().index.activity[driven]];
+    driven_ = driven;
+    const std::size_t instances = unit.instances.size();
+    detail::UnitGround ground{memory};
+    auto* parts = make<UnitPart>(ground, instances);
+    auto* machines = make<StateMachineExecution>(ground, instances); // children side by side
+    auto* views = make<ResolvedView>(ground, unit.types.size());
+    auto* routes = make<UnitRoute>(ground, events.size() * instances);
+    if (ground.full()) return too_small("instances");
+    for (std::size_t t = 0; t < unit.types.size(); ++t) {
+        const BehaviourType& type = unit.types[t];
+        // Native code is made of tables that the C++ compiler checked; what it leaves of them is not walked.
+        const bool is_native = t < code.size() && code[t].code.run != nullptr;
+        if (!is_native)
+            if (Sentence fault = check_tables(type.tables); !fault.empty()) return fault;
+        if (type.is_program()) continue;
+        if (Sentence fault = check(type.machine); !fault.empty()) return fault;
+        if (!is_native)
+            if (Sentence fault = check_references(type.machine); !fault.empty()) return fault;
+        const ResolvedRoom room = take_room(ground, measure(type.machine));
+        if (ground.full()) return too_small("states and transitions");
+        views[t] = resolve_into(type.machine, room);
+        for (std::size_t i = 0; i < instances; ++i) {
+            if (unit.instances[i].type != t) continue;
+            const MachineMemory kept = take_machine_memory(ground, views[t].sizes);
+            parts[i].machine = &machines[i];
+            parts[i].binding.history = kept.history;
+            parts[i].binding.deferred = kept.deferred;
+        }
+    }
+    for (std::size_t i = 0; i < instances; ++i) {
+        const BehaviourInstance& row = unit.instances[i];
+        UnitPart& part = parts[i];
+        part.row = &row;
+        part.type = &unit.types[row.type];
+        const BehaviourCode native = row.type < code.size() ? code[row.type] : BehaviourCode{};
+        if (part.type->is_program()) part.program = make<ProgramExecution>(ground, 1);
+        if (row.children != 0) part.binding.machines = &machines[row.first_child];
+        const std::size_t bytes = part.type->tables.layout.size;
+        part.data = ground.take(bytes, data_alignment);
+        part.links = make<ProgramLink>(ground, part.type->tables.links.size());
+        detail::for_each_slot_link(unit, *part.type, [&](std::size_t, const Facet&) { ++part.slot_count; });
+        part.slots = make<CommandSlot>(ground, part.slot_count);
+        if (ground.full()) return too_small("data and commands");
+        bind_links(unit, part, ground, machine, driven);
+        if (ground.full()) return too_small("commands");
+        std::fill_n(part.data, bytes, std::byte{});
+        std::copy(row.image.begin(), row.image.end(), part.data);
+        bind(part, native, views[row.type]);
+        if (part.machine == nullptr) continue;
+        for (std::size_t t = 0; t < views[row.type].triggers.size(); ++t) {
+            const std::string_view name = views[row.type].triggers[t];
+            const std::size_t e = find_event(events, name, machine.machine().table.components[driven].name);
+            if (e == nowhere)
+                return Sentence{"it hears event \"", name,
+                                "\", which is not in its reach; name it in events(...) of its row"};
+            UnitRoute& route = routes[e * instances + i];
+            if (route.trigger != no_trigger)
+                return Sentence{"it spells event \"", name, "\" in two ways; use one of them"};
+            route.trigger = static_cast<TriggerIndex>(t);
+        }
+    }
+    parts_ = {parts, instances};
+    routes_ = {routes, events.size() * instances};
+    return {};
+}
+
+void BehaviourUnit::bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view) {
+    const std::uint32_t statements = options_.statements != 0 ? options_.statements : default_statements;
+    const ProgramCode code = native.code.run != nullptr ? native.code : interpreted(part.type->tables);
+    void* component = machine_->component(driven_);
+    if (part.program != nullptr) {
+        ProgramContext context;
+        context.component = component;
+        context.data = part.data;
+        context.links = part.links;
+        part.program->bind(code, context, part.row->image, {statements, options_.on_error == OnError::go_on});
+        return;
+    }
+    part.binding.machine = view;
+    part.binding.component = component;
+    part.binding.code =
+        part.type->tables.nodes.empty() && part.type->tables.instructions.empty() ? native.code : code;
+    part.binding.fast = native.fast;
+    part.binding.data = part.data;
+    part.binding.links = part.links;
+    part.binding.policy = {statements, options_.escalates};
+    if (part.row->parent != no_instance)
+        part.binding.parent = (&part - (part.row - unit_.instances.data()) + part.row->parent)->machine;
+    static_cast<void>(part.machine->bind(part.binding));
+}
+
+void BehaviourUnit::trace(StateMachineExecution::Trace hook, void* context) noexcept {
+    trace_ = hook;
+    trace_context_ = context;
+    for (UnitPart& part : parts_)
+        if (part.machine != nullptr) part.machine->trace(hook, context);
+}
+
+bool BehaviourUnit::hears(std::size_t event) const noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (routes_[event * parts_.size() + i].trigger != no_trigger) return true;
+    return false;
+}
+
+bool BehaviourUnit::is_quiet() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        for (std::size_t i = 0; i < part.slot_count; ++i)
+            if (!part.slots[i].is_mine()) return false;
+    return true;
+}
+
+// The stop of a component leaves its machines in the final state; the next start leads from there.
+void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
+    reported_ = false;
+    for (UnitPart& part : parts_) {
+        if (part.row->parent != no_instance) continue;
+        if (part.program != nullptr) {
+            static_cast<void>(part.program->start());
+            continue;
+        }
+        if (part.machine->is_active())
+            static_cast<void>(part.machine->request_initial(now));
+        else if (options_.reactive)
+            static_cast<void>(part.machine->activate(now));
+        else
+            static_cast<void>(part.machine->start(now));
+    }
+}
+
+void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_)
+        if (part.program != nullptr) part.program->step(now);
+}
+
+void BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_)
+        if (part.machine != nullptr) part.machine->step(now);
+    if (left_over()) ++left_over_;
+}
+
+void BehaviourUnit::finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_) {
+        if (part.program != nullptr)
+            static_cast<void>(part.program->stop());
+        else
+            static_cast<void>(part.machine->request_final(now, reason));
+    }
+}
+
+bool BehaviourUnit::is_finished() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.machine != nullptr && part.machine->is_active() && !part.machine->in_error() &&
+            (!part.machine->is_final() || part.machine->under_way()))
+            return false;
+    return true;
+}
+
+void BehaviourUnit::deactivate(Time now) noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_)
+        if (part.machine != nullptr) static_cast<void>(part.machine->deactivate(now));
+}
+
+bool BehaviourUnit::is_active() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.machine != nullptr ? part.machine->is_active()
+                                    : part.program->status() == ProgramStatus::running ||
+                                          part.program->status() == ProgramStatus::paused)
+            return true;
+    return false;
+}
+
+void BehaviourUnit::drop() noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_) {
+        if (part.program != nullptr) {
+            static_cast<void>(part.program->stop());
+            continue;
+        }
+        new (part.machine) StateMachineExecution{};
+        static_cast<void>(part.machine->bind(part.binding));
+        part.machine->trace(trace_, trace_context_);
+    }
+}
+
+const UnitPart* BehaviourUnit::failed_part() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.machine != nullptr ? part.machine->in_error()
+                                    : part.program->status() == ProgramStatus::error)
+            return &part;
+    return nullptr;
+}
+
+bool BehaviourUnit::left_over() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.machine != nullptr ? part.machine->left_over() : part.program->left_over()) return true;
+    return false;
+}
+
+void BehaviourUnit::note_fault() noexcept TAPPET_REALTIME {
+    const UnitPart* part = failed_part();
+    if (part == nullptr) return;
+    fault_.instance = static_cast<InstanceIndex>(part - parts_.data());
+    if (part->program != nullptr)
+        fault_.line = part->program->line();
+    else
+        fault_.machine = part->machine->fault();
+}
+
+void BehaviourUnit::report_errors() noexcept TAPPET_REALTIME {
+    const UnitPart* part = reported_ ? nullptr : failed_part();
+    if (part == nullptr) return;
+    reported_ = true;
+    note_fault();
+    if (options_.on_error == OnError::stop_machine && part->row->parent == no_instance)
+        machine_->ask_stop(StopReason::behaviour, driven_, engine_);
+}
+
+Time BehaviourUnit::next() const noexcept TAPPET_REALTIME {
+    Time earliest = never;
+    for (const UnitPart& part : parts_)
+        earliest = std::min(earliest,
+                            part.machine != nullptr ? part.machine->next_timeout() : part.program->wakes());
+    return earliest;
+}
+
+void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const TriggerIndex trigger = routes_[event * parts_.size() + i].trigger;
+        if (trigger != no_trigger) static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
+    }
+}
+
+Sentence BehaviourUnit::describe_fault() const {
+    if (fault_.instance >= parts_.size()) return {};
+    const UnitPart& part = parts_[fault_.instance];
+    Sentence text{"\"", part.row->name, "\""};
+    std::uint16_t line = fault_.line;
+    if (part.machine != nullptr) {
+        const StateMachineTable& table = part.type->machine;
+        const StateMachineFault& fault = fault_.machine;
+        if (fault.state < table.states.size())
+            text.add(": ")
+                .add(to_text(fault.part))
+                .add(" of state \"")
+                .add(table.states[fault.state].name)
+                .add("\"");
+        if (fault.node < part.type->tables.nodes.size())
+            line = part.type->tables.nodes[fault.node].line;
+        else if (fault.transition < table.transitions.size())
+            line = table.transitions[fault.transition].line;
+        else if (fault.state < table.states.size())
+            line = table.states[fault.state].line;
+    }
+    text.add(" failed");
+    if (line != 0) text.add(" in line ").add(unsigned{line});
+    return text;
+}
+
+} // namespace tappet

@@ -1,0 +1,136 @@
+// What a slot does in the background: a script is compiled into the spare bank and made ready to take over.
+#include "kernel/machine/slots/behaviour_slot.hpp"
+
+#include "kernel/base/nearest.hpp"
+#include "kernel/base/real_text.hpp"
+#include "kernel/base/value_text.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/script/load.hpp"
+
+namespace tappet {
+
+void BehaviourSlot::place(const Place& place) {
+    place_ = place;
+    const MachineView& table = place.machine->machine().table;
+    const auto reach = [&](std::size_t c) {
+        reachable_[reachable_count_++] = {table.components[c].name, table.components[c].type,
+                                          place.machine->machine().index.activity[c] ==
+                                              place.machine->machine().index.activity[place.component]};
+    };
+    reach(place.component);
+    for (const std::string_view peer : place.row->slot.peers) reach(find_component(table, peer));
+    for (std::size_t bank = 0; bank < 2; ++bank) {
+        detail::UnitGround ground{place.banks[bank]};
+        rooms_[bank] = detail::take_script_room(ground, slot_sizes(place.row->slot));
+        ground.take(0, unit_alignment);
+        unit_memory_[bank] = place.banks[bank].subspan(ground.used());
+    }
+}
+
+Sentence BehaviourSlot::may_load() const noexcept {
+    if (phase() == SlotPhase::waiting || phase() == SlotPhase::handing_over ||
+        asked_.load(std::memory_order_acquire))
+        return Sentence{"another change of behaviour of \"", place_.row->component,
+                        "\" is under way; wait until it is done"};
+    if (phase() == SlotPhase::trial)
+        return Sentence{
+            "the behaviour of \"", place_.row->component,
+            "\" is on trial, and the old one must be there to come back; wait until it is steady"};
+    if (!banks_[static_cast<std::size_t>(spare())].unit.is_quiet())
+        return Sentence{"a command of the old behaviour of \"", place_.row->component,
+                        "\" is still on its way; wait until it has ended"};
+    return {};
+}
+
+Sentence BehaviourSlot::compile(std::size_t letters, std::string_view name) {
+    if (Sentence fault = may_load(); !fault.empty()) return fault;
+    const auto number = static_cast<std::size_t>(spare());
+    Bank& bank = banks_[number];
+    const BehaviourRow& row = *place_.row;
+    bank.filled = false;
+    if (!bank.name.assign(name.substr(0, 48))) return Sentence{"the script's name is too long"};
+    Reach reach;
+    reach.components = {reachable_.data(), reachable_count_};
+    reach.limited = true;
+    reach.operations = {row.slot.operations.data(), row.slot.operations.size()};
+    reach.events = {row.slot.events.data(), row.slot.events.size()};
+    reach.command_slots = row.slot.command_slots;
+    reach.timers = row.slot.timers;
+    reach.depth = row.slot.depth;
+    reach.statements_per_step = row.options.statements;
+    const ScriptOutcome outcome =
+        compile_loaded({place_.text.data(), letters}, bank.name.view(), reach, rooms_[number]);
+    if (!outcome.good()) return outcome.fault;
+    if (Sentence fault = bank.unit.place(outcome.unit, {}, row.options, unit_memory_[number], place_.events,
+                                         *place_.machine, place_.component);
+        !fault.empty())
+        return Sentence{bank.name.view(), ": ", fault};
+    bank.unit.trace(place_.trace, place_.trace_context);
+    bank.filled = true;
+    return {};
+}
+
+Sentence BehaviourSlot::parse_moment(std::string_view text, SlotMoment& moment) const {
+    moment = {};
+    if (text == "now") return {};
+    double degrees = 0;
+    if (read_real_text(text, degrees) == RealTextFault::none) {
+        if (place_.angle == nullptr)
+            return Sentence{
+                "the slot of \"", place_.row->component,
+                "\" has no angle; add angle_of(\"component.output\") to its row, or name an event"};
+        if (!(degrees >= 0 && degrees < 360))
+            return Sentence{"an angle lies between 0 and 360 degrees; give one of these"};
+        moment = {SlotMoment::Kind::angle, 0, degrees};
+        return {};
+    }
+    Nearest nearest{text};
+    for (std::size_t e = 0; e < place_.events.size(); ++e) {
+        nearest.consider(place_.events[e]);
+        if (place_.events[e] != text && !is_named(text, place_.row->component, place_.events[e])) continue;
+        moment = {SlotMoment::Kind::event, e, 0};
+        return {};
+    }
+    Sentence sentence{"the slot of \"", place_.row->component, "\" has no event \"",
+                      text.substr(0, nearest_max_letters), "\""};
+    detail::add_suggestion(sentence, nearest, "name an event of its reach, an angle, or now");
+    return sentence;
+}
+
+Sentence BehaviourSlot::may(Wish wish) const noexcept {
+    const std::string_view name = place_.row->component;
+    if (asked_.load(std::memory_order_acquire) || phase() == SlotPhase::handing_over)
+        return Sentence{"another change of behaviour of \"", name, "\" is under way; wait until it is done"};
+    if (wish == Wish::unload && active() == nullptr && phase() != SlotPhase::waiting)
+        return Sentence{"nothing is loaded in the slot of \"", name, "\"; load a script first"};
+    if (wish == Wish::roll_back && (previous_ == none || !banks_[static_cast<std::size_t>(previous_)].filled))
+        return Sentence{"the slot of \"", name, "\" has no earlier behaviour; load one"};
+    if (wish == Wish::take_over && !banks_[static_cast<std::size_t>(spare())].filled)
+        return Sentence{"no script was compiled for the slot of \"", name, "\"; load one"};
+    return {};
+}
+
+bool BehaviourSlot::wish(Wish wish, const SlotMoment& moment) noexcept {
+    if (asked_.load(std::memory_order_acquire)) return false;
+    wish_ = wish;
+    moment_ = moment;
+    asked_.store(true, std::memory_order_relaxed);
+    return true;
+}
+
+Sentence BehaviourSlot::describe_roll_back() const {
+    switch (why_) {
+    case RollBack::none: return {};
+    case RollBack::asked: return Sentence{"taken back: asked for"};
+    case RollBack::error:
+    case RollBack::left_over: break;
+    }
+    const Bank& failed = banks_[static_cast<std::size_t>(spare())];
+    Sentence text{"taken back: "};
+    text.add(failed.name.view());
+    if (why_ == RollBack::left_over)
+        return text.add(": its statements of one step did not come to an end; let it wait, or allow it more");
+    return text.add(": ").add(failed.unit.describe_fault());
+}
+
+} // namespace tappet

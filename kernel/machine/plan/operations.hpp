@@ -1,0 +1,84 @@
+// The places of commands: a mailbox for each activity that sends to another, and room to follow all at once.
+#pragma once
+
+#include "kernel/activity/engine.hpp"
+#include "kernel/machine/table/unit_rows.hpp"
+
+namespace tappet {
+
+/// So many requests of the components that see the machine wait at one engine, and so many of their commands.
+inline constexpr std::uint32_t requests_waiting = 16;
+
+/// Whether any component sees the machine.
+constexpr bool is_seen(const MachineView& m) noexcept {
+    for (const ComponentRow& row : m.components)
+        if (row.type->sees_machine) return true;
+    return false;
+}
+
+/// The activity that sends the command of a uses row.
+constexpr std::size_t sender_of(const MachineView& m, const TableIndexView& r, std::size_t row) noexcept {
+    const std::string_view sent_by = m.reactions[row].sent_by;
+    return r
+        .activity[sent_by.empty() ? r.reactions[row].from.component : find_component(m, r.by_name, sent_by)];
+}
+
+constexpr bool is_command_row(const MachineView& m, const TableIndexView& r, std::size_t row) noexcept {
+    return m.reactions[row].kind == ReactionKind::uses &&
+           facet_at(m, r.reactions[row].from).kind == FacetKind::command_call;
+}
+
+namespace detail {
+
+/// Of a checked table. `Plan` and `Ground` are those of kernel/machine/plan/plan.hpp.
+template <class Plan, class Ground>
+constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan& p, Ground& ground) {
+    const std::size_t n = m.activities.size();
+    const bool seen = is_seen(m);
+    for (std::size_t row = 0; row < m.reactions.size(); ++row) {
+        if (!is_command_row(m, r, row)) continue;
+        const std::size_t receiver = r.activity[r.reactions[row].to.component];
+        // Each command object is one slot that is sent again only when it has ended: one place for each.
+        ++p.command_mail[sender_of(m, r, row) * n + receiver].capacity;
+        ++p.activities[receiver].followed_count;
+    }
+    for (const BehaviourRow& row : m.behaviours) {
+        const std::size_t sender = r.activity[find_component(m, r.by_name, row.component)];
+        for_each_command_slot(m, row.component, row.unit(), [&](End command) {
+            const std::size_t receiver = r.activity[command.component];
+            ++p.command_mail[sender * n + receiver].capacity;
+            ++p.activities[receiver].followed_count;
+        });
+        // Of a slot each may go to any of its peers, of the old behaviour and of the new one.
+        for (std::size_t receiver = 0; receiver < n; ++receiver) {
+            bool reached = false;
+            for (const std::string_view peer : row.slot.peers)
+                reached |= r.activity[find_component(m, r.by_name, peer)] == receiver && receiver != sender;
+            if (!reached) continue;
+            p.command_mail[sender * n + receiver].capacity += 2 * row.slot.command_slots;
+            p.activities[receiver].followed_count += 2 * row.slot.command_slots;
+        }
+    }
+    for (std::size_t receiver = 0; receiver < n; ++receiver) {
+        auto& activity = p.activities[receiver];
+        const auto place = [&](auto& mail) {
+            mail.sender_index = activity.command_sender_count++;
+            mail.storage_at =
+                ground.take(CommandMailbox::bytes_for(mail.capacity), CommandMailbox::alignment);
+        };
+        // Senders in order of their urgency; what only watches the machine stands behind them all.
+        for (const std::size_t sender : r.by_rank)
+            if (auto& mail = p.command_mail[sender * n + receiver]; mail.capacity != 0) place(mail);
+        if (seen) {
+            p.command_requests[receiver].capacity = requests_waiting;
+            place(p.command_requests[receiver]);
+            activity.followed_count += requests_waiting;
+        }
+        activity.command_mailboxes_at = ground.template take<CommandMailbox>(activity.command_sender_count);
+        activity.followed_at = ground.template take<CommandSlot*>(activity.followed_count);
+    }
+}
+
+} // namespace detail
+
+} // namespace tappet

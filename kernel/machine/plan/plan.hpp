@@ -1,0 +1,365 @@
+// Where everything of a machine lies: one block of static memory, laid out by the compiler from the table.
+// Start-up places objects at these offsets, an observer finds them there; nothing is allocated.
+#pragma once
+
+#include "kernel/activity/engine.hpp"
+#include "kernel/machine/slots/behaviour_slot.hpp"
+#include "kernel/machine/plan/operations.hpp"
+#include "kernel/machine/plan/scope.hpp"
+#include "kernel/machine/plan/subscription.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+
+namespace tappet {
+
+/// The places that belong to one activity.
+struct ActivityPlan {
+    std::size_t parts_at = 0;
+    std::size_t part_count = 0;
+    std::size_t functions_at = 0;
+    std::size_t timers_at = 0;
+    std::size_t timer_count = 0;
+    std::size_t behaviours_at = 0;
+    std::size_t behaviour_count = 0;
+    std::size_t guarded_at = 0;
+    std::size_t guarded_count = 0;
+    std::size_t inputs_at = 0; ///< what its components need before they start
+    std::size_t input_count = 0;
+    std::size_t mailboxes_at = 0;
+    std::size_t sender_count = 0;
+    std::size_t command_mailboxes_at = 0;
+    std::size_t command_sender_count = 0;
+    std::size_t followed_at = 0;
+    std::size_t followed_count = 0; ///< commands that may be at work at once
+    std::size_t tape_at = nowhere;  ///< CycleTape, where a component records the machine's cycles
+    std::size_t tape_words = 0;
+    std::size_t stack_at = 0;
+    std::size_t stack_bytes = 0;
+    int priority = 0; ///< SCHED_FIFO; 0: not real-time
+    int processor = 0;
+};
+
+/// A connection row's memory: a shared data object, a ring, or nothing; and what it takes to wake the reader.
+struct ConnectionPlan {
+    std::size_t memory_at = nowhere;
+    bool shared = false;         ///< across activities
+    bool first_of_output = true; ///< the row that places the shared data object
+    std::size_t waker_at = nowhere;
+};
+
+struct SubscriptionPlan {
+    std::size_t subscribers_at = nowhere; ///< of the event's first subscription: the place of the whole array
+    std::size_t async_at = nowhere;
+    std::size_t binding_at = nowhere; ///< of a trigger or an observer
+    std::size_t lanes_at = nowhere;   ///< one for each emitting activity, in their order
+    std::size_t lane_count = 0;
+    std::size_t lane_of_at = nowhere;   ///< of each activity; shared by the events of a component
+    std::size_t latest_at = nowhere;    ///< of each lane, if it keeps the latest only
+    std::size_t mailboxes_at = nowhere; ///< of a wait: one for each lane
+    std::size_t mail_at = nowhere;      ///< of a wait: what the mailboxes hold
+};
+
+struct BehaviourPlan {
+    std::size_t events_at = nowhere; ///< names of the events that it hears, or may hear
+    std::size_t event_count = 0;
+    std::size_t unit_at = nowhere;   ///< BehaviourUnit
+    std::size_t memory_at = nowhere; ///< of the unit; of a slot its two banks, one behind the other
+    std::size_t memory_bytes = 0;
+    std::size_t slot_at = nowhere;    ///< BehaviourSlot
+    std::size_t handles_at = nowhere; ///< of a slot's events
+    std::size_t text_at = nowhere;    ///< of the script on its way into a slot
+    std::size_t text_bytes = 0;
+};
+
+/// A mailbox from one activity to another: its ring's storage, and its index at the receiver.
+struct MailPlan {
+    std::size_t storage_at = nowhere;
+    std::uint32_t capacity = 0;
+    std::size_t sender_index = 0;
+};
+
+struct PlanView {
+    std::span<std::size_t> component_at;
+    std::span<std::uint32_t> part_of; ///< the component's index in its engine
+    std::span<ActivityPlan> activities;
+    std::span<ConnectionPlan> connections;
+    std::span<Subscription> subscriptions;
+    std::span<SubscriptionPlan> subscription_at;
+    std::span<BehaviourPlan> behaviours;
+    std::span<MailPlan> mail;             ///< [sender * activities + receiver]
+    std::span<MailPlan> requests;         ///< into each activity, of the components that see the machine
+    std::span<MailPlan> command_mail;     ///< as mail, of commands alone
+    std::span<MailPlan> command_requests; ///< as requests, of commands alone
+    std::size_t engines_at = 0;
+    std::size_t observed_at = 0; ///< Observed
+    std::size_t scope_at = 0;    ///< scope::Directory; 0: nothing records the machine's cycles
+    std::size_t recordings_at = 0;
+    std::size_t recordings = 0;
+    std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
+    std::size_t bytes = 0;        ///< of everything below
+    std::size_t stack_bytes = 0;  ///< of these, stacks
+};
+
+/// What stands once in a machine for whoever looks at it.
+struct Observed {
+    std::atomic<std::uint32_t> forced{0}; ///< ports that are forced now
+};
+
+/// Runs the triggers of a behaviour out of a message.
+struct TriggerBinding {
+    BehaviourUnit* unit; ///< of the row; null: of a slot
+    BehaviourSlot* slot;
+    Engine* engine;
+    std::size_t event; ///< its number in the unit or slot
+};
+
+/// What is called with each emission that an observer is connected to.
+struct EventObserver {
+    void (*observe)(void* observer, std::size_t event_index, const std::byte* packed_arguments,
+                    Time now) noexcept TAPPET_REALTIME = nullptr;
+    void* observer = nullptr;
+};
+
+/// Shows one event to the observer out of a message.
+struct ObserverBinding {
+    const EventObserver* to;
+    const Engine* engine;
+    std::size_t event_index;
+};
+
+/// One waker in the chain of an output that wakes several activities.
+struct WakerNode {
+    Waker waker;
+    WakerNode* next;
+    Engine* reader;
+    WakingRow row{};
+};
+
+/// Whether the row feeds an input that a component needs before it starts.
+constexpr bool is_needed_input(const MachineView& m, const ConnectionRow& row, const Link& link) noexcept {
+    return !row.buffered && facet_at(m, link.to).required;
+}
+
+namespace detail {
+
+class Ground {
+public:
+    constexpr std::size_t take(std::size_t bytes, std::size_t align) noexcept {
+        at_ = (at_ + align - 1) / align * align;
+        const std::size_t here = at_;
+        at_ += bytes;
+        return here;
+    }
+    template <class T>
+    constexpr std::size_t take(std::size_t count = 1) noexcept {
+        return take(count * sizeof(T), alignof(T));
+    }
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
+
+private:
+    std::size_t at_ = 0;
+};
+
+constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    // Activity by activity, so that what runs together lies together, each on lines of its own.
+    std::size_t begin = 0;
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        ActivityPlan& activity = p.activities[a];
+        ground.take(0, line_pair_bytes);
+        activity.part_count = m.activities[a].runs.size();
+        for (const std::size_t c : r.in_order.subspan(begin, activity.part_count)) {
+            p.component_at[c] = ground.take(m.components[c].type->size, m.components[c].type->align);
+            p.part_of[c] = static_cast<std::uint32_t>(r.position[c]);
+            for (const auto& facet : m.components[c].type->facets)
+                activity.timer_count += facet.kind == FacetKind::timer;
+        }
+        begin += activity.part_count;
+        activity.parts_at = ground.take<EnginePart>(activity.part_count);
+        activity.functions_at = ground.take<FunctionTiming>(activity.part_count * functions_per_part);
+        activity.timers_at = ground.take<EngineTimer>(activity.timer_count);
+    }
+}
+
+constexpr void plan_connections(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    for (std::size_t x = 0; x < m.connections.size(); ++x) {
+        const ConnectionRow& row = m.connections[x];
+        const Link& link = r.connections[x];
+        const std::size_t writer = r.activity[link.from.component];
+        const std::size_t reader = r.activity[link.to.component];
+        ConnectionPlan& plan = p.connections[x];
+        plan.shared = writer != reader;
+        const Facet& from = facet_at(m, link.from);
+        if (row.buffered) {
+            const auto& buffer = *from.buffer;
+            plan.memory_at = ground.take(buffer.ring_bytes(row.capacity, plan.shared), buffer.ring_align);
+        } else if (plan.shared) {
+            // Rows of one output share one object; the chain leads from this row to those before it.
+            for (std::size_t j = r.connections_from.next[x]; j != nowhere && plan.first_of_output;
+                 j = r.connections_from.next[j])
+                if (r.connections[j].from == link.from && p.connections[j].shared)
+                    plan.memory_at = p.connections[j].memory_at, plan.first_of_output = false;
+            const auto& port = *from.port;
+            if (plan.first_of_output) plan.memory_at = ground.take(port.shared_bytes, port.shared_align);
+        }
+        if (row.wakes_reader) plan.waker_at = ground.take<WakerNode>();
+        if (is_guarded(row)) ++p.activities[reader].guarded_count;
+        if (is_needed_input(m, row, link)) ++p.activities[reader].input_count;
+    }
+    for (auto& activity : p.activities) {
+        activity.guarded_at = ground.take<GuardedInput>(activity.guarded_count);
+        activity.inputs_at = ground.take<NeededInput>(activity.input_count);
+    }
+}
+
+constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p,
+                                  Ground& ground) {
+    list_subscriptions(m, r, p.subscriptions);
+    const std::size_t activities = m.activities.size();
+    std::size_t lane_of_at = nowhere;
+    for (std::size_t s = 0; s < p.subscriptions.size(); ++s) {
+        const Subscription& row = p.subscriptions[s];
+        SubscriptionPlan& plan = p.subscription_at[s];
+        if (row.turn == 0) {
+            std::size_t listeners = 1;
+            while (s + listeners < p.subscriptions.size() && p.subscriptions[s + listeners].turn != 0)
+                ++listeners;
+            plan.subscribers_at = ground.take(listeners * facet_at(m, row.event).event->subscriber_bytes,
+                                              alignof(std::max_align_t));
+        }
+        if (s == 0 || p.subscriptions[s - 1].event.component != row.event.component) lane_of_at = nowhere;
+        if (row.synchronous) continue;
+        if (lane_of_at == nowhere) lane_of_at = ground.take<std::uint8_t>(activities);
+        plan.lane_of_at = lane_of_at;
+        plan.async_at = ground.take<AsyncReaction>();
+        plan.lane_count = static_cast<std::size_t>(std::popcount(row.emitters));
+        plan.lanes_at = ground.take<EventLane>(plan.lane_count);
+        if (row.keeps_latest) plan.latest_at = ground.take<LatestMessage>(plan.lane_count);
+        if (row.kind == SubscriberKind::trigger) plan.binding_at = ground.take<TriggerBinding>();
+        if (row.kind == SubscriberKind::observer) plan.binding_at = ground.take<ObserverBinding>();
+        if (row.kind == SubscriberKind::wait) {
+            plan.mailboxes_at = ground.take<Mailbox>(plan.lane_count);
+            plan.mail_at = ground.take(plan.lane_count * Mailbox::bytes_for(row.quota), Mailbox::alignment);
+            continue;
+        }
+        for (std::size_t sender = 0; sender < activities; ++sender)
+            if ((row.emitters >> sender & 1) != 0)
+                p.mail[sender * activities + row.receiver].capacity += row.quota;
+    }
+    // At each receiver the senders stand in order of their urgency.
+    const std::size_t n = m.activities.size();
+    bool seen = false;
+    for (const ComponentRow& row : m.components) seen |= row.type->sees_machine;
+    for (std::size_t receiver = 0; receiver < n; ++receiver) {
+        ActivityPlan& activity = p.activities[receiver];
+        for (const std::size_t sender : r.by_rank) {
+            MailPlan& mail = p.mail[sender * n + receiver];
+            if (mail.capacity == 0) continue;
+            mail.sender_index = activity.sender_count++;
+            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+        }
+        // Behind them all stand the requests: what only watches the machine delays nobody's message.
+        if (seen) {
+            MailPlan& mail = p.requests[receiver];
+            mail.capacity = requests_waiting;
+            mail.sender_index = activity.sender_count++;
+            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+        }
+        activity.mailboxes_at = ground.take<Mailbox>(activity.sender_count);
+    }
+}
+
+constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+    for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
+        const BehaviourRow& row = m.behaviours[b];
+        BehaviourPlan& plan = p.behaviours[b];
+        if (row.is_slot()) {
+            plan.event_count = count_slot_events(m, row);
+            plan.slot_at = ground.take<BehaviourSlot>();
+            plan.handles_at = ground.take<EventHandle>(plan.event_count);
+            plan.text_bytes = slot_text_bytes(row.slot);
+            plan.text_at = ground.take(plan.text_bytes, 1);
+            plan.memory_bytes = 2 * slot_bank_bytes(row.slot, plan.event_count);
+        } else {
+            const ScriptUnit unit = row.unit();
+            plan.event_count = events_of(unit).count;
+            plan.unit_at = ground.take<BehaviourUnit>();
+            plan.memory_bytes = unit_bytes(unit, plan.event_count);
+        }
+        plan.events_at = ground.take<std::string_view>(plan.event_count);
+        plan.memory_at = ground.take(plan.memory_bytes, unit_alignment);
+        ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
+    }
+    for (auto& activity : p.activities)
+        activity.behaviours_at = ground.take<Behaviour>(activity.behaviour_count);
+}
+
+} // namespace detail
+
+/// Plans a checked table for a board. The map comes first: whoever looks at the memory begins there.
+constexpr void make_plan(const MachineView& m, const Board& board, const TableIndexView& r,
+                         std::size_t map_bytes, PlanView& p) {
+    detail::Ground ground;
+    ground.take(map_bytes, alignof(std::max_align_t));
+    p.observed_at = ground.take<Observed>();
+    detail::plan_components(m, r, p, ground);
+    detail::plan_connections(m, r, p, ground);
+    detail::plan_subscriptions(m, r, p, ground);
+    detail::plan_commands(m, r, p, ground);
+    detail::plan_behaviours(m, r, p, ground);
+    p.engines_at = ground.take<Engine>(m.activities.size());
+    detail::plan_scope(m, p, ground);
+    const std::size_t before_stacks = ground.used();
+    constexpr std::size_t page = 4096;
+    p.shared_bytes = (before_stacks + page - 1) / page * page;
+    for (std::size_t a = 0; a < m.activities.size(); ++a) {
+        ActivityPlan& plan = p.activities[a];
+        const ActivityRow& row = m.activities[a];
+        plan.stack_bytes = (row.stack + page - 1) / page * page;
+        plan.stack_at = ground.take(plan.stack_bytes, page);
+        plan.priority = row.real_time ? board.highest_priority - static_cast<int>(r.rank[a]) : 0;
+        plan.processor = checks::processor_of(board, row.name);
+    }
+    p.bytes = (ground.used() + page - 1) / page * page;
+    p.stack_bytes = ground.used() - before_stacks;
+}
+
+/// The storage of a plan, of the table's own sizes.
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t S, std::size_t B>
+struct Plan {
+    std::array<std::size_t, C> component_at{};
+    std::array<std::uint32_t, C> part_of{};
+    std::array<ActivityPlan, A> activities{};
+    std::array<ConnectionPlan, X> connections{};
+    std::array<Subscription, S> subscriptions{};
+    std::array<SubscriptionPlan, S> subscription_at{};
+    std::array<BehaviourPlan, B> behaviours{};
+    std::array<MailPlan, A * A> mail{};
+    std::array<MailPlan, A> requests{};
+    std::array<MailPlan, A * A> command_mail{};
+    std::array<MailPlan, A> command_requests{};
+    std::size_t engines_at = 0;
+    std::size_t observed_at = 0;
+    std::size_t scope_at = 0;
+    std::size_t recordings_at = 0;
+    std::size_t recordings = 0;
+    std::size_t shared_bytes = 0;
+    std::size_t bytes = 0;
+    std::size_t stack_bytes = 0;
+
+    constexpr PlanView view() noexcept {
+        return {component_at,     part_of,      activities,  connections, subscriptions,
+                subscription_at,  behaviours,   mail,        requests,    command_mail,
+                command_requests, engines_at,   observed_at, scope_at,    recordings_at,
+                recordings,       shared_bytes, bytes,       stack_bytes};
+    }
+    constexpr void take_sizes(const PlanView& v) noexcept {
+        engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;
+        observed_at = v.observed_at, shared_bytes = v.shared_bytes;
+        scope_at = v.scope_at, recordings_at = v.recordings_at, recordings = v.recordings;
+    }
+};
+
+} // namespace tappet

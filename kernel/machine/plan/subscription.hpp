@@ -1,0 +1,164 @@
+// Who reacts to which event: the reaction rows, the triggers of the behaviours, and the observer of every
+// event if there is one, in one list, event by event.
+#pragma once
+
+#include "kernel/machine/check/check.hpp"
+#include "kernel/statechart/execution.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+enum class SubscriberKind : std::uint8_t {
+    operation, ///< of a reaction row
+    wait,      ///< of a reaction row: an EventWait
+    trigger,   ///< of a behaviour
+    observer   ///< the component that sees the machine
+};
+
+/// One possible subscription.
+struct Subscription {
+    End event;
+    SubscriberKind kind = SubscriberKind::operation;
+    bool synchronous = false;
+    bool keeps_latest = false;
+    bool is_connected = true;        ///< from the start
+    End target;                      ///< the operation or the wait
+    End handle;                      ///< of a reaction row that has one
+    std::size_t behaviour = nowhere; ///< of a trigger
+    std::size_t trigger = 0;         ///< number among the events of its unit or slot
+    std::uint32_t quota = 0;
+    std::uint64_t emitters = 0; ///< one bit for each activity that may emit the event
+    std::size_t receiver = 0;   ///< activity
+    std::size_t order = 0;      ///< in the table
+    std::size_t turn = 0;       ///< among the subscriptions of its event: its bit
+};
+
+/// So many unserved emissions a state machine's trigger holds.
+inline constexpr std::uint32_t trigger_quota = 8;
+/// So many unserved emissions of each event wait for the component that sees the machine.
+inline constexpr std::uint32_t observer_quota = 8;
+
+/// The component to which every event can be shown, or nowhere.
+constexpr std::size_t find_observer(const MachineView& m) noexcept {
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        if (m.components[c].type->sees_machine) return c;
+    return nowhere;
+}
+
+/// An event whose arguments exceed a message has no asynchronous subscription.
+constexpr bool is_observable(const Facet& facet) noexcept {
+    return facet.kind == FacetKind::event && facet.type->size <= sizeof(Message::arguments);
+}
+
+/// How many subscriptions a checked table has.
+constexpr std::size_t count_subscriptions(const MachineView& m) {
+    std::size_t count = 0;
+    for (const auto& row : m.reactions) count += row.kind == ReactionKind::when;
+    for (const auto& row : m.behaviours)
+        count += row.is_slot() ? count_slot_events(m, row) : events_of(row.unit()).count;
+    if (find_observer(m) == nowhere) return count;
+    for (const auto& row : m.components)
+        for (const auto& facet : row.type->facets) count += is_observable(facet);
+    return count;
+}
+
+namespace detail {
+
+/// Writes them in the order of the table; returns how many.
+constexpr std::size_t collect_subscriptions(const MachineView& m, const TableIndexView& r,
+                                            std::span<Subscription> into) {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < m.reactions.size(); ++i) {
+        const ReactionRow& row = m.reactions[i];
+        if (row.kind != ReactionKind::when) continue;
+        Subscription& s = into[n++];
+        s.event = r.reactions[i].from;
+        s.target = r.reactions[i].to;
+        if (facet_at(m, s.target).kind == FacetKind::wait) s.kind = SubscriberKind::wait;
+        s.synchronous = row.target.synchronous;
+        s.keeps_latest = row.target.keeps_latest;
+        s.is_connected = row.is_connected;
+        if (!row.handle.empty())
+            static_cast<void>(resolve(m, r.by_name, row.handle, FacetKind::handle, s.handle));
+        s.quota = row.target.quota;
+        s.receiver = r.activity[s.target.component];
+    }
+    for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
+        const BehaviourRow& row = m.behaviours[b];
+        std::size_t number = 0;
+        const auto hear = [&](End event) {
+            Subscription& s = into[n++];
+            s.event = event;
+            s.kind = SubscriberKind::trigger;
+            s.behaviour = b;
+            s.trigger = number++;
+            s.is_connected = !row.is_slot(); // what is loaded says what it hears
+            s.quota = trigger_quota;
+            s.receiver = r.activity[find_component(m, row.component)];
+        };
+        if (row.is_slot()) {
+            for_each_slot_event(m, row, hear);
+            continue;
+        }
+        for (const std::string_view name : events_of(row.unit()).all()) {
+            End event;
+            static_cast<void>(checks::resolve_trigger(m, row, name, event));
+            hear(event);
+        }
+    }
+    const std::size_t observer = find_observer(m);
+    if (observer == nowhere) return n;
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        for (std::size_t f = 0; f < m.components[c].type->facets.size(); ++f) {
+            if (!is_observable(m.components[c].type->facets[f])) continue;
+            Subscription& s = into[n++];
+            s.event = {c, f};
+            s.kind = SubscriberKind::observer;
+            s.is_connected = false;
+            s.quota = observer_quota;
+            s.receiver = r.activity[observer];
+        }
+    return n;
+}
+
+} // namespace detail
+
+/// Writes the subscriptions of a checked table into `into`, which has room for all: those of one event stand
+/// together, in the order in which an emission runs them (thesis 4.6.2): synchronous ones in the order of
+/// the table, then asynchronous ones, the most urgent receiver's first.
+constexpr void list_subscriptions(const MachineView& m, const TableIndexView& r,
+                                  std::span<Subscription> into) {
+    const std::size_t n = detail::collect_subscriptions(m, r, into);
+    for (std::size_t i = 0; i < n; ++i) {
+        into[i].order = i;
+        into[i].emitters = r.reach[into[i].event.component];
+    }
+    std::sort(into.begin(), into.end(), [&r](const Subscription& a, const Subscription& b) {
+        if (a.event.component != b.event.component) return a.event.component < b.event.component;
+        if (a.event.facet != b.event.facet) return a.event.facet < b.event.facet;
+        if (a.synchronous != b.synchronous) return a.synchronous;
+        if (!a.synchronous && a.receiver != b.receiver) return r.rank[a.receiver] < r.rank[b.receiver];
+        return a.order < b.order;
+    });
+    for (std::size_t i = 0; i < n; ++i)
+        into[i].turn = i != 0 && into[i - 1].event == into[i].event ? into[i - 1].turn + 1 : 0;
+}
+
+/// Empty, or the sentence on an event with more subscriptions than it has bits.
+constexpr Sentence over_subscribed(const MachineView& m, std::span<const Subscription> list) {
+    for (const Subscription& each : list)
+        if (each.turn >= max_subscribers)
+            return Sentence{m.name,
+                            ": event \"",
+                            m.components[each.event.component].name,
+                            ".",
+                            facet_at(m, each.event).name,
+                            "\" has more than ",
+                            max_subscribers,
+                            " reactions and triggers; let one operation emit an event of its own for some of "
+                            "them"};
+    return {};
+}
+
+} // namespace tappet

@@ -1,0 +1,157 @@
+// What a slot does in its engine: the behaviour at work is stepped, the new one takes over at its moment and
+// is taken back when it fails its trial.
+#include "kernel/machine/slots/behaviour_slot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tappet {
+
+namespace {
+
+/// So many steps an old behaviour has to come to its final state and out of it; then it is dropped.
+constexpr std::uint32_t hand_over_steps = 1000;
+constexpr double full_turn_deg = 360;
+
+} // namespace
+
+void BehaviourSlot::obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME {
+    auto& self = *static_cast<BehaviourSlot*>(slot);
+    self.why_ = RollBack::none;
+    self.is_roll_back_ = self.wish_ == Wish::roll_back;
+    self.last_angle_ = -1;
+    switch (self.wish_) {
+    case Wish::take_over: self.target_ = self.spare(); break;
+    case Wish::unload: self.target_ = none; break;
+    case Wish::roll_back:
+        self.target_ = self.previous_;
+        self.why_ = RollBack::asked;
+        ++self.roll_backs_;
+        break;
+    }
+    self.set(SlotPhase::waiting);
+    self.asked_.store(false, std::memory_order_release);
+}
+
+/// An angle is passed upwards once a turn: from below it to it or beyond it.
+bool BehaviourSlot::is_due() noexcept TAPPET_REALTIME {
+    switch (moment_.kind) {
+    case SlotMoment::Kind::now: return true;
+    case SlotMoment::Kind::event: return false; // dispatch() sees it
+    case SlotMoment::Kind::angle: break;
+    }
+    // From the wanted angle on, 0 to 360: a value that is smaller than the last one came round.
+    double beyond = place_.angle->last() - moment_.angle_deg;
+    beyond -= full_turn_deg * std::floor(beyond / full_turn_deg);
+    const bool passed = last_angle_ >= 0 && beyond < last_angle_;
+    last_angle_ = beyond;
+    return passed;
+}
+
+void BehaviourSlot::connect(bool on) noexcept TAPPET_REALTIME {
+    const BehaviourUnit* unit = active();
+    for (std::size_t e = 0; e < place_.handles.size(); ++e) {
+        const bool awaited =
+            phase() == SlotPhase::waiting && moment_.kind == SlotMoment::Kind::event && moment_.event == e;
+        const bool wanted = awaited || (on && unit != nullptr && unit->hears(e));
+        const EventHandle& handle = place_.handles[e];
+        if (wanted && !handle.connected()) handle.connect();
+        if (!wanted && handle.connected()) handle.disconnect();
+    }
+}
+
+void BehaviourSlot::start(Time now) noexcept TAPPET_REALTIME {
+    runs_ = true;
+    connect(true);
+    if (BehaviourUnit* unit = active(); unit != nullptr) unit->start(now);
+}
+
+void BehaviourSlot::stop(Time now) noexcept TAPPET_REALTIME {
+    runs_ = false;
+    if (BehaviourUnit* unit = active(); unit != nullptr) unit->finish(now, "its component stops");
+}
+
+void BehaviourSlot::step_programs(Time now) noexcept TAPPET_REALTIME {
+    if (BehaviourUnit* unit = active(); unit != nullptr) unit->step_programs(now);
+}
+
+void BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
+    if (phase() == SlotPhase::waiting) {
+        connect(true);
+        if (is_due()) hand_over(now);
+    } else if (phase() == SlotPhase::handing_over) {
+        hand_over(now);
+    }
+    BehaviourUnit* unit = active();
+    if (unit == nullptr) return;
+    unit->step(now);
+    judge(now);
+}
+
+void BehaviourSlot::hand_over(Time now) noexcept TAPPET_REALTIME {
+    BehaviourUnit* old = active();
+    if (phase() != SlotPhase::handing_over) {
+        set(SlotPhase::handing_over);
+        steps_left_ = hand_over_steps;
+        if (old != nullptr) old->finish(now, "another behaviour takes over");
+    }
+    if (old != nullptr && old->is_active() && steps_left_-- != 0) {
+        if (!old->is_finished()) return;
+        old->deactivate(now);
+        if (old->is_active()) return;
+    }
+    if (old != nullptr) old->drop();
+    switch_to_target(now);
+}
+
+void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
+    const int before = active_.load(std::memory_order_relaxed);
+    previous_ = before == target_ ? none : before;
+    active_.store(target_, std::memory_order_relaxed);
+    ++loads_;
+    set(target_ == none ? SlotPhase::empty : is_roll_back_ ? SlotPhase::steady : SlotPhase::trial);
+    steps_left_ = place_.row->slot.trial;
+    connect(true);
+    if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->start(now);
+}
+
+void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
+    BehaviourUnit& unit = *active();
+    if (phase() != SlotPhase::trial) {
+        if (phase() == SlotPhase::steady) unit.report_errors();
+        return;
+    }
+    if (unit.failed_part() != nullptr) return take_back(RollBack::error, now);
+    if (unit.left_over()) return take_back(RollBack::left_over, now);
+    if (steps_left_ == 0 || --steps_left_ == 0) set(SlotPhase::steady);
+}
+
+// What failed is not asked to behave: its final state is requested, its exit programs get one chance, and it
+// is dropped.
+void BehaviourSlot::take_back(RollBack why, Time now) noexcept TAPPET_REALTIME {
+    BehaviourUnit& failed = *active();
+    why_ = why;
+    ++roll_backs_;
+    failed.note_fault();
+    failed.finish(now, "it failed its trial");
+    failed.deactivate(now);
+    if (failed.is_active()) failed.deactivate(now);
+    failed.drop();
+    target_ = previous_;
+    is_roll_back_ = true;
+    switch_to_target(now);
+    previous_ = none;
+}
+
+Time BehaviourSlot::next() const noexcept TAPPET_REALTIME {
+    const BehaviourUnit* unit = active();
+    return unit == nullptr ? never : unit->next();
+}
+
+void BehaviourSlot::dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
+    if (phase() == SlotPhase::waiting && moment_.kind == SlotMoment::Kind::event && moment_.event == event)
+        hand_over(now);
+    if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->dispatch(event, packed, now);
+}
+
+} // namespace tappet

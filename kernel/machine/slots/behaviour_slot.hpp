@@ -1,0 +1,244 @@
+// Room for a behaviour that is loaded while the machine runs (thesis 5.1.4, 5.2.4): two banks of memory. A
+// script is compiled into the spare one in a background activity; between two steps the engine hands over
+// from the old behaviour to the new one, and back when the new one fails its trial.
+#pragma once
+
+#include "kernel/component/event_handle.hpp"
+#include "kernel/machine/slots/behaviour_unit.hpp"
+#include "kernel/script/room.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+namespace tappet {
+
+/// When a new behaviour takes over.
+struct SlotMoment {
+    enum class Kind : std::uint8_t { now, event, angle };
+    Kind kind = Kind::now;
+    std::size_t event = 0; ///< its number in the slot's reach
+    double angle_deg = 0;  ///< passed upwards by the slot's angle, 0 to 360
+};
+
+enum class SlotPhase : std::uint8_t {
+    empty,        ///< nothing is loaded
+    steady,       ///< the loaded behaviour is at work
+    waiting,      ///< a new one waits for its moment; the old one is at work
+    handing_over, ///< the old one goes to its final state
+    trial         ///< the new one is at work and the old one ready to come back
+};
+
+constexpr std::string_view to_text(SlotPhase phase) noexcept {
+    switch (phase) {
+    case SlotPhase::empty: return "empty";
+    case SlotPhase::steady: return "steady";
+    case SlotPhase::waiting: return "waiting";
+    case SlotPhase::handing_over: return "handing_over";
+    case SlotPhase::trial: return "trial";
+    }
+    return "?";
+}
+
+/// Why the last behaviour was taken back.
+enum class RollBack : std::uint8_t {
+    none,
+    error,     ///< a program of it failed
+    left_over, ///< it did not come to an end of its statements in one step
+    asked      ///< from outside
+};
+
+namespace detail {
+
+/// The rows of a compiled script, in a bank.
+constexpr ScriptRoom take_script_room(UnitGround& ground, const ScriptSizes& sizes) noexcept {
+    const auto take = [&ground]<class T>(std::span<T>& into, std::size_t count) {
+        into = {ground.take<T>(count), count};
+    };
+    ScriptRoom room;
+    take(room.instructions, sizes.instructions);
+    take(room.conditions, sizes.conditions);
+    take(room.nodes, sizes.nodes);
+    take(room.arcs, sizes.arcs);
+    take(room.programs, sizes.programs);
+    take(room.variables, sizes.variables);
+    take(room.links, sizes.links);
+    room.image = {ground.take(sizes.image, data_alignment), sizes.image};
+    take(room.states, sizes.states);
+    take(room.transitions, sizes.transitions);
+    take(room.captures, sizes.captures);
+    take(room.types, sizes.types);
+    take(room.instances, sizes.instances);
+    take(room.names, sizes.names);
+    take(room.reach, sizes.reach);
+    return room;
+}
+
+} // namespace detail
+
+/// Arguments and results of one command that a loaded behaviour sends have so many bytes together.
+inline constexpr std::size_t slot_command_bytes = 128;
+
+constexpr ScriptSizes slot_sizes(const Slot& slot) noexcept {
+    return script_sizes_for(slot.nodes, slot.data_bytes, static_cast<std::uint32_t>(slot.peers.size() + 1));
+}
+constexpr std::size_t slot_text_bytes(const Slot& slot) noexcept {
+    return slot.text_bytes != 0 ? slot.text_bytes : 48 * std::size_t{slot.nodes};
+}
+/// What the machines of a script take resolved, of usual proportions: few transitions lead out of a composite
+/// and so out of each of its leaves.
+constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_t events) noexcept {
+    ResolvedSizes resolved;
+    resolved.states = resolved.regions = sizes.states;
+    resolved.triggers = std::min<std::size_t>(sizes.transitions, events * sizes.types);
+    resolved.arcs = 3 * std::size_t{sizes.transitions} + 2 * std::size_t{sizes.states};
+    resolved.programs = 2 * resolved.arcs;
+    return resolved;
+}
+/// Of event arguments that wait, each instance; of the histories of all together.
+inline constexpr std::size_t slot_deferred_bytes =
+    sizeof(Message::arguments) * StateMachineExecution::max_raised_events;
+
+/// What one bank takes: the rows, and the unit made of them. A machine of unusual proportions may need more
+/// than this keeps for its resolved form; then it is refused.
+constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noexcept {
+    const ScriptSizes sizes = slot_sizes(slot);
+    detail::UnitGround ground;
+    static_cast<void>(detail::take_script_room(ground, sizes));
+    ground.take(0, unit_alignment);
+    ground.take<UnitPart>(sizes.instances);
+    ground.take<ResolvedView>(sizes.types);
+    ground.take<UnitRoute>(events * sizes.instances);
+    static_cast<void>(take_room(ground, slot_resolved_sizes(sizes, events)));
+    ground.take<StateIndex>(sizes.states);
+    for (std::size_t i = 0; i < sizes.instances; ++i) {
+        ground.take<StateMachineExecution>(1);
+        ground.take<ProgramExecution>(1);
+        ground.take(slot_deferred_bytes, data_alignment);
+    }
+    ground.take(sizes.data + sizes.instances * data_alignment, data_alignment);
+    ground.take<ProgramLink>(2 * sizes.links);
+    ground.take<CommandSlot>(slot.command_slots);
+    ground.take(slot.command_slots * slot_command_bytes, data_alignment);
+    ground.take(0, unit_alignment); // the other bank stands behind it
+    return ground.used();
+}
+
+class BehaviourSlot {
+public:
+    struct Place {
+        const BehaviourRow* row = nullptr;
+        MachineInstance* machine = nullptr;
+        std::size_t component = 0;
+        std::span<std::byte> banks[2]{};
+        std::span<char> text{};
+        std::span<const std::string_view> events{}; ///< names, as its routes count them
+        std::span<EventHandle> handles{};           ///< of each event
+        const Output<double>* angle = nullptr;
+        StateMachineExecution::Trace trace = nullptr;
+        void* trace_context = nullptr;
+    };
+    /// By start-up.
+    void place(const Place& place);
+
+    // ---- in a background activity, one at a time; not real-time
+
+    /// Where the letters of a script are gathered.
+    [[nodiscard]] std::span<char> text() noexcept { return place_.text; }
+    /// Whether a script may be compiled now; a sentence says why not.
+    [[nodiscard]] Sentence may_load() const noexcept;
+    /// Compiles the first `letters` of text() into the spare bank. An error is the script's, with its line,
+    /// or says what the slot has no room for; the behaviour that is at work does not notice.
+    [[nodiscard]] Sentence compile(std::size_t letters, std::string_view name);
+    /// A moment as it is written: "now", "component.event" of the reach, or an angle in degrees.
+    [[nodiscard]] Sentence parse_moment(std::string_view text, SlotMoment& moment) const;
+
+    enum class Wish : std::uint8_t { take_over, unload, roll_back };
+    /// What obey() is to do; false: it has not obeyed the last one yet.
+    [[nodiscard]] bool wish(Wish wish, const SlotMoment& moment = {}) noexcept;
+    /// It could not be posted.
+    void forget_wish() noexcept { asked_.store(false, std::memory_order_relaxed); }
+    /// Whether a wish makes sense now; a sentence says why not.
+    [[nodiscard]] Sentence may(Wish wish) const noexcept;
+
+    // ---- what it tells; any thread, real-time. Of the units only between two steps of the engine.
+
+    [[nodiscard]] SlotPhase phase() const noexcept TAPPET_REALTIME {
+        return phase_.load(std::memory_order_acquire);
+    }
+    /// Null: none.
+    [[nodiscard]] const BehaviourUnit* active() const noexcept TAPPET_REALTIME {
+        const int bank = active_.load(std::memory_order_relaxed);
+        return bank == none ? nullptr : &banks_[static_cast<std::size_t>(bank)].unit;
+    }
+    [[nodiscard]] BehaviourUnit* active() noexcept TAPPET_REALTIME {
+        return const_cast<BehaviourUnit*>(std::as_const(*this).active());
+    }
+    [[nodiscard]] RollBack last_roll_back() const noexcept TAPPET_REALTIME { return why_; }
+    [[nodiscard]] std::uint32_t roll_backs() const noexcept TAPPET_REALTIME { return roll_backs_; }
+    /// How many times a behaviour took over.
+    [[nodiscard]] std::uint32_t loads() const noexcept TAPPET_REALTIME { return loads_; }
+    /// Why, with the line of the script; empty when nothing was taken back. Not real-time.
+    [[nodiscard]] Sentence describe_roll_back() const;
+    [[nodiscard]] const BehaviourRow& row() const noexcept { return *place_.row; }
+    [[nodiscard]] std::size_t component() const noexcept TAPPET_REALTIME { return place_.component; }
+    /// Of the script that is at work; empty: none.
+    [[nodiscard]] std::string_view script() const noexcept TAPPET_REALTIME {
+        const int bank = active_.load(std::memory_order_relaxed);
+        return bank == none ? std::string_view{} : banks_[static_cast<std::size_t>(bank)].name.view();
+    }
+
+    // ---- in its engine, real-time
+
+    /// As a message: carries out the wish.
+    static void obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME;
+    void start(Time now) noexcept TAPPET_REALTIME;
+    void step_programs(Time now) noexcept TAPPET_REALTIME;
+    void step(Time now) noexcept TAPPET_REALTIME;
+    void stop(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
+    void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
+
+private:
+    static constexpr int none = -1;
+    struct Bank {
+        BehaviourUnit unit{};
+        bool filled = false;
+        Text<48> name{}; ///< of the script's file
+    };
+    [[nodiscard]] int spare() const noexcept TAPPET_REALTIME {
+        return active_.load(std::memory_order_relaxed) == 0 ? 1 : 0;
+    }
+    [[nodiscard]] bool is_due() noexcept TAPPET_REALTIME;
+    void hand_over(Time now) noexcept TAPPET_REALTIME;
+    void switch_to_target(Time now) noexcept TAPPET_REALTIME;
+    void judge(Time now) noexcept TAPPET_REALTIME;
+    void take_back(RollBack why, Time now) noexcept TAPPET_REALTIME;
+    void connect(bool on) noexcept TAPPET_REALTIME;
+    void set(SlotPhase phase) noexcept TAPPET_REALTIME { phase_.store(phase, std::memory_order_release); }
+
+    Place place_{};
+    Bank banks_[2]{};
+    ScriptRoom rooms_[2]{};
+    std::span<std::byte> unit_memory_[2]{};
+    std::array<Reachable, Slot::max_names + 1> reachable_{};
+    std::size_t reachable_count_ = 0;
+    // Written by the background while no wish is on its way, read by the engine.
+    Wish wish_ = Wish::take_over;
+    SlotMoment moment_{};
+    std::atomic<bool> asked_{false};
+    // Written by the engine.
+    std::atomic<SlotPhase> phase_{SlotPhase::empty};
+    std::atomic<int> active_{none};
+    int previous_ = none; ///< that was at work before, and is still whole
+    int target_ = none;
+    bool runs_ = false; ///< its component does
+    bool is_roll_back_ = false;
+    std::uint32_t steps_left_ = 0; ///< of the hand-over, then of the trial
+    double last_angle_ = -1;
+    RollBack why_ = RollBack::none;
+    std::uint32_t roll_backs_ = 0;
+    std::uint32_t loads_ = 0;
+};
+
+} // namespace tappet

@@ -1,0 +1,209 @@
+// A unit of behaviour come to life: each state machine and program of a compiled or loaded script with its
+// data, its links and its command slots, in one piece of memory of a size known before. One engine steps it.
+#pragma once
+
+#include "kernel/machine/table/unit_rows.hpp"
+#include "kernel/program/execution.hpp"
+#include "kernel/statechart/execution.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace tappet {
+
+class MachineInstance;
+class Engine;
+
+/// One instance of a unit; it has either of the two executions.
+struct UnitPart {
+    const BehaviourInstance* row = nullptr;
+    const BehaviourType* type = nullptr;
+    StateMachineExecution* machine = nullptr;
+    ProgramExecution* program = nullptr;
+    std::byte* data = nullptr;
+    ProgramLink* links = nullptr;
+    CommandSlot* slots = nullptr;
+    std::size_t slot_count = 0;
+    StateMachineBinding binding{}; ///< of a machine, to bind it anew
+};
+
+/// The trigger of an instance that an event means; no_trigger: none.
+struct UnitRoute {
+    TriggerIndex trigger = no_trigger;
+};
+
+namespace detail {
+
+/// Lays things one behind the other in a piece of memory, or, without one, counts.
+class UnitGround {
+public:
+    constexpr UnitGround() = default;
+    explicit constexpr UnitGround(std::span<std::byte> memory) noexcept : memory_{memory} {}
+    template <class T>
+    constexpr T* take(std::size_t count) noexcept {
+        std::byte* place = take(count * sizeof(T), alignof(T));
+        if (place == nullptr) return nullptr;
+        return reinterpret_cast<T*>(place);
+    }
+    constexpr std::byte* take(std::size_t bytes, std::size_t align) noexcept {
+        at_ = (at_ + align - 1) / align * align;
+        const std::size_t here = at_;
+        at_ += bytes;
+        return memory_.empty() || at_ > memory_.size() ? nullptr : memory_.data() + here;
+    }
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
+    [[nodiscard]] constexpr bool full() const noexcept { return at_ > memory_.size(); }
+
+private:
+    std::span<std::byte> memory_{};
+    std::size_t at_ = 0;
+};
+
+/// The commands of one instance that are sent to other activities: calls visit(link number, facet).
+template <class Visit>
+constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& type, const Visit& visit) {
+    for (std::size_t i = 0; i < type.tables.links.size(); ++i) {
+        const LinkRow& link = type.tables.links[i];
+        if (link.needs_slot) visit(i, unit.reach[link.peer].type->facets[link.facet]);
+    }
+}
+
+} // namespace detail
+
+/// Where a type's resolved state machine lies.
+constexpr ResolvedRoom take_room(detail::UnitGround& ground, const ResolvedSizes& sizes) noexcept {
+    auto* plans = ground.take<StatePlan>(sizes.states);
+    auto* triggers = ground.take<std::string_view>(sizes.triggers);
+    auto* cells = ground.take<ArcIndex>(sizes.states * sizes.triggers);
+    auto* arcs = ground.take<StateArc>(sizes.arcs);
+    auto* programs = ground.take<StateProgram>(sizes.programs);
+    auto* regions = ground.take<StateIndex>(sizes.regions);
+    auto* captured = ground.take<std::uint16_t>(sizes.triggers);
+    return {{plans, sizes.states},     {triggers, sizes.triggers}, {cells, sizes.states * sizes.triggers},
+            {arcs, sizes.arcs},        {programs, sizes.programs}, {regions, sizes.regions},
+            {captured, sizes.triggers}};
+}
+
+/// Of one instance, what its execution keeps from step to step.
+struct MachineMemory {
+    std::span<StateIndex> history{};
+    std::span<std::byte> deferred{};
+};
+constexpr MachineMemory take_machine_memory(detail::UnitGround& ground, const ResolvedSizes& sizes) noexcept {
+    const std::size_t bytes = sizes.captured * StateMachineExecution::max_raised_events;
+    auto* history = ground.take<StateIndex>(sizes.history);
+    return {{history, sizes.history}, {ground.take(bytes, data_alignment), bytes}};
+}
+
+/// Of the memory of a unit.
+inline constexpr std::size_t unit_alignment = std::max(alignof(CommandSlot), data_alignment);
+
+/// What a unit that hears so many events takes of memory aligned to unit_alignment. The same sums as
+/// BehaviourUnit::place.
+constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
+    detail::UnitGround ground;
+    ground.take<UnitPart>(unit.instances.size());
+    ground.take<StateMachineExecution>(unit.instances.size());
+    ground.take<ResolvedView>(unit.types.size());
+    ground.take<UnitRoute>(events * unit.instances.size());
+    for (std::size_t t = 0; t < unit.types.size(); ++t) {
+        if (unit.types[t].is_program()) continue;
+        const ResolvedSizes sizes = measure(unit.types[t].machine);
+        static_cast<void>(take_room(ground, sizes));
+        for (const BehaviourInstance& instance : unit.instances)
+            if (instance.type == t) static_cast<void>(take_machine_memory(ground, sizes));
+    }
+    for (const BehaviourInstance& instance : unit.instances) {
+        const BehaviourType& type = unit.types[instance.type];
+        if (type.is_program()) ground.take<ProgramExecution>(1);
+        ground.take(type.tables.layout.size, data_alignment);
+        ground.take<ProgramLink>(type.tables.links.size());
+        std::size_t slots = 0;
+        detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet&) { ++slots; });
+        ground.take<CommandSlot>(slots);
+        detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet& facet) {
+            ground.take(facet.command->value_bytes(), data_alignment);
+        });
+    }
+    return ground.used();
+}
+
+/// Not real-time but for what says so. place() while nobody steps it.
+class BehaviourUnit {
+public:
+    /// `driven`: the component. `events` name what its routes count, and outlive it as everything in `unit`
+    /// does. An error: it does not fit, or names what the machine does not have; then it must not be started.
+    [[nodiscard]] Sentence place(const ScriptUnit& unit, std::span<const BehaviourCode> code,
+                                 const BehaviourOptions& options, std::span<std::byte> memory,
+                                 std::span<const std::string_view> events, MachineInstance& machine,
+                                 std::size_t driven);
+    [[nodiscard]] std::span<UnitPart> parts() noexcept TAPPET_REALTIME { return parts_; }
+    [[nodiscard]] std::span<const UnitPart> parts() const noexcept TAPPET_REALTIME { return parts_; }
+    [[nodiscard]] const ScriptUnit& unit() const noexcept TAPPET_REALTIME { return unit_; }
+    /// Whether any of its state machines hears the event of that number.
+    [[nodiscard]] bool hears(std::size_t event) const noexcept TAPPET_REALTIME;
+    /// None of its commands is on its way: its memory may be used anew.
+    [[nodiscard]] bool is_quiet() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool has_programs() const noexcept {
+        for (const UnitPart& part : parts_)
+            if (part.program != nullptr) return true;
+        return false;
+    }
+    void trace(StateMachineExecution::Trace hook, void* context) noexcept;
+
+    // Real-time, in the component's engine.
+
+    /// Its roots start; their children when they are told to.
+    void start(Time now) noexcept TAPPET_REALTIME;
+    /// The programs alone; their engine does so before it steps any state machine (thesis fig. 5.21).
+    void step_programs(Time now) noexcept TAPPET_REALTIME;
+    /// The state machines.
+    void step(Time now) noexcept TAPPET_REALTIME;
+    /// Into the final states; those that cannot go at once follow in the next steps.
+    void finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME;
+    /// Whether finish() has come to its end, or cannot: a machine in error stays where it is.
+    [[nodiscard]] bool is_finished() const noexcept TAPPET_REALTIME;
+    /// Out of the final states. A second call goes on without a program that failed in the first.
+    void deactivate(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME;
+    /// Inactive from now on, whatever was in hand: no program of it runs.
+    void drop() noexcept TAPPET_REALTIME;
+    /// The first instance in error; null: none is.
+    [[nodiscard]] const UnitPart* failed_part() const noexcept TAPPET_REALTIME;
+    /// The last step used up its statements with more to do.
+    [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME;
+    /// Keeps which instance is in error, for describe_fault().
+    void note_fault() noexcept TAPPET_REALTIME;
+    /// Does what the row says about errors, once for each.
+    void report_errors() noexcept TAPPET_REALTIME;
+    [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
+    void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
+
+    /// Steps that left statements over, since place().
+    [[nodiscard]] std::uint64_t steps_left_over() const noexcept TAPPET_REALTIME { return left_over_; }
+    /// What failed last: instance, program and line. Not real-time.
+    [[nodiscard]] Sentence describe_fault() const;
+
+private:
+    void bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view);
+
+    ScriptUnit unit_{};
+    BehaviourOptions options_{};
+    MachineInstance* machine_ = nullptr;
+    const Engine* engine_ = nullptr;
+    std::size_t driven_ = 0;
+    std::span<UnitPart> parts_{};
+    std::uint64_t left_over_ = 0;
+    struct {
+        InstanceIndex instance = no_instance;
+        std::uint16_t line = 0; // of a program
+        StateMachineFault machine{};
+    } fault_;
+    bool reported_ = false;
+    StateMachineExecution::Trace trace_ = nullptr;
+    void* trace_context_ = nullptr;
+    std::span<const UnitRoute> routes_{}; // [event * instances + instance]
+};
+
+} // namespace tappet

@@ -1,0 +1,133 @@
+// A board: what one kind of box calls the devices that a machine table names, and what the box can do. One
+// binary is one machine on one board.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/time.hpp"
+#include "kernel/component/role.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+/// A line of a GPIO chip: the logical name of the machine, the offset on this box.
+struct BoardLine {
+    std::string_view name{};
+    unsigned offset = 0;
+};
+
+/// What a CAN bus of the box is wired and terminated for, in bit/s.
+struct BitRate {
+    std::uint32_t bits_per_second = 0;
+};
+
+struct BoardDevice {
+    std::string_view name{};    ///< logical: what the machine table says
+    std::string_view kind{};    ///< "can", "gpio", "modbus": of the component that may drive it
+    std::string_view address{}; ///< "can0", "/dev/gpiochip0", "192.168.7.2:502", "/dev/ttyS1:19200:8E1"
+    Bounded<BoardLine, 64> lines{};
+    BitRate bit_rate{}; ///< of a "can" device, which must say it
+};
+
+/// The processor an activity is bound to, by the activity's name.
+struct BoardPlacement {
+    std::string_view activity{};
+    int processor = 0;
+};
+
+/// Whoever is this user, or in this group, has this role at least.
+struct BoardRole {
+    bool is_group = false;
+    std::uint32_t number = 0;
+    Role role = Role::observer;
+};
+
+/// The local socket for browsers: where it stands and who may use it. Root and the user that runs the machine
+/// are engineers; whoever else may open the socket's file and is not listed is an observer.
+struct BoardBrowsing {
+    std::string_view directory{}; ///< empty: no socket unless the program's options name one
+    unsigned mode = 0660;         ///< of the socket's file
+    std::int64_t group = -1;      ///< of the socket's file; -1: that of the process
+    Bounded<BoardRole, 16> roles{};
+};
+
+struct Board {
+    std::string_view name{};
+    std::string_view world{};            ///< "host", "bench" or "box"
+    std::size_t memory_budget_bytes = 0; ///< of all static memory, the heap's arena and the stacks included
+    std::size_t heap_bytes = 0;          ///< the arena that configuring may use before arming
+    int processors = 1;
+    int highest_priority = 80; ///< SCHED_FIFO; interrupt threads stay above it
+    int default_processor = 0;
+    Bounded<BoardPlacement, 32> placement{};
+    Bounded<BoardDevice, 16> devices{};
+    Bounded<std::string_view, 16>
+        only_warned{}; ///< arming checks that this development board downgrades to warnings
+    std::string_view kernel_command_line{};
+    std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
+    BoardBrowsing browsing{};
+};
+
+namespace detail {
+
+constexpr void add(BoardDevice& device, const BoardLine& line) { static_cast<void>(device.lines.push(line)); }
+constexpr void add(BoardDevice& device, BitRate rate) { device.bit_rate = rate; }
+
+} // namespace detail
+
+/// board_device("loom-can", "can", "can0", bit_rate(500'000)),
+/// board_device("loom-io", "gpio", "/dev/gpiochip0", line("brake", 9), ...)
+template <class... Facts>
+constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address,
+                                   const Facts&... facts) {
+    BoardDevice device;
+    device.name = name;
+    device.kind = kind;
+    device.address = address;
+    (detail::add(device, facts), ...);
+    return device;
+}
+
+constexpr BoardLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
+constexpr BitRate bit_rate(std::uint32_t bits_per_second) noexcept { return {bits_per_second}; }
+
+constexpr BoardPlacement place(std::string_view activity, int processor) noexcept {
+    return {activity, processor};
+}
+
+namespace detail {
+
+template <class T, std::size_t N, class... Items>
+constexpr Bounded<T, N> list_of(const Items&... items) {
+    static_assert(sizeof...(Items) <= N,
+                  "a board's list is longer than its room: raise the bound in kernel/machine/table/board.hpp");
+    Bounded<T, N> list;
+    (static_cast<void>(list.push(T{items})), ...);
+    return list;
+}
+
+} // namespace detail
+
+template <class... Devices>
+constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
+    return detail::list_of<BoardDevice, 16>(devices...);
+}
+template <class... Places>
+constexpr Bounded<BoardPlacement, 32> placements(const Places&... places) {
+    return detail::list_of<BoardPlacement, 32>(places...);
+}
+constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {false, number, role}; }
+constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {true, number, role}; }
+template <class... Rows>
+constexpr Bounded<BoardRole, 16> roles(const Rows&... rows) {
+    return detail::list_of<BoardRole, 16>(rows...);
+}
+/// Arming checks, by name, that this development board downgrades to warnings.
+template <class... Names>
+constexpr Bounded<std::string_view, 16> warn_only(const Names&... names) {
+    return detail::list_of<std::string_view, 16>(names...);
+}
+
+} // namespace tappet

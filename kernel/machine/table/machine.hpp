@@ -1,0 +1,72 @@
+// The machine table: five sections of rows that say what a machine is. One value, one page.
+#pragma once
+
+#include "kernel/machine/table/rows.hpp"
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// A table as spans: what checks, planning and start-up read, whatever its sizes.
+struct MachineView {
+    std::string_view name{};
+    std::span<const ComponentRow> components;
+    std::span<const ActivityRow> activities;
+    std::span<const ConnectionRow> connections;
+    std::span<const ReactionRow> reactions;
+    std::span<const BehaviourRow> behaviours;
+};
+
+template <class Row, std::size_t N>
+struct Section {
+    std::array<Row, N> rows{};
+};
+
+template <std::size_t Components, std::size_t Activities, std::size_t Connections, std::size_t Reactions,
+          std::size_t Behaviours>
+struct Machine {
+    std::string_view name{};
+    std::array<ComponentRow, Components> components{};
+    std::array<ActivityRow, Activities> activities{};
+    std::array<ConnectionRow, Connections> connections{};
+    std::array<ReactionRow, Reactions> reactions{};
+    std::array<BehaviourRow, Behaviours> behaviours{};
+
+    [[nodiscard]] constexpr MachineView view() const noexcept {
+        return {name, components, activities, connections, reactions, behaviours};
+    }
+};
+
+// Each section is a pack of rows of one plain type: the only template argument that remains is their number.
+template <class... Rows>
+constexpr Section<ComponentRow, sizeof...(Rows)> components(const Rows&... rows) {
+    return {{rows...}};
+}
+template <class... Rows>
+constexpr Section<ActivityRow, sizeof...(Rows)> activities(const Rows&... rows) {
+    return {{rows...}};
+}
+template <class... Rows>
+constexpr Section<ConnectionRow, sizeof...(Rows)> connections(const Rows&... rows) {
+    return {{rows...}};
+}
+template <class... Rows>
+constexpr Section<ReactionRow, sizeof...(Rows)> reactions(const Rows&... rows) {
+    return {{rows...}};
+}
+template <class... Rows>
+constexpr Section<BehaviourRow, sizeof...(Rows)> behaviours(const Rows&... rows) {
+    return {{rows...}};
+}
+
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
+constexpr Machine<C, A, X, R, B> machine(std::string_view name, const Section<ComponentRow, C>& c,
+                                         const Section<ActivityRow, A>& a, const Section<ConnectionRow, X>& x,
+                                         const Section<ReactionRow, R>& r,
+                                         const Section<BehaviourRow, B>& b) {
+    return {name, c.rows, a.rows, x.rows, r.rows, b.rows};
+}
+
+} // namespace tappet

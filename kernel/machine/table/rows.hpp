@@ -1,0 +1,9 @@
+// The rows of a machine table as plain data, and the words that spell them. Nothing here is checked:
+// kernel/machine/check/check.hpp reads the finished table.
+#pragma once
+
+#include "kernel/machine/table/activities.hpp"
+#include "kernel/machine/table/behaviours.hpp"
+#include "kernel/machine/table/components.hpp"
+#include "kernel/machine/table/connections.hpp"
+#include "kernel/machine/table/reactions.hpp"

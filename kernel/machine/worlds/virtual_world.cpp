@@ -1,0 +1,113 @@
+// The order of virtual time: of what is ready at an instant, the most urgent activity runs next.
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include "kernel/base/contract.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+VirtualWorld::VirtualWorld(MachineInstance& instance) noexcept : instance_{instance} {
+    const auto rank = instance.machine().index.rank;
+    for (std::size_t r = 0; r < rank.size(); ++r)
+        for (std::size_t a = 0; a < rank.size(); ++a)
+            if (rank[a] == r) static_cast<void>(by_urgency_.push(a));
+}
+
+ActivityControl VirtualWorld::control() noexcept {
+    return {this,
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<VirtualWorld*>(self);
+                Engine& engine = world.instance_.engines()[a];
+                engine.start(world.instance_.clock().now());
+                world.wake_at_[a] =
+                    engine.looping() == nullptr ? engine.next_wake() : world.instance_.clock().now();
+                return true;
+            },
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<VirtualWorld*>(self);
+                if (world.loops_[a]) world.loops_[a]->break_off();
+                world.instance_.engines()[a].stop(world.instance_.clock().now());
+                return true;
+            }};
+}
+
+Sentence VirtualWorld::start() {
+    const Sentence refusal = instance_.start_activities(control());
+    if (!refusal.empty()) stop();
+    return refusal;
+}
+
+Sentence VirtualWorld::change_activity(std::size_t activity, LifeChange change) {
+    return instance_.change_activity(activity, change, control());
+}
+
+Time VirtualWorld::next_time() const {
+    Time next = never;
+    for (const VirtualProcess& process : processes_) next = std::min(next, process.next(process.self));
+    const auto engines = instance_.engines();
+    for (std::size_t a = 0; a < engines.size(); ++a) {
+        if (!engines[a].is_active()) continue;
+        if (engines[a].waiter().is_woken()) return instance_.clock().now();
+        next = std::min(next, wake_at_[a]);
+    }
+    return next;
+}
+
+void VirtualWorld::run_engine(std::size_t a, bool woken) {
+    Engine& engine = instance_.engines()[a];
+    if (engine.looping() == nullptr) {
+        if (runner_.run != nullptr)
+            runner_.run(runner_.self, engine, woken);
+        else
+            engine.run(woken);
+        wake_at_[a] = engine.next_wake();
+        return;
+    }
+    if (!loops_[a]) loops_[a].emplace(engine, instance_.clock(), instance_.stack_of(a));
+    loops_[a]->run(woken);
+    wake_at_[a] = loops_[a]->next_wake();
+}
+
+void VirtualWorld::run_engines(Time now) {
+    const auto engines = instance_.engines();
+    for (int round = 0; round < max_rounds_per_instant; ++round) {
+        bool ran = false;
+        for (const std::size_t a : by_urgency_) {
+            Engine& engine = engines[a];
+            if (!engine.is_active()) continue;
+            const bool woken = engine.waiter().is_woken() && engine.waiter().take();
+            if (!woken && wake_at_[a] > now) continue;
+            run_engine(a, woken);
+            ++steps_;
+            ran = true;
+            break; // the most urgent of those that are ready now runs next
+        }
+        if (!ran || instance_.stop_asked()) return;
+    }
+    TAPPET_CONTRACT(false, Contract::step_limit_exceeded, max_rounds_per_instant, max_rounds_per_instant + 1);
+}
+
+bool VirtualWorld::run_until(Time end) {
+    os::Clock& clock = instance_.clock();
+    while (!instance_.stop_asked()) {
+        instance_.serve_activity_requests(control());
+        const Time next = std::max(next_time(), clock.now());
+        if (next > end) {
+            clock.advance_to(end);
+            return true;
+        }
+        clock.advance_to(next);
+        for (const VirtualProcess& process : processes_)
+            if (process.next(process.self) <= next) process.run(process.self, next);
+        run_engines(clock.now());
+    }
+    return false;
+}
+
+void VirtualWorld::stop() {
+    for (std::size_t a = instance_.engines().size(); a-- > 0;)
+        static_cast<void>(change_activity(a, LifeChange::stop));
+}
+
+} // namespace tappet

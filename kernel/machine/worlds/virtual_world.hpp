@@ -1,0 +1,69 @@
+// The host world under virtual time: every engine and every simulated device in one thread, in an order that
+// is the same in every run. Nothing sleeps: time jumps to the next thing that happens.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/worlds/virtual_loop.hpp"
+
+#include <array>
+#include <optional>
+
+namespace tappet {
+
+/// Something beside the machine that lives in virtual time: a plant, a twin that delays frames.
+struct VirtualProcess {
+    void* self = nullptr;
+    Time (*next)(void* self) = nullptr;          ///< when it wants to run
+    void (*run)(void* self, Time now) = nullptr; ///< moves it to now; afterwards next() is later than now
+};
+
+/// Runs an engine's cycles in the world's place: for who measures them. `run` calls engine.run(woken) once.
+struct CycleRunner {
+    void* self = nullptr;
+    void (*run)(void* self, Engine& engine, bool woken) = nullptr;
+};
+
+class VirtualWorld {
+public:
+    /// The instance is configured and its clock is virtual.
+    explicit VirtualWorld(MachineInstance& instance) noexcept;
+
+    /// Before start. Processes of one instant run in the order they were added, before the engines.
+    void add(const VirtualProcess& process) noexcept { static_cast<void>(processes_.push(process)); }
+
+    /// Before start. Without one, the world itself calls Engine::run.
+    void run_cycles_by(const CycleRunner& runner) noexcept { runner_ = runner; }
+
+    /// Activities start in the table's order. Empty: all did; else the first refusal, and all are stopped.
+    Sentence start();
+    /// As RealWorld's.
+    [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
+    /// Runs to `end`, or until a stop is asked for: then false.
+    bool run_until(Time end);
+    /// Engines stop, the last row of the table first.
+    void stop();
+
+    [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
+
+private:
+    /// Engines of one instant: a message wakes another, and so on, so many times at most.
+    static constexpr int max_rounds_per_instant = 1000;
+
+    [[nodiscard]] ActivityControl control() noexcept;
+    void run_engine(std::size_t activity, bool woken);
+    [[nodiscard]] Time next_time() const;
+    void run_engines(Time now);
+
+    MachineInstance& instance_;
+    Bounded<VirtualProcess, 8> processes_{};
+    CycleRunner runner_{};
+    Bounded<std::size_t, checks::max_activities> by_urgency_{};
+    // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
+    // all its timers.
+    std::array<Time, checks::max_activities> wake_at_{};
+    std::array<std::optional<VirtualLoop>, checks::max_activities> loops_{};
+    std::uint64_t steps_ = 0;
+};
+
+} // namespace tappet

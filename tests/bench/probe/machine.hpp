@@ -1,0 +1,15 @@
+// The smallest machine that can go wrong: one component that does, one that does not, in one real-time
+// activity.
+#pragma once
+
+#include "tests/bench/probe/probe.hpp"
+#include "kernel/machine/table/machine.hpp"
+
+namespace tappet::probe {
+
+inline constexpr auto bench_probe =
+    machine("bench-probe", components(component<Bystander>("bystander"), component<Culprit>("culprit")),
+            activities(activity("work", every(1ms), runs("bystander", "culprit"), budget(100us))),
+            connections(), reactions(), behaviours());
+
+} // namespace tappet::probe

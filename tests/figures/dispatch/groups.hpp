@@ -1,0 +1,13 @@
+// What figures-dispatch measures, by subject.
+#pragma once
+
+#include "tests/figures/measure/candidates.hpp"
+
+namespace tappet::figures {
+
+void add_events(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+void add_calls(std::vector<Group>& groups);
+void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+
+} // namespace tappet::figures

@@ -1,0 +1,201 @@
+// Steps of engines whose components have nothing to do: what the framework itself takes.
+#include "tests/figures/dispatch/groups.hpp"
+
+#include "kernel/activity/engine.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/instance/instance.hpp"
+
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+
+namespace tappet::figures {
+
+namespace {
+
+/// As little as can be seen.
+struct Idle {
+    std::uint64_t steps = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { ++steps; }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+// ---- one component, bound by a table
+
+constexpr auto idle_table = machine("idle", components(component<Idle>("idle")),
+                                    activities(activity("motion", every(1ms), budget(50us), runs("idle"))),
+                                    connections(), reactions(), behaviours());
+constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 1024 * 1024};
+
+struct World {
+    os::Clock clock;
+    MachineInstance instance;
+    World(os::Clock::Kind kind, const AcceptedMachine& machine) : clock{kind}, instance{machine, clock} {
+        if (const auto configured = instance.configure({}); !configured) {
+            std::cerr << configured.error().view() << '\n';
+            std::exit(2);
+        }
+        engine().start(clock.now());
+    }
+    Engine& engine() { return instance.engines()[0]; }
+};
+
+/// As an activity does it: when is it due, it is due, it runs.
+void step_without_stamps(std::size_t times) {
+    static World world{os::Clock::Kind::virtual_time, Firmware<idle_table, board>::machine()};
+    Engine& engine = world.engine();
+    const RunsActivity here{engine.plan().activity}; // as its thread does, once for ever
+    for (std::size_t i = 0; i < times; ++i) {
+        world.clock.advance_to(engine.next_wake());
+        engine.run(false);
+    }
+}
+/// The same in real time, woken instead of waiting for its period.
+struct RealTime {
+    os::Clock clock{os::Clock::Kind::real};
+    Idle idle;
+    EnginePart part;
+    std::array<FunctionTiming, functions_per_part> functions{};
+    Engine engine;
+    RealTime() {
+        part.component = &idle;
+        part.type = &component_type<Idle>;
+        EnginePlan plan;
+        plan.name = "woken";
+        plan.deadline = 1s;
+        plan.parts = {&part, 1};
+        plan.functions = functions;
+        engine.place(plan, clock);
+        engine.start(clock.now());
+    }
+};
+void step_with_stamps(std::size_t times) {
+    static RealTime world;
+    const RunsActivity here{world.engine.plan().activity};
+    for (std::size_t i = 0; i < times; ++i) {
+        Time next = world.engine.next_wake();
+        keep(next);
+        world.engine.run(true);
+    }
+}
+
+std::uint64_t steps = 0;
+[[gnu::noinline]] void step_of(void* context, const Cycle&) noexcept {
+    ++*static_cast<std::uint64_t*>(context);
+}
+void (*volatile pointer)(void*, const Cycle&) noexcept = &step_of;
+Cycle cycle;
+void two_calls(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) {
+        pointer(&steps, cycle);
+        pointer(&steps, cycle);
+    }
+}
+void two_readings(std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) {
+        Time first = os::Clock::monotonic();
+        keep(first);
+        Time second = os::Clock::monotonic();
+        keep(second);
+    }
+}
+
+// ---- many components
+
+/// `components` of them in activities of at most `each`.
+struct Crowd {
+    os::Clock clock;
+    std::vector<Idle> idle;
+    std::vector<EnginePart> parts;
+    std::vector<FunctionTiming> functions;
+    std::vector<Engine> engines;
+
+    Crowd(os::Clock::Kind kind, std::size_t components, std::size_t each)
+        : clock{kind},
+          idle(components),
+          parts(components),
+          functions(components * functions_per_part),
+          engines((components + each - 1) / each) {
+        for (std::size_t i = 0; i < components; ++i) {
+            parts[i].component = &idle[i];
+            parts[i].type = &component_type<Idle>;
+        }
+        for (std::size_t e = 0; e < engines.size(); ++e) {
+            const std::size_t first = e * each, count = std::min(each, components - first);
+            EnginePlan plan;
+            plan.name = "crowd";
+            plan.activity = static_cast<std::uint32_t>(e);
+            plan.deadline = 1s;
+            plan.parts = std::span{parts}.subspan(first, count);
+            plan.functions =
+                std::span{functions}.subspan(first * functions_per_part, count * functions_per_part);
+            engines[e].place(plan, clock);
+            engines[e].start(clock.now());
+        }
+    }
+    void cycle() {
+        for (Engine& engine : engines) engine.run(true);
+    }
+};
+template <os::Clock::Kind kind, std::size_t components, std::size_t each>
+void step_crowd(std::size_t times) {
+    static Crowd crowd{kind, components, each};
+    for (std::size_t i = 0; i < times; i += components) crowd.cycle();
+}
+template <std::size_t components>
+void call_crowd(std::size_t times) {
+    struct Entry {
+        void (*function)(void*, const Cycle&) noexcept;
+        void* context;
+    };
+    static std::vector<std::uint64_t> counts(components);
+    static std::vector<Entry> entries = [] {
+        std::vector<Entry> filled;
+        for (std::uint64_t& each : counts) filled.push_back({&step_of, &each});
+        return filled;
+    }();
+    for (std::size_t i = 0; i < times; i += components) {
+        clobber();
+        for (const Entry& entry : entries) entry.function(entry.context, cycle);
+    }
+}
+
+constexpr auto without = os::Clock::Kind::virtual_time;
+constexpr auto with = os::Clock::Kind::real;
+
+template <std::size_t components>
+Group crowd_of(std::string name) {
+    return {
+        "dispatch.step." + name,
+        "engine time for one of " + name + " components",
+        "thesis 5.3",
+        components,
+        {{"one activity, time stamps excluded", Standing::ours, &step_crowd<without, components, components>},
+         {"activities of ten, time stamps excluded", Standing::ours, &step_crowd<without, components, 10>},
+         {"one activity, with its time stamps", Standing::ours, &step_crowd<with, components, components>},
+         {"loop over function pointers", Standing::floor, &call_crowd<components>}}};
+}
+
+} // namespace
+
+void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
+    groups.push_back({"dispatch.step.empty",
+                      "a complete engine step of one component without pending work",
+                      "thesis 5.3",
+                      64,
+                      {{"step, time stamps excluded", Standing::ours, &step_without_stamps},
+                       {"step, with its two time stamps", Standing::ours, &step_with_stamps},
+                       {"two calls through a function pointer", Standing::floor, &two_calls},
+                       {"two readings of the clock", Standing::floor, &two_readings}}});
+    goals.push_back({"empty engine step of a component without pending work, time stamps excluded and shown "
+                     "beside it <= 2 function-pointer calls",
+                     "dispatch.step.empty",
+                     "step, time stamps excluded",
+                     1.0,
+                     {"two calls through a function pointer"}});
+    groups.push_back(crowd_of<10>("10"));
+    groups.push_back(crowd_of<100>("100"));
+    groups.push_back(crowd_of<1000>("1000"));
+}
+
+} // namespace tappet::figures

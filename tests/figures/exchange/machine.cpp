@@ -1,0 +1,37 @@
+// Configures the machine; its engines stay where they are, for each operation is called by the measuring
+// threads.
+#include "tests/figures/exchange/machine.hpp"
+
+#include <iostream>
+#include <string>
+
+namespace tappet::figures {
+
+namespace {
+
+template <std::size_t bytes>
+void find_ends(MachineInstance& instance) {
+    using Out = Writer<Packet<bytes>>;
+    using In = Reader<Packet<bytes>>;
+    const std::string size = std::to_string(bytes);
+    Ends<bytes>::writer = instance.find<Out>("writer_" + size);
+    Ends<bytes>::near = instance.find<In>("near_" + size);
+    Ends<bytes>::far = instance.find<In>("far_" + size);
+}
+
+} // namespace
+
+bool start_machine() {
+    static os::Clock clock{os::Clock::Kind::virtual_time};
+    static MachineInstance instance{Firmware<exchange_machine, exchange_board>::machine(), clock};
+    if (const auto done = instance.configure({}); !done) {
+        std::cerr << done.error().view() << '\n';
+        return false;
+    }
+    find_ends<8>(instance);
+    find_ends<160>(instance);
+    find_ends<4096>(instance);
+    return true;
+}
+
+} // namespace tappet::figures

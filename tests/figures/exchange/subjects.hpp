@@ -1,0 +1,199 @@
+// What is measured: each gives a packet on one side and takes it on the other. The last value: taking tells
+// whether there is a new one. The queue: each packet once; giving tells whether there was room.
+#pragma once
+
+#include "tests/figures/exchange/machine.hpp"
+#include "tests/figures/measure/candidates.hpp"
+
+#include <atomic>
+#include <boost/lockfree/queue.hpp>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <memory>
+#include <mutex>
+#include <pthread.h>
+
+namespace tappet::figures {
+
+/// The limit of the hardware for one packet handed over: a copy in, a flag, a copy out. It protects nothing.
+template <std::size_t bytes, bool flag_on_its_own_line>
+struct BareHandOver {
+    static constexpr const char* name =
+        flag_on_its_own_line ? "bare loop, flag on a line of its own" : "bare loop, flag beside the data";
+    static constexpr Standing role = Standing::floor;
+
+    static bool give(const Packet<bytes>& value) noexcept {
+        place.value = value;
+        clobber();
+        place.flag.store(++given, std::memory_order_release);
+        return true;
+    }
+    static bool take(Packet<bytes>& into) noexcept {
+        const std::uint64_t flag = place.flag.load(std::memory_order_acquire);
+        if (flag == taken) return false;
+        clobber();
+        into = place.value;
+        taken = flag;
+        return true;
+    }
+
+private:
+    struct alignas(128) Place {
+        Packet<bytes> value{};
+        alignas(flag_on_its_own_line ? 128 : 8) std::atomic<std::uint64_t> flag{0};
+    };
+    static inline Place place{};
+    alignas(128) static inline std::uint64_t given = 0;
+    alignas(128) static inline std::uint64_t taken = 0;
+};
+
+template <std::size_t bytes>
+struct NearPort {
+    static constexpr const char* name = "Tappet data port, same activity";
+    static constexpr Standing role = Standing::ours;
+    static bool give(const Packet<bytes>& value) noexcept {
+        Ends<bytes>::writer->near.write(value);
+        return true;
+    }
+    static bool take(Packet<bytes>& into) noexcept {
+        return Ends<bytes>::near->last.read(into) == Flow::fresh;
+    }
+};
+
+template <std::size_t bytes>
+struct FarPort {
+    static constexpr const char* name = "Tappet data port";
+    static constexpr Standing role = Standing::ours;
+    static bool give(const Packet<bytes>& value) noexcept {
+        Ends<bytes>::writer->far.write(value);
+        return true;
+    }
+    static bool take(Packet<bytes>& into) noexcept {
+        return Ends<bytes>::far->last.read(into) == Flow::fresh;
+    }
+};
+
+template <std::size_t bytes>
+struct NearBuffer {
+    static constexpr const char* name = "Tappet buffer port, same activity";
+    static constexpr Standing role = Standing::ours;
+    static bool give(const Packet<bytes>& value) noexcept {
+        return Ends<bytes>::writer->near_each.push(value);
+    }
+    static bool take(Packet<bytes>& into) noexcept { return Ends<bytes>::near->each.pop(into); }
+};
+
+template <std::size_t bytes>
+struct FarBuffer {
+    static constexpr const char* name = "Tappet buffer port";
+    static constexpr Standing role = Standing::ours;
+    static bool give(const Packet<bytes>& value) noexcept {
+        return Ends<bytes>::writer->far_each.push(value);
+    }
+    static bool take(Packet<bytes>& into) noexcept { return Ends<bytes>::far->each.pop(into); }
+};
+
+/// POSIX mutexes, the second as the thesis configured it: with priority inheritance.
+class PlainLock {
+public:
+    static constexpr const char* name = "std::mutex";
+    void lock() { mutex_.lock(); }
+    void unlock() { mutex_.unlock(); }
+
+private:
+    std::mutex mutex_;
+};
+class InheritingLock {
+public:
+    static constexpr const char* name = "mutex with priority inheritance";
+    InheritingLock() {
+        pthread_mutexattr_t attributes;
+        pthread_mutexattr_init(&attributes);
+        pthread_mutexattr_setprotocol(&attributes, PTHREAD_PRIO_INHERIT);
+        pthread_mutex_init(&mutex_, &attributes);
+        pthread_mutexattr_destroy(&attributes);
+    }
+    InheritingLock(const InheritingLock&) = delete;
+    InheritingLock& operator=(const InheritingLock&) = delete;
+    ~InheritingLock() { pthread_mutex_destroy(&mutex_); }
+    void lock() { pthread_mutex_lock(&mutex_); }
+    void unlock() { pthread_mutex_unlock(&mutex_); }
+
+private:
+    pthread_mutex_t mutex_{};
+};
+
+template <std::size_t bytes, class Lock>
+struct LockedValue {
+    static constexpr const char* name = Lock::name;
+    static constexpr Standing role = Standing::peer;
+    static bool give(const Packet<bytes>& value) noexcept {
+        const std::lock_guard guard{lock};
+        held = value;
+        ++written;
+        return true;
+    }
+    static bool take(Packet<bytes>& into) noexcept {
+        const std::lock_guard guard{lock};
+        if (written == seen) return false;
+        into = held;
+        seen = written;
+        return true;
+    }
+
+private:
+    alignas(128) static inline Lock lock{};
+    static inline Packet<bytes> held{};
+    static inline std::uint64_t written = 0;
+    static inline std::uint64_t seen = 0;
+};
+
+template <std::size_t bytes, class Lock>
+struct LockedQueue {
+    static constexpr const char* name = Lock::name;
+    static constexpr Standing role = Standing::peer;
+    static bool give(const Packet<bytes>& value) noexcept {
+        const std::lock_guard guard{lock};
+        if (pushed - popped == queue_places) return false;
+        places[pushed++ % queue_places] = value;
+        return true;
+    }
+    static bool take(Packet<bytes>& into) noexcept {
+        const std::lock_guard guard{lock};
+        if (pushed == popped) return false;
+        into = places[popped++ % queue_places];
+        return true;
+    }
+
+private:
+    alignas(128) static inline Lock lock{};
+    static inline std::array<Packet<bytes>, queue_places> places{};
+    static inline std::size_t pushed = 0, popped = 0;
+};
+
+template <std::size_t bytes>
+struct BoostSpsc {
+    static constexpr const char* name = "boost::lockfree::spsc_queue";
+    static constexpr Standing role = Standing::peer;
+    static bool give(const Packet<bytes>& value) noexcept { return queue().push(value); }
+    static bool take(Packet<bytes>& into) noexcept { return queue().pop(into); }
+
+private:
+    using Queue = boost::lockfree::spsc_queue<Packet<bytes>, boost::lockfree::capacity<queue_places>>;
+    alignas(128) static inline Queue held{};
+    static Queue& queue() noexcept { return held; }
+};
+
+template <std::size_t bytes>
+struct BoostQueue {
+    static constexpr const char* name = "boost::lockfree::queue";
+    static constexpr Standing role = Standing::peer;
+    static bool give(const Packet<bytes>& value) noexcept { return queue().bounded_push(value); }
+    static bool take(Packet<bytes>& into) noexcept { return queue().pop(into); }
+
+private:
+    using Queue = boost::lockfree::queue<Packet<bytes>, boost::lockfree::capacity<queue_places>>;
+    alignas(128) static inline Queue held{};
+    static Queue& queue() noexcept { return held; }
+};
+
+} // namespace tappet::figures

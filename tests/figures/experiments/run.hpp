@@ -1,0 +1,59 @@
+// One experiment: an application in one setting, run for a while; and what its tasks recorded.
+#pragma once
+
+#include "tests/figures/experiments/applications.hpp"
+#include "tests/figures/measure/samples.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tappet::experiments {
+
+/// What one task did in one setting, over all rounds. Periods and latencies in us, the rest in ns.
+struct TaskResult {
+    std::string name;
+    double period_us = 0; ///< as the table says
+    double load_us = 0;
+    bool real_time = false;
+    figures::Samples periods{};      ///< from begin to begin
+    figures::Samples latencies{};    ///< from begin to end
+    figures::Samples exchanges{};    ///< in each execution, around data flow
+    figures::Samples copies{};       ///< the same packets, copied by one thread
+    figures::Samples one_message{};  ///< stored in place, and announced by an atomic OR
+    figures::Samples two_messages{}; ///< in two places
+    figures::Samples sends{};        ///< of one command, or of one event
+    figures::Samples one_served{};
+    figures::Samples two_served{}; ///< behind one execution
+    figures::Samples served{};     ///< any number but none
+    std::uint64_t executions = 0;
+    std::uint64_t waited_for_locks = 0;
+    std::int64_t blocked = 0; ///< times it gave the processor away although it had work to do
+    std::uint64_t misses = 0; ///< deadlines
+};
+
+struct Experiment {
+    std::string application;
+    Setting setting = Setting::none;
+    std::vector<TaskResult> tasks{}; ///< the most urgent first
+};
+
+struct Circumstances {
+    double turns_per_ns = 0;
+    double ns_per_tick = 0;
+    std::uint64_t ticks_of_stamps = 0;
+};
+
+/// Runs it for `seconds` and adds to `into`. Empty: done; else why not.
+std::string run_experiment(const Application& application, const Circumstances& circumstances, double seconds,
+                           Experiment& into);
+
+/// What is left out at the beginning of a run of that length: caches, page faults, the start of the others.
+constexpr Duration warming_of(Duration whole) { return std::min<Duration>(50ms, whole / 2); }
+
+/// What a task recorded, as samples; the first `warming` ticks are left out.
+void evaluate(std::span<const Execution> executions, Setting setting, double ns_per_tick,
+              std::uint64_t warming, TaskResult& into);
+
+} // namespace tappet::experiments

@@ -1,0 +1,94 @@
+// What a program of figures found out, in the one form that the report reads: JSON, one file for each
+// program.
+#pragma once
+
+#include "tests/figures/measure/samples.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tappet::figures {
+
+/// Ours, the physical or the bare limit that it stands beside, or what others offer for the same task.
+enum class Standing : std::uint8_t { ours, floor, peer };
+
+/// One measured thing.
+struct Row {
+    std::string name;
+    Standing role = Standing::ours;
+    Summary summary;                         ///< in the figure's unit
+    std::optional<double> instructions = {}; ///< for one operation, counted under callgrind
+};
+
+/// Things that do the same, measured in turns in one run.
+struct Figure {
+    std::string id; ///< stable: two commits are compared by it; "exchange.local.160"
+    std::string title;
+    std::string unit = "ns";
+    std::string source = {}; ///< thesis section, standard or paper
+    std::string how = {};    ///< what one sample is: "mean of 64 operations in a row"
+    std::vector<Row> rows = {};
+};
+
+/// Something that was to be shown: `measured` at most `limit`, both in `unit` ("x" for a ratio).
+struct Goal {
+    std::string text;
+    double limit = 0;
+    double measured = 0;
+    std::string unit = "x";
+    std::string detail = {}; ///< of which figures it was calculated
+    [[nodiscard]] bool held() const { return measured <= limit; }
+};
+
+/// Something that was claimed, found true or false as measured.
+struct Statement {
+    std::string text;
+    bool held = false;
+    std::string measured;
+};
+
+struct Series {
+    std::string name;
+    Standing role = Standing::ours;
+    std::vector<std::pair<double, double>> points; ///< of a histogram: lower end of the bin, how many
+};
+
+struct Plot {
+    std::string id;
+    std::string title;
+    std::string x, y; ///< what the axes show, with units
+    bool histogram = false;
+    bool log_x = false, log_y = false;
+    std::vector<Series> series;
+};
+
+struct Result {
+    std::string program;
+    std::string setting = "short";
+    std::vector<Figure> figures = {};
+    std::vector<Goal> goals = {};
+    std::vector<Statement> statements = {};
+    std::vector<Plot> plots = {};
+    std::vector<std::string> notes = {}; ///< what could not be measured here, and why
+
+    /// As JSON; read_result.hpp reads it.
+    [[nodiscard]] std::string text() const;
+    /// Empty: written. Otherwise why not.
+    [[nodiscard]] std::string write(const std::string& path) const;
+    /// As tables, with the ratio of each row to the first of ours.
+    void print() const;
+};
+
+/// Samples as a histogram of `bins` bins of equal width between the smallest and the quantile `upto`; the
+/// last bin holds the rest.
+Series histogram(std::string name, Standing role, const Samples& samples, std::size_t bins = 100,
+                 double upto = 1);
+
+/// As above, of positive samples, over all of them: each bin is so wide that `in_a_decade` of them make a
+/// factor of ten, so that a peak and a worst case far away from it are both seen. For a plot with log_x.
+Series log_histogram(std::string name, Standing role, const Samples& samples, int in_a_decade = 40);
+
+} // namespace tappet::figures

@@ -1,0 +1,226 @@
+// Response-time analysis against worked examples and a simulation.
+#include "kernel/machine/check/schedulability.hpp"
+
+#include "kernel/base/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t huge = std::numeric_limits<std::int64_t>::max();
+
+constexpr TaskTiming task(std::int64_t budget, std::int64_t period) { return {period, budget, period}; }
+constexpr Response worst(std::int64_t ns) { return {true, ns}; }
+
+constexpr std::array rate_monotonic{task(3, 7), task(3, 12), task(5, 20)};
+static_assert(response_time(rate_monotonic, 0) == worst(3));
+static_assert(response_time(rate_monotonic, 1) == worst(6));
+static_assert(response_time(rate_monotonic, 2) == worst(20));
+
+constexpr std::array fully_loaded{task(5, 20), task(10, 40), task(40, 80)};
+static_assert(response_time(fully_loaded, 0) == worst(5));
+static_assert(response_time(fully_loaded, 1) == worst(15));
+static_assert(response_time(fully_loaded, 2) == worst(80));
+
+constexpr std::array three{task(3, 9), task(4, 12), task(2, 18)};
+static_assert(response_time(three, 0) == worst(3));
+static_assert(response_time(three, 1) == worst(7));
+static_assert(response_time(three, 2) == worst(9));
+
+// Lehoczky's example: the jobs of the busy period of 694 take 114 102 116 104 118 106 94.
+constexpr std::array past_its_period{task(26, 70), task(62, 100)};
+static_assert(response_time(past_its_period, 1) == worst(118), "the first job, 114, is not the worst");
+
+constexpr CanMessageTiming seven_bytes(std::int64_t period_ns, std::int64_t deadline_ns) {
+    return {false, 7, period_ns, deadline_ns, 0};
+}
+constexpr std::array three_frames{seven_bytes(5 * ms / 2, 5 * ms / 2), seven_bytes(7 * ms / 2, 13 * ms / 4),
+                                  seven_bytes(7 * ms / 2, 13 * ms / 4)};
+static_assert(can_frame_time_ns(three_frames[0], 125'000) == 1 * ms);
+static_assert(can_response_time(three_frames, 0, 125'000) == worst(2 * ms));
+static_assert(can_response_time(three_frames, 1, 125'000) == worst(3 * ms));
+static_assert(can_response_time(three_frames, 2, 125'000) == worst(7 * ms / 2),
+              "its second instance is the worst, which the analysis of 1994 did not look at");
+
+TEST(ResponseTime, is_within_a_deadline_up_to_the_nanosecond) {
+    const Response response = response_time(rate_monotonic, 2);
+    EXPECT_TRUE(response.within(20));
+    EXPECT_FALSE(response.within(19));
+    EXPECT_FALSE(Response{}.within(huge)) << "what has no bound meets no deadline";
+}
+
+TEST(ResponseTime, counts_blocking_once_in_each_busy_period) {
+    std::array tasks = rate_monotonic;
+    tasks[0].blocking_ns = 4;
+    EXPECT_EQ(response_time(tasks, 0), worst(7));
+    EXPECT_EQ(response_time(tasks, 1), worst(6)) << "the blocking of others is theirs";
+}
+
+TEST(ResponseTime, counts_own_jitter_from_the_arrival_on) {
+    std::array tasks = rate_monotonic;
+    tasks[1].jitter_ns = 2;
+    EXPECT_EQ(response_time(tasks, 1), worst(8));
+}
+
+TEST(ResponseTime, lets_jitter_of_a_higher_priority_bring_one_arrival_more) {
+    std::array tasks{task(2, 10), task(5, 30)};
+    EXPECT_EQ(response_time(tasks, 1), worst(7));
+    tasks[0].jitter_ns = 4;
+    EXPECT_EQ(response_time(tasks, 1), worst(9)) << "at 0 and, with the jitter of the first gone, at 6";
+}
+
+TEST(ResponseTime, is_unbounded_above_full_load) {
+    const std::array tasks{task(6, 10), task(5, 10)};
+    EXPECT_TRUE(response_time(tasks, 0).bounded);
+    EXPECT_FALSE(response_time(tasks, 1).bounded);
+}
+
+TEST(ResponseTime, is_unbounded_at_full_load_with_blocking) {
+    std::array tasks{task(5, 10), task(5, 10)};
+    EXPECT_EQ(response_time(tasks, 1), worst(10));
+    tasks[1].blocking_ns = 1;
+    EXPECT_FALSE(response_time(tasks, 1).bounded);
+}
+
+TEST(ResponseTime, of_a_task_that_only_waits_includes_what_it_waits_for) {
+    const std::array tasks{task(6, 10), task(0, 10)};
+    EXPECT_EQ(response_time(tasks, 1), worst(6));
+    EXPECT_EQ(response_time(std::array{task(0, 10)}, 0), worst(0));
+}
+
+TEST(ResponseTime, refuses_timings_without_sense) {
+    EXPECT_FALSE(response_time({}, 0).bounded);
+    EXPECT_FALSE(response_time(rate_monotonic, 3).bounded);
+    EXPECT_FALSE(response_time(std::array{task(1, 0)}, 0).bounded);
+    EXPECT_FALSE(response_time(std::array{task(1, -5)}, 0).bounded);
+    EXPECT_FALSE(response_time(std::array{task(-1, 5)}, 0).bounded);
+    EXPECT_FALSE(response_time(std::array{TaskTiming{5, 1, 5, -1, 0}}, 0).bounded);
+    EXPECT_FALSE(response_time(std::array{TaskTiming{5, 1, 5, 0, -1}}, 0).bounded);
+    EXPECT_FALSE(response_time(std::array{task(0, 0), task(1, 5)}, 1).bounded) << "above it, too";
+}
+
+TEST(ResponseTime, survives_the_largest_numbers) {
+    for (const std::int64_t budget : {std::int64_t{1}, huge / 2, huge}) {
+        for (const std::int64_t period : {std::int64_t{1}, huge / 2, huge}) {
+            for (const std::int64_t jitter : {std::int64_t{0}, huge}) {
+                const TaskTiming extreme{period, budget, huge, jitter, jitter};
+                const Response response = response_time(std::array{extreme, extreme}, 1);
+                EXPECT_FALSE(response.bounded);
+            }
+        }
+    }
+    const TaskTiming long_one{analysis_max_ns, analysis_max_ns / 4, huge, 0, 0};
+    EXPECT_EQ(response_time(std::array{long_one, long_one}, 1), worst(analysis_max_ns / 2));
+}
+
+// The analysis is exact for tasks that arrive together without jitter: a simulation of every nanosecond
+// agrees.
+std::int64_t simulated_worst(std::span<const TaskTiming> tasks, std::size_t index, std::int64_t until) {
+    struct State {
+        std::int64_t jobs_done = 0;
+        std::int64_t done_of_job = 0;
+    };
+    std::vector<State> states(tasks.size());
+    std::int64_t longest = 0;
+    for (std::int64_t now = 0; now < until; ++now) {
+        for (std::size_t i = 0; i <= index; ++i) {
+            const std::int64_t arrival = states[i].jobs_done * tasks[i].period_ns;
+            if (arrival > now) continue;
+            if (++states[i].done_of_job == tasks[i].budget_ns) {
+                if (i == index) longest = std::max(longest, now + 1 - arrival);
+                states[i].done_of_job = 0;
+                ++states[i].jobs_done;
+            }
+            break;
+        }
+    }
+    return longest;
+}
+
+TEST(ResponseTime, agrees_with_a_simulation_of_random_task_sets) {
+    Random random{7};
+    int late = 0;
+    for (int round = 0; round < 300; ++round) {
+        std::vector<TaskTiming> tasks;
+        double load = 0;
+        for (int i = 0; i < 4; ++i) {
+            const std::int64_t period = random.between(4, 40);
+            const std::int64_t budget = random.between(1, period / 3 + 1);
+            load += static_cast<double>(budget) / static_cast<double>(period);
+            if (load > 0.999) break;
+            tasks.push_back(task(budget, period));
+        }
+        for (std::size_t i = 0; i < tasks.size(); ++i) {
+            const Response response = response_time(tasks, i);
+            ASSERT_TRUE(response.bounded);
+            ASSERT_EQ(response.worst_ns, simulated_worst(tasks, i, 60'000))
+                << "round " << round << " task " << i;
+            if (response.worst_ns > tasks[i].period_ns) ++late;
+        }
+    }
+    EXPECT_GT(late, 10) << "sets whose response exceeds the period must have been among them";
+}
+
+TEST(CanResponseTime, misses_the_deadline_of_the_worked_example) {
+    EXPECT_TRUE(can_response_time(three_frames, 1, 125'000).within(three_frames[1].deadline_ns));
+    EXPECT_FALSE(can_response_time(three_frames, 2, 125'000).within(three_frames[2].deadline_ns));
+}
+
+TEST(CanFrame, takes_its_longest_time_on_the_wire) {
+    EXPECT_EQ(can_frame_time_ns({false, 0, ms, ms, 0}, 1'000'000), 55'000);
+    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, 1'000'000), 135'000);
+    EXPECT_EQ(can_frame_time_ns({true, 0, ms, ms, 0}, 1'000'000), 80'000);
+    EXPECT_EQ(can_frame_time_ns({true, 8, ms, ms, 0}, 1'000'000), 160'000);
+    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, 500'000), 270'000);
+}
+
+TEST(CanFrame, is_rounded_up_at_a_bit_rate_that_does_not_divide_a_second) {
+    EXPECT_EQ(can_frame_time_ns({false, 0, ms, ms, 0}, 300'000), 183'334);
+}
+
+TEST(CanFrame, does_not_exist_with_more_than_eight_bytes_or_without_a_bit_rate) {
+    EXPECT_EQ(can_frame_time_ns({false, 9, ms, ms, 0}, 500'000), -1);
+    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, 0), -1);
+    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, -500'000), -1);
+}
+
+TEST(CanResponseTime, of_the_highest_waits_for_the_longest_frame_below) {
+    const std::array frames{CanMessageTiming{false, 0, ms, ms, 0}, CanMessageTiming{false, 1, ms, ms, 0},
+                            CanMessageTiming{true, 8, ms, ms, 0}, CanMessageTiming{false, 8, ms, ms, 0}};
+    EXPECT_EQ(can_response_time(frames, 0, 1'000'000), worst(160'000 + 55'000));
+}
+
+TEST(CanResponseTime, of_the_lowest_is_blocked_by_nothing_but_counts_its_jitter) {
+    std::array frames{CanMessageTiming{false, 8, ms, ms, 0}, CanMessageTiming{false, 8, ms, ms, 0}};
+    EXPECT_EQ(can_response_time(frames, 1, 1'000'000), worst(270'000));
+    frames[1].jitter_ns = 40'000;
+    EXPECT_EQ(can_response_time(frames, 1, 1'000'000), worst(310'000));
+}
+
+TEST(CanResponseTime, is_unbounded_on_an_overloaded_bus) {
+    const CanMessageTiming frame{false, 8, ms / 4, ms, 0};
+    EXPECT_TRUE(can_response_time(std::array{frame}, 0, 1'000'000).bounded);
+    EXPECT_FALSE(can_response_time(std::array{frame, frame}, 1, 1'000'000).bounded);
+}
+
+TEST(CanResponseTime, refuses_timings_without_sense) {
+    EXPECT_FALSE(can_response_time({}, 0, 500'000).bounded);
+    EXPECT_FALSE(can_response_time(three_frames, 3, 500'000).bounded);
+    EXPECT_FALSE(can_response_time(three_frames, 0, 0).bounded);
+    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 9, ms, ms, 0}}, 0, 500'000).bounded);
+    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 8, 0, ms, 0}}, 0, 500'000).bounded);
+    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 8, ms, ms, -1}}, 0, 500'000).bounded);
+    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 8, huge, ms, huge}}, 0, 1).bounded);
+}
+
+} // namespace

@@ -1,0 +1,313 @@
+// Events between the components of a machine (thesis 4.6): rows with handles, the order of an emission,
+// several emitting activities, waits, and the observer of everything.
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include "kernel/machine/firmware.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+namespace tappet {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string>& heard_in_order() {
+    static std::vector<std::string> order;
+    return order;
+}
+
+/// Emits on demand, and in each step what a test left there.
+struct Shaft {
+    Event<double> beat_up;
+    Event<> standing;
+    Event<std::array<double, 8>> profile; // too large for a message
+    std::vector<double> to_emit;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        for (double angle : to_emit) beat_up(angle);
+        TAPPET_ESCAPE("a test's memory", to_emit.clear());
+    }
+    void announce() noexcept TAPPET_REALTIME { beat_up(-1.0); }
+    static constexpr auto interface() {
+        return facets(event<&Shaft::beat_up>("beat_up", "the reed strikes, at this angle"),
+                      event<&Shaft::standing>("standing", "it stopped"),
+                      event<&Shaft::profile>("profile", "of one turn"),
+                      operation<&Shaft::announce>("announce", "emits in the caller's activity", any_thread));
+    }
+};
+
+/// Asks the shaft to emit, from its own activity.
+struct Panel {
+    Event<> pressed;
+    bool press = false;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (press) pressed();
+        press = false;
+    }
+    static constexpr auto interface() { return facets(event<&Panel::pressed>("pressed", "the button")); }
+};
+
+struct Console {
+    EventHandle beat;
+    EventWait<double> next_beat;
+    std::vector<double> beats;
+    bool disconnects_itself = false;
+    void on_beat(double angle) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's memory", beats.push_back(angle); heard_in_order().emplace_back("console"));
+        if (disconnects_itself) beat.disconnect();
+    }
+    static constexpr auto interface() {
+        return facets(handle<&Console::beat>("beat", "of its beats"),
+                      awaits<&Console::next_beat>("next_beat", "the next one"),
+                      operation<&Console::on_beat>("on_beat", "shows it"));
+    }
+};
+
+struct Weft {
+    std::vector<double> latest;
+    void hold(double) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's memory", heard_in_order().emplace_back("weft"));
+    }
+    void show(double angle) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's memory", latest.push_back(angle); heard_in_order().emplace_back("latest"));
+    }
+    static constexpr auto interface() {
+        return facets(operation<&Weft::hold>("hold", "holds", any_thread),
+                      operation<&Weft::show>("show", "shows"));
+    }
+};
+
+struct Watcher {
+    static constexpr bool sees_machine = true;
+    struct Seen {
+        std::size_t event;
+        double angle;
+        Time when;
+    };
+    MachineInstance* machine = nullptr;
+    std::vector<Seen> seen;
+    Sentence configure(Setup& setup) {
+        machine = setup.machine;
+        machine->show_events_to({&Watcher::observe, this});
+        return {};
+    }
+    static void observe(void* self, std::size_t event, const std::byte* packed, Time now) noexcept
+        TAPPET_REALTIME {
+        double angle = 0;
+        std::memcpy(&angle, packed, sizeof angle);
+        TAPPET_ESCAPE("a test's memory", static_cast<Watcher*>(self)->seen.push_back({event, angle, now}));
+    }
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+// clang-format off
+constexpr auto table = machine("events",
+    components(component<Shaft>("shaft"), component<Panel>("panel"), component<Console>("console"), component<Weft>("weft"),
+               component<Watcher>("watcher")),
+    activities(
+        activity("motion",  every(1ms),  budget(50us), runs("shaft")),
+        activity("logic",   every(2ms),  budget(50us), runs("panel")),
+        activity("lamps",   on_work(),   at_most(4, 1ms), deadline(500us), budget(50us), runs("weft")),
+        activity("console", every(10ms), not_real_time, runs("console")),
+        activity("office",  every(10ms), not_real_time, runs("watcher"))),
+    connections(),
+    reactions(
+        when("shaft.beat_up", tell("console.on_beat", queue(4)), handled_by("console.beat"), disconnected),
+        when("shaft.beat_up", tell("weft.show", keep_latest)),
+        when("shaft.beat_up", tell("console.next_beat")),
+        when("shaft.beat_up", call("weft.hold")),
+        when("panel.pressed", call("shaft.announce"))),
+    behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Shaft& shaft;
+    Panel& panel;
+    Console& console;
+    Weft& weft;
+    Watcher& watcher;
+    Rig()
+        : shaft{(static_cast<void>(instance.configure({}).has_value()), *instance.find<Shaft>("shaft"))},
+          panel{*instance.find<Panel>("panel")},
+          console{*instance.find<Console>("console")},
+          weft{*instance.find<Weft>("weft")},
+          watcher{*instance.find<Watcher>("watcher")} {
+        heard_in_order().clear();
+        world.start();
+    }
+    void pass(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    SubscriptionCounts counts(std::string_view operation) {
+        const auto& plan = instance.machine().plan;
+        for (std::size_t s = 0; s < plan.subscriptions.size(); ++s)
+            if (plan.subscriptions[s].kind != SubscriberKind::observer &&
+                !plan.subscriptions[s].synchronous &&
+                facet_at(instance.machine().table, plan.subscriptions[s].target).name == operation)
+                return instance.counts_of(s);
+        ADD_FAILURE() << "no row tells " << operation;
+        return {};
+    }
+};
+
+TEST(AReactionRow, that_starts_disconnected_is_run_from_when_its_handle_connects_it) {
+    Rig rig;
+    ASSERT_TRUE(rig.console.beat.valid());
+    EXPECT_FALSE(rig.console.beat.connected());
+    rig.shaft.to_emit = {1.0};
+    rig.pass(20ms);
+    rig.console.beat.connect();
+    rig.shaft.to_emit = {2.0, 3.0};
+    rig.pass(20ms);
+    EXPECT_THAT(rig.console.beats, ElementsAre(2.0, 3.0));
+    EXPECT_EQ(rig.counts("on_beat").posted, 2u);
+}
+
+TEST(AReactionRow, drops_what_was_caught_before_it_was_disconnected) {
+    Rig rig;
+    rig.console.beat.connect();
+    rig.shaft.to_emit = {2.0};
+    rig.pass(5ms); // the console's next cycle is later
+    rig.console.beat.disconnect();
+    rig.pass(20ms);
+    EXPECT_THAT(rig.console.beats, ElementsAre());
+    EXPECT_EQ(rig.counts("on_beat").outdated, 1u);
+}
+
+TEST(AReactionRow, may_be_disconnected_by_its_own_operation_with_what_waits_behind_it) {
+    Rig rig;
+    rig.console.beat.connect();
+    rig.console.disconnects_itself = true;
+    rig.shaft.to_emit = {1.0, 2.0, 3.0};
+    rig.pass(30ms);
+    EXPECT_THAT(rig.console.beats, ElementsAre(1.0));
+    EXPECT_EQ(rig.counts("on_beat").outdated, 2u);
+}
+
+TEST(AReactionRow, counts_what_its_queue_cannot_hold) {
+    Rig rig;
+    rig.console.beat.connect();
+    rig.shaft.to_emit = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+    rig.pass(20ms);
+    EXPECT_THAT(rig.console.beats, ElementsAre(1.0, 2.0, 3.0, 4.0));
+    EXPECT_EQ(rig.counts("on_beat").lost, 2u);
+    EXPECT_EQ(rig.counts("on_beat").high_water, 4u);
+}
+
+TEST(AReactionRow, that_keeps_the_latest_delivers_one_emission_of_many) {
+    Rig rig;
+    rig.shaft.to_emit = {1.0, 2.0, 3.0};
+    rig.pass(2ms);
+    EXPECT_THAT(rig.weft.latest, ElementsAre(3.0));
+    EXPECT_EQ(rig.counts("show").lost, 2u);
+}
+
+TEST(AnEmission, runs_synchronous_reactions_first_and_then_the_most_urgent_receivers) {
+    Rig rig;
+    const auto& machine = rig.instance.machine();
+    std::vector<std::string_view> order;
+    for (const Subscription& each : machine.plan.subscriptions)
+        if (facet_at(machine.table, each.event).name == "beat_up")
+            order.push_back(each.kind == SubscriberKind::observer
+                                ? "watcher"
+                                : facet_at(machine.table, each.target).name);
+    // weft.hold is called, weft.show is told in the most urgent activity, then come those of the console in
+    // the order of their rows.
+    EXPECT_THAT(order, ElementsAre("hold", "show", "on_beat", "next_beat", "watcher"));
+}
+
+TEST(AnEvent, may_be_emitted_by_each_activity_that_calls_an_operation_of_its_component) {
+    Rig rig;
+    rig.panel.press = true; // runs shaft.announce in the panel's activity
+    rig.shaft.to_emit = {1.0};
+    rig.console.beat.connect();
+    rig.pass(20ms);
+    EXPECT_THAT(rig.console.beats, testing::UnorderedElementsAre(1.0, -1.0));
+    EXPECT_EQ(rig.counts("on_beat").stray, 0u);
+    EXPECT_EQ(rig.counts("on_beat").posted, 2u);
+}
+
+TEST(AnEvent, gives_each_emitting_activity_the_whole_queue_of_a_row) {
+    Rig rig;
+    rig.console.beat.connect();
+    rig.panel.press = true;
+    rig.shaft.to_emit = {1.0, 2.0, 3.0, 4.0};
+    rig.pass(20ms);
+    EXPECT_EQ(rig.console.beats.size(), 5u);
+    EXPECT_EQ(rig.counts("on_beat").lost, 0u);
+}
+
+TEST(AWait, finds_what_was_emitted_in_order_and_answers_at_once_in_virtual_time) {
+    Rig rig;
+    double angle = 0;
+    EXPECT_FALSE(rig.console.next_beat.wait(10s, angle));
+    EXPECT_FALSE(rig.console.next_beat.take(angle));
+    rig.shaft.to_emit = {1.0, 2.0};
+    rig.pass(2ms);
+    EXPECT_TRUE(rig.console.next_beat.wait(10s, angle));
+    EXPECT_EQ(angle, 1.0);
+    EXPECT_TRUE(rig.console.next_beat.take(angle));
+    EXPECT_EQ(angle, 2.0);
+    EXPECT_FALSE(rig.console.next_beat.take(angle));
+}
+
+TEST(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
+    Rig rig;
+    const auto& table_of = rig.instance.machine().table;
+    const std::size_t shaft = find_component(table_of, "shaft");
+    const std::size_t beat_up = find_facet(table_of.components[shaft], "beat_up");
+    const EventHandle handle = rig.instance.observe_event(shaft, beat_up);
+    ASSERT_TRUE(handle.valid());
+    EXPECT_FALSE(handle.connected());
+    rig.shaft.to_emit = {1.0};
+    rig.pass(20ms);
+    EXPECT_TRUE(rig.watcher.seen.empty());
+    handle.connect();
+    rig.shaft.to_emit = {2.0};
+    rig.pass(20ms);
+    ASSERT_EQ(rig.watcher.seen.size(), 1u);
+    EXPECT_EQ(rig.watcher.seen[0].event, rig.instance.observed_index({shaft, beat_up}));
+    EXPECT_EQ(rig.watcher.seen[0].angle, 2.0);
+    EXPECT_GT(rig.watcher.seen[0].when, Time{} + 20ms);
+    handle.disconnect();
+    rig.shaft.to_emit = {3.0};
+    rig.pass(20ms);
+    EXPECT_EQ(rig.watcher.seen.size(), 1u);
+}
+
+TEST(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_any) {
+    Rig rig;
+    rig.console.beat.connect();
+    const End beat_up{find_component(rig.instance.machine().table, "shaft"), 0};
+    rig.instance.observe_event(beat_up.component, beat_up.facet).connect();
+    rig.shaft.to_emit.assign(3 * observer_quota, 1.0);
+    rig.pass(1ms);
+    EXPECT_EQ(rig.instance.counts_of(rig.instance.observed_index(beat_up)).lost, 2 * observer_quota);
+    rig.pass(20ms);
+    EXPECT_EQ(rig.console.beats.size(), 4u) << "its own queue";
+}
+
+TEST(TheObserver, cannot_be_connected_to_what_exceeds_a_message_or_is_no_event) {
+    Rig rig;
+    const auto& table_of = rig.instance.machine().table;
+    const std::size_t shaft = find_component(table_of, "shaft");
+    for (const std::string_view facet : {"profile", "announce"})
+        EXPECT_FALSE(
+            rig.instance.observe_event(shaft, find_facet(table_of.components[shaft], facet)).valid());
+    const EventHandle standing =
+        rig.instance.observe_event(shaft, find_facet(table_of.components[shaft], "standing"));
+    EXPECT_TRUE(standing.valid()) << "although no row names it";
+    standing.connect();
+    rig.shaft.standing();
+    rig.pass(20ms);
+    EXPECT_EQ(rig.watcher.seen.size(), 1u);
+}
+
+} // namespace
+} // namespace tappet

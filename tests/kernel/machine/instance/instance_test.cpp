@@ -1,0 +1,473 @@
+// Parts of a running machine start and stop (thesis 3.1.3: the states and transitions of a deployed
+// component; 4.2.2: those of an activity): a component starts only with valid inputs and leaves safe values,
+// and the rest of the machine goes on.
+#include "kernel/machine/instance/instance.hpp"
+
+#include "kernel/base/random.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "kernel/statechart/rows.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tappet {
+namespace {
+
+/// What happened on the supervisor's thread, in order.
+std::vector<std::string>& notes() {
+    static std::vector<std::string> list;
+    return list;
+}
+
+/// Gives the angle, unless it is told to be silent; 0 is its safe value.
+struct Sensor {
+    Output<double> angle;
+    bool silent = false;
+    std::uint64_t steps = 0;
+    std::string_view refuses{};
+    Sentence initialise() {
+        notes().push_back("sensor initialised");
+        return refuses.empty() ? Sentence{} : Sentence{refuses};
+    }
+    void finalise() { notes().push_back("sensor finalised"); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        ++steps;
+        if (!silent) angle.write(static_cast<double>(steps));
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!silent) angle.write(0);
+    }
+    static constexpr auto interface() { return facets(output<&Sensor::angle>("angle", "deg", "0: safe")); }
+};
+
+/// Follows the angle; its drive is safe at 0.
+struct Axis {
+    Input<double> angle;
+    Output<double> drive;
+    Timer alarm;
+    Event<> turned;
+    std::uint64_t starts = 0, steps = 0, stops = 0, kicks = 0, alarms = 0;
+    std::uint64_t steps_outside = 0; ///< before a start or after a stop
+    bool runs = false;
+    Duration alarm_after{};
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        ++starts;
+        runs = true;
+        if (alarm_after > Duration::zero()) alarm.arm(cycle.now + alarm_after);
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        ++steps;
+        if (!runs) ++steps_outside;
+        drive.write(angle.get());
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        ++stops;
+        runs = false;
+        drive.write(0);
+    }
+    void kick() noexcept TAPPET_REALTIME {
+        ++kicks;
+        if (!runs) ++steps_outside;
+    }
+    void ring(const Cycle&) noexcept TAPPET_REALTIME { ++alarms; }
+    static constexpr auto interface() {
+        return facets(input<&Axis::angle>("angle", "deg", "to follow"),
+                      output<&Axis::drive>("drive", "V", "0: safe"), operation<&Axis::kick>("kick", "counts"),
+                      event<&Axis::turned>("turned", "once round"),
+                      timer<&Axis::alarm, &Axis::ring>("alarm", "counts"));
+    }
+};
+
+/// Cannot do anything sensible before the first angle, so that it waits for it.
+struct Careful {
+    Input<double> angle;
+    double first_angle = -1;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { first_angle = angle.get(); }
+    static constexpr auto interface() {
+        return facets(input<&Careful::angle>("angle", "deg", "to follow", valid_to_start));
+    }
+};
+
+/// Presses when it is told to, and may ask for changes in the machine from its own activity.
+struct Panel {
+    static constexpr bool sees_machine = true;
+    MachineInstance* machine = nullptr;
+    Event<> pressed;
+    std::uint64_t presses_left = 0;
+    std::size_t restart_activity = nowhere;
+    LifeTicket ticket{};
+    Sentence configure(Setup& setup) {
+        machine = setup.machine;
+        return {};
+    }
+    void work(const Cycle&) {
+        for (; presses_left != 0; --presses_left) pressed();
+        if (restart_activity == nowhere) return;
+        ticket = machine->ask_activity(restart_activity, LifeChange::restart);
+        restart_activity = nowhere;
+    }
+    static constexpr auto interface() {
+        return facets(event<&Panel::pressed>("pressed", "somebody presses"));
+    }
+};
+
+/// Has a state machine that says where it is.
+struct Gate {
+    int opened = 0, closed = 0;
+    void enter_open() noexcept TAPPET_REALTIME { ++opened; }
+    void enter_closed() noexcept TAPPET_REALTIME { ++closed; }
+    int turns = 0;
+    void on_turn() noexcept TAPPET_REALTIME { ++turns; }
+    static constexpr auto interface() { return facets(operation<&Gate::on_turn>("on_turn", "counts")); }
+};
+
+// clang-format off
+constexpr auto gate_cycle = state_machine<Gate>("gate_cycle",
+    states(state("open", initial, entry<&Gate::enter_open>), state("closed", final, entry<&Gate::enter_closed>)),
+    transitions(transition("open", "closed", after(24h))));
+
+constexpr auto table = machine("lively",
+    components(component<Sensor>("sensor"), component<Axis>("axis"), component<Gate>("gate"),
+               component<Careful>("careful"), component<Panel>("panel")),
+    activities(
+        activity("field",  every(1ms),   runs("sensor"),        budget(50us)),
+        activity("motion", on_work(),    runs("axis", "gate"),  at_most(8, 1ms), deadline(1ms), budget(20us)),
+        activity("slow",   every(10ms),  runs("careful"),       budget(20us)),
+        activity("office", every(5ms),   runs("panel"),         not_real_time)),
+    connections(
+        data("sensor.angle", "axis.angle", stale_after(20ms), hold, wakes),
+        data("sensor.angle", "careful.angle")),
+    reactions(when("panel.pressed", tell("axis.kick")), when("axis.turned", call("gate.on_turn"))),
+    behaviours(behaviour("gate", gate_cycle)));
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+
+constexpr std::size_t sensor = 0, axis = 1, gate = 2, careful = 3, panel = 4;
+constexpr std::size_t field = 0, motion = 1, slow = 2, office = 3;
+
+struct Machine : testing::Test {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    Machine() {
+        notes().clear();
+        EXPECT_TRUE(instance.configure({}));
+    }
+    void start() { ASSERT_EQ(world.start().view(), ""); }
+    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
+    template <class T> T& the(std::string_view name) { return *instance.find<T>(name); }
+    ComponentState state(std::size_t component) { return instance.state_of(component); }
+    /// Asks and lets the engine serve it.
+    LifeAnswer change(std::size_t component, LifeChange change) {
+        const LifeTicket ticket = instance.ask_component(component, change);
+        EXPECT_TRUE(world.run_until(clock.now() + 20ms));
+        return instance.answer_of_component(component, ticket);
+    }
+    std::string words(std::size_t component, LifeAnswer answer) {
+        return std::string{instance.describe(instance.machine().index.activity[component], answer).view()};
+    }
+};
+
+using LifeOfAComponent = Machine;
+using LifeOfAnActivity = Machine;
+
+TEST_F(LifeOfAComponent, is_inactive_until_its_activity_starts_and_stopped_when_that_stopped) {
+    EXPECT_EQ(state(axis), ComponentState::inactive);
+    start();
+    EXPECT_EQ(state(axis), ComponentState::running);
+    run(5ms);
+    world.stop();
+    EXPECT_EQ(state(axis), ComponentState::stopped);
+    EXPECT_EQ(the<Axis>("axis").stops, 1u);
+}
+
+TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
+    start();
+    run(10ms);
+    EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
+    EXPECT_EQ(change(axis, LifeChange::stop).outcome, LifeOutcome::done);
+    EXPECT_EQ(state(axis), ComponentState::stopped);
+    EXPECT_EQ(the<Axis>("axis").drive.last(), 0.0);
+    const std::uint64_t axis_steps = the<Axis>("axis").steps, sensor_steps = the<Sensor>("sensor").steps;
+    run(30ms);
+    EXPECT_EQ(the<Axis>("axis").steps, axis_steps);
+    EXPECT_EQ(the<Sensor>("sensor").steps, sensor_steps + 30);
+    EXPECT_EQ(state(gate), ComponentState::running); // of the same activity
+    EXPECT_EQ(state(sensor), ComponentState::running);
+}
+
+TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
+    start();
+    run(5ms);
+    static_cast<void>(change(axis, LifeChange::stop));
+    static_cast<void>(change(axis, LifeChange::stop));
+    world.stop();
+    EXPECT_EQ(the<Axis>("axis").stops, 1u);
+}
+
+TEST_F(LifeOfAComponent, starts_again_where_it_was_stopped) {
+    start();
+    run(5ms);
+    static_cast<void>(change(axis, LifeChange::stop));
+    EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
+    EXPECT_EQ(the<Axis>("axis").starts, 2u);
+    EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done); // it runs already
+    EXPECT_EQ(the<Axis>("axis").starts, 2u);
+    EXPECT_EQ(change(axis, LifeChange::restart).outcome, LifeOutcome::done);
+    EXPECT_EQ(the<Axis>("axis").starts, 3u);
+    EXPECT_EQ(the<Axis>("axis").stops, 2u);
+    EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
+}
+
+TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_was_written_and_says_which) {
+    the<Sensor>("sensor").silent = true;
+    start();
+    EXPECT_EQ(change(axis, LifeChange::stop).outcome, LifeOutcome::done);
+    const LifeAnswer answer = change(axis, LifeChange::start);
+    EXPECT_EQ(answer.outcome, LifeOutcome::refused);
+    EXPECT_EQ(answer.refusal, LifeRefusal::input_never_written);
+    EXPECT_EQ(words(axis, answer),
+              "component \"axis\" is not started: its input \"angle\" was never written; "
+              "see that \"sensor\" runs and writes \"sensor.angle\"");
+    EXPECT_EQ(state(axis), ComponentState::stopped);
+    the<Sensor>("sensor").silent = false;
+    run(2ms);
+    EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
+}
+
+TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_it_stopped_and_safe) {
+    start();
+    run(10ms);
+    the<Sensor>("sensor").silent = true;
+    run(30ms);
+    const LifeAnswer answer = change(axis, LifeChange::restart);
+    EXPECT_EQ(answer.outcome, LifeOutcome::refused);
+    EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
+    EXPECT_THAT(words(axis, answer),
+                testing::HasSubstr("its input \"angle\" is stale; see that \"sensor\" runs"));
+    EXPECT_EQ(state(axis), ComponentState::stopped);
+    EXPECT_EQ(the<Axis>("axis").drive.last(), 0.0);
+}
+
+TEST_F(LifeOfAComponent, waits_with_the_whole_machine_for_an_input_that_it_needs_from_its_first_moment) {
+    the<Sensor>("sensor").silent = true;
+    start();
+    run(50ms);
+    EXPECT_EQ(state(careful), ComponentState::starting);
+    EXPECT_EQ(the<Careful>("careful").first_angle, -1.0);
+    EXPECT_EQ(state(axis), ComponentState::running); // which did not say so
+    the<Sensor>("sensor").silent = false;
+    run(20ms);
+    EXPECT_EQ(state(careful), ComponentState::running);
+    EXPECT_GT(the<Careful>("careful").first_angle, 50.0);
+}
+
+TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_not_run) {
+    start();
+    run(5ms);
+    static_cast<void>(change(axis, LifeChange::stop));
+    the<Panel>("panel").presses_left = 3;
+    run(20ms);
+    EXPECT_EQ(the<Axis>("axis").kicks, 0u);
+    EXPECT_EQ(instance.dropped_messages(), 3u);
+    static_cast<void>(change(axis, LifeChange::start));
+    EXPECT_EQ(the<Axis>("axis").kicks, 0u) << "what was dropped does not come later";
+    the<Panel>("panel").presses_left = 2;
+    run(20ms);
+    EXPECT_EQ(the<Axis>("axis").kicks, 2u);
+    EXPECT_EQ(instance.lost_emissions(), 0u);
+}
+
+TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_and_that_is_counted_too) {
+    start();
+    run(5ms);
+    Axis& the_axis = the<Axis>("axis");
+    the_axis.turned();
+    EXPECT_EQ(the<Gate>("gate").turns, 1);
+    static_cast<void>(change(gate, LifeChange::stop));
+    the_axis.turned();
+    the_axis.turned();
+    EXPECT_EQ(the<Gate>("gate").turns, 1);
+    EXPECT_EQ(instance.dropped_messages(), 2u);
+    static_cast<void>(change(gate, LifeChange::start));
+    the_axis.turned();
+    EXPECT_EQ(the<Gate>("gate").turns, 2);
+}
+
+TEST_F(LifeOfAComponent, forgets_its_timers_when_it_stops) {
+    the<Axis>("axis").alarm_after = 50ms;
+    start();
+    run(10ms);
+    static_cast<void>(change(axis, LifeChange::stop));
+    run(100ms);
+    EXPECT_EQ(the<Axis>("axis").alarms, 0u);
+    static_cast<void>(change(axis, LifeChange::start));
+    run(100ms);
+    EXPECT_EQ(the<Axis>("axis").alarms, 1u);
+}
+
+TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to_the_initial_one) {
+    start();
+    run(5ms);
+    EXPECT_EQ(the<Gate>("gate").opened, 1);
+    static_cast<void>(change(gate, LifeChange::stop));
+    EXPECT_EQ(the<Gate>("gate").closed, 1);
+    static_cast<void>(change(gate, LifeChange::start));
+    EXPECT_EQ(the<Gate>("gate").opened, 2);
+    EXPECT_EQ(the<Axis>("axis").starts, 1u); // its neighbour noticed nothing
+}
+
+TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_others) {
+    start();
+    run(5ms);
+    const LifeTicket first = instance.ask_component(axis, LifeChange::restart);
+    const LifeTicket second = instance.ask_component(axis, LifeChange::stop);
+    run(5ms);
+    EXPECT_EQ(instance.answer_of_component(axis, first).outcome, LifeOutcome::superseded);
+    EXPECT_EQ(instance.answer_of_component(axis, second).outcome, LifeOutcome::done);
+    EXPECT_EQ(state(axis), ComponentState::stopped);
+    EXPECT_EQ(the<Axis>("axis").starts, 1u);
+}
+
+/// One machine under a hundred random wishes; its event log's digest.
+std::uint64_t under_random_wishes(std::uint64_t seed) {
+    Random random{seed};
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    EXPECT_TRUE(instance.configure({}));
+    EXPECT_EQ(world.start().view(), "");
+    const Axis& the_axis = *instance.find<Axis>("axis");
+    for (int n = 0; n < 100 && !testing::Test::HasFailure(); ++n) {
+        const auto component = static_cast<std::size_t>(random.between(sensor, careful));
+        const auto change = static_cast<LifeChange>(random.between(0, 2));
+        instance.find<Panel>("panel")->presses_left += static_cast<std::uint64_t>(random.between(0, 2));
+        const LifeTicket ticket = instance.ask_component(component, change);
+        EXPECT_TRUE(world.run_until(clock.now() + 10ms));
+        const LifeAnswer answer = instance.answer_of_component(component, ticket);
+        EXPECT_NE(answer.outcome, LifeOutcome::pending);
+        const bool runs = answer.outcome == LifeOutcome::done && change != LifeChange::stop;
+        if (answer.outcome == LifeOutcome::done || change == LifeChange::restart) {
+            EXPECT_EQ(instance.state_of(component), runs ? ComponentState::running : ComponentState::stopped)
+                << "seed " << seed << ", wish " << n;
+        }
+        if (instance.state_of(axis) != ComponentState::running) {
+            EXPECT_EQ(the_axis.drive.last(), 0.0);
+        }
+    }
+    EXPECT_EQ(the_axis.steps_outside, 0u) << "seed " << seed;
+    world.stop();
+    return instance.event_log_digest();
+}
+
+TEST(LifeUnderRandomWishes, no_component_is_stepped_or_told_outside_of_its_life_and_every_run_is_the_same) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const std::uint64_t first = under_random_wishes(seed);
+        EXPECT_EQ(under_random_wishes(seed), first) << "seed " << seed;
+        EXPECT_NE(under_random_wishes(seed + 1000), first);
+    }
+}
+
+TEST_F(LifeOfAnActivity, is_initialised_before_and_finalised_after_by_whoever_starts_and_stops_it) {
+    start();
+    EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised"));
+    run(10ms);
+    EXPECT_EQ(world.change_activity(field, LifeChange::stop).view(), "");
+    EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised", "sensor finalised"));
+    EXPECT_EQ(state(sensor), ComponentState::stopped);
+    EXPECT_EQ(the<Sensor>("sensor").angle.last(), 0.0);
+    const std::uint64_t steps = the<Sensor>("sensor").steps;
+    run(50ms);
+    EXPECT_EQ(the<Sensor>("sensor").steps, steps);
+    EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(), "");
+    run(10ms);
+    EXPECT_EQ(the<Sensor>("sensor").steps, steps + 10) << "no period is made up for";
+    world.stop();
+    EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised", "sensor finalised", "sensor initialised",
+                                              "sensor finalised"));
+}
+
+TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activity_stopped_until_it_can) {
+    start();
+    run(10ms);
+    the<Sensor>("sensor").refuses = "the probe is not plugged in; plug it in";
+    EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(),
+              "component \"sensor\" could not be initialised: the probe is not plugged in; plug it in");
+    EXPECT_EQ(state(sensor), ComponentState::failed);
+    EXPECT_EQ(instance.answer_of_component(sensor, instance.ask_component(sensor, LifeChange::start)).outcome,
+              LifeOutcome::refused);
+    run(10ms); // the others go on
+    the<Sensor>("sensor").refuses = {};
+    EXPECT_EQ(world.change_activity(field, LifeChange::start).view(), "");
+    EXPECT_EQ(state(sensor), ComponentState::running);
+}
+
+TEST_F(LifeOfAnActivity,
+       the_machine_does_not_start_when_one_cannot_be_initialised_and_what_had_started_stops) {
+    the<Sensor>("sensor").refuses = "no probe";
+    EXPECT_EQ(world.start().view(), "component \"sensor\" could not be initialised: no probe");
+    for (const std::size_t component : {axis, gate, careful, panel})
+        EXPECT_NE(state(component), ComponentState::running);
+    EXPECT_EQ(state(sensor), ComponentState::failed);
+}
+
+TEST_F(LifeOfAnActivity, does_not_start_while_another_ones_value_that_it_needs_is_stale) {
+    start();
+    run(10ms);
+    EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
+    EXPECT_EQ(world.change_activity(field, LifeChange::stop).view(), "");
+    run(30ms);
+    EXPECT_THAT(std::string{world.change_activity(motion, LifeChange::start).view()},
+                testing::HasSubstr("component \"axis\" is not started: its input \"angle\" is stale"));
+    EXPECT_EQ(state(axis), ComponentState::stopped);
+    EXPECT_EQ(world.change_activity(field, LifeChange::start).view(), "");
+    run(5ms);
+    EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
+    run(5ms);
+    EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
+}
+
+TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stopped) {
+    start();
+    run(10ms);
+    EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
+    the<Panel>("panel").presses_left = 5;
+    run(10ms);
+    EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
+    run(10ms);
+    EXPECT_EQ(the<Axis>("axis").kicks, 0u);
+    EXPECT_EQ(instance.dropped_messages(), 5u);
+    EXPECT_EQ(instance.lost_emissions(), 0u);
+}
+
+TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stopped) {
+    start();
+    run(10ms);
+    EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
+    const LifeAnswer answer = change(axis, LifeChange::start);
+    EXPECT_EQ(answer.refusal, LifeRefusal::activity_stopped);
+    EXPECT_EQ(words(axis, answer),
+              "component \"axis\" is not started: its activity \"motion\" does not run; start that");
+}
+
+TEST_F(LifeOfAnActivity, is_restarted_by_the_supervisor_when_a_component_of_another_one_asks) {
+    start();
+    run(10ms);
+    the<Panel>("panel").restart_activity = motion;
+    run(10ms);
+    EXPECT_EQ(instance.answer_of_activity(motion, the<Panel>("panel").ticket).outcome, LifeOutcome::done);
+    EXPECT_EQ(the<Axis>("axis").starts, 2u);
+    the<Panel>("panel").restart_activity = office; // and its own
+    run(10ms);
+    EXPECT_EQ(instance.answer_of_activity(office, the<Panel>("panel").ticket).outcome, LifeOutcome::done);
+    EXPECT_EQ(state(panel), ComponentState::running);
+    EXPECT_EQ(instance.engines()[slow].is_active(), true);
+}
+
+} // namespace
+} // namespace tappet

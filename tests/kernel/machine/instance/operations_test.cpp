@@ -1,0 +1,469 @@
+// Methods and commands through a machine's table (thesis 4.5): methods run in the caller, commands in the
+// receiver's engine; a command goes through its states, brings results back, is rejected, wrapped and handed
+// on.
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include "kernel/machine/firmware.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tappet {
+namespace {
+
+/// Moves one unit a cycle. Takes one goal at a time; refuses to leave its track.
+struct Axis {
+    double position = 0.0;
+    double goal = 0.0;
+    bool moving = false;
+    bool jams = false;
+    int steps = 0;
+    std::vector<int> marks;              ///< of mark(), in the order in which they were taken up
+    std::vector<std::string_view> order; ///< of one cycle
+    std::uint64_t completions_asked = 0;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's note", order.push_back("step"));
+        if (!moving || jams) return;
+        position += goal > position ? 1.0 : -1.0;
+        ++steps;
+    }
+    bool move_to(double to, int& taken) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's note", order.push_back("command"));
+        if (moving || to < 0.0 || to > 100.0) return false;
+        goal = to, moving = true, steps = 0;
+        taken = -1;
+        return true;
+    }
+    CommandProgress moved_to(double to, int& taken) noexcept TAPPET_REALTIME {
+        ++completions_asked;
+        if (jams) {
+            moving = false;
+            return CommandProgress::failed;
+        }
+        if (position != to) return CommandProgress::executing;
+        moving = false;
+        taken = steps;
+        return CommandProgress::done;
+    }
+    bool mark(int which) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's note", marks.push_back(which));
+        return true;
+    }
+    void knock() noexcept TAPPET_REALTIME { TAPPET_ESCAPE("a test's note", order.push_back("event")); }
+    double distance(double to, bool absolute) const noexcept TAPPET_REALTIME {
+        const double d = to - position;
+        return absolute && d < 0.0 ? -d : d;
+    }
+    void zero() noexcept TAPPET_REALTIME { position = 0.0; }
+    static constexpr auto interface() {
+        return facets(
+            command<&Axis::move_to, &Axis::moved_to>("move_to", "a place on the track, in steps taken"),
+            command<&Axis::mark>("mark", "noted at once"), operation<&Axis::knock>("knock", "noted"),
+            method<&Axis::distance>("distance", "to a place", any_thread),
+            method<&Axis::zero>("zero", "here"));
+    }
+};
+
+struct Panel {
+    CommandCall<double, int&> move;
+    CommandCall<int> mark;
+    CommandCall<int> second_mark;
+    MethodCall<double(double, bool)> distance;
+    MethodCall<void()> spare;
+    Event<> knock;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(sends<&Panel::move>("move", "the axis", optional),
+                      sends<&Panel::mark>("mark", "a note", optional),
+                      sends<&Panel::second_mark>("second_mark", "a note", optional),
+                      calls<&Panel::distance>("distance", "of the axis", optional),
+                      calls<&Panel::spare>("spare", "nobody's", optional),
+                      event<&Panel::knock>("knock", "a knock"));
+    }
+};
+
+/// Does its own move by the axis': what wraps a command is a command.
+struct Carriage {
+    CommandCall<double, int&> axis;
+    bool go(double metres, int& taken) noexcept TAPPET_REALTIME {
+        taken = 0;
+        return axis.send(metres * 10.0);
+    }
+    CommandProgress gone(double, int& taken) noexcept TAPPET_REALTIME { return axis.progress(taken); }
+    static constexpr auto interface() {
+        return facets(command<&Carriage::go, &Carriage::gone>("go", "metres"),
+                      sends<&Carriage::axis>("axis", "that carries it"));
+    }
+};
+
+/// Gives the axis' move on as it is, under a name of its own.
+struct Door {
+    CommandCall<double, int&> axis;
+    static constexpr auto interface() {
+        return facets(forwards<&Door::axis>("go", "in units"), sends<&Door::axis>("axis", "that carries it"));
+    }
+};
+
+/// Prepares a move and hands it on to a runner, which is another's activity.
+struct Planner {
+    CommandCall<double, int&> move;
+    Event<CommandRef<double, int&>> planned;
+    void plan(double to) noexcept TAPPET_REALTIME {
+        move.prepare(to);
+        planned(CommandRef<double, int&>{move});
+    }
+    static constexpr auto interface() {
+        return facets(sends<&Planner::move>("move", "handed on"),
+                      event<&Planner::planned>("planned", "a move to send"));
+    }
+};
+
+struct Runner {
+    CommandRef<double, int&> given;
+    std::uint64_t sent = 0;
+    void take(CommandRef<double, int&> command) noexcept TAPPET_REALTIME {
+        given = command;
+        sent += given->send_prepared() ? 1u : 0u;
+    }
+    static constexpr auto interface() { return facets(operation<&Runner::take>("take", "and send")); }
+};
+
+struct Watcher {
+    static constexpr bool sees_machine = true;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+// clang-format off
+constexpr auto table = machine("track",
+    components(component<Axis>("axis"), component<Panel>("panel"), component<Panel>("urgent"), component<Carriage>("carriage"),
+               component<Planner>("planner"), component<Runner>("runner"), component<Watcher>("watcher"),
+               component<Panel>("near"), component<Door>("door")),
+    activities(
+        activity("motion", every(1ms),  budget(50us), runs("axis", "near", "door")),
+        activity("alarm",  every(1ms),  budget(50us), deadline(500us), runs("urgent")),
+        activity("panel",  every(10ms), budget(50us), runs("panel", "planner")),
+        activity("logic",  on_work(), at_most(4, 1ms), deadline(5ms), budget(50us), runs("carriage", "runner")),
+        activity("office", every(100ms), not_real_time, runs("watcher"))),
+    connections(),
+    reactions(
+        uses("panel.move", "carriage.go"),
+        uses("panel.mark", "axis.mark"), uses("panel.second_mark", "axis.mark"),
+        uses("urgent.mark", "axis.mark"), uses("urgent.move", "axis.move_to"),
+        uses("carriage.axis", "axis.move_to"), uses("door.axis", "axis.move_to"), uses("near.move", "door.go"),
+        uses("planner.move", "axis.move_to", sent_by("runner")),
+        uses("panel.distance", "axis.distance"), uses("near.spare", "axis.zero"),
+        when("urgent.knock", tell("axis.knock")),
+        when("planner.planned", tell("runner.take"))),
+    behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+constexpr std::size_t motion = 0;
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Axis& axis;
+    Panel& panel;
+    Panel& urgent;
+    Rig()
+        : axis{*configured().find<Axis>("axis")},
+          panel{*instance.find<Panel>("panel")},
+          urgent{*instance.find<Panel>("urgent")} {
+        world.start();
+    }
+    MachineInstance& configured() {
+        EXPECT_TRUE(instance.configure({}));
+        return instance;
+    }
+    ~Rig() { axis.~Axis(); } // the test's vectors; a machine's components are never destroyed
+    void pass(Duration time) { EXPECT_TRUE(world.run_until(clock.now() + time)); }
+};
+
+// ---- methods
+
+TEST(Methods, a_method_runs_in_the_caller_and_returns_its_result) {
+    Rig rig;
+    rig.axis.position = 40.0;
+    EXPECT_EQ(rig.panel.distance(30.0, false), -10.0); // no time passed: nobody else ran
+    EXPECT_EQ(rig.panel.distance(30.0, true), 10.0);
+}
+
+TEST(Methods, inside_an_activity_a_method_needs_no_promise) {
+    Rig rig;
+    rig.axis.position = 40.0;
+    rig.instance.find<Panel>("near")->spare();
+    EXPECT_EQ(rig.axis.position, 0.0);
+}
+
+TEST(Methods, an_optional_call_without_a_row_says_so) {
+    Rig rig;
+    EXPECT_FALSE(rig.panel.spare.connected());
+    EXPECT_TRUE(rig.panel.distance.connected());
+}
+
+TEST(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
+    Rig rig;
+    rig.axis.position = 40.0;
+    const auto& facet = facet_at(rig.instance.machine().table,
+                                 {0, find_facet(rig.instance.machine().table.components[0], "distance")});
+    ASSERT_EQ(facet.method->argument_bytes, sizeof(double) + sizeof(bool));
+    ASSERT_EQ(facet.method->result, type_id<double>);
+    std::array<std::byte, sizeof(double) + sizeof(bool)> arguments{};
+    detail::store_packed(arguments.data(), 25.0);
+    detail::store_packed(arguments.data() + sizeof(double), true);
+    std::array<std::byte, sizeof(double)> result{};
+    facet.method->call_packed(&rig.axis, arguments.data(), result.data());
+    EXPECT_EQ(detail::load_packed<double>(result.data()), 15.0);
+}
+
+TEST(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_machine) {
+    Rig rig;
+    rig.axis.position = 40.0;
+    const MachineView& seen = rig.instance.machine().table;
+    const End zero{0, find_facet(seen.components[0], "zero")};
+    const End distance{0, find_facet(seen.components[0], "distance")};
+    MethodRequest request;
+    ASSERT_TRUE(rig.instance.request_method(zero, request, {}));
+    EXPECT_FALSE(request.done());
+    EXPECT_FALSE(rig.instance.request_method(zero, request, {}));
+    EXPECT_EQ(rig.axis.position, 40.0); // never in the caller
+    rig.pass(1ms);
+    EXPECT_TRUE(request.done());
+    EXPECT_EQ(rig.axis.position, 0.0);
+    std::array<std::byte, 17> values{};
+    detail::store_packed(values.data(), -3.0);
+    detail::store_packed(values.data() + 8, true);
+    EXPECT_FALSE(rig.instance.request_method(distance, request, std::span{values}.first(16)));
+    ASSERT_TRUE(rig.instance.request_method(distance, request, values));
+    rig.pass(1ms);
+    EXPECT_EQ(detail::load_packed<double>(values.data() + 9), 3.0);
+    EXPECT_FALSE(
+        rig.instance.request_method({0, find_facet(seen.components[0], "move_to")}, request, values));
+}
+
+// ---- the life of a command
+
+TEST(Commands, goes_through_its_states_and_brings_its_results_back) {
+    Rig rig;
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::ready);
+    ASSERT_TRUE(rig.urgent.move.send(3.0));
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::sent);
+    EXPECT_FALSE(rig.axis.moving); // not in the sender
+    rig.pass(1ms);
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::executing);
+    rig.pass(2ms);
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::executing);
+    rig.pass(1ms);
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::done);
+    EXPECT_EQ(rig.urgent.move.result(), 3);
+    EXPECT_EQ(rig.axis.position, 3.0);
+    const std::uint64_t asked = rig.axis.completions_asked;
+    rig.pass(10ms);
+    EXPECT_EQ(rig.axis.completions_asked, asked); // what has ended is not asked again
+}
+
+TEST(Commands, what_the_action_refuses_is_rejected_and_its_completion_never_asked) {
+    Rig rig;
+    ASSERT_TRUE(rig.urgent.move.send(101.0));
+    rig.pass(2ms);
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::rejected);
+    EXPECT_EQ(rig.axis.completions_asked, 0u);
+}
+
+TEST(Commands, what_cannot_be_completed_fails) {
+    Rig rig;
+    ASSERT_TRUE(rig.urgent.move.send(50.0));
+    rig.pass(5ms);
+    rig.axis.jams = true;
+    rig.pass(1ms);
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::failed);
+}
+
+TEST(Commands, one_on_its_way_is_neither_sent_again_nor_reset) {
+    Rig rig;
+    ASSERT_TRUE(rig.urgent.move.send(5.0));
+    EXPECT_FALSE(rig.urgent.move.send(6.0));
+    EXPECT_FALSE(rig.urgent.move.reset());
+    rig.pass(2ms);
+    EXPECT_FALSE(rig.urgent.move.send(6.0));
+    EXPECT_FALSE(rig.urgent.move.reset());
+    rig.pass(10ms);
+    EXPECT_EQ(rig.axis.position, 5.0); // by the first arguments
+    EXPECT_TRUE(rig.urgent.move.reset());
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::ready);
+    EXPECT_TRUE(rig.urgent.move.send(6.0));
+    rig.pass(3ms);
+    EXPECT_EQ(rig.urgent.move.result(), 1);
+}
+
+TEST(Commands, without_a_completion_it_is_done_when_its_action_has_run) {
+    Rig rig;
+    ASSERT_TRUE(rig.urgent.mark.send(7));
+    rig.pass(1ms);
+    EXPECT_EQ(rig.urgent.mark.state(), CommandState::done);
+    EXPECT_THAT(rig.axis.marks, testing::ElementsAre(7));
+}
+
+TEST(Commands, an_unconnected_one_is_not_sent) {
+    Rig rig;
+    EXPECT_FALSE(rig.urgent.second_mark.connected());
+    EXPECT_FALSE(rig.urgent.second_mark.send(1));
+    EXPECT_EQ(rig.urgent.second_mark.state(), CommandState::ready);
+}
+
+TEST(Commands, under_virtual_time_a_wait_answers_at_once) {
+    Rig rig;
+    ASSERT_TRUE(rig.urgent.mark.send(7));
+    EXPECT_FALSE(rig.urgent.mark.wait(10s));
+    rig.pass(1ms);
+    EXPECT_TRUE(rig.urgent.mark.wait(10s));
+}
+
+// ---- the order of serving
+
+TEST(Commands, the_urgent_activity_is_served_first_and_each_senders_order_is_kept) {
+    Rig rig;
+    ASSERT_TRUE(
+        rig.panel.second_mark.send(1)); // the other object first: by time of sending, not of the table
+    ASSERT_TRUE(rig.panel.mark.send(2));
+    ASSERT_TRUE(rig.urgent.mark.send(3));
+    rig.pass(1ms);
+    EXPECT_THAT(rig.axis.marks, testing::ElementsAre(3, 1, 2));
+}
+
+TEST(Commands, run_behind_the_components_and_before_the_asynchronous_events) {
+    Rig rig;
+    rig.urgent.knock();
+    ASSERT_TRUE(rig.urgent.move.send(1.0));
+    rig.pass(1ms);
+    EXPECT_THAT(rig.axis.order, testing::ElementsAre("step", "command", "event"));
+}
+
+// ---- receivers that do not run
+
+TEST(Commands, are_rejected_when_the_receiver_stopped_and_fail_when_it_stops_under_them) {
+    Rig rig;
+    ASSERT_TRUE(rig.urgent.move.send(50.0));
+    rig.pass(5ms);
+    ASSERT_TRUE(rig.urgent.mark.send(1)); // still in the mailbox
+    rig.instance.engines()[motion].stop(rig.clock.now());
+    EXPECT_EQ(rig.urgent.move.state(), CommandState::failed);
+    EXPECT_EQ(rig.urgent.mark.state(), CommandState::rejected);
+    ASSERT_TRUE(rig.urgent.mark.send(2));
+    EXPECT_EQ(rig.urgent.mark.state(), CommandState::rejected); // though nobody serves its mailbox
+    EXPECT_TRUE(rig.axis.marks.empty());
+}
+
+// ---- commands as objects
+
+TEST(Commands, one_that_wraps_another_is_done_when_that_one_is) {
+    Rig rig;
+    ASSERT_TRUE(rig.panel.move.send(0.4)); // metres
+    rig.pass(3ms);
+    EXPECT_EQ(rig.panel.move.state(), CommandState::executing);
+    rig.pass(5ms);
+    EXPECT_EQ(rig.axis.position, 4.0);
+    EXPECT_EQ(rig.panel.move.state(), CommandState::done); // its engine sleeps but for the inner one's end
+    EXPECT_EQ(rig.panel.move.result(), 4);
+}
+
+TEST(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
+    Rig rig;
+    Panel& near = *rig.instance.find<Panel>("near");
+    ASSERT_TRUE(near.move.send(3.0));
+    rig.pass(3ms);
+    EXPECT_EQ(near.move.state(), CommandState::executing);
+    rig.pass(10ms);
+    EXPECT_EQ(near.move.state(), CommandState::done);
+    EXPECT_EQ(near.move.result(), 3);
+    ASSERT_TRUE(near.move.send(-3.0));
+    rig.pass(3ms);
+    EXPECT_EQ(near.move.state(), CommandState::failed);
+}
+
+TEST(Commands, one_that_wraps_a_rejected_one_fails) {
+    Rig rig;
+    ASSERT_TRUE(rig.panel.move.send(-1.0));
+    rig.pass(3ms);
+    EXPECT_EQ(rig.panel.move.state(), CommandState::failed);
+}
+
+TEST(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_whoever_planned_it) {
+    Rig rig;
+    auto& planner = *rig.instance.find<Planner>("planner");
+    planner.plan(2.0);
+    EXPECT_EQ(planner.move.state(), CommandState::ready);
+    rig.pass(5ms);
+    EXPECT_EQ(rig.instance.find<Runner>("runner")->sent, 1u);
+    EXPECT_EQ(planner.move.state(), CommandState::done);
+    EXPECT_EQ(planner.move.result(), 2);
+}
+
+TEST(CommandsDeathTest, one_that_is_sent_in_an_activity_that_the_row_does_not_name_breaks_a_contract) {
+    Rig rig;
+    auto& planner = *rig.instance.find<Planner>("planner");
+    const RunsActivity in_its_own{2}; // the row says sent_by("runner")
+    EXPECT_DEATH(static_cast<void>(planner.move.send(1.0)),
+                 "command-sender: A command that activity 3 sends was sent in activity 2");
+}
+
+// ---- what the browser needs
+
+struct AnySlot {
+    CommandSlot slot{};
+    std::array<std::byte, 64> values{};
+};
+
+TEST(Commands, one_that_knows_no_types_sends_from_packed_bytes_and_follows_to_the_end) {
+    Rig rig;
+    const MachineView& seen = rig.instance.machine().table;
+    const End move_to{0, find_facet(seen.components[0], "move_to")};
+    const CommandOperations& operations = *facet_at(seen, move_to).command;
+    ASSERT_EQ(operations.arguments, type_id<Arguments<double>>);
+    ASSERT_EQ(operations.results, type_id<Arguments<int>>);
+    AnySlot any;
+    ASSERT_TRUE(rig.instance.bind_command(move_to, any.slot, any.values));
+    detail::store_packed(any.values.data(), 2.0);
+    ASSERT_TRUE(any.slot.send());
+    EXPECT_FALSE(rig.instance.bind_command(move_to, any.slot, any.values)); // it is on its way
+    rig.pass(3ms);
+    ASSERT_EQ(any.slot.state(), CommandState::done);
+    EXPECT_EQ(detail::load_packed<int>(any.values.data() + operations.argument_bytes), 2);
+}
+
+TEST(Commands, what_is_no_command_or_has_no_room_is_not_bound) {
+    Rig rig;
+    const MachineView& seen = rig.instance.machine().table;
+    AnySlot any;
+    EXPECT_FALSE(
+        rig.instance.bind_command({0, find_facet(seen.components[0], "distance")}, any.slot, any.values));
+    EXPECT_FALSE(rig.instance.bind_command({0, find_facet(seen.components[0], "move_to")}, any.slot,
+                                           std::span{any.values}.first(11)));
+}
+
+TEST(Commands, a_flood_of_requested_ones_takes_no_place_from_those_of_the_table) {
+    Rig rig;
+    const MachineView& seen = rig.instance.machine().table;
+    const End mark{0, find_facet(seen.components[0], "mark")};
+    std::vector<AnySlot> many(64);
+    std::size_t rejected = 0;
+    for (AnySlot& any : many) {
+        ASSERT_TRUE(rig.instance.bind_command(mark, any.slot, any.values));
+        ASSERT_TRUE(any.slot.send());
+        rejected += any.slot.state() == CommandState::rejected ? 1u : 0u;
+    }
+    EXPECT_EQ(rejected, many.size() - requests_waiting);
+    ASSERT_TRUE(rig.panel.mark.send(1));
+    ASSERT_TRUE(rig.panel.second_mark.send(2));
+    rig.pass(1ms);
+    EXPECT_EQ(rig.panel.mark.state(), CommandState::done);
+    EXPECT_EQ(rig.panel.second_mark.state(), CommandState::done);
+    EXPECT_EQ(rig.axis.marks.size(), 2u + requests_waiting);
+}
+
+} // namespace
+} // namespace tappet

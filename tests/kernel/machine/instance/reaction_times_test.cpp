@@ -1,0 +1,168 @@
+// From the edge to what it caused: each row that tells or wakes knows how often and how long, in virtual time
+// to the nanosecond.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+/// A driver: takes in one edge when told to.
+struct Lines {
+    Event<Time> rises;
+    Output<bool> level;
+    Time edge = never; ///< its stamp
+    bool no_edge = false;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (no_edge) rises.emit(Time{});
+        no_edge = false;
+        if (edge == never) return;
+        const CausedBy here{edge};
+        level.write(true, edge);
+        rises.emit(edge);
+        edge = never;
+    }
+    static constexpr auto interface() {
+        return facets(event<&Lines::rises>("rises", "an edge"),
+                      output<&Lines::level>("level", "", "after it"));
+    }
+};
+
+/// Takes some time, then tells another.
+struct Logic {
+    Event<> halts;
+    Input<bool> level;
+    os::Clock* clock = nullptr;
+    Duration load{};
+    int woken = 0;
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void on_rise(Time) noexcept TAPPET_REALTIME {
+        clock->consume(load);
+        halts.emit();
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        bool value = false;
+        woken += level.read(value) == Flow::fresh;
+    }
+    static constexpr auto interface() {
+        return facets(event<&Logic::halts>("halts", "what follows"),
+                      input<&Logic::level>("level", "", "seen"),
+                      operation<&Logic::on_rise>("on_rise", "takes its time"));
+    }
+};
+
+struct Brake {
+    os::Clock* clock = nullptr;
+    Duration load{};
+    int set_times = 0;
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void set() noexcept TAPPET_REALTIME {
+        ++set_times;
+        clock->consume(load);
+    }
+    static constexpr auto interface() { return facets(operation<&Brake::set>("set", "writes the output")); }
+};
+
+// clang-format off
+constexpr auto table = machine("reactions",
+    components(component<Lines>("lines"), component<Logic>("logic"), component<Brake>("brake")),
+    activities(
+        activity("lines", every(1ms), runs("lines"), budget(50us)),
+        activity("logic", on_work(), at_most(4, 1ms), runs("logic"), deadline(800us), budget(50us)),
+        activity("brake", on_work(), at_most(4, 1ms), runs("brake"), deadline(500us), budget(50us))),
+    connections(data("lines.level", "logic.level", wakes)),
+    reactions(when("lines.rises", tell("logic.on_rise")), when("logic.halts", tell("brake.set"))),
+    behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+
+constexpr std::size_t wakes_logic = 0, tells_logic = 0, tells_brake = 1; ///< rows
+
+class Reactions : public testing::Test {
+protected:
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    bool configured = instance.configure({}).has_value();
+    Lines& lines = *instance.find<Lines>("lines");
+    Logic& logic = *instance.find<Logic>("logic");
+    Brake& brake = *instance.find<Brake>("brake");
+
+    void SetUp() override {
+        ASSERT_TRUE(configured);
+        logic.load = 100us;
+        brake.load = 20us;
+        world.start();
+        pass(10ms);
+    }
+    void pass(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    const ReactionTimes& logic_told() { return *instance.times_of_reaction(tells_logic); }
+    const ReactionTimes& brake_told() { return *instance.times_of_reaction(tells_brake); }
+    const ReactionTimes& logic_woken() { return *instance.times_of_connection(wakes_logic); }
+};
+
+TEST_F(Reactions, are_timed_from_the_edge_over_all_activities_to_the_end_of_what_it_caused) {
+    lines.edge = clock.now() + 700us; // the lines look 300 us after it
+    pass(5ms);
+    ASSERT_EQ(brake.set_times, 1);
+    EXPECT_EQ(logic_told().count, 1u);
+    EXPECT_EQ(brake_told().count, 1u);
+    EXPECT_GE(logic_told().longest, 100us);
+    EXPECT_EQ(brake_told().longest, logic_told().longest + 20us);
+    EXPECT_EQ(brake_told().mean(), brake_told().longest);
+    EXPECT_LT(brake_told().longest, 1ms);
+}
+
+TEST_F(Reactions, of_a_row_that_wakes_are_timed_to_the_end_of_the_cycle_it_woke) {
+    const Time edge = lines.edge = clock.now();
+    pass(5ms);
+    EXPECT_EQ(logic.woken, 1);
+    EXPECT_EQ(logic_woken().count, 1u);
+    EXPECT_GE(logic_woken().longest, 100us) << "the operation ran in that cycle";
+    EXPECT_LE(edge + logic_woken().longest, clock.now());
+}
+
+TEST_F(Reactions, are_not_counted_when_no_edge_caused_them) {
+    lines.no_edge = true;
+    pass(5ms);
+    ASSERT_EQ(brake.set_times, 1);
+    EXPECT_EQ(logic_told().count, 0u);
+    EXPECT_EQ(brake_told().count, 0u);
+    lines.edge = clock.now();
+    pass(5ms);
+    lines.no_edge = true;
+    pass(5ms);
+    EXPECT_EQ(brake.set_times, 3);
+    EXPECT_EQ(brake_told().count, 1u) << "a cause ends with what it caused";
+    EXPECT_EQ(logic_woken().count, 1u);
+}
+
+TEST_F(Reactions, are_kept_for_each_row_by_itself) {
+    EXPECT_NE(instance.times_of_connection(wakes_logic), nullptr);
+    EXPECT_NE(instance.times_of_reaction(tells_logic), instance.times_of_reaction(tells_brake));
+}
+
+TEST(ReactionTimes, have_bins_of_powers_of_two_of_a_microsecond) {
+    ReactionTimes times;
+    for (const Duration took : {Duration{-5}, Duration{999}, Duration{1us}, Duration{1999}, Duration{2us},
+                                Duration{3999}, Duration{8191us}, Duration{16384us}, Duration{10s}})
+        times.add(took);
+    EXPECT_EQ(times.histogram[0], 2u);
+    EXPECT_EQ(times.histogram[1], 2u);
+    EXPECT_EQ(times.histogram[2], 2u);
+    EXPECT_EQ(times.histogram[13], 1u);
+    EXPECT_EQ(times.histogram[15], 2u);
+    EXPECT_EQ(times.count, 9u);
+    EXPECT_EQ(times.longest, 10s);
+}
+
+} // namespace
+} // namespace tappet

@@ -1,0 +1,128 @@
+// Requests of a component that sees the machine (thesis 4.2.3): each runs in the engine it is posted to,
+// between two of its steps, and a flood of them takes no place from anybody.
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include "kernel/machine/firmware.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace tappet {
+namespace {
+
+/// Counts its steps, and what it is asked to do between them.
+struct Machinist {
+    std::uint64_t steps = 0;
+    std::uint64_t asked = 0;
+    std::uint64_t asked_inside_a_step = 0;
+    std::int64_t sum = 0;
+    bool stepping = false;
+    Event<> done;
+    void on_done() noexcept TAPPET_REALTIME {}
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        stepping = true;
+        ++steps;
+        stepping = false;
+    }
+    static void ask(void* self, const std::byte* packed) noexcept TAPPET_REALTIME {
+        auto& at = *static_cast<Machinist*>(self);
+        std::int64_t value = 0;
+        std::memcpy(&value, packed, sizeof value);
+        ++at.asked;
+        at.asked_inside_a_step += at.stepping ? 1u : 0u;
+        at.sum += value;
+    }
+    static constexpr auto interface() {
+        return facets(event<&Machinist::done>("done", "it asks the other"),
+                      operation<&Machinist::on_done>("on_done", "takes over"));
+    }
+};
+
+struct Watcher {
+    static constexpr bool sees_machine = true;
+    MachineInstance* machine = nullptr;
+    Sentence configure(Setup& setup) {
+        machine = setup.machine;
+        return {};
+    }
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+struct Blind {
+    bool saw = false;
+    Sentence configure(Setup& setup) {
+        saw = setup.machine != nullptr;
+        return {};
+    }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+// clang-format off
+constexpr auto table = machine("watched-by-one",
+    components(component<Machinist>("left"), component<Machinist>("right"), component<Watcher>("watcher"), component<Blind>("blind")),
+    activities(
+        activity("motion", every(1ms), budget(50us), runs("left")),
+        activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("right")),
+        activity("office", every(100ms), not_real_time, runs("watcher", "blind"))),
+    connections(), reactions(when("left.done", tell("right.on_done"))), behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Rig() {
+        EXPECT_TRUE(instance.configure({}));
+        world.start();
+    }
+    Machinist& machinist(std::string_view name) { return *instance.find<Machinist>(name); }
+    bool ask(std::size_t activity, std::string_view name, std::int64_t value) {
+        Message message;
+        message.run = &Machinist::ask;
+        message.object = &machinist(name);
+        std::memcpy(message.arguments.data(), &value, sizeof value);
+        return instance.post_request(activity, message);
+    }
+};
+
+TEST(Requests, the_machine_is_given_to_the_component_that_says_it_sees_it_and_to_no_other) {
+    Rig rig;
+    EXPECT_EQ(rig.instance.find<Watcher>("watcher")->machine, &rig.instance);
+    EXPECT_FALSE(rig.instance.find<Blind>("blind")->saw);
+}
+
+TEST(Requests, a_request_runs_in_the_engine_it_was_posted_to_between_two_steps) {
+    Rig rig;
+    ASSERT_TRUE(rig.ask(0, "left", 5));
+    ASSERT_TRUE(rig.ask(0, "left", 7));
+    EXPECT_EQ(rig.machinist("left").asked, 0u); // never in the caller
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 3ms));
+    EXPECT_EQ(rig.machinist("left").asked, 2u);
+    EXPECT_EQ(rig.machinist("left").sum, 12);
+    EXPECT_EQ(rig.machinist("left").asked_inside_a_step, 0u);
+    EXPECT_EQ(rig.machinist("right").asked, 0u);
+}
+
+TEST(Requests, a_sleeping_activity_is_woken_for_it) {
+    Rig rig;
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10ms));
+    ASSERT_TRUE(rig.ask(1, "right", 1));
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10ms));
+    EXPECT_EQ(rig.machinist("right").asked, 1u);
+}
+
+TEST(Requests, more_than_sixteen_waiting_are_refused_and_said_so) {
+    Rig rig;
+    std::size_t taken = 0;
+    for (std::int64_t i = 0; i < 100; ++i) taken += rig.ask(0, "left", i) ? 1u : 0u;
+    EXPECT_EQ(taken, std::size_t{requests_waiting});
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 2ms));
+    EXPECT_EQ(rig.machinist("left").asked, taken);
+    EXPECT_TRUE(rig.ask(0, "left", 1)); // there is room again
+}
+
+} // namespace
+} // namespace tappet

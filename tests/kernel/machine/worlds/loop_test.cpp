@@ -1,0 +1,265 @@
+// Blocking functionality (thesis 4.2.2: trigger semantics, loop and breakLoop): it keeps its thread, serves
+// its messages where it waits, and comes back when its activity stops; under real and under virtual time.
+#include "kernel/component/loop.hpp"
+
+#include "kernel/machine/worlds/real_world.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "kernel/os/sleep.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <vector>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+/// Reads bytes from a pipe that blocks, or waits with the control; writes what it got.
+struct Reader {
+    Output<std::int64_t> got;
+    std::atomic<int> loops{0}, breaks{0}, starts{0}, stops{0}, told{0}, told_outside{0};
+    std::atomic<bool> in_loop{false};
+    std::atomic<int> from{-1}; ///< a pipe; -1: waits with the control
+    std::atomic<bool> returns_at_once{false};
+    int end_pipe[2] = {-1, -1};
+    Duration nap{3ms};
+    std::vector<Time> naps_ended;
+
+    Sentence configure(Setup&) {
+        if (end_pipe[0] < 0 && pipe(end_pipe) != 0) return Sentence{"no pipe"};
+        return {};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME { ++starts; }
+    void loop(LoopControl& control) {
+        ++loops;
+        in_loop = true;
+        if (!returns_at_once) {
+            if (from >= 0)
+                read_on(control);
+            else
+                while (control.wait(nap)) {
+                    naps_ended.push_back(control.now());
+                    got.write(got.last() + 1);
+                }
+        }
+        in_loop = false;
+    }
+    void break_loop() {
+        ++breaks;
+        const char end = 'e';
+        [[maybe_unused]] const auto n = write(end_pipe[1], &end, 1);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        ++stops;
+        got.write(-1);
+    }
+    void tell() noexcept TAPPET_REALTIME {
+        ++told;
+        if (!in_loop) ++told_outside;
+    }
+    static constexpr auto interface() {
+        return facets(output<&Reader::got>("got", "", "counts; -1: safe"),
+                      operation<&Reader::tell>("tell", "counts"));
+    }
+
+private:
+    void read_on(LoopControl& control) {
+        while (true) {
+            pollfd both[2] = {{from, POLLIN, 0}, {end_pipe[0], POLLIN, 0}};
+            poll(both, 2, -1);
+            char byte = 0;
+            if (both[1].revents != 0) [[maybe_unused]]
+                const auto n = read(end_pipe[0], &byte, 1);
+            else if (read(from, &byte, 1) == 1)
+                got.write(byte);
+            if (!control.serve()) return;
+        }
+    }
+};
+
+struct Talker {
+    Input<std::int64_t> heard;
+    Event<> speak;
+    std::atomic<int> to_say{0};
+    std::atomic<std::int64_t> last{0};
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        last = heard.get();
+        if (to_say > 0) {
+            --to_say;
+            speak();
+        }
+    }
+    static constexpr auto interface() {
+        return facets(input<&Talker::heard>("heard", "", "of the reader"),
+                      event<&Talker::speak>("speak", "tells it"));
+    }
+};
+
+// clang-format off
+constexpr auto table = machine("reading",
+    components(component<Reader>("reader"), component<Talker>("talker")),
+    activities(
+        activity("blocks", on_work(), not_real_time, runs("reader"), stack(256 * 1024)),
+        activity("talks",  every(1ms), budget(50us), runs("talker"), stack(256 * 1024))),
+    connections(data("reader.got", "talker.heard")),
+    reactions(when("talker.speak", tell("reader.tell"))),
+    behaviours());
+constexpr auto real_table = table; // in memory of its own
+constexpr Board board{
+    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
+    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
+constexpr std::size_t blocks = 0;
+// clang-format on
+
+struct ALoopInVirtualTime : testing::Test {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    ALoopInVirtualTime() { EXPECT_TRUE(instance.configure({})); }
+    ~ALoopInVirtualTime() override { world.stop(); }
+    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
+    Reader& reader = *instance.find<Reader>("reader");
+    Talker& talker = *instance.find<Talker>("talker");
+};
+
+TEST_F(ALoopInVirtualTime, waits_by_the_machines_clock_and_its_outputs_are_stamped_with_it) {
+    ASSERT_EQ(world.start().view(), "");
+    run(10ms);
+    EXPECT_THAT(reader.naps_ended, testing::ElementsAre(at_ns(0) + 3ms, at_ns(0) + 6ms, at_ns(0) + 9ms));
+    EXPECT_EQ(talker.last, 3);
+    EXPECT_EQ(reader.loops, 1);
+}
+
+TEST_F(ALoopInVirtualTime, is_woken_in_its_wait_by_a_message_and_served_inside_the_loop) {
+    reader.nap = 1h;
+    ASSERT_EQ(world.start().view(), "");
+    talker.to_say = 2;
+    run(10ms);
+    EXPECT_EQ(reader.told, 2);
+    EXPECT_EQ(reader.told_outside, 0);
+    EXPECT_THAT(reader.naps_ended, testing::ElementsAre(at_ns(0) + 1ms, at_ns(0) + 2ms));
+}
+
+TEST_F(ALoopInVirtualTime,
+       returns_when_its_activity_stops_leaves_safe_values_and_begins_again_when_it_starts) {
+    ASSERT_EQ(world.start().view(), "");
+    run(10ms);
+    EXPECT_EQ(world.change_activity(blocks, LifeChange::stop).view(), "");
+    EXPECT_FALSE(reader.in_loop);
+    EXPECT_EQ(reader.breaks, 1);
+    EXPECT_EQ(reader.stops, 1);
+    run(5ms);
+    EXPECT_EQ(talker.last, -1);
+    EXPECT_EQ(world.change_activity(blocks, LifeChange::start).view(), "");
+    run(10ms);
+    EXPECT_TRUE(reader.in_loop);
+    EXPECT_EQ(reader.loops, 2);
+    EXPECT_EQ(reader.starts, 2);
+}
+
+TEST_F(ALoopInVirtualTime, that_returned_by_itself_runs_again_upon_the_next_wake_and_not_before) {
+    reader.returns_at_once = true;
+    ASSERT_EQ(world.start().view(), "");
+    run(50ms);
+    EXPECT_EQ(reader.loops, 1);
+    talker.to_say = 1;
+    run(50ms);
+    EXPECT_EQ(reader.loops, 2);
+    EXPECT_EQ(reader.told, 1);
+}
+
+TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
+    ASSERT_EQ(world.start().view(), "");
+    run(5ms);
+    const LifeTicket ticket = instance.ask_component(0, LifeChange::restart);
+    run(5ms);
+    EXPECT_EQ(instance.answer_of_component(0, ticket).outcome, LifeOutcome::done);
+    EXPECT_EQ(reader.starts, 2);
+    EXPECT_TRUE(reader.in_loop);
+}
+
+TEST_F(ALoopInVirtualTime, is_the_same_in_every_run) {
+    const auto digest = [](int words) {
+        os::Clock its_clock{os::Clock::Kind::virtual_time};
+        MachineInstance again{Firmware<table, board>::machine(), its_clock};
+        VirtualWorld its_world{again};
+        EXPECT_TRUE(again.configure({}));
+        again.find<Reader>("reader")->nap = 700us;
+        EXPECT_EQ(its_world.start().view(), "");
+        again.find<Talker>("talker")->to_say = words;
+        EXPECT_TRUE(its_world.run_until(at_ns(0) + 200ms));
+        its_world.stop();
+        return again.event_log_digest();
+    };
+    EXPECT_EQ(digest(100), digest(100));
+    EXPECT_NE(digest(100), digest(99));
+}
+
+struct ALoopInRealTime : testing::Test {
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{Firmware<real_table, board>::machine(), clock};
+    RealWorld world{instance};
+    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
+    Reader* reader = nullptr;
+    Talker* talker = nullptr;
+    int input[2] = {-1, -1};
+
+    void SetUp() override {
+        if (os::observe_process(1).fifo_error != 0)
+            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+        ASSERT_EQ(pipe(input), 0);
+        ASSERT_TRUE(instance.configure({}));
+        reader = instance.find<Reader>("reader");
+        talker = instance.find<Talker>("talker");
+        reader->from = input[0];
+        const int nowhere_to_print = open("/dev/null", O_WRONLY);
+        ASSERT_TRUE(world.arm(report, nowhere_to_print));
+        close(nowhere_to_print);
+        ASSERT_TRUE(world.start());
+    }
+    void say(char byte) { ASSERT_EQ(write(input[1], &byte, 1), 1); }
+    template <class Condition> bool comes_true(Condition&& condition) {
+        for (int n = 0; n < 200 && !condition(); ++n) static_cast<void>(world.supervise(10ms));
+        return condition();
+    }
+};
+
+TEST_F(ALoopInRealTime, blocks_where_it_likes_and_gives_what_it_got_to_the_others) {
+    say(42);
+    EXPECT_TRUE(comes_true([&] { return talker->last == 42; }));
+    say(7);
+    EXPECT_TRUE(comes_true([&] { return talker->last == 7; }));
+    EXPECT_EQ(world.stop(), 0);
+}
+
+TEST_F(ALoopInRealTime,
+       is_broken_off_by_the_stopper_however_long_it_blocks_and_restarted_on_the_same_thread) {
+    EXPECT_TRUE(comes_true([&] { return reader->in_loop.load(); }));
+    for (int n = 1; n <= 20; ++n) {
+        ASSERT_EQ(world.change_activity(blocks, LifeChange::restart).view(), "");
+        ASSERT_EQ(reader->breaks, n);
+        ASSERT_EQ(reader->stops, n);
+        ASSERT_EQ(reader->starts, n + 1);
+    }
+    say(9);
+    EXPECT_TRUE(comes_true([&] { return talker->last == 9; }));
+    EXPECT_EQ(world.stop(), 0);
+    EXPECT_FALSE(reader->in_loop);
+}
+
+TEST_F(ALoopInRealTime, serves_its_messages_inside_the_loop) {
+    talker->to_say = 3;
+    EXPECT_TRUE(comes_true([&] { return talker->to_say == 0; }));
+    say(1); // it blocks in the read until then
+    EXPECT_TRUE(comes_true([&] { return reader->told == 3; }));
+    EXPECT_EQ(reader->told_outside, 0);
+    EXPECT_EQ(world.stop(), 0);
+}
+
+} // namespace
+} // namespace tappet

@@ -1,0 +1,113 @@
+// A machine under virtual time: nothing sleeps, every run of a seed is the same, and an overrun is laid at
+// the door of whoever caused it.
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include "kernel/base/random.hpp"
+#include "tests/kernel/machine/watched_machine.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+using watched::Order;
+using watched::Worker;
+
+/// The name of the component that a miss blames.
+std::string_view culprit(const Engine& engine, const Miss& miss) {
+    return miss.function == Miss::nobody ? "nobody"
+                                         : engine.plan().parts[miss.function / functions_per_part].name;
+}
+
+template <const auto& table>
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, watched::board>::machine(), clock};
+    VirtualWorld world{instance};
+    Rig() {
+        watched::stops().clear();
+        EXPECT_TRUE(instance.configure({}));
+        world.start();
+    }
+    Worker& worker(std::string_view name) { return *instance.template find<Worker>(name); }
+    const Engine& engine(std::size_t activity) { return instance.engines()[activity]; }
+};
+
+TEST(VirtualWorld, runs_every_activity_at_its_period_and_leaps_over_what_lies_between) {
+    Rig<watched::table> rig;
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10s));
+    EXPECT_EQ(rig.clock.now(), at_ns(0) + 10s);
+    EXPECT_EQ(rig.worker("driver").cycles, 5'000u);
+    EXPECT_EQ(rig.worker("middle").cycles, 10'000u);
+    EXPECT_EQ(rig.worker("logic").cycles, 2'000u);
+    EXPECT_EQ(rig.world.steps(), 17'000u);
+}
+
+TEST(VirtualWorld, stops_the_last_row_first) {
+    Rig<watched::table> rig;
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 20ms));
+    rig.world.stop();
+    EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
+    EXPECT_EQ(rig.worker("driver").level.last(), 0);
+}
+
+TEST(VirtualWorld, runs_processes_before_the_engines_of_the_same_instant) {
+    struct Feeder {
+        Time due = at_ns(0) + 3ms;
+        Worker* middle = nullptr;
+        std::uint64_t seen = 0;
+    } feeder;
+    Rig<watched::table> rig;
+    feeder.middle = &rig.worker("middle");
+    rig.world.add({&feeder, [](void* self) { return static_cast<Feeder*>(self)->due; },
+                   [](void* self, Time) {
+                       auto& at = *static_cast<Feeder*>(self);
+                       at.seen = at.middle->cycles;
+                       at.due = never;
+                   }});
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10ms));
+    EXPECT_EQ(feeder.seen, 2u); // those at 1 and 2 ms
+}
+
+TEST(VirtualWorld, an_overrun_is_blamed_on_the_component_that_took_the_time) {
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+        Random random{seed};
+        const std::string_view victim = watched::of_motion[random.below(watched::of_motion.size())];
+        const auto at_cycle = random.between(5, 200);
+        Rig<watched::table> rig;
+        EXPECT_TRUE(rig.world.run_until(at_ns(0) + at_cycle * 1ms));
+        rig.worker(victim).order = Order::overrun;
+        EXPECT_TRUE(rig.world.run_until(at_ns(0) + 300ms));
+        const EngineStatistics& seen = rig.engine(watched::motion).statistics();
+        ASSERT_EQ(seen.misses, 1u) << "seed " << seed;
+        EXPECT_EQ(culprit(rig.engine(watched::motion), seen.recent_misses[0]), victim) << "seed " << seed;
+        EXPECT_EQ(seen.recent_misses[0].took, rig.worker(victim).overrun);
+        EXPECT_EQ(seen.skipped_periods, 2u);
+        std::uint64_t blamed = 0;
+        for (const FunctionTiming& function : rig.engine(watched::motion).plan().functions)
+            blamed += function.blamed;
+        EXPECT_EQ(blamed, 1u);
+        EXPECT_FALSE(rig.instance.stop_asked());
+    }
+}
+
+TEST(VirtualWorld, a_row_that_says_so_stops_the_machine_for_it_with_a_sentence_that_names_both) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        Random random{seed};
+        const std::string_view victim = watched::of_motion[random.below(watched::of_motion.size())];
+        Rig<watched::strict_table> rig;
+        EXPECT_TRUE(rig.world.run_until(at_ns(0) + 20ms));
+        rig.worker(victim).order = Order::overrun;
+        EXPECT_FALSE(rig.world.run_until(at_ns(0) + 300ms));
+        EXPECT_LT(rig.clock.now(), at_ns(0) + 30ms);
+        EXPECT_EQ(rig.instance.stop_request().reason, StopReason::missed_deadline);
+        EXPECT_EQ(
+            rig.instance.describe_stop().view(),
+            Sentence("activity \"motion\" missed its deadline: component \"", victim, "\" took the time")
+                .view());
+    }
+}
+
+} // namespace
+} // namespace tappet

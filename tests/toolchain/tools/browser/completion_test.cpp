@@ -1,0 +1,65 @@
+// Completion knows the commands and the names that each of them takes (thesis 4.8).
+#include "toolchain/tools/browser/completion.hpp"
+
+#include "tests/toolchain/tools/browser/sample_machine.hpp"
+
+#include <gmock/gmock.h>
+
+namespace tappet::browser {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
+
+class Completing : public testing::Test {
+protected:
+    void SetUp() override {
+        auto opened = Session::open(machine.socket(), 2s);
+        ASSERT_TRUE(opened.has_value()) << opened.error().sentence;
+        session = std::move(*opened);
+    }
+    Completion after(std::string_view typed) { return complete(session->map(), typed); }
+    SampleMachine machine;
+    std::unique_ptr<Session> session;
+};
+
+TEST_F(Completing, an_empty_line_offers_the_commands) {
+    EXPECT_THAT(after("").candidates, Contains("watch"));
+    EXPECT_THAT(after("").candidates, Contains("quit"));
+    EXPECT_THAT(after("wa").candidates, ElementsAre("watch"));
+}
+
+TEST_F(Completing, a_name_is_one_that_the_command_takes) {
+    EXPECT_THAT(after("set ").candidates, ElementsAre("shaft.gains.i", "shaft.gains.p"));
+    EXPECT_THAT(after("send ").candidates, ElementsAre("shaft.stop"));
+    EXPECT_THAT(after("events ").candidates, ElementsAre("shaft.beat_up"));
+    EXPECT_THAT(after("force l").candidates, ElementsAre("loom.angle", "loom.lamp"));
+    EXPECT_THAT(after("call s").candidates, ElementsAre("shaft.reset"));
+    EXPECT_THAT(after("stop ").candidates, ElementsAre("logic", "loom", "motion", "shaft"));
+    EXPECT_THAT(after("get shaft.").candidates, Not(Contains("shaft.stop")));
+}
+
+TEST_F(Completing, where_a_value_belongs_no_name_is_offered) {
+    EXPECT_THAT(after("set shaft.gains.p ").candidates, IsEmpty());
+    EXPECT_THAT(after("set shaft.gains.p 1 ").candidates, ElementsAre("shaft.gains.i", "shaft.gains.p"));
+    EXPECT_THAT(after("force loom.lamp ").candidates, IsEmpty());
+    EXPECT_THAT(after("get shaft.angle l").candidates, Contains("loom.lamp"));
+}
+
+TEST_F(Completing, goes_as_far_as_all_candidates_agree) {
+    const Completion completion = after("set sh");
+    EXPECT_EQ(completion.begin, 4u);
+    EXPECT_EQ(completion.common(), "shaft.gains.");
+    EXPECT_EQ(after("nonsense sh").common(), "");
+}
+
+TEST_F(Completing, options_are_offered_behind_a_dash) {
+    EXPECT_THAT(after("get --js").candidates, ElementsAre("--json"));
+    EXPECT_THAT(after("--json ge").candidates, ElementsAre("get"));
+}
+
+} // namespace
+} // namespace tappet::browser

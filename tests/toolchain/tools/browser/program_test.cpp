@@ -1,0 +1,246 @@
+// The program from its command line to its exit code, against a machine under the test's hand (thesis 4.8).
+#include "toolchain/tools/browser/program.hpp"
+
+#include "tests/toolchain/tools/browser/sample_machine.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <sstream>
+
+namespace tappet::browser {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+struct Outcome {
+    int code = -1;
+    std::string out{};
+    std::string errors{};
+};
+
+class Program : public testing::Test {
+protected:
+    Outcome run(std::vector<std::string> words) {
+        std::ostringstream out;
+        std::ostringstream errors;
+        Surroundings surroundings{out, errors};
+        words.insert(words.begin(), {"--directory", machine.directory()});
+        const int code = run_program(words, surroundings);
+        return {code, out.str(), errors.str()};
+    }
+    /// Behind the requests that open a session.
+    std::vector<std::string> asked() {
+        std::vector<std::string> all;
+        for (const std::string& each : machine.requests())
+            if (each != "hello" && each != "map") all.push_back(each);
+        return all;
+    }
+    SampleMachine machine;
+};
+
+TEST_F(Program, lists_components_and_their_facets) {
+    const Outcome all = run({"list"});
+    EXPECT_EQ(all.code, 0);
+    EXPECT_THAT(all.out, HasSubstr("MainShaft"));
+    const Outcome one = run({"list", "shaft"});
+    EXPECT_THAT(one.out, HasSubstr("shaft.stop"));
+    EXPECT_THAT(one.out, HasSubstr("(double)"));
+    EXPECT_THAT(one.out, HasSubstr(" [operator]\n")) << "who may send it";
+    EXPECT_THAT(one.out, HasSubstr("0 deg            of the main shaft"));
+    EXPECT_THAT(run({"list", "shaft", "--json"}).out,
+                testing::AllOf(HasSubstr(R"("name": "shaft.angle", "kind": "output")"),
+                               testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator")")));
+}
+
+TEST_F(Program, says_why_the_machine_lets_it_go) {
+    machine.answer("save",
+                   {R"({"id": 0, "ok": false, "code": "not_now", "error": "an engineer needs this place"})"});
+    const Outcome outcome = run({"save"});
+    EXPECT_NE(outcome.code, 0);
+    EXPECT_THAT(outcome.errors, HasSubstr("an engineer needs this place"));
+}
+
+TEST_F(Program, keeps_no_descriptor_of_the_machine_beyond_the_end_of_its_session) {
+    const auto of_its_memory = [] {
+        std::size_t count = 0;
+        for (const auto& each : std::filesystem::directory_iterator{"/proc/self/fd"}) {
+            std::error_code gone;
+            count += std::filesystem::read_symlink(each, gone).string().find("memfd:") != std::string::npos;
+        }
+        return count;
+    };
+    EXPECT_EQ(run({"list"}).code, 0); // its first session may open what stays
+    const auto before = of_its_memory();
+    EXPECT_EQ(run({"list"}).code, 0);
+    EXPECT_EQ(of_its_memory(), before);
+}
+
+TEST_F(Program, says_that_a_machine_records_no_cycles_and_the_cure) {
+    const Outcome scope = run({"scope", "worst"});
+    EXPECT_EQ(scope.code, 1);
+    EXPECT_THAT(scope.errors, HasSubstr("component<ThreadScope>"));
+}
+
+TEST_F(Program, gets_values_for_people_and_for_programs) {
+    machine.write("shaft.angle", 12.5, 77);
+    EXPECT_EQ(run({"get", "shaft.angle"}).out, "shaft.angle = 12.5 deg\n");
+    EXPECT_EQ(run({"get", "shaft.angle", "--json"}).out,
+              "{\"name\": \"shaft.angle\", \"value\": 12.5, \"unit\": \"deg\", \"flow\": \"fresh\", "
+              "\"forced\": false, \"time_ns\": 77}\n");
+    EXPECT_THAT(run({"get", "shaft"}).out, HasSubstr("shaft.gains.p = 0"));
+}
+
+TEST_F(Program, an_unknown_name_is_told_with_the_nearest_and_exit_code_2) {
+    const Outcome outcome = run({"get", "shaft.angel"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.errors, HasSubstr("did you mean \"shaft.angle\"?"));
+    EXPECT_EQ(run({"gte", "shaft.angle"}).code, 2);
+    EXPECT_THAT(run({"gte", "shaft.angle"}).errors, HasSubstr("did you mean \"get\"?"));
+    EXPECT_THAT(run({"list", "shafd"}).errors, HasSubstr("did you mean \"shaft\"?"));
+    EXPECT_THAT(run({"stop", "shafd"}).errors, HasSubstr("did you mean \"shaft\"?"));
+    EXPECT_THAT(asked(), IsEmpty());
+}
+
+TEST_F(Program, a_name_of_another_kind_is_told_with_what_it_is_for) {
+    EXPECT_THAT(run({"set", "shaft.angle", "3"}).errors, HasSubstr("of kind output; read it with get"));
+    EXPECT_THAT(run({"get", "shaft.stop"}).errors, HasSubstr("of kind command; send it with send"));
+    EXPECT_THAT(run({"force", "shaft.gains.p", "3"}).errors, HasSubstr("cannot be forced"));
+    EXPECT_THAT(asked(), IsEmpty());
+}
+
+TEST_F(Program, sets_several_properties_in_one_request) {
+    const Outcome outcome = run({"set", "shaft.gains.p", "1.5", "shaft.gains.i", "-0.5"});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_THAT(asked(), ElementsAre("set shaft.gains.p 1.5 shaft.gains.i -0.5"));
+    EXPECT_EQ(run({"set", "shaft.gains.p"}).code, 2);
+    EXPECT_THAT(run({"set", "shaft.gains.p", "1", "shaft.gains.i"}).errors, HasSubstr("has no value"));
+}
+
+TEST_F(Program, a_refusal_is_the_machines_own_sentence_and_exit_code_1) {
+    machine.answer("set",
+                   {R"({"id": %, "ok": false, "code": "denied", "error": "an observer sets nothing"})"});
+    const Outcome outcome = run({"set", "shaft.gains.p", "1"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.errors, "tappet-browse: an observer sets nothing\n");
+    EXPECT_THAT(run({"set", "shaft.gains.p", "1", "--json"}).errors,
+                HasSubstr("{\"error\": \"an observer sets nothing\", \"exit\": 1}"));
+}
+
+TEST_F(Program, follows_a_command_to_its_end) {
+    machine.answer(
+        "send",
+        {R"({"id": %, "ok": true, "state": "sent"})",
+         R"({"id": %, "command": "shaft.stop", "state": "executing", "time_ns": 1})",
+         R"({"id": %, "command": "shaft.stop", "state": "done", "time_ns": 2, "final": true, "results": [180.5]})"});
+    const Outcome outcome = run({"send", "shaft.stop", "180", "--follow"});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_EQ(outcome.out, "shaft.stop: sent\nshaft.stop: executing\nshaft.stop: done [180.5]\n");
+    EXPECT_THAT(asked(), ElementsAre("send shaft.stop 180"));
+}
+
+TEST_F(Program, a_command_that_is_rejected_is_exit_code_4) {
+    machine.answer(
+        "send", {R"({"id": %, "ok": true, "state": "sent"})",
+                 R"({"id": %, "command": "shaft.stop", "state": "rejected", "time_ns": 1, "final": true})"});
+    const Outcome outcome = run({"send", "shaft.stop", "180", "--follow"});
+    EXPECT_EQ(outcome.code, 4);
+    EXPECT_THAT(outcome.errors, HasSubstr("rejected"));
+    EXPECT_EQ(run({"send", "shaft.stop", "180"}).code, 0); // sent is all that was asked
+}
+
+TEST_F(Program, calls_forces_releases_and_restarts) {
+    machine.answer("call", {R"({"id": %, "ok": true, "result": 3})"});
+    EXPECT_EQ(run({"call", "shaft.reset"}).out, "shaft.reset = 3\n");
+    EXPECT_EQ(run({"force", "loom.lamp", "true"}).code, 0);
+    EXPECT_EQ(run({"release", "loom.lamp"}).code, 0);
+    EXPECT_EQ(run({"restart", "motion"}).code, 0);
+    EXPECT_THAT(asked(), ElementsAre("call shaft.reset", "force loom.lamp true", "release loom.lamp",
+                                     "restart motion"));
+}
+
+TEST_F(Program, tells_events_with_what_was_lost) {
+    machine.answer("subscribe",
+                   {R"({"id": %, "ok": true})",
+                    R"({"id": %, "event": "shaft.beat_up", "time_ns": 5, "arguments": [1.5], "lost": 0})",
+                    R"({"id": %, "event": "shaft.beat_up", "time_ns": 6, "arguments": [2.5], "lost": 3})"});
+    const Outcome outcome = run({"events", "shaft.beat_up", "--count", "2"});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.out, HasSubstr("shaft.beat_up [1.5] at 5 ns\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("shaft.beat_up [2.5] at 6 ns, 3 lost so far\n"));
+    EXPECT_THAT(asked(), ElementsAre("subscribe shaft.beat_up", "unsubscribe shaft.beat_up"));
+}
+
+TEST_F(Program, watches_as_often_as_asked) {
+    machine.write("shaft.angle", 1.0);
+    const Outcome outcome = run({"watch", "shaft.angle", "--every", "1ms", "--count", "3"});
+    EXPECT_EQ(outcome.out, "shaft.angle = 1 deg\nshaft.angle = 1 deg\nshaft.angle = 1 deg\n");
+}
+
+TEST_F(Program, a_value_that_is_always_busy_is_exit_code_5) {
+    machine.hold("shaft.angle", true);
+    const Outcome outcome = run({"get", "shaft.angle"});
+    EXPECT_EQ(outcome.code, 5);
+    EXPECT_THAT(outcome.errors, HasSubstr("try again"));
+}
+
+TEST_F(Program, without_a_machine_the_exit_code_is_3_and_the_cure_is_said) {
+    machine.end();
+    const Outcome outcome = run({"list"});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.errors, HasSubstr("start it again"));
+    std::ostringstream out;
+    std::ostringstream errors;
+    Surroundings surroundings{out, errors};
+    const std::vector<std::string> elsewhere{"list", "--directory", "/nowhere"};
+    EXPECT_EQ(run_program(elsewhere, surroundings), 3);
+    EXPECT_THAT(errors.str(), HasSubstr("--socket"));
+}
+
+TEST_F(Program, a_machine_that_does_not_answer_is_exit_code_5) {
+    machine.answer("save", {});
+    const Outcome outcome = run({"save", "--timeout", "50ms"});
+    EXPECT_EQ(outcome.code, 5);
+    EXPECT_THAT(outcome.errors, HasSubstr("no answer within 50 ms"));
+}
+
+TEST_F(Program, an_answer_that_is_none_is_told_and_ends_nothing_else) {
+    machine.answer("save", {"no JSON"});
+    EXPECT_EQ(run({"save"}).code, 3);
+    machine.answer("forc", {R"({"id": {}, "ok": true})"});
+    const Outcome outcome = run({"force", "loom.lamp", "true"});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.errors, HasSubstr("is another program at this socket?"));
+}
+
+TEST_F(Program, tells_about_the_machine_and_about_one_name) {
+    const Outcome machine_info = run({"info"});
+    EXPECT_THAT(machine_info.out, HasSubstr("machine sample on board test"));
+    EXPECT_THAT(machine_info.out, HasSubstr("you are its engineer"));
+    EXPECT_THAT(machine_info.out, HasSubstr("cycles = 0"));
+    EXPECT_THAT(run({"info", "--json"}).out, HasSubstr("\"role\": \"engineer\""));
+    const Outcome facet = run({"info", "loom.angle"});
+    EXPECT_THAT(facet.out, HasSubstr("<- shaft.angle (stale after 4ms: hold)"));
+    EXPECT_THAT(run({"tree", "shaft"}).out, HasSubstr("-> loom.angle"));
+    EXPECT_THAT(run({"tree", "shaft"}).out, Not(HasSubstr("loom (Loom")));
+}
+
+TEST_F(Program, shows_what_is_forced) {
+    EXPECT_EQ(run({"forced"}).out, "");
+    machine.force("shaft.angle", true, 90.0);
+    EXPECT_EQ(run({"forced"}).out, "shaft.angle = 90 deg   FORCED\n");
+}
+
+TEST_F(Program, help_names_every_command_and_every_exit_code) {
+    const Outcome help = run({"--help"});
+    EXPECT_EQ(help.code, 0);
+    for (const Command& each : commands()) EXPECT_THAT(help.out, HasSubstr(std::string{each.usage}));
+    EXPECT_THAT(help.out, HasSubstr("Exit codes"));
+    EXPECT_THAT(run({"send", "--help"}).out, HasSubstr("--follow"));
+}
+
+} // namespace
+} // namespace tappet::browser

@@ -1,0 +1,130 @@
+// A machine as a browser meets it, small and under the test's hand: a block of memory with a map, and a
+// socket that answers by rules which the test sets.
+#pragma once
+
+#include "kernel/machine/map/layout.hpp"
+#include "kernel/services/browsing/protocol.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace tappet::browser {
+
+/// Builds a block: texts and sections first, values behind them.
+class SampleMap {
+public:
+    SampleMap();
+
+    struct Place {
+        std::uint64_t value = 0;
+        std::uint64_t stamp = 0;
+        std::uint64_t writes = 0;
+        std::uint64_t forced = 0;
+        std::uint64_t forced_value = 0;
+    };
+
+    std::uint32_t activity(std::string_view name);
+    std::uint32_t component(std::string_view name, std::string_view type, std::uint32_t activity);
+    /// Of the component that was added last.
+    std::uint32_t facet(std::string_view name, std::string_view kind, std::uint32_t type,
+                        std::string_view unit = {}, std::string_view doc = {}, std::uint32_t flags = 0);
+    std::uint32_t type(std::string_view name, map::Shape shape, std::uint64_t size);
+    std::uint32_t enumeration(std::string_view name, std::uint64_t size,
+                              const std::vector<std::pair<std::string_view, std::int64_t>>& names);
+    std::uint32_t record(std::string_view name,
+                         const std::vector<std::pair<std::string_view, std::uint32_t>>& fields,
+                         map::Shape shape = map::Shape::record);
+    std::uint32_t matrix(std::uint32_t element, std::uint32_t rows, std::uint32_t columns, bool row_major);
+    std::uint32_t text_type(std::uint32_t capacity);
+    std::uint32_t sequence(std::uint32_t element, std::uint32_t capacity);
+    void connect(std::uint32_t from, std::uint32_t to, std::int64_t max_age_ns);
+    void react(std::string_view how, std::uint32_t from, std::uint32_t to);
+    void figure(map::Owner owner, std::uint32_t index, std::string_view name, std::uint32_t type);
+
+    /// Lays everything out; the block is as long as it must be.
+    std::vector<std::byte> build();
+
+    [[nodiscard]] const std::vector<map::Facet>& facets() const { return facets_; }
+    [[nodiscard]] const std::vector<map::Activity>& activities() const { return activities_; }
+    [[nodiscard]] const map::Header& header() const { return header_; }
+    std::uint32_t f64 = 0, i32 = 0, u8 = 0, truth = 0, duration = 0; ///< types that are there
+
+private:
+    map::Text text(std::string_view text);
+    template <class Record> map::Section lay(std::vector<std::byte>& block,
+                                             const std::vector<Record>& records);
+    std::uint64_t take(std::uint64_t bytes);
+
+    map::Header header_{};
+    std::string texts_{};
+    std::vector<map::Component> components_{};
+    std::vector<map::Facet> facets_{};
+    std::vector<map::Activity> activities_{};
+    std::vector<map::Connection> connections_{};
+    std::vector<map::Reaction> reactions_{};
+    std::vector<map::Behaviour> behaviours_{};
+    std::vector<map::Type> types_{};
+    std::vector<map::Field> fields_{};
+    std::vector<map::Enumerator> enumerators_{};
+    std::vector<map::Figure> figures_{};
+    std::uint64_t end_ = 0;
+};
+
+/// A loom's shaft and its lamp, in shared memory, served at a socket of a temporary folder.
+class SampleMachine {
+public:
+    SampleMachine();
+    ~SampleMachine();
+    SampleMachine(const SampleMachine&) = delete;
+    SampleMachine& operator=(const SampleMachine&) = delete;
+
+    [[nodiscard]] const std::string& socket() const { return path_; }
+    [[nodiscard]] const std::string& directory() const { return directory_; }
+    /// Writes a value as the machine would: its activity's generation is odd meanwhile.
+    template <class T> void write(std::string_view facet, const T& value, std::int64_t stamp_ns = 1000) {
+        write_bytes(facet, std::as_bytes(std::span{&value, 1}), stamp_ns);
+    }
+    void force(std::string_view facet, bool forced, double value);
+    /// The activity of a facet is caught in a cycle until it is let go.
+    void hold(std::string_view facet, bool in_cycle);
+    void set_now(std::string_view facet, std::int64_t now_ns);
+    /// What is answered, one packet each, to requests that begin so (behind the number); "%" stands for the
+    /// number. Anything else gets an "ok".
+    void answer(std::string_view request, std::vector<std::string> packets);
+    [[nodiscard]] std::vector<std::string> requests() const;
+    /// Closes every connection, as a machine that ends does.
+    void end();
+
+    std::string role = "engineer";
+
+private:
+    void write_bytes(std::string_view facet, std::span<const std::byte> bytes, std::int64_t stamp_ns);
+    void serve();
+    void reply(int client, std::string_view packet);
+    std::uint32_t index_of(std::string_view facet) const;
+    std::atomic_ref<std::uint64_t> generation(std::uint32_t facet) const;
+
+    SampleMap map_{};
+    std::map<std::string, std::uint32_t, std::less<>> names_{};
+    std::map<std::uint32_t, std::uint32_t> activity_of_{};
+    int memory_ = -1;
+    std::span<std::byte> block_{};
+    std::string directory_{};
+    std::string path_{};
+    int listener_ = -1;
+    std::atomic<bool> ending_{false};
+    mutable std::mutex mutex_{};
+    std::vector<std::pair<std::string, std::vector<std::string>>> answers_{};
+    std::vector<std::string> requests_{};
+    std::thread server_{};
+};
+
+} // namespace tappet::browser

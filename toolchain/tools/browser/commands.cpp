@@ -1,0 +1,184 @@
+// The table of commands, and names that are checked before the machine is asked.
+#include "toolchain/tools/browser/commands.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tappet::browser {
+
+namespace {
+
+constexpr std::size_t any = browsing::max_words;
+
+// clang-format off
+constexpr auto table = std::to_array<Command>({
+    {"list",    "list [COMPONENT]",                        "components, or the facets of one with type, unit and meaning", Takes::component, 0, 1, run_list},
+    {"get",     "get NAME...",                             "values, those of one activity of one moment; a component's name: all of its values", Takes::value, 1, any, run_get},
+    {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch},
+    {"tree",    "tree [COMPONENT]",                        "components, facets and what is connected to them", Takes::component, 0, 1, run_tree},
+    {"info",    "info [NAME]",                             "the machine and its activities, or everything about one name", Takes::anything, 0, 1, run_info},
+    {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions},
+    {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced},
+    {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events},
+    {"set",     "set PROPERTY VALUE [PROPERTY VALUE...]",  "properties of one component, all at once or none (engineer)", Takes::property, 2, any, run_set},
+    {"call",    "call METHOD [ARGUMENT...]",               "a method or an operation, answered at once (operator)", Takes::callable, 1, any, run_call},
+    {"send",    "send COMMAND [ARGUMENT...] [--follow]",   "a command; --follow: told until it has come to its end (operator)", Takes::command, 1, any, run_send},
+    {"force",   "force PORT VALUE",                        "a port has this value whatever is written to it (engineer)", Takes::port, 2, 2, run_force},
+    {"release", "release PORT",                            "ends what force began (engineer)", Takes::port, 1, 1, run_force},
+    {"save",    "save [COMPONENT]",                        "writes properties to their files (engineer)", Takes::component, 0, 1, run_plain_request},
+    {"start",   "start COMPONENT|ACTIVITY",                "starts what was stopped (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
+    {"stop",    "stop COMPONENT|ACTIVITY",                 "stops it; it leaves safe values (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
+    {"restart", "restart COMPONENT|ACTIVITY",              "stops and starts it (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
+    {"behaviour", "behaviour [list [NAME] | watch [NAME] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
+                                                           "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour},
+    {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
+                                                           "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
+});
+// clang-format on
+
+std::unexpected<Failure> wrong(std::string sentence) {
+    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
+}
+
+std::string_view wanted_of(Takes takes) {
+    switch (takes) {
+    case Takes::value: return "a facet with a value, nor a component";
+    case Takes::property: return "a property";
+    case Takes::callable: return "a method or an operation";
+    case Takes::command: return "a command";
+    case Takes::event: return "an event";
+    case Takes::port: return "a data port";
+    default: return "a facet";
+    }
+}
+
+/// What does what was perhaps meant.
+std::string_view cure_of(std::string_view kind) {
+    if (kind == "property") return "; read it with get, write it with set";
+    if (kind == "command") return "; send it with send";
+    if (kind == "method" || kind == "operation") return "; call it with call";
+    if (kind == "event") return "; follow it with events";
+    if (kind == "input" || kind == "output") return "; read it with get, hold it with force";
+    return "";
+}
+
+} // namespace
+
+std::span<const Command> commands() { return table; }
+
+const Command* find_command(std::string_view name) {
+    const auto found = std::ranges::find(table, name, &Command::name);
+    return found == table.end() ? nullptr : &*found;
+}
+
+Result<void> run_command(Work& work) {
+    const Command* command = find_command(work.line.words.front());
+    if (command == nullptr) {
+        std::vector<std::string> names;
+        for (const Command& each : table) names.emplace_back(each.name);
+        const std::string nearest = MapReader::nearest_of(work.line.words.front(), names);
+        return wrong("there is no command '" + work.line.words.front() + "'" +
+                     (nearest.empty() ? "; help lists them" : nearest));
+    }
+    const std::size_t count = work.arguments().size();
+    if (count < command->fewest || count > command->most)
+        return wrong("'" + std::string{command->name} + "' was given " + std::to_string(count) +
+                     " arguments; it is spelled: " + std::string{command->usage});
+    return command->run(work);
+}
+
+bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet) {
+    const std::string_view kind = map.text(facet.kind);
+    switch (takes) {
+    case Takes::value: return facet.value_at != 0;
+    case Takes::property: return kind == "property";
+    case Takes::callable: return kind == "method" || kind == "operation";
+    case Takes::command: return kind == "command";
+    case Takes::event: return kind == "event";
+    case Takes::port: return (facet.flags & map::facet_can_force) != 0;
+    case Takes::anything: return true;
+    default: return false;
+    }
+}
+
+Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_view name) {
+    const auto found = map.find(name);
+    if (found && takes_facet(map, takes, found->record)) return *found;
+    const std::string quoted = "'" + std::string{name} + "'";
+    if (found) {
+        const std::string_view kind = map.text(found->record.kind);
+        if (takes == Takes::port)
+            return wrong(quoted + " (" + std::string{kind} +
+                         ") cannot be forced; data ports can: list shows them");
+        return wrong(quoted + " is not " + std::string{wanted_of(takes)} + " but of kind " +
+                     std::string{kind} + std::string{cure_of(kind)});
+    }
+    std::string nearest = MapReader::nearest_of(name, names_for(map, takes));
+    if (nearest.empty()) nearest = MapReader::nearest_of(name, names_for(map, Takes::anything));
+    return wrong("the machine has no " + quoted + (nearest.empty() ? "; list shows what it has" : nearest));
+}
+
+std::vector<std::string> names_for(const MapReader& map, Takes takes) {
+    std::vector<std::string> names;
+    const bool components = takes == Takes::component || takes == Takes::component_or_activity ||
+                            takes == Takes::value || takes == Takes::anything;
+    if (components)
+        for (const map::Component& each : map.components()) names.emplace_back(map.text(each.name));
+    if (takes == Takes::component_or_activity || takes == Takes::anything)
+        for (const map::Activity& each : map.activities()) names.emplace_back(map.text(each.name));
+    for (std::uint32_t i = 0; i < map.facets().size(); ++i)
+        if (takes_facet(map, takes, map.facets()[i])) names.push_back(map.full_name(i));
+    // A component and its activity often have one name.
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names) {
+    std::vector<std::uint32_t> facets;
+    for (const std::string& name : names) {
+        const auto component = map.find_component(name);
+        if (!component) {
+            const auto facet = find_facet(map, Takes::value, name);
+            if (!facet) return std::unexpected(facet.error());
+            facets.push_back(facet->index);
+            continue;
+        }
+        const map::Component& record = map.components()[*component];
+        for (std::uint32_t i = record.first_facet; i < record.first_facet + record.facet_count; ++i)
+            if (map.facets()[i].value_at != 0) facets.push_back(i);
+    }
+    return facets;
+}
+
+std::string usage() {
+    std::string text = "tappet-browse: looks into a running machine of this box, and asks it to change.\n\n"
+                       "  tappet-browse [OPTION...] COMMAND [ARGUMENT...]     one command\n"
+                       "  tappet-browse [OPTION...]                           a prompt\n\n";
+    for (const Command& each : table) {
+        text += "  " + std::string{each.usage};
+        text += text.size() - text.rfind('\n') - 1 < 44
+                    ? std::string(44 - (text.size() - text.rfind('\n') - 1), ' ')
+                    : "\n" + std::string(44, ' ');
+        text += std::string{each.help} + "\n";
+    }
+    text +=
+        "\n"
+        "  --socket FILE      of the machine; else the only one in /run/tappet\n"
+        "  --directory DIR    where machines have their sockets\n"
+        "  --json             one JSON object a line\n"
+        "  --timeout TIME     how long an answer may take (3s)\n\n"
+        "Values are written as they are shown: 4ms, 0.25, true, \"text\", [1, 2, 3]. Negative numbers need "
+        "no\n"
+        "care; behind -- everything is a word.\n\n"
+        "Exit codes: 0 done; 1 refused by the machine; 2 a wrong command line or a name that it does not "
+        "have;\n"
+        "3 no machine; 4 the command was rejected or failed; 5 no answer in time, or a value always busy.\n";
+    return text;
+}
+
+std::string help_of(const Command& command) {
+    return std::string{command.usage} + "\n    " + std::string{command.help} + "\n";
+}
+
+} // namespace tappet::browser

@@ -1,0 +1,83 @@
+// What the browser can be told to do: one table for the command line, the prompt, the help and the
+// completion.
+#pragma once
+
+#include "toolchain/tools/browser/options.hpp"
+#include "toolchain/tools/browser/session.hpp"
+
+#include <csignal>
+#include <iosfwd>
+
+namespace tappet::browser {
+
+/// Which names a command takes; completion and the check before a request look here.
+enum class Takes {
+    nothing,
+    component,
+    component_or_activity,
+    value,
+    property,
+    callable,
+    command,
+    event,
+    port,
+    anything
+};
+
+struct Work {
+    Session& session;
+    const Line& line;
+    std::ostream& out;
+    bool screen = false;                                ///< `out` is a terminal that can be drawn on
+    const volatile std::sig_atomic_t* signal = nullptr; ///< not 0 once the user wants no more
+
+    /// Asked between two pictures and while waiting.
+    [[nodiscard]] bool stopped() const { return signal != nullptr && *signal != 0; }
+
+    /// Behind the command's name.
+    [[nodiscard]] std::span<const std::string> arguments() const { return std::span{line.words}.subspan(1); }
+};
+
+struct Command {
+    std::string_view name;
+    std::string_view usage;
+    std::string_view help;
+    Takes takes;
+    std::size_t fewest; ///< arguments
+    std::size_t most;
+    Result<void> (*run)(Work& work);
+};
+
+[[nodiscard]] std::span<const Command> commands();
+[[nodiscard]] const Command* find_command(std::string_view name);
+/// Runs the line's command; its words are not empty.
+Result<void> run_command(Work& work);
+/// True for facets of which a command may be given the name.
+[[nodiscard]] bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet);
+/// The facet, or why it is none that this command takes, with the nearest name.
+Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_view name);
+/// Every name that a command may be given.
+[[nodiscard]] std::vector<std::string> names_for(const MapReader& map, Takes takes);
+/// Facets of values: names of facets as they are, names of components for all values in them.
+Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names);
+[[nodiscard]] std::string usage();
+[[nodiscard]] std::string help_of(const Command& command);
+
+// One function for each row of the table.
+Result<void> run_list(Work& work);
+Result<void> run_get(Work& work);
+Result<void> run_tree(Work& work);
+Result<void> run_info(Work& work);
+Result<void> run_forced(Work& work);
+Result<void> run_watch(Work& work);
+Result<void> run_events(Work& work);
+Result<void> run_set(Work& work);
+Result<void> run_call(Work& work);
+Result<void> run_send(Work& work);
+Result<void> run_force(Work& work);
+Result<void> run_plain_request(Work& work);
+Result<void> run_behaviour(Work& work);
+Result<void> run_scope(Work& work);
+Result<void> run_reactions(Work& work);
+
+} // namespace tappet::browser

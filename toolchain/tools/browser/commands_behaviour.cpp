@@ -1,0 +1,138 @@
+// Behaviours: seen, watched, commanded, and scripts loaded into a slot of the running machine.
+#include "toolchain/tools/browser/commands.hpp"
+#include "toolchain/tools/browser/value.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <sstream>
+#include <thread>
+
+namespace tappet::browser {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+// A piece of a script, quoted, must fit one packet: each letter may need an escape.
+constexpr std::size_t piece_letters = (browsing::max_packet_bytes - 256) / 2;
+
+std::unexpected<Failure> wrong(std::string sentence) {
+    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
+}
+
+std::string quoted(std::string_view text) {
+    std::string word{"\""};
+    for (const char letter : text) {
+        if (letter == '"' || letter == '\\') word += '\\';
+        word += letter;
+    }
+    return word + "\"";
+}
+
+std::string text_of(const ordered_json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end()) return {};
+    return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+void print_behaviour(std::ostream& out, const ordered_json& each) {
+    out << text_of(each, "name") << ": " << text_of(each, "status");
+    if (const std::string state = text_of(each, "state"); !state.empty()) out << ", in " << state;
+    if (const std::string line = text_of(each, "line"); !line.empty()) out << ", line " << line;
+    if (const std::string reason = text_of(each, "reason"); !reason.empty()) out << " (" << reason << ")";
+    if (const std::string fault = text_of(each, "fault"); !fault.empty()) out << ": " << fault;
+    out << "\n";
+    if (const auto variables = each.find("variables"); variables != each.end())
+        for (const auto& [name, value] : variables->items())
+            out << "    " << name << " = " << value.dump() << "\n";
+}
+
+void print_slot(std::ostream& out, const ordered_json& each) {
+    out << "slot of " << text_of(each, "slot") << ": " << text_of(each, "phase");
+    if (const std::string script = text_of(each, "script"); !script.empty()) out << ", " << script;
+    if (const std::string news = text_of(each, "news"); !news.empty()) out << "; " << news;
+    out << "\n";
+}
+
+Result<ordered_json> ask(Work& work, std::string_view name) {
+    return work.session.link().request("behaviours" + (name.empty() ? "" : " " + as_word(name)));
+}
+
+Result<void> show(Work& work, std::string_view name) {
+    auto reply = ask(work, name);
+    if (!reply) return std::unexpected(reply.error());
+    if (work.line.json) {
+        reply->erase("id");
+        work.out << reply->dump() << std::endl;
+        return {};
+    }
+    for (const ordered_json& each : (*reply)["behaviours"]) print_behaviour(work.out, each);
+    for (const ordered_json& each : (*reply)["slots"]) print_slot(work.out, each);
+    work.out.flush();
+    return {};
+}
+
+Result<void> watch(Work& work, std::string_view name) {
+    for (long shown = 0; !work.stopped() && (work.line.count == 0 || shown < work.line.count); ++shown) {
+        if (shown != 0) std::this_thread::sleep_for(work.line.every);
+        if (const auto done = show(work, name); !done) return done;
+    }
+    return {};
+}
+
+Result<void> asked(Work& work, const std::string& line, const std::string& sentence) {
+    auto reply = work.session.link().request(line);
+    if (!reply) return std::unexpected(reply.error());
+    reply->erase("id");
+    work.out << (work.line.json ? reply->dump() : sentence) << "\n";
+    return {};
+}
+
+Result<void> load(Work& work, const std::string& file, const std::string& slot) {
+    std::ifstream in{file, std::ios::binary};
+    std::ostringstream read;
+    if (!in || !(read << in.rdbuf()))
+        return wrong("'" + file + "' cannot be read, or is empty; name a script");
+    const std::string text = read.str();
+    for (std::size_t at = 0; at < text.size(); at += piece_letters) {
+        const auto sent =
+            work.session.link().request("script " + as_word(slot) + " " + std::to_string(at) + " " +
+                                        quoted(std::string_view{text}.substr(at, piece_letters)));
+        if (!sent) return std::unexpected(sent.error());
+    }
+    const std::string name = std::filesystem::path{file}.filename().string();
+    const std::string moment = work.line.at.empty() ? "now" : work.line.at;
+    return asked(work, "load " + as_word(slot) + " " + as_word(name) + " " + as_word(moment),
+                 name + ": compiled; it takes over " + (moment == "now" ? "now" : "at " + moment));
+}
+
+} // namespace
+
+Result<void> run_behaviour(Work& work) {
+    const auto words = work.arguments();
+    const std::string action = words.empty() ? "list" : words[0];
+    const std::size_t given = words.empty() ? 0 : words.size() - 1;
+    const auto needs = [&](std::size_t fewest, std::size_t most) { return given >= fewest && given <= most; };
+    if (action == "list" && needs(0, 1)) return show(work, given == 0 ? std::string_view{} : words[1]);
+    if (action == "watch" && needs(0, 1)) return watch(work, given == 0 ? std::string_view{} : words[1]);
+    if (action == "load" && needs(2, 2)) return load(work, words[1], words[2]);
+    if (action == "unload" && needs(1, 1))
+        return asked(work, "unload " + as_word(words[1]), words[1] + ": the slot is emptied");
+    if (action == "rollback" && needs(1, 1))
+        return asked(work, "roll_back " + as_word(words[1]), words[1] + ": the earlier behaviour comes back");
+    constexpr std::array<std::string_view, 7> plain{"start", "stop",       "pause",   "step",
+                                                    "reset", "deactivate", "reactive"};
+    if (std::ranges::find(plain, action) != plain.end() && needs(1, 1))
+        return asked(work, "behave " + action + " " + as_word(words[1]), words[1] + ": " + action + " done");
+    if (action == "request" && needs(2, 2))
+        return asked(work, "behave request " + as_word(words[1]) + " " + as_word(words[2]),
+                     words[1] + ": goes to " + words[2]);
+    return wrong("'behaviour " + action +
+                 "' is not spelled so; it is: " + std::string{find_command("behaviour")->usage});
+}
+
+} // namespace tappet::browser

@@ -1,0 +1,332 @@
+// What is only looked at: no request leaves the browser, and the machine does not notice.
+#include "toolchain/tools/browser/commands.hpp"
+#include "toolchain/tools/browser/reading_text.hpp"
+
+#include <algorithm>
+#include <ostream>
+
+namespace tappet::browser {
+
+namespace {
+
+using map::none;
+
+std::unexpected<Failure> wrong(std::string sentence) {
+    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
+}
+
+std::string padded(std::string text, std::size_t width) {
+    if (text.size() < width) text.resize(width, ' ');
+    return text;
+}
+
+std::string activity_name(const MapReader& map, std::uint32_t activity) {
+    return activity == none ? "-" : std::string{map.text(map.activities()[activity].name)};
+}
+
+/// "double", or "(double) -> bool" for what is called.
+std::string type_of(const MapReader& map, const map::Facet& facet) {
+    if (facet.type == none) return "";
+    const map::Type& type = map.types()[facet.type];
+    std::string text =
+        type.shape == map::Shape::arguments ? signature(map, facet.type) : std::string{map.text(type.name)};
+    if (facet.result != none) text += " -> " + std::string{map.text(map.types()[facet.result].name)};
+    return text;
+}
+
+std::string json_text(std::string_view key, std::string_view text) {
+    return ", " + in_quotes(key) + ": " + in_quotes(text);
+}
+
+/// "12.5 deg FORCED"; of what has no value only the unit.
+std::string value_with_unit(Work& work, std::uint32_t index) {
+    const MapReader& map = work.session.map();
+    std::string unit{map.text(map.facets()[index].unit)};
+    if (map.facets()[index].value_at == 0) return unit;
+    const Reading reading = work.session.observer().read(index);
+    return value_of(map, reading, Style::brief) + (unit.empty() ? "" : " ") + unit +
+           (reading.forced ? " FORCED" : "");
+}
+
+/// Who may set, call or send it; empty: nobody.
+std::string role_of(const MapReader& map, const map::Facet& facet, std::string_view before,
+                    std::string_view after) {
+    const std::string_view role = map.text(facet.role);
+    return role.empty() ? std::string{} : std::string{before} + std::string{role} + std::string{after};
+}
+
+void list_component(Work& work, std::uint32_t index) {
+    const MapReader& map = work.session.map();
+    const map::Component& component = map.components()[index];
+    for (std::uint32_t i = component.first_facet; i < component.first_facet + component.facet_count; ++i) {
+        const map::Facet& facet = map.facets()[i];
+        if (work.line.json) {
+            work.out << "{\"name\": " << in_quotes(map.full_name(i))
+                     << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
+                     << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
+                     << role_of(map, facet, ", \"role\": \"", "\"");
+            if (facet.value_at != 0)
+                work.out << ", \"value\": " << value_of(map, work.session.observer().read(i), Style::json);
+            work.out << "}\n";
+            continue;
+        }
+        std::string line = padded(map.full_name(i), 30) + " " +
+                           padded(std::string{map.text(facet.kind)}, 10) + " " +
+                           padded(type_of(map, facet), 14) + " " + padded(value_with_unit(work, i), 16) +
+                           " " + std::string{map.text(facet.doc)};
+        // Who sets a property is the same for all of them.
+        if (map.text(facet.kind) != "property") line += role_of(map, facet, " [", "]");
+        line.erase(line.find_last_not_of(' ') + 1);
+        work.out << line << "\n";
+    }
+}
+
+Result<std::uint32_t> component_named(const MapReader& map, const std::string& name) {
+    if (const auto found = map.find_component(name)) return *found;
+    const std::string nearest = MapReader::nearest_of(name, names_for(map, Takes::component));
+    return wrong("the machine has no component '" + name + "'" +
+                 (nearest.empty() ? "; list shows its components" : nearest));
+}
+
+void tell_connections(Work& work, std::uint32_t facet, const std::string& indent) {
+    const MapReader& map = work.session.map();
+    for (const map::Connection& each : map.connections()) {
+        if (each.from == facet && each.to != none)
+            work.out << indent << "-> " << map.full_name(each.to) << "\n";
+        if (each.to != facet || each.from == none) continue;
+        work.out << indent << "<- " << map.full_name(each.from);
+        if (each.max_age_ns > 0)
+            work.out << " (stale after " << duration_text(each.max_age_ns) << ": "
+                     << map.text(each.when_stale) << ")";
+        if ((each.flags & map::connection_buffered) != 0) work.out << " (buffer of " << each.capacity << ")";
+        work.out << "\n";
+    }
+    for (const map::Reaction& each : map.reactions()) {
+        if (each.from == facet && each.to != none)
+            work.out << indent << "-> " << map.text(each.how) << " " << map.full_name(each.to) << "\n";
+        if (each.from == facet && each.to == none) work.out << indent << "-> " << map.text(each.how) << "\n";
+        if (each.to == facet && each.from != none)
+            work.out << indent << "<- " << map.text(each.how) << " of " << map.full_name(each.from) << "\n";
+    }
+}
+
+void tell_figures(Work& work, map::Owner owner, std::uint32_t index, const std::string& indent) {
+    const MapReader& map = work.session.map();
+    for (std::uint32_t i = 0; i < map.figures().size(); ++i) {
+        const map::Figure& figure = map.figures()[i];
+        if (figure.owner != owner || (owner != map::Owner::machine && figure.index != index)) continue;
+        const FigureReading reading = work.session.observer().read_figure(i);
+        const std::string unit{map.text(figure.unit)};
+        const bool none_there = reading.busy || reading.value.empty();
+        if (work.line.json) {
+            work.out << (indent.empty() ? "" : ", ") << in_quotes(map.text(figure.name)) << ": "
+                     << (none_there ? "null" : to_text(map, figure.type, reading.value, Style::json));
+            continue;
+        }
+        work.out << indent << map.text(figure.name) << " = "
+                 << (none_there ? "busy" : to_text(map, figure.type, reading.value, Style::exact))
+                 << (unit.empty() ? "" : " ") << unit << "\n";
+    }
+}
+
+void tell_activity(Work& work, std::uint32_t index) {
+    const MapReader& map = work.session.map();
+    const map::Activity& each = map.activities()[index];
+    if (work.line.json) {
+        work.out << "{\"activity\": " << in_quotes(map.text(each.name))
+                 << json_text("trigger", map.text(each.trigger)) << ", \"period_ns\": " << each.period_ns
+                 << ", \"deadline_ns\": " << each.deadline_ns << ", \"budget_ns\": " << each.budget_ns
+                 << ", \"real_time\": " << (each.real_time != 0 ? "true" : "false")
+                 << ", \"priority\": " << each.priority << ", \"processor\": " << each.processor;
+        tell_figures(work, map::Owner::activity, index, " ");
+        work.out << "}\n";
+        return;
+    }
+    work.out << "activity " << map.text(each.name) << ": " << map.text(each.trigger);
+    if (each.period_ns > 0) work.out << " " << duration_text(each.period_ns);
+    if (each.at_most_n > 0)
+        work.out << ", at most " << each.at_most_n << " in " << duration_text(each.at_most_per_ns);
+    if (each.real_time != 0)
+        work.out << ", deadline " << duration_text(each.deadline_ns) << ", budget "
+                 << duration_text(each.budget_ns) << ", priority " << each.priority;
+    else
+        work.out << ", not real-time";
+    work.out << "\n";
+    tell_figures(work, map::Owner::activity, index, "    ");
+}
+
+void tell_component(Work& work, std::uint32_t index) {
+    const MapReader& map = work.session.map();
+    const map::Component& each = map.components()[index];
+    if (work.line.json) {
+        work.out << "{\"component\": " << in_quotes(map.text(each.name))
+                 << json_text("type", map.text(each.type))
+                 << json_text("activity", activity_name(map, each.activity))
+                 << ", \"facets\": " << each.facet_count;
+        tell_figures(work, map::Owner::component, index, " ");
+        work.out << "}\n";
+        return;
+    }
+    work.out << padded(std::string{map.text(each.name)}, 16) << " "
+             << padded(std::string{map.text(each.type)}, 28) << " "
+             << padded(activity_name(map, each.activity), 12) << " " << each.facet_count << " facets";
+    if (each.device.length > 0) work.out << ", device " << map.text(each.device);
+    work.out << "\n";
+}
+
+void tell_machine(Work& work) {
+    const MapReader& map = work.session.map();
+    const map::Header& header = map.header();
+    std::string_view build{header.build_id.data(), header.build_id.size()};
+    build = build.substr(0, build.find('\0'));
+    if (work.line.json) {
+        work.out << "{\"machine\": " << in_quotes(map.text(header.machine))
+                 << json_text("board", map.text(header.board)) << json_text("world", map.text(header.world))
+                 << json_text("build_id", build) << json_text("role", work.session.role())
+                 << ", \"process\": " << header.process
+                 << ", \"forced\": " << work.session.observer().forced()
+                 << ", \"components\": " << map.components().size()
+                 << ", \"facets\": " << map.facets().size();
+        tell_figures(work, map::Owner::machine, 0, " ");
+        work.out << "}\n";
+    } else {
+        work.out << "machine " << map.text(header.machine) << " on board " << map.text(header.board)
+                 << ", process " << header.process << ", build " << (build.empty() ? "without an id" : build)
+                 << "\n"
+                 << map.components().size() << " components, " << map.facets().size() << " facets, "
+                 << map.connections().size() << " connections, " << map.reactions().size() << " reactions; "
+                 << work.session.observer().forced() << " forced\n"
+                 << "you are its " << work.session.role() << "\n";
+        tell_figures(work, map::Owner::machine, 0, "");
+    }
+    for (std::uint32_t i = 0; i < map.activities().size(); ++i) tell_activity(work, i);
+}
+
+std::string range_of(const map::Facet& facet) {
+    if ((facet.flags & map::facet_has_range) == 0) return {};
+    std::string low = std::to_string(facet.low);
+    std::string high = std::to_string(facet.high);
+    for (std::string* each : {&low, &high}) {
+        each->erase(each->find_last_not_of('0') + 1);
+        if (each->ends_with('.')) each->pop_back();
+    }
+    return low + " to " + high;
+}
+
+void tell_facet(Work& work, const FoundFacet& found) {
+    const MapReader& map = work.session.map();
+    const map::Facet& facet = found.record;
+    const bool has_value = facet.value_at != 0;
+    if (work.line.json) {
+        work.out << "{\"name\": " << in_quotes(map.full_name(found.index))
+                 << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
+                 << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
+                 << json_text("activity", activity_name(map, map.activity_of(facet)))
+                 << role_of(map, facet, ", \"role\": \"", "\"");
+        if ((facet.flags & map::facet_has_range) != 0)
+            work.out << ", \"low\": " << facet.low << ", \"high\": " << facet.high;
+        work.out << "}\n";
+        return;
+    }
+    work.out << map.full_name(found.index) << ": " << map.text(facet.kind) << " " << type_of(map, facet)
+             << " " << map.text(facet.unit) << "\n    " << map.text(facet.doc) << "\n    in activity "
+             << activity_name(map, map.activity_of(facet)) << role_of(map, facet, ", for the ", "") << "\n";
+    if (const std::string range = range_of(facet); !range.empty()) work.out << "    from " << range << "\n";
+    if (has_value) work.out << "    " << line_of(map, work.session.observer().read(found.index)) << "\n";
+    tell_connections(work, found.index, "    ");
+}
+
+} // namespace
+
+Result<void> run_list(Work& work) {
+    const MapReader& map = work.session.map();
+    if (work.arguments().empty()) {
+        for (std::uint32_t i = 0; i < map.components().size(); ++i) tell_component(work, i);
+        return {};
+    }
+    const auto component = component_named(map, work.arguments()[0]);
+    if (!component) return std::unexpected(component.error());
+    list_component(work, *component);
+    return {};
+}
+
+Result<void> run_get(Work& work) {
+    const MapReader& map = work.session.map();
+    const auto facets = find_values(map, work.arguments());
+    if (!facets) return std::unexpected(facets.error());
+    std::string busy;
+    for (const Reading& reading : work.session.observer().read(*facets)) {
+        work.out << (work.line.json ? json_of(map, reading) : line_of(map, reading)) << "\n";
+        if (reading.busy && busy.empty()) busy = map.full_name(reading.facet);
+    }
+    if (busy.empty()) return {};
+    return std::unexpected(
+        Failure{Fault::too_late, "the activity of '" + busy + "' was in its cycle at each of " +
+                                     std::to_string(Observer::attempts) + " looks; try again"});
+}
+
+Result<void> run_tree(Work& work) {
+    const MapReader& map = work.session.map();
+    std::uint32_t only = none;
+    if (!work.arguments().empty()) {
+        const auto component = component_named(map, work.arguments()[0]);
+        if (!component) return std::unexpected(component.error());
+        only = *component;
+    }
+    for (std::uint32_t c = 0; c < map.components().size(); ++c) {
+        if (only != none && only != c) continue;
+        if (work.line.json) {
+            list_component(work, c);
+            continue;
+        }
+        const map::Component& component = map.components()[c];
+        work.out << map.text(component.name) << " (" << map.text(component.type) << ", activity "
+                 << activity_name(map, component.activity) << ")\n";
+        for (std::uint32_t i = component.first_facet; i < component.first_facet + component.facet_count;
+             ++i) {
+            const map::Facet& facet = map.facets()[i];
+            work.out << "    " << map.text(facet.kind) << " " << map.text(facet.name) << " "
+                     << type_of(map, facet) << "\n";
+            tell_connections(work, i, "        ");
+        }
+    }
+    return {};
+}
+
+Result<void> run_info(Work& work) {
+    const MapReader& map = work.session.map();
+    if (work.arguments().empty()) {
+        tell_machine(work);
+        return {};
+    }
+    const std::string& name = work.arguments()[0];
+    bool told = false;
+    if (const auto component = map.find_component(name)) {
+        tell_component(work, *component);
+        if (!work.line.json) tell_figures(work, map::Owner::component, *component, "    ");
+        told = true;
+    }
+    for (std::uint32_t i = 0; i < map.activities().size(); ++i) {
+        if (map.text(map.activities()[i].name) != name) continue;
+        tell_activity(work, i);
+        told = true;
+    }
+    if (told) return {};
+    const auto facet = find_facet(map, Takes::anything, name);
+    if (!facet) return std::unexpected(facet.error());
+    tell_facet(work, *facet);
+    return {};
+}
+
+Result<void> run_forced(Work& work) {
+    const MapReader& map = work.session.map();
+    for (std::uint32_t i = 0; i < map.facets().size(); ++i) {
+        if (map.facets()[i].forced_at == 0) continue;
+        const Reading reading = work.session.observer().read(i);
+        if (reading.forced)
+            work.out << (work.line.json ? json_of(map, reading) : line_of(map, reading)) << "\n";
+    }
+    return {};
+}
+
+} // namespace tappet::browser

@@ -1,0 +1,121 @@
+// What changes the machine: names are checked here, everything else by the machine, which may refuse.
+#include "toolchain/tools/browser/commands.hpp"
+#include "toolchain/tools/browser/value.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ostream>
+
+namespace tappet::browser {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string line_of(const Line& line) {
+    std::string text;
+    for (const std::string& word : line.words) text += (text.empty() ? "" : " ") + as_word(word);
+    return text;
+}
+
+/// Without what is for the two programs only.
+std::string json_line(ordered_json reply) {
+    reply.erase("id");
+    return reply.dump();
+}
+
+Result<void> told(Work& work, const Result<ordered_json>& reply, const std::string& sentence) {
+    if (!reply) return std::unexpected(reply.error());
+    work.out << (work.line.json ? json_line(*reply) : sentence) << "\n";
+    return {};
+}
+
+/// "[1.5, 2]" as the machine wrote it, without the quotes of a mere text.
+std::string plain(const ordered_json& value) { return value.dump(); }
+
+} // namespace
+
+Result<void> run_set(Work& work) {
+    const auto arguments = work.arguments();
+    if (arguments.size() % 2 != 0)
+        return std::unexpected(Failure{Fault::bad_request, "set takes pairs of a property and its value; '" +
+                                                               arguments.back() + "' has no value"});
+    for (std::size_t i = 0; i < arguments.size(); i += 2)
+        if (const auto found = find_facet(work.session.map(), Takes::property, arguments[i]); !found)
+            return std::unexpected(found.error());
+    const auto reply = work.session.link().request(line_of(work.line));
+    std::string sentence = "set:";
+    for (std::size_t i = 0; i < arguments.size(); i += 2)
+        sentence += (i > 0 ? ", " : " ") + arguments[i] + " = " + arguments[i + 1];
+    return told(work, reply, sentence);
+}
+
+Result<void> run_call(Work& work) {
+    if (const auto found = find_facet(work.session.map(), Takes::callable, work.arguments()[0]); !found)
+        return std::unexpected(found.error());
+    const auto reply = work.session.link().request(line_of(work.line));
+    std::string sentence = work.arguments()[0] + ": done";
+    if (reply && reply->contains("result"))
+        sentence = work.arguments()[0] + " = " + plain((*reply)["result"]);
+    return told(work, reply, sentence);
+}
+
+Result<void> run_send(Work& work) {
+    if (const auto found = find_facet(work.session.map(), Takes::command, work.arguments()[0]); !found)
+        return std::unexpected(found.error());
+    Link& link = work.session.link();
+    std::uint32_t number = 0;
+    const auto reply = link.request(line_of(work.line), number);
+    const std::string& name = work.arguments()[0];
+    const auto begun = told(work, reply, name + ": sent");
+    if (!begun || !work.line.follow) return begun;
+    while (!work.stopped()) {
+        auto packet = link.next(std::chrono::milliseconds{100});
+        if (!packet) return std::unexpected(packet.error());
+        if (!*packet || (*packet)->value("id", std::uint32_t{0}) != number) continue;
+        const ordered_json& news = **packet;
+        const auto state = news.value("state", std::string{});
+        if (work.line.json)
+            work.out << json_line(news) << std::endl;
+        else
+            work.out << name << ": " << state
+                     << (news.contains("results") && !news["results"].empty() ? " " + plain(news["results"])
+                                                                              : "")
+                     << std::endl;
+        if (!news.value("final", false)) continue;
+        if (state == "done") return {};
+        return std::unexpected(
+            Failure{Fault::failed, "'" + name + "' was not done: the machine says " + state});
+    }
+    return {};
+}
+
+Result<void> run_force(Work& work) {
+    const auto arguments = work.arguments();
+    if (const auto found = find_facet(work.session.map(), Takes::port, arguments[0]); !found)
+        return std::unexpected(found.error());
+    return told(work, work.session.link().request(line_of(work.line)),
+                arguments.size() == 2 ? "forced: " + arguments[0] + " = " + arguments[1]
+                                      : "released: " + arguments[0]);
+}
+
+Result<void> run_plain_request(Work& work) {
+    const auto arguments = work.arguments();
+    const Takes takes = find_command(work.line.words.front())->takes;
+    if (!arguments.empty()) {
+        const std::vector<std::string> names = names_for(work.session.map(), takes);
+        if (std::ranges::find(names, arguments[0]) == names.end()) {
+            const std::string nearest = MapReader::nearest_of(arguments[0], names);
+            return std::unexpected(Failure{
+                Fault::bad_request, "there is nothing '" + arguments[0] + "' to " + work.line.words.front() +
+                                        (nearest.empty() ? "; list shows the components" : nearest)});
+        }
+    }
+    const auto reply = work.session.link().request(line_of(work.line));
+    std::string sentence = work.line.words.front() + ": done";
+    if (reply && reply->contains("files")) sentence = "saved: " + plain((*reply)["files"]) + " files";
+    return told(work, reply, sentence);
+}
+
+} // namespace tappet::browser

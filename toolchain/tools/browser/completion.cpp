@@ -1,0 +1,58 @@
+// Completion by the table of commands and the machine's own map.
+#include "toolchain/tools/browser/completion.hpp"
+
+#include <algorithm>
+
+namespace tappet::browser {
+
+namespace {
+
+/// Every second word of set is a value; of call, send and force only the first is a name.
+bool is_name(const Command& command, std::size_t argument) {
+    if (command.name == "set") return argument % 2 == 0;
+    if (command.takes == Takes::value || command.takes == Takes::event) return true;
+    return argument == 0;
+}
+
+} // namespace
+
+std::string Completion::common() const {
+    if (candidates.empty()) return {};
+    std::string_view same = candidates.front();
+    for (const std::string& each : candidates)
+        same = same.substr(0, static_cast<std::size_t>(std::ranges::mismatch(same, each).in1 - same.begin()));
+    return std::string{same};
+}
+
+Completion complete(const MapReader& map, std::string_view before_cursor) {
+    Completion completion;
+    const std::size_t blank = before_cursor.find_last_of(" \t");
+    completion.begin = blank == std::string_view::npos ? 0 : blank + 1;
+    const std::string_view typed = before_cursor.substr(completion.begin);
+    std::vector<std::string> names;
+    if (typed.starts_with("-")) {
+        for (const std::string_view name : option_names()) names.emplace_back(name);
+    } else {
+        const auto words = split_line(before_cursor.substr(0, completion.begin));
+        std::vector<std::string> before;
+        if (words)
+            for (const std::string& word : *words)
+                if (!word.starts_with("--")) before.push_back(word);
+        if (before.empty()) {
+            for (const Command& each : commands()) names.emplace_back(each.name);
+            for (const char* own : {"help", "quit"}) names.emplace_back(own);
+        } else if (before.front() == "help") {
+            for (const Command& each : commands()) names.emplace_back(each.name);
+        } else if (const Command* command = find_command(before.front());
+                   command != nullptr && before.size() <= command->most &&
+                   is_name(*command, before.size() - 1)) {
+            names = names_for(map, command->takes);
+        }
+    }
+    for (std::string& name : names)
+        if (name.starts_with(typed)) completion.candidates.push_back(std::move(name));
+    std::ranges::sort(completion.candidates);
+    return completion;
+}
+
+} // namespace tappet::browser

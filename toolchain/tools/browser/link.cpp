@@ -1,0 +1,228 @@
+// One packet a request, one packet a reply, over AF_UNIX (see unix(7)).
+#include "toolchain/tools/browser/link.hpp"
+
+#include "kernel/services/browsing/protocol.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+namespace tappet::browser {
+
+namespace {
+
+using nlohmann::ordered_json;
+using Milliseconds = std::chrono::milliseconds;
+using Steady = std::chrono::steady_clock;
+
+std::unexpected<Failure> failure(Fault fault, std::string sentence) {
+    return std::unexpected(Failure{fault, std::move(sentence)});
+}
+
+std::string why_not_connected(const std::string& path, int error) {
+    const std::string socket = "'" + path + "'";
+    switch (error) {
+    case ENOENT:
+        return "there is no socket " + socket + "; is the machine running, and does it serve browsers?";
+    case ECONNREFUSED: return "nobody listens at " + socket + "; the machine has ended: start it again";
+    case EACCES:
+    case EPERM:
+        return "you may not open " + socket +
+               "; its file mode and group say who may: ask whoever runs the box";
+    case EAGAIN: return "the machine has as many browsers as it serves; end one of them";
+    case EPROTOTYPE: return socket + " is a socket of another kind; name the machine's with --socket";
+    default: return "cannot connect to " + socket + ": " + std::strerror(error);
+    }
+}
+
+} // namespace
+
+Result<std::string> find_socket(const std::string& directory) {
+    std::vector<std::string> found;
+    std::error_code error;
+    for (std::filesystem::directory_iterator each{directory, error}, end; !error && each != end;
+         each.increment(error))
+        if (each->path().native().ends_with(browsing::socket_suffix)) found.push_back(each->path().native());
+    std::ranges::sort(found);
+    if (found.size() == 1) return found.front();
+    if (found.empty())
+        return failure(Fault::no_machine, "no machine has a socket in '" + directory +
+                                              "'; start one, or name its socket with --socket");
+    std::string names;
+    for (const std::string& name : found) names += (names.empty() ? "" : ", ") + name;
+    return failure(Fault::bad_request, "there are several machines (" + names + "); name one with --socket");
+}
+
+Result<SharedBlock> SharedBlock::map(int descriptor) {
+    struct stat state{};
+    if (::fstat(descriptor, &state) != 0 || state.st_size <= 0)
+        return failure(Fault::no_machine, "what the machine handed over is no memory");
+    const auto size = static_cast<std::size_t>(state.st_size);
+    void* const at = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+    if (at == MAP_FAILED)
+        return failure(Fault::no_machine,
+                       std::string{"the machine's memory cannot be mapped: "} + std::strerror(errno));
+    return SharedBlock{{static_cast<const std::byte*>(at), size}};
+}
+
+SharedBlock::SharedBlock(SharedBlock&& other) noexcept : bytes_{std::exchange(other.bytes_, {})} {}
+
+SharedBlock& SharedBlock::operator=(SharedBlock&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+SharedBlock::~SharedBlock() {
+    if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+Result<Link> Link::connect(const std::string& path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof address.sun_path)
+        return failure(Fault::bad_request, "the path of a socket has 1 to 107 letters; '" + path + "' has " +
+                                               std::to_string(path.size()));
+    std::ranges::copy(path, address.sun_path);
+    Link link;
+    link.path_ = path;
+    // Not blocking: a machine whose queue is full is said to be busy, not waited for.
+    link.socket_ = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (link.socket_ < 0 ||
+        ::connect(link.socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        return failure(Fault::no_machine, why_not_connected(path, errno));
+    return link;
+}
+
+Link::Link(Link&& other) noexcept
+    : patience{other.patience},
+      socket_{std::exchange(other.socket_, -1)},
+      received_descriptor_{std::exchange(other.received_descriptor_, -1)},
+      last_number_{other.last_number_},
+      path_{std::move(other.path_)},
+      waiting_{std::move(other.waiting_)} {}
+
+Link& Link::operator=(Link&& other) noexcept {
+    std::swap(patience, other.patience);
+    std::swap(socket_, other.socket_);
+    std::swap(received_descriptor_, other.received_descriptor_);
+    std::swap(last_number_, other.last_number_);
+    std::swap(path_, other.path_);
+    std::swap(waiting_, other.waiting_);
+    return *this;
+}
+
+Link::~Link() {
+    if (socket_ >= 0) ::close(socket_);
+    if (received_descriptor_ >= 0) ::close(received_descriptor_);
+}
+
+int Link::take_descriptor() { return std::exchange(received_descriptor_, -1); }
+
+Failure Link::gone() const {
+    return {Fault::no_machine, "the machine has ended, or it has closed the connection at '" + path_ + "'"};
+}
+
+bool Link::ended() {
+    pollfd look{socket_, POLLRDHUP, 0};
+    return ::poll(&look, 1, 0) > 0 && (look.revents & (POLLHUP | POLLRDHUP | POLLERR)) != 0;
+}
+
+Result<std::optional<ordered_json>> Link::receive(Milliseconds within) {
+    pollfd look{socket_, POLLIN, 0};
+    const int ready = ::poll(&look, 1, static_cast<int>(within.count()));
+    if (ready < 0 && errno != EINTR) return std::unexpected(gone());
+    if (ready <= 0) return std::optional<ordered_json>{};
+    std::array<char, 64 * 1024> packet{};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+    iovec place{packet.data(), packet.size()};
+    msghdr message{};
+    message.msg_iov = &place;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = CMSG_LEN(sizeof(int)); // one: what is passed beyond it the kernel closes
+    const ssize_t count = ::recvmsg(socket_, &message, MSG_CMSG_CLOEXEC);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::optional<ordered_json>{};
+    if (count < 0) return std::unexpected(gone());
+    for (cmsghdr* each = CMSG_FIRSTHDR(&message); each != nullptr; each = CMSG_NXTHDR(&message, each)) {
+        if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_RIGHTS) continue;
+        if (received_descriptor_ >= 0) ::close(received_descriptor_);
+        std::memcpy(&received_descriptor_, CMSG_DATA(each), sizeof(int));
+    }
+    if (count == 0) return std::unexpected(gone());
+    auto parsed = ordered_json::parse(packet.data(), packet.data() + count, nullptr, false);
+    if (!parsed.is_object())
+        return failure(Fault::no_machine, "the machine's answer is no JSON object: " +
+                                              std::string{packet.data(), static_cast<std::size_t>(count)});
+    // Our own requests count from 1: the door tells us that we have no place, or lost it.
+    if (parsed.value("id", std::int64_t{-1}) == 0 && parsed.contains("error"))
+        return failure(Fault::refused, parsed.value("error", std::string{}));
+    return std::optional{std::move(parsed)};
+}
+
+Result<ordered_json> Link::request(std::string_view line) {
+    std::uint32_t number = 0;
+    return request(line, number);
+}
+
+Result<ordered_json> Link::request(std::string_view line, std::uint32_t& number) {
+    number = ++last_number_;
+    const std::string packet = std::to_string(number) + " " + std::string{line};
+    if (packet.size() > browsing::max_packet_bytes)
+        return failure(Fault::bad_request, "the request is longer than " +
+                                               std::to_string(browsing::max_packet_bytes) +
+                                               " bytes; ask for less at a time");
+    const auto end = Steady::now() + patience;
+    while (::send(socket_, packet.data(), packet.size(), MSG_NOSIGNAL) < 0) {
+        if (errno != EAGAIN && errno != EINTR) return std::unexpected(gone());
+        pollfd room{socket_, POLLOUT, 0};
+        const auto left = std::chrono::duration_cast<Milliseconds>(end - Steady::now());
+        if (left.count() <= 0)
+            return failure(Fault::too_late,
+                           "the machine takes no request; it is flooded by others: try again");
+        ::poll(&room, 1, static_cast<int>(left.count()));
+    }
+    for (;;) {
+        const auto left = std::chrono::duration_cast<Milliseconds>(end - Steady::now());
+        if (left.count() <= 0)
+            return failure(Fault::too_late,
+                           "no answer within " + std::to_string(patience.count()) +
+                               " ms; the machine is flooded by others, or stopped: try again");
+        auto packet_in = receive(left);
+        if (!packet_in) return std::unexpected(packet_in.error());
+        if (!*packet_in) continue;
+        ordered_json& reply = **packet_in;
+        if (!reply.contains("ok") || reply.value("id", std::int64_t{-1}) != number) {
+            waiting_.push_back(reply.dump());
+            continue;
+        }
+        if (reply["ok"] == true) return std::move(reply);
+        const std::string code = reply.value("code", std::string{});
+        const bool written_wrong =
+            code == to_text(browsing::Refusal::bad_request) || code == to_text(browsing::Refusal::unknown);
+        return failure(written_wrong ? Fault::bad_request : Fault::refused,
+                       reply.value("error", std::string{"refused without a reason"}));
+    }
+}
+
+Result<std::optional<ordered_json>> Link::next(Milliseconds within) {
+    if (!waiting_.empty()) {
+        auto first = ordered_json::parse(waiting_.front(), nullptr, false);
+        waiting_.erase(waiting_.begin());
+        return std::optional{std::move(first)};
+    }
+    return receive(within);
+}
+
+} // namespace tappet::browser

@@ -1,0 +1,30 @@
+// tappet-browse: looks into a running machine of the same box, and asks it to change (thesis 4.8).
+#include "toolchain/tools/browser/program.hpp"
+#include "toolchain/tools/browser/screen.hpp"
+
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+
+#include <unistd.h>
+
+namespace {
+
+volatile std::sig_atomic_t last_signal = 0;
+
+} // namespace
+
+int main(int count, char** words) {
+    using namespace tappet::browser;
+    struct sigaction action{};
+    action.sa_handler = [](int signal) { last_signal = signal; };
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+    const char* const home = std::getenv("HOME");
+    Surroundings surroundings{std::cout, std::cerr};
+    surroundings.screen = Screen::possible();
+    surroundings.interactive = ::isatty(STDIN_FILENO) != 0;
+    surroundings.history_file = home == nullptr ? "" : std::string{home} + "/.tappet_browse_history";
+    surroundings.signal = &last_signal;
+    const std::vector<std::string> line(words + 1, words + count);
+    return run_program(line, surroundings);
+}

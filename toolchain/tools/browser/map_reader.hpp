@@ -1,0 +1,84 @@
+// The map of a machine as its memory carries it: checked once, then asked by name (thesis 4.7.2, 4.8).
+#pragma once
+
+#include "kernel/machine/map/view.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::browser {
+
+/// One facet, found: its place in the map and its record.
+struct FoundFacet {
+    std::uint32_t index = 0;
+    map::Facet record{};
+};
+
+/// Reads a block that begins with a map. Nothing in it is believed before it was checked: a reader of a
+/// half-written or foreign block gets a sentence, never a place outside the block.
+class MapReader {
+public:
+    /// The block outlives the reader. The error says what does not fit and how to put it right.
+    static std::expected<MapReader, std::string> open(std::span<const std::byte> block);
+
+    [[nodiscard]] const map::View& view() const { return view_; }
+    [[nodiscard]] const map::Header& header() const { return view_.header(); }
+    [[nodiscard]] std::string_view text(map::Text text) const { return view_.text(text); }
+
+    [[nodiscard]] const std::vector<map::Component>& components() const { return components_; }
+    [[nodiscard]] const std::vector<map::Facet>& facets() const { return facets_; }
+    [[nodiscard]] const std::vector<map::Activity>& activities() const { return activities_; }
+    [[nodiscard]] const std::vector<map::Connection>& connections() const { return connections_; }
+    [[nodiscard]] const std::vector<map::Reaction>& reactions() const { return reactions_; }
+    [[nodiscard]] const std::vector<map::Behaviour>& behaviours() const { return behaviours_; }
+    [[nodiscard]] const std::vector<map::Type>& types() const { return types_; }
+    [[nodiscard]] const std::vector<map::Field>& fields() const { return fields_; }
+    [[nodiscard]] const std::vector<map::Enumerator>& enumerators() const { return enumerators_; }
+    [[nodiscard]] const std::vector<map::Figure>& figures() const { return figures_; }
+
+    /// "shaft.angle_deg".
+    [[nodiscard]] std::string full_name(std::uint32_t facet) const;
+    [[nodiscard]] std::optional<FoundFacet> find(std::string_view full_name) const;
+    [[nodiscard]] std::optional<std::uint32_t> find_component(std::string_view name) const;
+    /// ", did you mean \"shaft.angle\"?" or nothing; among the facets for which `wanted` is true.
+    template <class Wanted> [[nodiscard]] std::string suggestion(std::string_view written,
+                                                                 Wanted&& wanted) const {
+        std::vector<std::string> names;
+        for (std::uint32_t i = 0; i < facets_.size(); ++i)
+            if (wanted(facets_[i])) names.push_back(full_name(i));
+        return nearest_of(written, names);
+    }
+    static std::string nearest_of(std::string_view written, std::span<const std::string> names);
+    /// The activity whose generation guards a facet's value; none for a component that no activity runs.
+    [[nodiscard]] std::uint32_t activity_of(const map::Facet& facet) const;
+
+private:
+    explicit MapReader(const map::View& view);
+    [[nodiscard]] std::string check() const;
+    [[nodiscard]] std::string check_types() const;
+    [[nodiscard]] std::string check_places() const;
+    [[nodiscard]] bool holds(map::Text text) const;
+    [[nodiscard]] bool inside(std::uint64_t at, std::uint64_t bytes) const;
+
+    map::View view_{};
+    std::vector<map::Component> components_{};
+    std::vector<map::Facet> facets_{};
+    std::vector<map::Activity> activities_{};
+    std::vector<map::Connection> connections_{};
+    std::vector<map::Reaction> reactions_{};
+    std::vector<map::Behaviour> behaviours_{};
+    std::vector<map::Type> types_{};
+    std::vector<map::Field> fields_{};
+    std::vector<map::Enumerator> enumerators_{};
+    std::vector<map::Figure> figures_{};
+    std::map<std::string, std::uint32_t, std::less<>> by_name_{};
+};
+
+} // namespace tappet::browser

@@ -1,0 +1,149 @@
+// From words to an exit code: one command, or a prompt full of them.
+#include "toolchain/tools/browser/program.hpp"
+
+#include "toolchain/tools/browser/shell.hpp"
+#include "toolchain/tools/browser/value.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+#include <ostream>
+
+namespace tappet::browser {
+
+namespace {
+
+int tell(const Surroundings& surroundings, const Failure& failure, bool json) {
+    const int code = static_cast<int>(failure.fault);
+    if (json)
+        surroundings.errors << "{\"error\": " << in_quotes(failure.sentence) << ", \"exit\": " << code
+                            << "}\n";
+    else
+        surroundings.errors << "tappet-browse: " << failure.sentence << "\n";
+    surroundings.errors.flush();
+    return code;
+}
+
+Result<std::unique_ptr<Session>> open_session(const Line& line) {
+    std::string socket = line.socket;
+    if (socket.empty()) {
+        const auto found = find_socket(line.directory);
+        if (!found) return std::unexpected(found.error());
+        socket = *found;
+    }
+    return Session::open(socket, line.patience);
+}
+
+std::string help_about(std::span<const std::string> words) {
+    if (words.size() > 1)
+        if (const Command* command = find_command(words[1]); command != nullptr) return help_of(*command);
+    std::string text;
+    for (const Command& each : commands()) text += help_of(each);
+    return text + "help [COMMAND]\n    this\nquit\n    ends the prompt, as ^D does\n";
+}
+
+/// One line of the prompt. The code of the last that failed is the program's, for lines from a file.
+class Lines {
+public:
+    Lines(Session& session, const Line& first, Surroundings& surroundings)
+        : session_{session}, first_{first}, surroundings_{surroundings} {}
+
+    Next run(const std::string& text) {
+        if (surroundings_.signal != nullptr) *surroundings_.signal = 0;
+        const auto words = split_line(text);
+        if (!words) return fail({Fault::bad_request, words.error()});
+        if (words->empty() || words->front().starts_with('#')) return Next::prompt;
+        auto line = parse_line(*words);
+        if (!line) return fail({Fault::bad_request, line.error()});
+        if (line->words.empty()) return Next::prompt;
+        const std::string& verb = line->words.front();
+        if (verb == "quit" || verb == "exit") return Next::end;
+        if (verb == "help" || line->help) {
+            if (line->help) line->words.insert(line->words.begin(), "help");
+            surroundings_.out << help_about(line->words) << std::flush;
+            return Next::prompt;
+        }
+        line->json = line->json || first_.json;
+        Work work{session_, *line, surroundings_.out, surroundings_.screen, surroundings_.signal};
+        const auto done = run_command(work);
+        surroundings_.out.flush();
+        if (!done) return fail(done.error());
+        return Next::prompt;
+    }
+    [[nodiscard]] int code() const { return code_; }
+
+private:
+    Next fail(const Failure& failure) {
+        const int code = tell(surroundings_, failure, first_.json);
+        if (!surroundings_.interactive) code_ = code;
+        if (failure.fault != Fault::no_machine) return Next::prompt;
+        code_ = code;
+        return Next::end;
+    }
+
+    Session& session_;
+    const Line& first_;
+    Surroundings& surroundings_;
+    int code_ = 0;
+};
+
+int run_lines(Session& session, const Line& first, Surroundings& surroundings) {
+    Lines lines{session, first, surroundings};
+    const auto run = [&lines](const std::string& line) { return lines.run(line); };
+    if (surroundings.interactive) {
+        surroundings.out << "tab completes, help explains, quit ends; you are its " << session.role()
+                         << std::endl;
+        Shell{session, surroundings.history_file, surroundings.signal, run}.run();
+        return lines.code();
+    }
+    for (std::string line; std::getline(std::cin, line);)
+        if (run(line) == Next::end) break;
+    return lines.code();
+}
+
+int run(std::span<const std::string> words, Surroundings& surroundings) {
+    const auto line = parse_line(words);
+    if (!line) return tell(surroundings, {Fault::bad_request, line.error()}, false);
+    if (line->help || (!line->words.empty() && line->words.front() == "help")) {
+        const Command* const command =
+            line->words.empty()
+                ? nullptr
+                : find_command(line->words[line->words.front() == "help" && line->words.size() > 1]);
+        surroundings.out << (command == nullptr ? usage() : help_of(*command));
+        return 0;
+    }
+    // A misspelt command is told without a machine.
+    if (!line->words.empty() && find_command(line->words.front()) == nullptr) {
+        std::vector<std::string> names;
+        for (const Command& each : commands()) names.emplace_back(each.name);
+        const std::string nearest = MapReader::nearest_of(line->words.front(), names);
+        return tell(surroundings,
+                    {Fault::bad_request, "there is no command '" + line->words.front() + "'" +
+                                             (nearest.empty() ? "; --help lists them" : nearest)},
+                    line->json);
+    }
+    auto session = open_session(*line);
+    if (!session) return tell(surroundings, session.error(), line->json);
+    if (line->words.empty()) return run_lines(**session, *line, surroundings);
+    Work work{**session, *line, surroundings.out, surroundings.screen, surroundings.signal};
+    const auto done = run_command(work);
+    surroundings.out.flush();
+    return done ? 0 : tell(surroundings, done.error(), line->json);
+}
+
+} // namespace
+
+int run_program(std::span<const std::string> words, Surroundings& surroundings) {
+    try {
+        return run(words, surroundings);
+    } catch (const nlohmann::json::exception& wrong) {
+        return tell(
+            surroundings,
+            {Fault::no_machine,
+             std::string{"an answer is not as the protocol says; is another program at this socket? "} +
+                 wrong.what()},
+            false);
+    }
+}
+
+} // namespace tappet::browser

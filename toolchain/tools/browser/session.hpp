@@ -1,0 +1,39 @@
+// A browser at work on one machine: the connection, the machine's memory and the map in it.
+#pragma once
+
+#include "toolchain/tools/browser/link.hpp"
+#include "toolchain/tools/browser/map_reader.hpp"
+#include "toolchain/tools/browser/observer.hpp"
+
+namespace tappet::browser {
+
+class Session {
+public:
+    /// Connects, asks who is there, and maps the memory.
+    static Result<std::unique_ptr<Session>> open(const std::string& socket,
+                                                 std::chrono::milliseconds patience);
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    [[nodiscard]] Link& link() { return link_; }
+    [[nodiscard]] const MapReader& map() const { return map_; }
+    [[nodiscard]] const Observer& observer() const { return observer_; }
+    /// What the machine takes us for: "observer", "operator" or "engineer".
+    [[nodiscard]] const std::string& role() const { return role_; }
+
+private:
+    Session(Link link, SharedBlock block, MapReader map, std::string role)
+        : link_{std::move(link)},
+          block_{std::move(block)},
+          map_{std::move(map)},
+          observer_{map_},
+          role_{std::move(role)} {}
+
+    Link link_;
+    SharedBlock block_;
+    MapReader map_;
+    Observer observer_;
+    std::string role_;
+};
+
+} // namespace tappet::browser

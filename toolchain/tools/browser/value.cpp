@@ -1,0 +1,224 @@
+// Walking a type and its bytes, both from the machine's memory.
+#include "toolchain/tools/browser/value.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace tappet::browser {
+
+namespace {
+
+using map::Shape;
+using Bytes = std::span<const std::byte>;
+
+template <class T> T load(Bytes bytes) {
+    T value{};
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+}
+
+std::uint64_t natural(Bytes bytes, std::uint64_t size) {
+    switch (size) {
+    case 1: return load<std::uint8_t>(bytes);
+    case 2: return load<std::uint16_t>(bytes);
+    case 4: return load<std::uint32_t>(bytes);
+    case 8: return load<std::uint64_t>(bytes);
+    default: return 0;
+    }
+}
+
+std::int64_t whole(Bytes bytes, std::uint64_t size) {
+    switch (size) {
+    case 1: return load<std::int8_t>(bytes);
+    case 2: return load<std::int16_t>(bytes);
+    case 4: return load<std::int32_t>(bytes);
+    case 8: return load<std::int64_t>(bytes);
+    default: return 0;
+    }
+}
+
+template <class Real> std::string real_text(Real value, Style style) {
+    std::array<char, 64> text{};
+    const auto end = style == Style::brief ? std::to_chars(text.data(), text.data() + text.size(), value,
+                                                           std::chars_format::general, 6)
+                                           : std::to_chars(text.data(), text.data() + text.size(), value);
+    const std::string number{text.data(), end.ptr};
+    return style == Style::json && !std::isfinite(value) ? in_quotes(number) : number;
+}
+
+class Writer {
+public:
+    Writer(const MapReader& map, Style style) : map_{map}, style_{style} {}
+
+    std::string write(std::uint32_t type_index, Bytes bytes) const {
+        const map::Type& type = map_.types()[type_index];
+        switch (type.shape) {
+        case Shape::truth: return std::to_integer<int>(bytes[0]) != 0 ? "true" : "false";
+        case Shape::whole: return std::to_string(whole(bytes, type.size));
+        case Shape::natural: return std::to_string(natural(bytes, type.size));
+        case Shape::real:
+            return type.size == sizeof(float) ? real_text(load<float>(bytes), style_)
+                                              : real_text(load<double>(bytes), style_);
+        case Shape::duration: {
+            const auto nanoseconds = load<std::int64_t>(bytes);
+            return style_ == Style::json ? in_quotes(duration_text(nanoseconds)) : duration_text(nanoseconds);
+        }
+        case Shape::text: return text(type, bytes);
+        case Shape::enumeration: return enumerator(type, bytes);
+        case Shape::matrix: return matrix(type, bytes);
+        case Shape::sequence: return sequence(type, bytes);
+        case Shape::record: return record(type, bytes);
+        case Shape::arguments: return arguments(type, bytes);
+        case Shape::opaque: break;
+        }
+        const std::string what = "<" + std::to_string(type.size) + " bytes>";
+        return style_ == Style::json ? in_quotes(what) : what;
+    }
+
+private:
+    [[nodiscard]] std::string text(const map::Type& type, Bytes bytes) const {
+        const std::uint64_t length =
+            std::min<std::uint64_t>(natural(bytes.subspan(type.length_at), type.length_bytes), type.columns);
+        const std::string_view letters{reinterpret_cast<const char*>(bytes.data()) + type.items_at, length};
+        if (style_ != Style::json) return in_quotes(letters);
+        // Letters that are no UTF-8 become U+FFFD.
+        return nlohmann::json(letters).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    }
+
+    [[nodiscard]] std::string enumerator(const map::Type& type, Bytes bytes) const {
+        const std::int64_t value = whole(bytes, type.size);
+        for (std::uint32_t i = 0; i < type.enumerator_count; ++i) {
+            const map::Enumerator& each = map_.enumerators()[type.first_enumerator + i];
+            // An unsigned one may be written without its sign.
+            if (each.value == value ||
+                (type.size < 8 && each.value == static_cast<std::int64_t>(natural(bytes, type.size)))) {
+                const std::string_view name = map_.text(each.name);
+                return style_ == Style::json ? in_quotes(name) : std::string{name};
+            }
+        }
+        return std::to_string(value);
+    }
+
+    template <class Item> static std::string list(std::uint64_t count, Item&& item) {
+        std::string all = "[";
+        for (std::uint64_t i = 0; i < count; ++i) {
+            if (i > 0) all += ", ";
+            all += item(i);
+        }
+        return all + "]";
+    }
+
+    [[nodiscard]] std::string matrix(const map::Type& type, Bytes bytes) const {
+        const std::uint64_t one = map_.types()[type.element].size;
+        const auto item = [&](std::uint64_t row, std::uint64_t column) {
+            const std::uint64_t index =
+                type.row_major != 0 ? row * type.columns + column : column * type.rows + row;
+            return write(type.element, bytes.subspan(type.items_at + index * one, one));
+        };
+        if (type.columns == 1) return list(type.rows, [&](std::uint64_t i) { return item(i, 0); });
+        if (type.rows == 1) return list(type.columns, [&](std::uint64_t i) { return item(0, i); });
+        return list(type.rows, [&](std::uint64_t row) {
+            return list(type.columns, [&](std::uint64_t column) { return item(row, column); });
+        });
+    }
+
+    [[nodiscard]] std::string sequence(const map::Type& type, Bytes bytes) const {
+        const std::uint64_t one = map_.types()[type.element].size;
+        const std::uint64_t count =
+            std::min<std::uint64_t>(natural(bytes.subspan(type.length_at), type.length_bytes), type.columns);
+        return list(count, [&](std::uint64_t i) {
+            return write(type.element, bytes.subspan(type.items_at + i * one, one));
+        });
+    }
+
+    [[nodiscard]] std::string field(const map::Field& each, Bytes bytes) const {
+        return write(each.type, bytes.subspan(each.at, map_.types()[each.type].size));
+    }
+
+    [[nodiscard]] std::string record(const map::Type& type, Bytes bytes) const {
+        std::string all = "{";
+        for (std::uint32_t i = 0; i < type.field_count; ++i) {
+            const map::Field& each = map_.fields()[type.first_field + i];
+            if (i > 0) all += ", ";
+            const std::string_view name = map_.text(each.name);
+            all += style_ == Style::json ? in_quotes(name) : std::string{name};
+            all += ": " + field(each, bytes);
+        }
+        return all + "}";
+    }
+
+    [[nodiscard]] std::string arguments(const map::Type& type, Bytes bytes) const {
+        std::string all = list(type.field_count, [&](std::uint64_t i) {
+            return field(map_.fields()[type.first_field + i], bytes);
+        });
+        if (style_ == Style::json) return all;
+        all.front() = '(';
+        all.back() = ')';
+        return all;
+    }
+
+    const MapReader& map_;
+    Style style_;
+};
+
+} // namespace
+
+std::string duration_text(std::int64_t nanoseconds) {
+    struct Unit {
+        std::int64_t nanoseconds;
+        const char* name;
+    };
+    constexpr std::array units{Unit{1'000'000'000, "s"}, Unit{1'000'000, "ms"}, Unit{1000, "us"}};
+    if (nanoseconds == 0) return "0s";
+    for (const Unit& unit : units)
+        if (nanoseconds % unit.nanoseconds == 0)
+            return std::to_string(nanoseconds / unit.nanoseconds) + unit.name;
+    return std::to_string(nanoseconds) + "ns";
+}
+
+std::string to_text(const MapReader& map, std::uint32_t type, std::span<const std::byte> bytes, Style style) {
+    return Writer{map, style}.write(type, bytes);
+}
+
+std::string signature(const MapReader& map, std::uint32_t type) {
+    if (type == map::none) return "()";
+    const map::Type& list = map.types()[type];
+    if (list.shape != Shape::arguments) return "(" + std::string{map.text(list.name)} + ")";
+    std::string all = "(";
+    for (std::uint32_t i = 0; i < list.field_count; ++i) {
+        if (i > 0) all += ", ";
+        all += map.text(map.types()[map.fields()[list.first_field + i].type].name);
+    }
+    return all + ")";
+}
+
+std::string in_quotes(std::string_view text) {
+    std::string all = "\"";
+    for (const char letter : text) {
+        if (letter == '"' || letter == '\\') {
+            all += '\\';
+            all += letter;
+        } else if (static_cast<unsigned char>(letter) < 0x20) {
+            std::array<char, 8> escape{};
+            std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(letter));
+            all += escape.data();
+        } else {
+            all += letter;
+        }
+    }
+    return all + "\"";
+}
+
+std::string as_word(std::string_view text) {
+    // Brackets keep their blanks together, and so do quotes.
+    const bool one = !text.empty() && (text.front() == '[' || text.front() == '{' || text.front() == '"' ||
+                                       text.find_first_of(" \t\"\\") == std::string_view::npos);
+    return one ? std::string{text} : in_quotes(text);
+}
+
+} // namespace tappet::browser

@@ -1,0 +1,26 @@
+// A value of the machine as text: its bytes read with the type that the map gives them.
+#pragma once
+
+#include "toolchain/tools/browser/map_reader.hpp"
+
+namespace tappet::browser {
+
+enum class Style {
+    exact, ///< read back it gives the same value; spelled as `set` takes it
+    brief, ///< six significant digits, for a screen
+    json ///< a JSON value; times, enumerations and what is no number are strings, as in the machine's replies
+};
+
+/// `bytes` are at least as many as the type is large.
+[[nodiscard]] std::string to_text(const MapReader& map, std::uint32_t type, std::span<const std::byte> bytes,
+                                  Style style);
+/// "(double, Duration)": how an operation's arguments are to be given.
+[[nodiscard]] std::string signature(const MapReader& map, std::uint32_t type);
+/// In double quotes, with what JSON forbids escaped.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+/// One word of a request: as it is, or in quotes when it would be taken for several.
+[[nodiscard]] std::string as_word(std::string_view text);
+/// "4ms", "1.5s", "250us".
+[[nodiscard]] std::string duration_text(std::int64_t nanoseconds);
+
+} // namespace tappet::browser

@@ -1,0 +1,44 @@
+// State machines, and what a machine table connects them with, as a Promela model that spin searches.
+//
+// Order and atomicity are those of an engine's step (kernel/activity/engine.cpp): an activity's own events
+// first, then every message that waits for it; a state machine runs until it waits. A message overtakes
+// nothing of its own sender. Time is not modelled: a time-out may come at any time after its state was
+// entered, and a step may be as late as it likes. What a model does not know may be either way.
+//
+// Compiled with REQUESTS the model also asks for the final and the initial state at any time, with FAILURES
+// any action may fail, and with STOP the world falls silent once and every machine is asked for its final
+// state: then each run must end there.
+#pragma once
+
+#include "toolchain/tools/chart/chart.hpp"
+#include "toolchain/tools/chart/model.hpp"
+#include "kernel/machine/table/machine.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tappet::chart {
+
+struct Composition {
+    std::vector<Chart> charts;
+    MachineView machine{};             ///< its reactions and activities; empty: one machine in a free world
+    std::span<const ModelRow> model{}; ///< empty: everything beside the tables is free
+};
+
+struct PromelaModel {
+    std::string text;  ///< empty when there is a fault
+    std::string fault; ///< what, where and the cure
+};
+
+/// One state machine alone: its events come whenever its active states hear them.
+PromelaModel to_promela(const Chart& chart);
+/// Several of them, the reactions between their components, and the rows of a verification.
+PromelaModel to_promela(const Composition& composition);
+
+/// The state machines of a table, scripts' instances among them; slots are empty until something is loaded.
+std::vector<Chart> charts_of(const MachineView& machine);
+/// Those of one script, on the component that it drives.
+std::vector<Chart> charts_of(const ScriptUnit& unit, std::string_view component);
+
+} // namespace tappet::chart
