@@ -123,10 +123,9 @@ template <const auto& map> struct LinePort {
         judge(cycle.now);
     }
 
-    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
         stopped_ = true;
         drive(outputs, safe_values);
-        judge(cycle.now);
         // Lines that nobody drives cannot be relied on, though the chip be well.
         if (!faulted_) line_fault.emit();
         is_faulted.write(true);

@@ -312,6 +312,7 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
     EXPECT_TRUE(twin.drive(weft, true, Time{5010us}));
     run_until(10ms);
     EXPECT_EQ(listener->faults, 1) << "lines that nobody drives cannot be relied on";
+    EXPECT_TRUE(listener->faulted.get());
     EXPECT_EQ(twin.outputs(), at(brake));
     change_io(LifeChange::start);
     run_until(12ms);
@@ -328,6 +329,7 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
     EXPECT_FALSE(driven(brake));
     EXPECT_EQ(heard(), (std::vector<Heard>{{What::weft_fell, Time{13010us}}}));
     EXPECT_EQ(listener->faults, 1) << "driven again, they can";
+    EXPECT_FALSE(listener->faulted.get());
     twin.faults(weft).lose_next = 1;
     EXPECT_TRUE(twin.drive(weft, true, Time{15010us}));
     EXPECT_TRUE(twin.drive(weft, false, Time{15020us}));
@@ -345,6 +347,10 @@ TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes)
     EXPECT_TRUE(listener->faulted.get());
     run_until(2s);
     EXPECT_EQ(listener->faults, 1);
+    change_io(LifeChange::stop);
+    run_until(2s + 5ms);
+    EXPECT_EQ(listener->faults, 1) << "it is known already";
+    EXPECT_TRUE(listener->faulted.get());
 }
 
 TEST_F(Lines, tell_a_fault_when_a_write_is_refused_and_write_what_was_asked_for_last_as_soon_as_it_can_be) {
