@@ -316,6 +316,27 @@ constexpr auto sleeping_table = machine("sleeping",
     behaviours());
 // clang-format on
 
+constexpr auto virtual_sleeping_table = sleeping_table; // in memory of its own
+
+TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_that_it_does_not_come) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<virtual_sleeping_table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    ASSERT_TRUE(instance.configure({}));
+    ASSERT_EQ(world.start().view(), "");
+    Rouser& rouser = *instance.find<Rouser>("rouser");
+    EXPECT_TRUE(world.run_until(clock.now() + 1s));
+    rouser.rouses = true;
+    EXPECT_TRUE(world.run_until(clock.now() + 1s));
+    EXPECT_THAT(rouser.silences, IsEmpty()) << "it rests, and when it was woken it came";
+    Engine& sleeping = instance.engines()[2];
+    sleeping.stop(clock.now()); // as the supervisor does in the place of a hung thread
+    sleeping.mark_failed();
+    sleeping.waiter().wake();
+    EXPECT_TRUE(world.run_until(clock.now() + 100ms));
+    EXPECT_EQ(rouser.silences.size(), 1u);
+}
+
 TEST(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) {
     if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
     os::Clock clock{os::Clock::Kind::real};
