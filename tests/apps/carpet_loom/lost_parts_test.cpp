@@ -52,7 +52,8 @@ class WhileWeaving : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(part, WhileWeaving,
                          testing::Values("activity:shaft", "component:shaft", "component:weft", "activity:io",
                                          "component:io", "activity:can", "activity:motion", "component:main",
-                                         "component:network", "activity:logic", "component:loom"));
+                                         "component:warp", "component:network", "activity:logic",
+                                         "component:loom"));
 
 TEST_P(WhileWeaving, the_stop_of_a_part_stops_the_loom_with_its_valve_closed) {
     for (const double deg : {100.0, 230.0}) { // the valve is open there, and the cutter on
@@ -143,6 +144,56 @@ TEST(LostParts, every_component_runs_again_after_it_was_stopped_and_started) {
     rig.press(Button::start);
     EXPECT_TRUE(rig.run_until([&] { return rig.state() == "weave" && rig.plant().picks() > 5; }, 5s))
         << rig.state() << ": " << rig.reason();
+}
+
+/// The last word of the drive's leader: stand. And nothing that it said of the drive holds any longer.
+template <class T> void expect_left_at_rest(const T& leader) {
+    EXPECT_EQ(leader.target.last(), 0.0);
+    EXPECT_EQ(leader.controlword.last(), canopen::controlword::quick_stop);
+    EXPECT_FALSE(leader.enabled.last());
+    EXPECT_TRUE(leader.fault.last());
+}
+
+TEST(LostParts, the_leader_of_the_main_drive_leaves_it_at_rest_when_it_alone_is_stopped) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    const auto& main = rig.component<MainDrive>("main");
+    ASSERT_TRUE(main.at_speed.last());
+    rig.change("component:main", LifeChange::stop);
+    rig.run_for(20ms);
+    expect_left_at_rest(main);
+    EXPECT_FALSE(main.at_speed.last());
+    EXPECT_TRUE(rig.run_until([&] { return rig.plant().main_drive().power() == loom::Power::off; }, 1s))
+        << "it needs no loom to tell it";
+    EXPECT_EQ(rig.plant().main_drive().target(), 0);
+}
+
+TEST(LostParts, the_leader_of_the_let_off_leaves_it_at_rest_when_it_alone_is_stopped) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    const auto& warp = rig.component<WarpTension>("warp");
+    ASSERT_NE(warp.target.last(), 0.0);
+    ASSERT_TRUE(warp.in_band.last());
+    rig.change("component:warp", LifeChange::stop);
+    rig.run_for(20ms);
+    expect_left_at_rest(warp);
+    EXPECT_FALSE(warp.in_band.last());
+    EXPECT_TRUE(rig.run_until([&] { return rig.plant().let_off_drive().power() == loom::Power::off; }, 1s))
+        << "the beam feeds nothing that nobody measures";
+    EXPECT_EQ(rig.plant().let_off_drive().target(), 0);
+}
+
+TEST(LostParts, nodes_that_nobody_watches_any_longer_are_not_said_to_work) {
+    Parts rig;
+    ASSERT_TRUE(rig.prepare());
+    ASSERT_TRUE(rig.component<Network>("network").operational.last());
+    rig.change("component:network", LifeChange::stop);
+    rig.run_for(20ms);
+    EXPECT_FALSE(rig.component<Network>("network").operational.last());
+    EXPECT_EQ(rig.state(), "fault") << rig.reason();
+    rig.press(Button::start);
+    rig.run_for(1s);
+    EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
 }
 
 TEST(LostParts, lines_that_are_driven_no_longer_are_an_emergency) {
