@@ -74,10 +74,11 @@ struct Table {
 
 // clang-format off
 inline constexpr auto table = machine("press",
-    components(component<Ram>("ram", properties_file("ram.cpf", optional)), component<Table>("table"), component<BrowserService>("browser", set("log", false))),
+    components(component<Ram>("ram", properties_file("ram.cpf", optional)), component<Table>("table"), component<BrowserService>("browser", set("log", false)),
+               component<Table>("shelf")),
     activities(
         activity("motion",  every(1ms), budget(50us), runs("ram")),
-        activity("slow",    every(10ms), budget(50us), runs("table")),
+        activity("slow",    every(10ms), budget(50us), runs("table", "shelf")),
         activity("browser", every(20ms), not_real_time, runs("browser"))),
     connections(data("table.height", "ram.limit", stale_after(1s), hold)),
     reactions(), behaviours());
