@@ -73,20 +73,25 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings) {
     close();
     const auto link = find_link(settings.interface);
     if (!link) return std::unexpected{link.error()};
+    return open(settings, *link);
+}
+
+std::expected<void, Sentence> SocketCan::open(const Settings& settings, const Link& link) {
+    close();
     const std::string_view name = settings.interface;
-    if (auto good = fit(*link, name, settings.bit_rate); !good) return good;
+    if (auto good = fit(link, name, settings.bit_rate); !good) return good;
     fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
     if (fd_ < 0)
         return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
-    link_ = *link;
+    link_ = link;
     drops_seen_ = 0;
     arrivals_.begin(read(CLOCK_REALTIME), read(CLOCK_MONOTONIC));
-    controller_.configure(settings, link->state);
+    controller_.configure(settings, link.state);
     found_ = Sentence{"CAN interface \"", name, "\" "};
-    if (link->is_virtual)
+    if (link.is_virtual)
         found_.add("is virtual: it has no bit rate to compare with the board's ").add(settings.bit_rate);
     else
-        found_.add("runs at ").add(link->bit_rate).add(" bit/s, error ").add(to_text(link->state));
+        found_.add("runs at ").add(link.bit_rate).add(" bit/s, error ").add(to_text(link.state));
     auto done = set_options(settings);
     if (done) {
         sockaddr_can address{};

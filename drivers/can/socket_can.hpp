@@ -17,6 +17,8 @@ public:
     /// Not real-time. The spans in `settings` must outlive the device. On failure nothing stays open, and the
     /// error says what is wrong and how to cure it.
     std::expected<void, Sentence> open(const Settings& settings);
+    /// The same, on an interface that was found already.
+    std::expected<void, Sentence> open(const Settings& settings, const Link& link);
     /// What open() saw of the interface and its bus, for the report of arming.
     [[nodiscard]] const Sentence& found() const noexcept { return found_; }
     /// Not real-time. Drops what waits and leaves the bus.

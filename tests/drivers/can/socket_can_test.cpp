@@ -33,6 +33,17 @@ TEST(SocketCan, refuses_an_interface_that_is_no_can_bus) {
               "CAN interface \"lo\" is no CAN interface; name another in the board (ip link show type can)");
 }
 
+TEST(SocketCan, refuses_a_bus_of_another_rate_than_the_board_says) {
+    SocketCan can;
+    const Link link{.index = 7, .up = true, .bit_rate = 500'000};
+    const auto opened = can.open({.interface = "can0", .bit_rate = 250'000}, link);
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().view(),
+              "CAN interface \"can0\" runs at 500000 bit/s, the board says 250000: correct one of them "
+              "(ip link set can0 type can bitrate ...)");
+    EXPECT_EQ(can.wait_handle(), -1) << "nothing stays open";
+}
+
 TEST(SocketCan, does_nothing_while_it_is_closed) {
     constexpr std::array sends{Identifier{1, false}};
     SocketCan can;
