@@ -190,12 +190,18 @@ void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
             continue;
         }
         if (part.machine->is_active())
-            static_cast<void>(part.machine->request_initial(now));
+            begin_anew(part, now);
         else if (options_.reactive)
             static_cast<void>(part.machine->activate(now));
         else
             static_cast<void>(part.machine->start(now));
     }
+}
+
+// In error it stays as it is, for the report.
+void BehaviourUnit::begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME {
+    part.begins_anew =
+        part.machine->request_initial(now) == StateOutcome::ignored && !part.machine->in_error();
 }
 
 void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
@@ -204,13 +210,18 @@ void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
 }
 
 void BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
-    for (UnitPart& part : parts_)
-        if (part.machine != nullptr) part.machine->step(now);
+    for (UnitPart& part : parts_) {
+        if (part.machine == nullptr) continue;
+        part.machine->step(now);
+        if (part.begins_anew) [[unlikely]]
+            begin_anew(part, now);
+    }
     if (left_over()) ++left_over_;
 }
 
 void BehaviourUnit::finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME {
     for (UnitPart& part : parts_) {
+        part.begins_anew = false;
         if (part.program != nullptr)
             static_cast<void>(part.program->stop());
         else

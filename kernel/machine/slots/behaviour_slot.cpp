@@ -63,6 +63,7 @@ void BehaviourSlot::connect(bool on) noexcept TAPPET_REALTIME {
 void BehaviourSlot::start(Time now) noexcept TAPPET_REALTIME {
     runs_ = true;
     connect(true);
+    if (phase() == SlotPhase::handing_over) return; // what is active comes to its end
     if (BehaviourUnit* unit = active(); unit != nullptr) unit->start(now);
 }
 

@@ -25,6 +25,7 @@ struct UnitPart {
     ProgramLink* links = nullptr;
     CommandSlot* slots = nullptr;
     std::size_t slot_count = 0;
+    bool begins_anew = false;      ///< once it has come to its final state
     StateMachineBinding binding{}; ///< of a machine, to bind it anew
 };
 
@@ -154,7 +155,8 @@ public:
 
     // Real-time, in the component's engine.
 
-    /// Its roots start; their children when they are told to.
+    /// Its roots start; their children when they are told to. One that is still on its way to the final state
+    /// first comes to its end: what makes the component safe is not broken off.
     void start(Time now) noexcept TAPPET_REALTIME;
     /// The programs alone; their engine does so before it steps any state machine (thesis fig. 5.21).
     void step_programs(Time now) noexcept TAPPET_REALTIME;
@@ -187,6 +189,7 @@ public:
 
 private:
     void bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view);
+    void begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME;
 
     ScriptUnit unit_{};
     BehaviourOptions options_{};

@@ -90,6 +90,65 @@ TEST(Behaviour, the_stop_of_its_component_leads_to_the_final_state_and_its_start
     EXPECT_EQ(rig.state(unit), "Cold");
 }
 
+constexpr ScriptSource cooling{"cooling.osd", R"(
+StateMachine Cooling {
+    initial state Cold { entry { do oven.note(1); } transition oven.tick() select Warm }
+    state Warm { transition oven.tick() select Cold }
+    final state Off { entry { do feeder.feed(3); do oven.note(99); } } // 15 ms in another activity
+}
+RootStateMachine Cooling cooling
+)"};
+// clang-format off
+constexpr auto cooled = machine("cooled", parts, threads, connections(), reactions(),
+    behaviours(behaviour("oven", compiled_script<cooling, reach>, {})));
+// clang-format on
+
+TEST(Behaviour, that_takes_its_time_to_end_comes_to_its_end_before_its_component_begins_anew) {
+    for (const Duration stopped_for : {0ms, 1ms, 50ms}) {
+        Rig<Firmware<cooled, board>> rig;
+        rig.run(10ms);
+        const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
+        EXPECT_EQ(rig.state(unit), "Cold");
+        rig.oven().told.clear();
+        static_cast<void>(rig.instance.ask_component(0, LifeChange::stop));
+        rig.run(1ms + stopped_for);
+        static_cast<void>(rig.instance.ask_component(0, LifeChange::start));
+        rig.run(50ms);
+        EXPECT_EQ(rig.state(unit), "Cold");
+        EXPECT_THAT(rig.oven().told, ElementsAre(99, 1));
+        EXPECT_EQ(rig.feeder().fed, 3);
+    }
+}
+
+constexpr ScriptSource failing{"failing.osd", R"(
+StateMachine Failing {
+    var int pieces = 15;
+    initial state Cold { entry { do oven.note(1); } transition oven.tick() select Warm }
+    state Warm { transition oven.tick() select Cold }
+    final state Off { entry { set pieces = pieces - 4; do feeder.feed(pieces); do oven.note(99); } }
+}
+RootStateMachine Failing failing
+)"};
+// clang-format off
+constexpr auto failed = machine("failed", parts, threads, connections(), reactions(),
+    behaviours(behaviour("oven", compiled_script<failing, reach>, {}, on_error(OnError::report))));
+// clang-format on
+
+TEST(Behaviour, that_fails_on_its_way_to_the_end_does_not_begin_anew_by_itself) {
+    Rig<Firmware<failed, board>> rig;
+    rig.run(10ms);
+    const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
+    rig.oven().told.clear();
+    static_cast<void>(rig.instance.ask_component(0, LifeChange::restart)); // the feeder rejects eleven
+    rig.run(50ms);
+    StateMachineExecution& machine = *unit.parts()[0].machine;
+    EXPECT_TRUE(machine.in_error());
+    EXPECT_EQ(machine.request_final(rig.clock.now()), StateOutcome::taken); // and takes seven
+    rig.run(50ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(99));
+    EXPECT_EQ(rig.state(unit), "Off");
+}
+
 TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
     Bakery rig;
     rig.run(10ms);

@@ -303,6 +303,40 @@ TEST_F(BehaviourSlotTest, a_bank_whose_command_is_still_on_its_way_is_not_writte
     EXPECT_EQ(compile(numbered(3)), "");
 }
 
+/// Takes 20 ms to end.
+constexpr std::string_view slow_to_end =
+    "StateMachine Slow { initial state A { entry { do oven.note(1); } transition oven.tick() select B }\n"
+    "state B { transition oven.tick() select A }\n"
+    "final state End { entry { wait(20ms); do oven.note(2); } } }";
+
+TEST_F(BehaviourSlotTest, what_needs_time_to_end_comes_to_its_end_before_it_begins_again) {
+    load_and_settle(slow_to_end);
+    static_cast<void>(instance.ask_component(0, LifeChange::restart));
+    run(10ms);
+    EXPECT_THAT(oven().told, IsEmpty());
+    run(50ms);
+    EXPECT_THAT(oven().told, ElementsAre(2, 1));
+}
+
+TEST_F(BehaviourSlotTest, what_is_to_begin_again_does_not_when_another_takes_over_meanwhile) {
+    load_and_settle(slow_to_end);
+    static_cast<void>(instance.ask_component(0, LifeChange::restart));
+    run(10ms);
+    EXPECT_EQ(load(numbered(3)), "");
+    run(50ms);
+    EXPECT_THAT(oven().told, ElementsAre(2, 3));
+}
+
+TEST_F(BehaviourSlotTest, what_another_takes_over_from_does_not_begin_again_with_its_component) {
+    load_and_settle(slow_to_end);
+    EXPECT_EQ(load(numbered(3)), "");
+    run(10ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::handing_over);
+    static_cast<void>(instance.ask_component(0, LifeChange::restart));
+    run(50ms);
+    EXPECT_THAT(oven().told, ElementsAre(2, 3));
+}
+
 TEST_F(BehaviourSlotTest, the_stop_of_its_component_ends_it_safely_and_its_start_begins_again) {
     load_and_settle(numbered(1));
     static_cast<void>(instance.ask_component(0, LifeChange::stop));
