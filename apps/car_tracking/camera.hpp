@@ -95,11 +95,12 @@ struct Camera {
         device_ = setup.device<CameraDevice>();
         return device_ == nullptr ? setup.no_device() : Sentence{};
     }
+    /// What it has learned holds.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        lens.write({nominal_focal_px.get(), 0.0});
-        calibration_error_px.write(0.0);
         read_head();
         if (is_calibrated()) return;
+        lens.write({nominal_focal_px.get(), 0.0});
+        calibration_error_px.write(0.0);
         pan_.call_it(0.0); // until the index marks are known it counts from where it stands
         tilt_.call_it(0.0);
         read_head();
