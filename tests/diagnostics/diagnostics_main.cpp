@@ -1,5 +1,7 @@
-// Compiles every faulty case with the compiler of this build and compares what it says with the case's golden
-// sentence.
+// Compiles each faulty case with the compiler of this build and compares what it says with the case's golden
+// sentence. There is a case for each way of a refusal into a compiler's message, and for what a compiler
+// alone can see; every other fault is a row of tests/diagnostics/rows, where the same check runs without a
+// compiler.
 //     diagnostics --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--only TEXT] [--write]
 // A case states in its second line what is expected:
 //     // refused: <the sentence, the same from both compilers; # stands for any number>

@@ -1,4 +1,4 @@
-// A machine of two components that call and send to each other. Each case of a use replaces its rows.
+// A machine of two components that call and send to each other. Each fault in a use replaces its rows.
 #pragma once
 
 #include "tests/diagnostics/small_machine.hpp"

@@ -1,7 +1,10 @@
 // What a faulty script is compiled against: one component with a method and an event.
 #pragma once
 
+// First, since it is compiled ahead.
 #include "tests/diagnostics/small_machine.hpp"
+
+#include "kernel/script/compiled.hpp"
 
 struct ScriptedAxis {
     tappet::Event<> mark;

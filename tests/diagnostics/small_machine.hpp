@@ -1,9 +1,8 @@
 // A small machine that compiles. Each case of tests/diagnostics/cases replaces one section of it by a faulty
-// one.
+// one, each row of tests/diagnostics/rows a row.
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
-#include "kernel/script/compiled.hpp"
 
 namespace small {
 

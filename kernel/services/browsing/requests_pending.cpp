@@ -1,0 +1,74 @@
+// What waits for an answer, whatever it is: taken up, looked at, and given up by one rule.
+#include "kernel/services/browsing/browser_service.hpp"
+
+namespace tappet {
+
+using browsing::Asker;
+
+BrowserService::Pending* BrowserService::free_place() noexcept {
+    for (Pending& each : pending_)
+        if (each.look == nullptr) return &each;
+    return nullptr;
+}
+
+BrowserService::Verdict BrowserService::no_place() noexcept {
+    return {Refusal::not_now, Sentence{"too many requests are under way; ask again"}};
+}
+
+BrowserService::Verdict BrowserService::await(Pending& place, const Asker& asker,
+                                              bool (BrowserService::*look)(Pending&)) {
+    place.asker = asker;
+    place.look = look;
+    place.is_told = false;
+    return {};
+}
+
+BrowserService::Verdict BrowserService::await_engine(Pending& place, const Asker& asker,
+                                                     std::size_t component, const Message& call,
+                                                     bool (BrowserService::*look)(Pending&)) {
+    const AcceptedMachine& machine = machine_->machine();
+    if (Verdict alive = check_alive(component); !alive.good()) return alive;
+    Message message = call;
+    message.id = machine.plan.part_of[component];
+    if (!place.call.post(*machine_, machine.index.activity[component], message))
+        return {Refusal::not_now, Sentence{"that engine has too many requests to serve; ask again"}};
+    return await(place, asker, look);
+}
+
+void BrowserService::follow_pending() {
+    for (Pending& each : pending_) {
+        if (each.look == nullptr) continue;
+        if ((this->*each.look)(each)) {
+            each.look = nullptr;
+        } else if (!each.is_told && now_ - each.asker.since > patience) {
+            // What its engine may still come to keeps its place until then.
+            answer_bad(each, Refusal::not_now,
+                       each.call.withdraw()
+                           ? Sentence{"its engine did not come to it; nothing was done: look at its activity"}
+                           : Sentence{"it has not happened yet and may still happen: look at its activity"});
+            each.is_told = true;
+        }
+    }
+}
+
+BrowserService::Client* BrowserService::who_waits(const Pending& place) noexcept {
+    return place.is_told ? nullptr : door_.find(place.asker.client);
+}
+
+bool BrowserService::answer_good(const Pending& place) noexcept {
+    if (Client* client = who_waits(place)) {
+        Reply reply{place.asker.number, true};
+        finish(*client, reply);
+    }
+    return true;
+}
+
+bool BrowserService::answer_bad(const Pending& place, Refusal code, const Sentence& why) noexcept {
+    if (Client* client = who_waits(place)) {
+        Reply reply{place.asker.number, code, why};
+        finish(*client, reply);
+    }
+    return true;
+}
+
+} // namespace tappet

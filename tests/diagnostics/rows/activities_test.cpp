@@ -1,0 +1,179 @@
+// Activities: what wakes them, what they run, whether all of it can be done in time, and who watches them.
+#include "kernel/services/time/timed_event.hpp"
+#include "kernel/services/time/watchdog.hpp"
+#include "tests/diagnostics/rows/fault.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+namespace {
+
+using namespace small;
+using namespace tappet::diagnostics;
+
+struct Horn {
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+struct TimedHorn {
+    Timer silence;
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME { silence.arm(cycle.now + 1s); }
+    void off(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(timer<&TimedHorn::silence, &TimedHorn::off>("silence", "switches it off"));
+    }
+};
+
+constexpr Fault activity_faults[] = {
+    {"activity_twice",
+     [](Table& m) { m.activities[3] = activity("motion", every(250ms), not_real_time, runs("climate")); },
+     R"(loom: activity "motion" stands in activities(...) twice (rows 2 and 4); rename or remove one)"},
+    {"activity_two_triggers",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), on_work(), budget(120us), runs("shaft", "tension")));
+     },
+     R"(loom: activity "motion" is given a trigger twice; keep one)"},
+    {"activity_budget_twice",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), budget(120us), budget(80us), runs("shaft", "tension")));
+     },
+     R"(loom: activity "motion" is given a budget twice; keep one)"},
+    {"activity_runs_twice",
+     [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft"), runs("tension"))); },
+     R"(loom: activity "motion" is given runs twice; keep one)"},
+    {"activity_runs_nothing", [](Table& m) { m.add(activity("idle", every(10ms), budget(1us))); },
+     R"(loom: activity "idle" runs no component; add runs("...") or remove the row)"},
+    {"activity_runs_unknown",
+     [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tensoin"))); },
+     R"(loom: activity "motion": there is no component "tensoin"; did you mean "tension"?)"},
+    {"activity_without_trigger",
+     [](Table& m) { m.put(activity("motion", budget(120us), runs("shaft", "tension"))); },
+     R"(loom: activity "motion": nothing wakes it; add every(...), on_work() or on_device("..."))"},
+    {"activity_without_budget",
+     [](Table& m) { m.put(activity("motion", every(1ms), runs("shaft", "tension"))); },
+     R"(loom: activity "motion" has no budget; add budget(...), or not_real_time)"},
+    {"activity_without_rate",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), deadline(2ms), budget(80us), runs("weft", "lamps")));
+     },
+     R"(loom: activity "logic" does not say how often it may be woken; add at_most(n, per))"},
+    {"activity_period",
+     [](Table& m) { m.put(activity("motion", every(0ms), budget(120us), runs("shaft", "tension"))); },
+     R"(loom: activity "motion": its period is not positive; write every(1ms) or the like)"},
+    {"activity_stack",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), budget(120us), stack(4096), runs("shaft", "tension")));
+     },
+     R"(loom: activity "motion": its stack of 4096 bytes is under 16384; enlarge stack(...))"},
+    {"activity_blocks", [](Table& m) { m.put(activity("hall", every(250ms), budget(1ms), runs("climate"))); },
+     R"(loom: activity "hall" is real-time but component "climate" may block (it has work()); run it in an activity that is not_real_time)"},
+};
+INSTANTIATE_TEST_SUITE_P(activities, Refusal, testing::ValuesIn(planted_into(small_loom, activity_faults)),
+                         name_of);
+
+constexpr Fault device_faults[] = {
+    {"activity_on_device_elsewhere",
+     [](Table& m) {
+         m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("lamps")));
+         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
+                        runs("weft", "encoder")));
+     },
+     R"(loom: activity "field" is woken by the device of "encoder" but does not run it; add it to runs(...))"},
+    {"activity_on_no_driver",
+     [](Table& m) {
+         m.put(activity("field", on_device("shaft"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("encoder")));
+     },
+     R"(loom: activity "field": component "shaft" drives no device to wake it; name a driver in on_device(...))"},
+    {"activity_on_unknown_device",
+     [](Table& m) {
+         m.put(activity("field", on_device("encodre"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("encoder")));
+     },
+     R"(loom: activity "field": there is no component "encodre"; did you mean "encoder"?)"},
+};
+INSTANTIATE_TEST_SUITE_P(devices, Refusal, testing::ValuesIn(planted_into(small_loom, device_faults)),
+                         name_of);
+
+constexpr Fault work_faults[] = {
+    {"activity_that_nothing_wakes",
+     [](Table& m) {
+         m.add(component<Horn>("horn"));
+         m.add(activity("noise", on_work(), at_most(1, 100ms), budget(10us), runs("horn")));
+     },
+     R"(loom: activity "noise" runs on_work() but no row wakes it, so the step() of component "horn" would never run; add wakes to a connection into it, or when("...", tell("horn.operation")), or run it every(...))"},
+    {"activity_that_only_a_timer_wakes",
+     [](Table& m) {
+         m.add(component<TimedHorn>("horn"));
+         m.add(activity("noise", on_work(), at_most(1, 100ms), budget(10us), runs("horn")));
+     },
+     R"(loom: activity "noise" runs on_work() but no row wakes it, so the step() of component "horn" would never run; add wakes to a connection into it, or when("...", tell("horn.operation")), or run it every(...))"},
+    {"timer_in_a_periodic_activity",
+     [](Table& m) {
+         m.add(component<TimedHorn>("horn"));
+         m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tension", "horn")));
+     },
+     R"(loom: activity "motion" is periodic but component "horn" has the timer "silence", which runs between periods; run it on_work() with at_most(n, per), so that the analysis counts it)"},
+};
+INSTANTIATE_TEST_SUITE_P(work, Refusal, testing::ValuesIn(planted_into(small_loom, work_faults)), name_of);
+
+constexpr Fault schedule_faults[] = {
+    {"activity_budget_over_deadline",
+     [](Table& m) {
+         m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(20us), budget(30us),
+                        runs("encoder")));
+     },
+     R"(loom: activity "field" is not schedulable on processor 1 of board "bench": its worst response is 30 us, its deadline 20 us; lower the budget of it or of a more urgent activity, lengthen its deadline, or place it elsewhere)"},
+    {"activity_not_schedulable",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(340us), budget(80us),
+                        runs("weft", "lamps")));
+     },
+     R"(loom: activity "logic" is not schedulable on processor 1 of board "bench": its worst response is 350 us, its deadline 340 us; lower the budget of it or of a more urgent activity, lengthen its deadline, or place it elsewhere)"},
+};
+INSTANTIATE_TEST_SUITE_P(schedules, Refusal, testing::ValuesIn(planted_into(small_loom, schedule_faults)),
+                         name_of);
+
+// ---- watchdogs
+
+Table guarded_loom() {
+    Table m = small_loom();
+    m.add(component<Watchdog>("dog", watches("motion"), set("limit", 20ms)));
+    m.add(activity("kennel", every(10ms), not_real_time, runs("dog")));
+    return m;
+}
+
+constexpr Fault watch_faults[] = {
+    {"watch_of_nothing", [](Table& m) { m.put(component<Watchdog>("dog")); },
+     R"(loom: component "dog" watches nothing; add watches("...") with an activity or an output)"},
+    {"watch_by_another", [](Table& m) { m.put(component<TimedEvent>("dog", watches("motion"))); },
+     R"(loom: component "dog" is no watchdog; remove watches("motion"))"},
+    {"watch_activity_unknown",
+     [](Table& m) { m.put(component<Watchdog>("dog", watches("moton"), set("limit", 20ms))); },
+     R"(loom: component "dog" watches "moton", which no activity is called; did you mean "motion"?)"},
+    {"watch_output_unknown",
+     [](Table& m) { m.put(component<Watchdog>("dog", watches("encoder.angel"), set("limit", 20ms))); },
+     R"(loom: component "dog" watches "encoder.angel": component "encoder" has no output "angel"; did you mean "angle"?)"},
+    {"watch_of_an_event",
+     [](Table& m) { m.put(component<Watchdog>("dog", watches("weft.broken"), set("limit", 20ms))); },
+     R"(loom: component "dog" watches "weft.broken", which is an event; name an activity, or an output of last values)"},
+    {"watch_without_a_connection",
+     [](Table& m) { m.put(component<Watchdog>("dog", watches("shaft.speed"), set("limit", 20ms))); },
+     R"(loom: component "dog" watches "shaft.speed", which no connection leads to another activity; connect it there, or watch activity "motion")"},
+    {"watch_limit_too_short",
+     [](Table& m) { m.put(component<Watchdog>("dog", watches("hall"), set("limit", 200ms))); },
+     R"(loom: component "dog" watches activity "hall" with a limit of 200000 us, not longer than its period of 250000 us; lengthen the limit)"},
+    {"watch_in_the_watched",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tension", "dog")));
+         m.activities.pop_back();
+     },
+     R"(loom: component "dog" runs in activity "motion", which it watches: when that is silent, so is it; run it in another one)"},
+    {"watch_that_may_sleep",
+     [](Table& m) { m.put(activity("kennel", on_work(), not_real_time, runs("dog"))); },
+     R"(loom: component "dog" looks once in each cycle, but activity "kennel" may sleep for ever; run it in one that is every(...))"},
+};
+INSTANTIATE_TEST_SUITE_P(watches, Refusal, testing::ValuesIn(planted_into(guarded_loom, watch_faults)),
+                         name_of);
+
+} // namespace

@@ -1,0 +1,99 @@
+// Behaviours: state machine tables, what they hear, and the slots for what is loaded.
+#include "tests/diagnostics/rows/fault.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+namespace {
+
+using namespace small;
+using namespace tappet::diagnostics;
+
+struct Loaded {
+    static constexpr bool slot_required = true;
+    static constexpr auto interface() { return facets(); }
+};
+struct Observer {
+    static constexpr bool sees_machine = true;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+constexpr Fault behaviour_faults[] = {
+    {"behaviour_missing", [](Table& m) { m.behaviours.clear(); },
+     R"(loom: component "weft": no behaviour drives it; add behaviour("weft", ...) to behaviours(...))"},
+    {"behaviour_twice", [](Table& m) { m.add(behaviour("weft", weft_cycle)); },
+     R"(loom: behaviour of "weft" stands in behaviours(...) twice; a component has one behaviour: remove one)"},
+    {"behaviour_component_unknown", [](Table& m) { m.behaviours[0].component = "wefd"; },
+     R"(loom: behaviour of "wefd": there is no component "wefd"; did you mean "weft"?)"},
+    {"behaviour_of_another_type", [](Table& m) { m.add(behaviour("tension", weft_cycle)); },
+     R"(loom: behaviour of "tension": state machine "weft_cycle" is written for small::Weft but "tension" is a small::Tension; name a component of its type)"},
+};
+INSTANTIATE_TEST_SUITE_P(behaviours, Refusal, testing::ValuesIn(planted_into(small_loom, behaviour_faults)),
+                         name_of);
+
+Table loom_with_a_cycle() {
+    Table m = small_loom();
+    m.behaviours[0].type.machine.name = "faulty_cycle";
+    m.states = {state("idle", initial), state("weaving"), state("safe", final)};
+    m.transitions = {transition("idle", "weaving", on("shaft.window")),
+                     transition("weaving", "safe", on("broken"))};
+    return m;
+}
+
+constexpr Fault cycle_faults[] = {
+    {"behaviour_event_is_an_operation",
+     [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("shaft.clear")); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.clear"): "shaft.clear" is an operation, not an event; name an event in on(...))"},
+    {"behaviour_foreign_event_unknown",
+     [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("shaft.windw")); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.windw"): component "shaft" has no event "windw"; did you mean "window"?)"},
+    {"state_unknown", [](Table& m) { m.transitions[0] = transition("idle", "weavng", on("shaft.window")); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weavng" on "shaft.window") leads to an unknown state "weavng"; did you mean "weaving"?)"},
+    {"state_without_exit", [](Table& m) { m.transitions.pop_back(); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": state "weaving" has no way out; give it a transition, or mark it final)"},
+    {"state_never_entered",
+     [](Table& m) {
+         m.states.push_back(state("washing"));
+         m.transitions.push_back(transition("washing", "idle", after(2s)));
+     },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": state "washing" is never entered; lead a transition to it, make it initial, or drop it)"},
+    {"state_machine_without_start", [](Table& m) { m.states[0] = state("idle"); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": no top state is initial; mark the one to start in)"},
+    {"state_machine_without_safe_state", [](Table& m) { m.states[2] = state("safe"); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": no state is final; mark the safe state that the machine may be brought to from everywhere)"},
+};
+INSTANTIATE_TEST_SUITE_P(cycles, Refusal, testing::ValuesIn(planted_into(loom_with_a_cycle, cycle_faults)),
+                         name_of);
+
+constexpr Fault slot_faults[] = {
+    {"slot_missing",
+     [](Table& m) {
+         m.components = {component<Loaded>("weft")};
+         m.activities = {activity("all", every(1ms), budget(1us), runs("weft"))};
+         m.connections.clear(), m.reactions.clear(), m.behaviours.clear();
+     },
+     R"(loom: component "weft": no slot is reserved for it; add behaviour("weft", slot(...)) to behaviours(...))"},
+    {"slot_peer_unknown",
+     [](Table& m) { m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), peers("wefft")))); },
+     R"(loom: slot of "shaft": among its peers, there is no component "wefft"; did you mean "weft"?)"},
+    {"slot_reach_unknown",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), operations("weft.relase"))));
+     },
+     R"(loom: slot of "shaft": among its operations, component "weft" has no operation "relase"; did you mean "release"?)"},
+    {"slot_event_unknown",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), events("weft.release"))));
+     },
+     R"(loom: slot of "shaft": among its events, "weft.release" is an operation, not an event; name an event)"},
+    {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
+     R"(loom: slot of "shaft" reserves no nodes, data or depth; state all three)"},
+    {"slot_stack",
+     [](Table& m) {
+         m.add(component<Observer>("browser"));
+         m.put(activity("hall", every(250ms), not_real_time, runs("climate", "browser")));
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4))));
+     },
+     R"(loom: slot of "shaft": scripts are compiled in activity "hall", whose stack of 65536 bytes is under 229376; enlarge its stack(...))"},
+};
+INSTANTIATE_TEST_SUITE_P(slots, Refusal, testing::ValuesIn(planted_into(small_loom, slot_faults)), name_of);
+
+} // namespace

@@ -1,0 +1,212 @@
+// Components: their rows, the functions of their life, and the devices that the board has for them.
+#include "tests/diagnostics/rows/fault.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+using namespace tappet::diagnostics;
+
+// In no namespace: the sentences say their names.
+
+struct Twin {
+    Output<double> one;
+    Output<double> other;
+    static constexpr auto interface() {
+        return facets(output<&Twin::one>("same", "", ""), output<&Twin::other>("same", "", ""));
+    }
+};
+
+/// What most horns have to say of themselves.
+struct Silent {
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+class PrivateHorn : public Silent {
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+};
+struct MisspeltHorn : Silent {
+    void strat(const Cycle&) noexcept TAPPET_REALTIME {}
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+};
+struct UpdatedHorn : Silent {
+    void update(const Cycle&) noexcept TAPPET_REALTIME {}
+};
+struct AnswerlessHorn : Silent {
+    void initialise() {}
+};
+struct ValueHorn {
+    Output<bool> stop;
+    static constexpr auto interface() { return facets(output<&ValueHorn::stop>("stop", "", "it is silent")); }
+};
+struct ThrowingHorn : Silent {
+    void start(const Cycle&) {}
+};
+struct CycleChangingHorn : Silent {
+    void step(Cycle&) noexcept TAPPET_REALTIME {}
+};
+struct CyclelessHorn : Silent {
+    void stop() noexcept TAPPET_REALTIME {}
+};
+
+namespace {
+
+struct Observer {
+    static constexpr bool sees_machine = true;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+struct Reader {
+    void loop(LoopControl&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+struct ReaderAndWorker {
+    void loop(LoopControl&) {}
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+constexpr Fault component_faults[] = {
+    {"component_twice", [](Table& m) { m.add(component<Tension>("shaft")); },
+     R"(loom: component "shaft" stands in components(...) twice (rows 2 and 7); rename or remove one)"},
+    {"component_name_dotted", [](Table& m) { m.components[1] = component<Shaft>("main.shaft"); },
+     R"(loom: component "main.shaft": a component's name is not empty and has no dot; rename it)"},
+    {"component_in_no_activity",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us), runs("weft")));
+     },
+     R"(loom: component "lamps": no activity runs it; add it to runs(...) of one)"},
+    {"component_in_two_activities",
+     [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tension", "weft"))); },
+     R"(loom: component "weft" is run by activity "motion" and by activity "logic"; keep it in one)"},
+    {"component_twice_in_one_activity",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tension", "shaft")));
+     },
+     R"(loom: component "shaft" is run twice by activity "motion"; remove it once)"},
+    {"interface_twice", [](Table& m) { m.add(component<Twin>("twin")); },
+     R"(loom: component "twin": its interface names "same" twice; rename one in Twin)"},
+};
+INSTANTIATE_TEST_SUITE_P(components, Refusal, testing::ValuesIn(planted_into(small_loom, component_faults)),
+                         name_of);
+
+template <class Horn> void blow(Table& m) {
+    m.add(component<Horn>("horn"));
+    m.add(activity("noise", every(10ms), budget(10us), runs("horn")));
+}
+
+constexpr Fault life_faults[] = {
+    {"life_in_private", blow<PrivateHorn>,
+     R"(loom: component "horn": PrivateHorn::step looks like a function of its life but would never run; that is public and spelled "void step(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+    {"life_misspelt", blow<MisspeltHorn>,
+     R"(loom: component "horn": MisspeltHorn::strat looks like a function of its life but would never run; that is public and spelled "void start(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+    {"life_otherwise_named", blow<UpdatedHorn>,
+     R"(loom: component "horn": UpdatedHorn::update looks like a function of its life but would never run; that is public and spelled "void step(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+    {"life_that_answers_nothing", blow<AnswerlessHorn>,
+     R"~(loom: component "horn": AnswerlessHorn::initialise looks like a function of its life but would never run; that is public and spelled "Sentence initialise()": spell it so, or rename it)~"},
+    {"life_that_is_a_value", blow<ValueHorn>,
+     R"(loom: component "horn": ValueHorn::stop looks like a function of its life but would never run; that is public and spelled "void stop(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+    {"life_that_may_throw", blow<ThrowingHorn>,
+     R"(loom: component "horn": ThrowingHorn::start looks like a function of its life but would never run; that is public and spelled "void start(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+    {"life_with_another_cycle", blow<CycleChangingHorn>,
+     R"(loom: component "horn": CycleChangingHorn::step looks like a function of its life but would never run; that is public and spelled "void step(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+    {"life_without_its_cycle", blow<CyclelessHorn>,
+     R"(loom: component "horn": CyclelessHorn::stop looks like a function of its life but would never run; that is public and spelled "void stop(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+};
+INSTANTIATE_TEST_SUITE_P(life, Refusal, testing::ValuesIn(planted_into(small_loom, life_faults)), name_of);
+
+constexpr Fault observer_faults[] = {
+    {"observer_in_real_time",
+     [](Table& m) {
+         m.add(component<Observer>("browser"));
+         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
+                        runs("weft", "lamps", "browser")));
+     },
+     R"(loom: component "browser" sees the machine, but its activity "logic" is real-time; run it in an activity that is not_real_time)"},
+    {"observers_in_two_activities",
+     [](Table& m) {
+         m.add(component<Observer>("browser"));
+         m.add(component<Observer>("store"));
+         m.put(activity("hall", every(250ms), not_real_time, runs("climate", "browser")));
+         m.add(activity("attic", every(250ms), not_real_time, runs("store")));
+     },
+     R"(loom: component "store" sees the machine from activity "attic", but "browser" does so from activity "hall"; run both in one activity)"},
+};
+INSTANTIATE_TEST_SUITE_P(observers, Refusal, testing::ValuesIn(planted_into(small_loom, observer_faults)),
+                         name_of);
+
+constexpr Fault loop_faults[] = {
+    {"loop_and_work",
+     [](Table& m) {
+         m.add(component<ReaderAndWorker>("reader"));
+         m.add(activity("reading", on_work(), not_real_time, runs("reader")));
+     },
+     R"(loom: component "reader" has loop() and also work(); keep one of them)"},
+    {"loop_beside_others",
+     [](Table& m) {
+         m.add(component<Reader>("reader"));
+         m.put(activity("hall", on_work(), not_real_time, runs("climate", "reader")));
+     },
+     R"(loom: activity "hall" runs others beside component "reader", which keeps the thread (it has loop()); run it in an activity of its own)"},
+    {"loop_in_a_periodic_activity",
+     [](Table& m) {
+         m.add(component<Reader>("reader"));
+         m.add(activity("reading", every(10ms), not_real_time, runs("reader")));
+     },
+     R"(loom: activity "reading" is periodic but component "reader" decides itself when it runs (it has loop()); run it on_work())"},
+    {"loop_in_real_time",
+     [](Table& m) {
+         m.add(component<Reader>("reader"));
+         m.add(activity("reading", on_work(), at_most(1, 10ms), budget(10us), runs("reader")));
+     },
+     R"(loom: activity "reading" is real-time but component "reader" may block (it has loop()); run it in an activity that is not_real_time)"},
+};
+INSTANTIATE_TEST_SUITE_P(loops, Refusal, testing::ValuesIn(planted_into(small_loom, loop_faults)), name_of);
+
+constexpr Fault device_faults[] = {
+    {"device_of_no_driver", [](Table& m) { m.put(component<Shaft>("shaft", device("main_encoder"))); },
+     R"(loom: component "shaft" drives no device; remove device("main_encoder"))"},
+    {"device_unnamed", [](Table& m) { m.put(component<Encoder>("encoder")); },
+     R"(loom: component "encoder" drives a can device but its row names none; add device("..."))"},
+    {"device_kind", [](Table& m) { m.put(component<Encoder>("encoder", device("panel"))); },
+     R"(loom: component "encoder" drives a can device but "panel" of board "bench" is of kind gpio; name another)"},
+    {"device_shared",
+     [](Table& m) {
+         m.add(component<Encoder>("spare", device("main_encoder")));
+         m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("encoder", "spare")));
+     },
+     R"(loom: component "spare" drives device "main_encoder", as component "encoder" does; a device has one driver)"},
+};
+INSTANTIATE_TEST_SUITE_P(devices, Refusal, testing::ValuesIn(planted_into(small_loom, device_faults)),
+                         name_of);
+
+/// The board is the one that the faults change.
+Table loom_on_an_old_box() {
+    Table m = small_loom();
+    m.board.name = "old box";
+    return m;
+}
+
+constexpr Fault board_faults[] = {
+    {"line_twice",
+     [](Table& m) {
+         m.board.devices[2] =
+             board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("green", 4));
+     },
+     R"(loom: component "lamps": lines "red" and "green" of device "panel" of board "old box" share a name or an offset; correct one)"},
+    {"line_unknown",
+     [](Table& m) {
+         m.board.devices[2] =
+             board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("greeen", 5));
+     },
+     R"(loom: component "lamps": device "panel" of board "old box" has no line "green"; did you mean "greeen"?)"},
+    {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("main_encoder", "can", "can0"); },
+     R"(loom: component "encoder": device "main_encoder" of board "old box" states no bit rate; add bit_rate(500'000), or what its bus runs at, to it)"},
+    {"placement_processor", [](Table& m) { m.board.placement = placements(place("motion", 2)); },
+     R"(loom: activity "motion": board "old box" places it on processor 2 but has processors 0 to 1; correct its placement)"},
+    {"placement_unknown", [](Table& m) { m.board.placement = placements(place("motoin", 0)); },
+     R"(loom: board "old box" places activity "motoin", which the table has not; did you mean "motion"?)"},
+};
+INSTANTIATE_TEST_SUITE_P(boards, Refusal, testing::ValuesIn(planted_into(loom_on_an_old_box, board_faults)),
+                         name_of);
+
+} // namespace

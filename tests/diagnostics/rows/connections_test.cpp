@@ -1,0 +1,80 @@
+// Connections: their two ends, and what their options may say of the values.
+#include "tests/diagnostics/rows/fault.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+namespace {
+
+using namespace small;
+using namespace tappet::diagnostics;
+
+constexpr float standing = 0;
+constexpr int at_rest = 0;
+
+constexpr Fault end_faults[] = {
+    {"connection_missing", [](Table& m) { m.connections = {data("encoder.angle", "shaft.measured")}; },
+     R"(loom: component "tension": its required input "speed" is not connected; add data("...", "tension.speed"))"},
+    {"connection_twice", [](Table& m) { m.connections[2] = m.connections[1]; },
+     R"(loom: connection "shaft.speed" -> "tension.speed" stands in connections(...) twice (rows 2 and 3); remove one)"},
+    {"connection_component_unknown", [](Table& m) { m.put(data("encodr.angle", "shaft.measured")); },
+     R"(loom: connection "encodr.angle" -> "shaft.measured": there is no component "encodr"; did you mean "encoder"?)"},
+    {"connection_component_missing", [](Table& m) { m.put(data("gearbox.angle", "shaft.measured")); },
+     R"(loom: connection "gearbox.angle" -> "shaft.measured": there is no component "gearbox"; add it to components(...))"},
+    {"connection_port_unknown", [](Table& m) { m.connections[0] = data("encoder.angle", "shaft.mesured"); },
+     R"(loom: connection "encoder.angle" -> "shaft.mesured": component "shaft" has no input "mesured"; did you mean "measured"?)"},
+    {"connection_port_missing", [](Table& m) { m.put(data("shaft.oil_pressure", "tension.speed")); },
+     R"(loom: connection "shaft.oil_pressure" -> "tension.speed": component "shaft" has no output "oil_pressure"; add it to the component's interface)"},
+    {"connection_without_port", [](Table& m) { m.put(data("shaft", "tension.speed")); },
+     R"(loom: connection "shaft" -> "tension.speed": "shaft" is not of the form "component.output"; name both)"},
+    {"connection_exchanged", [](Table& m) { m.connections[0] = data("shaft.measured", "encoder.angle"); },
+     R"(loom: connection "shaft.measured" -> "encoder.angle" runs from an input to an output; exchange the two)"},
+    {"connection_from_an_event", [](Table& m) { m.put(data("weft.broken", "shaft.reference")); },
+     R"(loom: connection "weft.broken" -> "shaft.reference": "weft.broken" is an event, not an output; name an output first)"},
+    {"connection_from_an_input", [](Table& m) { m.put(data("tension.speed", "shaft.reference")); },
+     R"(loom: connection "tension.speed" -> "shaft.reference": "tension.speed" is an input, not an output; name an output first)"},
+    {"connection_to_an_output", [](Table& m) { m.add(data("encoder.angle", "tension.torque")); },
+     R"(loom: connection "encoder.angle" -> "tension.torque": "tension.torque" is an output, not an input; name an input second)"},
+    {"connection_to_itself", [](Table& m) { m.put(data("shaft.speed", "shaft.reference")); },
+     R"(loom: connection "shaft.speed" -> "shaft.reference": a component's own output feeds its own input; add delayed, or keep the value in the component)"},
+    {"connection_types", [](Table& m) { m.put(data("encoder.turns", "shaft.measured")); },
+     R"(loom: connection "encoder.turns" -> "shaft.measured": "encoder.turns" is of type int but "shaft.measured" is of type double; connect ports of one type)"},
+    {"connection_two_writers",
+     [](Table& m) { m.connections.insert(m.connections.begin(), data("tension.torque", "shaft.reference")); },
+     R"(loom: connection "weft.reference" -> "shaft.reference": "shaft.reference" is written by "tension.torque" already; an input has one writer: remove one row, or use a buffer)"},
+    {"connection_of_a_buffer_by_data", [](Table& m) { m.add(data("encoder.samples", "shaft.samples")); },
+     R"(loom: connection "encoder.samples" -> "shaft.samples": "encoder.samples" is a buffered output, not an output; write buffer<n>(...))"},
+    {"connection_of_data_by_a_buffer", [](Table& m) { m.put(buffer<4>("encoder.angle", "shaft.measured")); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": "encoder.angle" is an output, not a buffered output; write data(...))"},
+};
+INSTANTIATE_TEST_SUITE_P(ends, Refusal, testing::ValuesIn(planted_into(small_loom, end_faults)), name_of);
+
+constexpr Fault option_faults[] = {
+    {"connection_stale_never", [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stop_machine)); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured" says what a stale value means but not when it is stale; add stale_after(...))"},
+    {"connection_stale_twice",
+     [](Table& m) {
+         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(0), stop_machine));
+     },
+     R"(loom: connection "encoder.angle" -> "shaft.measured" says more than once what a stale value means; keep one of hold, substitute and stop_machine)"},
+    {"connection_substitute_type",
+     [](Table& m) {
+         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute<at_rest>()));
+     },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": substitute gives a value of type int, but "shaft.measured" is of type double; name a constant of the port's type)"},
+    {"connection_initially_type",
+     [](Table& m) { m.put(data("shaft.speed", "tension.speed", initially<standing>())); },
+     R"(loom: connection "shaft.speed" -> "tension.speed": initially gives a value of type float, but "tension.speed" is of type double; name a constant of the port's type)"},
+    {"connection_buffer_of_nothing", [](Table& m) { m.add(buffer<0>("encoder.samples", "shaft.samples")); },
+     R"(loom: connection "encoder.samples" -> "shaft.samples" holds no value; write buffer<n> with n of at least 1)"},
+    {"connection_buffer_stale",
+     [](Table& m) { m.add(buffer<4>("encoder.samples", "shaft.samples", stale_after(4ms))); },
+     R"(loom: connection "encoder.samples" -> "shaft.samples": values in a buffer have no age and no initial value; remove what says so from the row)"},
+    {"connection_delayed_across", [](Table& m) { m.put(data("encoder.angle", "shaft.measured", delayed)); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": delayed means one cycle of one activity, but this row crosses from "field" to "motion"; remove delayed)"},
+    {"connection_wakes_a_periodic_activity",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", wakes)); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured" wakes activity "motion", which is periodic; remove wakes)"},
+};
+INSTANTIATE_TEST_SUITE_P(options, Refusal, testing::ValuesIn(planted_into(small_loom, option_faults)),
+                         name_of);
+
+} // namespace

@@ -1,0 +1,99 @@
+// Properties: what a row sets, what an interface declares, and the files they are kept in.
+#include "tests/diagnostics/rows/fault.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+using namespace small;
+using namespace tappet::diagnostics;
+
+/// In no namespace: a sentence says its name.
+struct Named : Tension {
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      property<&Tension::wanted_n>("wanted.n", "N", "of the warp"));
+    }
+};
+
+namespace {
+
+struct Noted : Tension {
+    Property<Sequence<double, 256>> notes;
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      property<&Noted::notes>("notes", "", "of the shift"));
+    }
+};
+
+struct Deeds : Tension {
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      bag("deeds", "what it does", operation<&Tension::relax>("stop", "lets go")));
+    }
+};
+
+constexpr std::array<double, 2> one_too_low{0.5, -2.0};
+constexpr std::array<double, 4> four_halves{0.5, 0.5, 0.5, 0.5};
+
+constexpr Fault setting_faults[] = {
+    {"property_unknown", [](Table& m) { m.put(component<Shaft>("shaft", set("gian", 2.0))); },
+     R"(loom: component "shaft" has no property "gian"; did you mean "gain"?)"},
+    {"property_twice", [](Table& m) { m.put(component<Shaft>("shaft", set("gain", 2.0), set("gain", 3.0))); },
+     R"(loom: component "shaft" sets property "gain" twice; keep one)"},
+    {"property_is_a_port", [](Table& m) { m.put(component<Shaft>("shaft", set("speed", 2.5))); },
+     R"(loom: component "shaft" sets "speed", which is an output, not a property; set one of its properties)"},
+    {"property_type", [](Table& m) { m.put(component<Shaft>("shaft", set("reversed", 2.5))); },
+     R"(loom: component "shaft" sets property "reversed" to 2.5, but it is true or false; write true or false)"},
+    {"property_duration", [](Table& m) { m.put(component<Shaft>("shaft", set("filter", 2))); },
+     R"(loom: component "shaft" sets property "filter" to 2, but it is a time; write it with its unit, like 2ms)"},
+    {"property_enumeration", [](Table& m) { m.put(component<Shaft>("shaft", set("turn", 1))); },
+     R"(loom: component "shaft" sets property "turn" to 1, but it is an enumeration; write a value of small::Turn)"},
+    {"property_range", [](Table& m) { m.put(component<Shaft>("shaft", set("gain", 12.5))); },
+     R"(loom: component "shaft" sets property "gain" to 12.5, which is over its greatest value 10; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
+    {"property_too_large", [](Table& m) { m.put(component<Shaft>("shaft", set("teeth", 128))); },
+     R"(loom: component "shaft" sets property "teeth" to 128, which is more than signed char holds; set a value it can hold)"},
+    {"property_text_too_long", [](Table& m) { m.put(component<Shaft>("shaft", set("label", "main shaft"))); },
+     R"(loom: component "shaft" sets property "label" to "main shaft", which is longer than its 8 letters; shorten it)"},
+    {"property_list_range", [](Table& m) { m.put(component<Shaft>("shaft", set<one_too_low>("offsets"))); },
+     R"(loom: component "shaft" sets property "offsets" to -2, which is under its least value -1; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
+    {"property_list_too_long",
+     [](Table& m) { m.put(component<Shaft>("shaft", set<four_halves>("offsets"))); },
+     R"(loom: component "shaft" sets property "offsets" to a list of 4, but it has at most 3; give it so many)"},
+    {"property_bag", [](Table& m) { m.put(component<Shaft>("shaft", set("angles.window", 2.0))); },
+     R"(loom: component "shaft" sets "angles.window", which is a bag; set the properties in it, each by its whole name)"},
+    {"property_in_bag_unknown",
+     [](Table& m) { m.put(component<Shaft>("shaft", set("angles.window.hihg", 2.0))); },
+     R"(loom: component "shaft" has no property "angles.window.hihg"; did you mean "angles.window.high"?)"},
+    {"property_in_bag_range",
+     [](Table& m) { m.put(component<Shaft>("shaft", set("angles.window.high", 361))); },
+     R"(loom: component "shaft" sets property "angles.window.high" to 361, which is over its greatest value 360; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
+};
+INSTANTIATE_TEST_SUITE_P(settings, Refusal, testing::ValuesIn(planted_into(small_loom, setting_faults)),
+                         name_of);
+
+constexpr Fault declaration_faults[] = {
+    {"property_dotted", [](Table& m) { m.put(component<Named>("tension")); },
+     R"(loom: component "tension": its property "wanted.n" has a dot in its name; put it into a bag(...) in Named)"},
+    {"properties_too_many", [](Table& m) { m.put(component<Noted>("tension")); },
+     R"(loom: component "tension" has 1 properties of 2064 bytes, but a transaction holds 64 of 2048; divide the component)"},
+    {"bag_of_an_operation", [](Table& m) { m.put(component<Deeds>("tension")); },
+     R"(loom: component "tension": its bag "deeds" holds "deeds.stop", which is an operation; a bag holds properties and bags)"},
+};
+INSTANTIATE_TEST_SUITE_P(declarations, Refusal,
+                         testing::ValuesIn(planted_into(small_loom, declaration_faults)), name_of);
+
+constexpr Fault file_faults[] = {
+    {"properties_file_of_nothing",
+     [](Table& m) { m.put(component<Weft>("weft", properties_file("weft.cpf"))); },
+     R"(loom: component "weft" has no properties but a properties file "weft.cpf"; remove properties_file(...))"},
+    {"properties_file_path",
+     [](Table& m) { m.put(component<Shaft>("shaft", properties_file("/etc/shaft.cpf"))); },
+     R"(loom: component "shaft": its properties file "/etc/shaft.cpf" is not the plain name of a file; the board's properties_directory says where it lies)"},
+    {"properties_file_shared",
+     [](Table& m) {
+         m.put(component<Shaft>("shaft", properties_file("shaft.cpf")));
+         m.put(component<Tension>("tension", properties_file("shaft.cpf")));
+     },
+     R"(loom: component "tension" has the properties file "shaft.cpf" of component "shaft"; each needs a file of its own)"},
+};
+INSTANTIATE_TEST_SUITE_P(files, Refusal, testing::ValuesIn(planted_into(small_loom, file_faults)), name_of);
+
+} // namespace

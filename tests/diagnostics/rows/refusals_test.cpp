@@ -1,0 +1,77 @@
+// What holds for every golden row: the machine is good, and with the fault in it the check says the sentence.
+#include "tests/diagnostics/peers.hpp"
+#include "tests/diagnostics/rows/fault.hpp"
+
+#include <algorithm>
+#include <ostream>
+
+namespace tappet::diagnostics {
+namespace {
+
+template <class Row>
+void put_in_place(std::vector<Row>& section, const Row& row, std::string_view Row::* name) {
+    const auto old = std::ranges::find(section, row.*name, name);
+    if (old == section.end())
+        ADD_FAILURE() << "there is no row of \"" << row.*name << "\" to put another in its place";
+    else
+        *old = row;
+}
+
+} // namespace
+
+void Table::add(const ComponentRow& row) { components.push_back(row); }
+void Table::add(const ActivityRow& row) { activities.push_back(row); }
+void Table::add(const ConnectionRow& row) { connections.push_back(row); }
+void Table::add(const ReactionRow& row) { reactions.push_back(row); }
+void Table::add(const BehaviourRow& row) { behaviours.push_back(row); }
+
+void Table::put(const ComponentRow& row) { put_in_place(components, row, &ComponentRow::name); }
+void Table::put(const ActivityRow& row) { put_in_place(activities, row, &ActivityRow::name); }
+void Table::put(const ConnectionRow& row) { put_in_place(connections, row, &ConnectionRow::to); }
+void Table::put(const ReactionRow& row) { put_in_place(reactions, row, &ReactionRow::event); }
+
+Table::Table(const MachineView& machine, const Board& on) : Copy{machine}, board{on} {
+    if (behaviours.empty()) return;
+    const StateMachineTable& cycle = behaviours[0].type.machine;
+    states.assign(cycle.states.begin(), cycle.states.end());
+    transitions.assign(cycle.transitions.begin(), cycle.transitions.end());
+}
+
+std::string Table::refusal() const {
+    Copy copy = *this;
+    if (!copy.behaviours.empty()) {
+        copy.behaviours[0].type.machine.states = states;
+        copy.behaviours[0].type.machine.transitions = transitions;
+    }
+    return refusal_of(copy.view(), board);
+}
+
+Table small_loom() {
+    static constexpr auto machine =
+        small::loom(small::good_components, small::good_activities, small::good_connections,
+                    small::good_reactions, small::good_behaviours);
+    return {machine.view(), small::good_board};
+}
+
+Table mill() {
+    static constexpr auto machine = small::pressing(
+        reactions(small::spare_close, small::spare_force, small::desk_close, small::desk_force));
+    return {machine.view(), small::mill_board};
+}
+
+std::vector<Refused> planted_into(Table (*good)(), std::span<const Fault> faults) {
+    std::vector<Refused> rows;
+    for (const Fault& fault : faults) rows.push_back({fault, good});
+    return rows;
+}
+std::string name_of(const testing::TestParamInfo<Refused>& row) { return std::string{row.param.fault.name}; }
+std::ostream& operator<<(std::ostream& out, const Refused& row) { return out << row.fault.name; }
+
+TEST_P(Refusal, is_the_sentence) {
+    Table table = GetParam().good();
+    ASSERT_EQ(table.refusal(), "") << "without the fault";
+    GetParam().fault.plant(table);
+    EXPECT_EQ(table.refusal(), GetParam().fault.sentence);
+}
+
+} // namespace tappet::diagnostics
