@@ -111,9 +111,6 @@ public:
         return message(part, [](void* self, const std::byte*) noexcept
                        TAPPET_REALTIME { static_cast<PropertyTransaction*>(self)->capture(); });
     }
-    /// After a message that could not be posted.
-    void reopen() noexcept { state_.store(State::open, std::memory_order_relaxed); }
-
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME {
         return state_.load(std::memory_order_acquire);
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
-#include "kernel/services/browsing/errand.hpp"
 
 #include <cstdint>
 #include <string_view>
@@ -43,7 +42,6 @@ struct BehaviourOrder {
     BehaviourAction action = BehaviourAction::start;
     bool done = false;
 };
-static_assert(sizeof(BehaviourOrder) <= Errand::max_value_bytes);
 
 /// The letters of a word of a request: what stands between its outer quotes, \" and \\ for themselves. False:
 /// it is not quoted well.

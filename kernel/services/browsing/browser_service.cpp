@@ -34,12 +34,8 @@ void BrowserService::work(const Cycle& cycle) {
     now_ = cycle.now;
     welcome();
     for (Client& each : door_.clients()) hear(each);
-    follow_errands();
-    follow_changes();
-    follow_commands();
-    follow_lives();
+    follow_pending();
     tell_events();
-    follow_saving();
     std::int64_t connected = 0;
     for (const Client& each : door_.clients()) connected += each.serial != 0;
     clients.write(connected);
@@ -137,20 +133,6 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
         line.add(shown ? std::string_view{&letter, 1} : std::string_view{letter == '\n' ? "" : "?"});
     }
     os::print(line.add("\n").view());
-}
-
-void BrowserService::reply_good(const browsing::Asker& asker) noexcept {
-    Client* client = door_.find(asker.client);
-    if (client == nullptr) return;
-    Reply reply{asker.number, true};
-    finish(*client, reply);
-}
-
-void BrowserService::reply_bad(const browsing::Asker& asker, Refusal code, const Sentence& why) noexcept {
-    Client* client = door_.find(asker.client);
-    if (client == nullptr) return;
-    Reply reply{asker.number, code, why};
-    finish(*client, reply);
 }
 
 } // namespace tappet

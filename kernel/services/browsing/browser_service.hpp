@@ -4,11 +4,9 @@
 
 #include "kernel/component/component.hpp"
 #include "kernel/machine/map/view.hpp"
-#include "kernel/services/browsing/behaviour_order.hpp"
 #include "kernel/services/browsing/door.hpp"
-#include "kernel/services/browsing/errand.hpp"
+#include "kernel/services/browsing/pending.hpp"
 #include "kernel/services/browsing/reply.hpp"
-#include "kernel/services/configuration/property_saving.hpp"
 
 namespace tappet {
 
@@ -20,12 +18,9 @@ namespace tappet {
 class BrowserService {
 public:
     static constexpr bool sees_machine = true;
-    /// An engine that did not run what it was asked to is not waited for any longer.
+    /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
-    static constexpr std::size_t max_errands = 16;
-    static constexpr std::size_t max_commands = 8;
-    static constexpr std::size_t max_transactions = 4;
-    static constexpr std::size_t max_life_requests = 4;
+    static constexpr std::size_t max_pending = 16;
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
@@ -49,6 +44,7 @@ private:
     using Request = browsing::Request;
     using Reply = browsing::Reply;
     using Refusal = browsing::Refusal;
+    using Pending = browsing::Pending;
 
     /// Why a request is not done; an empty sentence: it is, or will be.
     struct Verdict {
@@ -57,28 +53,6 @@ private:
         Verdict() = default;
         Verdict(Refusal c, const Sentence& w) noexcept : code{c}, why{w} {}
         [[nodiscard]] bool good() const noexcept { return why.empty(); }
-    };
-    struct CommandInFlight {
-        browsing::Asker asker{};
-        bool taken = false;
-        End command{};
-        CommandState told = CommandState::ready;
-        CommandSlot slot{};
-        alignas(16) std::array<std::byte, 256> values{};
-    };
-    struct Change {
-        browsing::Asker asker{};
-        bool taken = false;
-        bool given_up = false;
-        PropertyTransaction transaction{};
-    };
-    struct LifeRequest {
-        browsing::Asker asker{};
-        bool taken = false;
-        std::size_t component = nowhere;
-        std::size_t activity = nowhere;
-        LifeTicket ticket{};
-        LifeChange change{};
     };
     struct Subscribed {
         browsing::Asker asker{};
@@ -94,12 +68,6 @@ private:
         alignas(16) std::array<std::byte, sizeof(Message::arguments)> arguments{};
     };
 
-    struct Save {
-        browsing::Asker asker{};
-        bool given_up = false;
-        PropertySaving saving{};
-    };
-
     void welcome();
     void hear(Client& client);
     void handle(Client& client, std::string_view packet, bool cut);
@@ -109,8 +77,17 @@ private:
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
         return {client.serial, request.number, now_};
     }
-    void reply_good(const browsing::Asker& asker) noexcept;
-    void reply_bad(const browsing::Asker& asker, Refusal code, const Sentence& why) noexcept;
+
+    // What waits for an answer; requests_pending.cpp
+    [[nodiscard]] Pending* free_place() noexcept;
+    static Verdict no_place() noexcept;
+    Verdict await(Pending& place, const browsing::Asker& asker, bool (BrowserService::*look)(Pending&));
+    Verdict await_engine(Pending& place, const browsing::Asker& asker, std::size_t component,
+                         const Message& call, bool (BrowserService::*look)(Pending&));
+    void follow_pending();
+    [[nodiscard]] Client* who_waits(const Pending& place) noexcept;
+    bool answer_good(const Pending& place) noexcept;
+    bool answer_bad(const Pending& place, Refusal code, const Sentence& why) noexcept;
 
     // What is read; requests_read.cpp
     Verdict hello(Client& client, const Request& request);
@@ -127,18 +104,17 @@ private:
     [[nodiscard]] static Verdict check_role(const Client& client, std::string_view what, Role least);
     [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
                                          std::span<std::byte> into);
-    Verdict run_errand(Client& client, const Request& request, browsing::Errand& errand, End end);
-    [[nodiscard]] browsing::Errand* free_errand() noexcept;
+    Verdict reach(Pending& place, const browsing::Asker& asker, End end, Message::Run act);
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
-    [[nodiscard]] bool release_behind(const LifeRequest& stopped);
-    void follow_errands();
-    void follow_changes();
+    [[nodiscard]] bool release_behind(const browsing::FollowedLife& stopped);
+    bool look_at_facet(Pending& place);
+    bool look_at_change(Pending& place);
 
     // Commands and lives; requests_follow.cpp
     Verdict send(Client& client, const Request& request);
-    void follow_commands();
+    bool look_at_command(Pending& place);
     Verdict change_life(Client& client, const Request& request, LifeChange change);
-    void follow_lives();
+    bool look_at_life(Pending& place);
 
     // Events; requests_stream.cpp
     Verdict subscribe(Client& client, const Request& request);
@@ -168,7 +144,7 @@ private:
     Verdict unload(Client& client, const Request& request, BehaviourSlot::Wish wish);
     Verdict change_slot(Client& client, const Request& request, BehaviourSlot& slot, BehaviourSlot::Wish wish,
                         const SlotMoment& moment);
-    [[nodiscard]] bool finish_behave(const browsing::Errand& errand);
+    bool look_at_behave(Pending& place);
     [[nodiscard]] BehaviourUnit* unit_of(std::size_t row) noexcept;
     Sentence find_behaviour(std::string_view name, FoundBehaviour& found) noexcept;
     Sentence find_slot(std::string_view name, BehaviourSlot*& slot) noexcept;
@@ -180,7 +156,7 @@ private:
 
     // Properties to their files; requests_save.cpp
     Verdict save(Client& client, const Request& request);
-    void follow_saving();
+    bool look_at_saving(Pending& place);
 
     MachineInstance* machine_ = nullptr;
     std::size_t own_activity_ = nowhere;
@@ -189,15 +165,11 @@ private:
     std::uint64_t accepted_ = 0;
     std::uint64_t refused_ = 0;
     std::uint64_t turned_away_ = 0;
-    std::array<browsing::Errand, max_errands> errands_{};
-    std::array<CommandInFlight, max_commands> commands_{};
-    std::array<Change, max_transactions> changes_{};
-    std::array<LifeRequest, max_life_requests> lives_{};
+    std::array<Pending, max_pending> pending_{};
     std::array<Subscribed, max_subscriptions> subscribed_{};
     std::array<Seen, max_events> seen_{};
     std::size_t seen_count_ = 0;
     std::uint64_t unseen_ = 0; ///< emissions beyond max_events
-    Save save_{};
     Upload upload_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
 };

@@ -10,7 +10,6 @@ namespace tappet {
 
 using browsing::BehaviourAction;
 using browsing::BehaviourOrder;
-using browsing::Errand;
 
 namespace {
 
@@ -49,17 +48,13 @@ bool command_program(ProgramExecution& program, const BehaviourOrder& order, Tim
 }
 
 /// In the engine that runs the behaviour. Another one may have taken over since it was asked for.
-void command_behaviour(Errand& errand) noexcept TAPPET_REALTIME {
-    BehaviourOrder order;
-    std::memcpy(&order, errand.value.data(), sizeof order);
-    const bool there = order.slot == nullptr || order.slot->active() == order.unit;
-    if (there) {
-        UnitPart& part = order.unit->parts()[order.part];
-        const Time now = order.engine->now();
-        order.done = part.machine != nullptr ? command_machine(*part.machine, order, now)
-                                             : command_program(*part.program, order, now);
-    }
-    std::memcpy(errand.value.data(), &order, sizeof order);
+void command_behaviour(void* self, const std::byte*) noexcept TAPPET_REALTIME {
+    auto& order = *static_cast<BehaviourOrder*>(self);
+    if (order.slot != nullptr && order.slot->active() != order.unit) return;
+    UnitPart& part = order.unit->parts()[order.part];
+    const Time now = order.engine->now();
+    order.done = part.machine != nullptr ? command_machine(*part.machine, order, now)
+                                         : command_program(*part.program, order, now);
 }
 
 /// Whether a name is that of an instance: "component.instance".
@@ -248,34 +243,23 @@ BrowserService::Verdict BrowserService::behave(Client& client, const Request& re
         }
     }
     const std::size_t c = find_component(machine.table, machine.table.behaviours[found.row].component);
-    if (Verdict alive = check_alive(c); !alive.good()) return alive;
-    Errand* errand = free_errand();
-    if (errand == nullptr) return {Refusal::not_now, Sentence{"too many requests are under way; ask again"}};
-    const std::size_t activity = machine.index.activity[c];
+    Pending* place = free_place();
+    if (place == nullptr) return no_place();
     order.unit = found.unit;
     order.slot = machine_->slot_of_row(found.row);
     order.part = found.part;
-    order.engine = &machine_->engines()[activity];
-    std::memcpy(errand->value.data(), &order, sizeof order);
-    errand->facet = nullptr;
-    errand->act = &command_behaviour;
-    errand->asker = asker(client, request);
-    if (!errand->post(activity, machine.plan.part_of[c]))
-        return {Refusal::not_now, Sentence{"that engine has too many requests to serve; ask again"}};
-    errand->taken = true;
-    return {};
+    order.engine = &machine_->engines()[machine.index.activity[c]];
+    Message call;
+    call.run = &command_behaviour;
+    call.object = &place->work.emplace<BehaviourOrder>(order);
+    return await_engine(*place, asker(client, request), c, call, &BrowserService::look_at_behave);
 }
 
-bool BrowserService::finish_behave(const Errand& errand) {
-    if (errand.act != &command_behaviour) return false;
-    BehaviourOrder order;
-    std::memcpy(&order, errand.value.data(), sizeof order);
-    if (order.done)
-        reply_good(errand.asker);
-    else
-        reply_bad(errand.asker, Refusal::not_now,
-                  Sentence{"it does not do that in its present state; look at it with behaviours"});
-    return true;
+bool BrowserService::look_at_behave(Pending& place) {
+    if (!place.call.is_over()) return false;
+    if (std::get<BehaviourOrder>(place.work).done) return answer_good(place);
+    return answer_bad(place, Refusal::not_now,
+                      Sentence{"it does not do that in its present state; look at it with behaviours"});
 }
 
 // ---- slots

@@ -7,6 +7,9 @@
 
 namespace tappet {
 
+using browsing::FollowedCommand;
+using browsing::FollowedLife;
+
 BrowserService::Verdict BrowserService::send(Client& client, const Request& request) {
     End end;
     const MachineView& table = machine_->machine().table;
@@ -15,59 +18,51 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
         !role.good())
         return role;
-    CommandInFlight* place = nullptr;
-    for (CommandInFlight& each : commands_)
-        if (!each.taken) place = &each;
-    if (place == nullptr)
-        return {Refusal::not_now,
-                Sentence{"all ", max_commands, " places for commands are taken; ask again"}};
+    Pending* place = free_place();
+    if (place == nullptr) return no_place();
+    auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);
-    if (facet.command->value_bytes() > place->values.size())
+    if (facet.command->value_bytes() > call.values.size())
         return {Refusal::unsupported, Sentence{"its arguments are too large to come from outside"}};
-    place->values = {};
-    if (Verdict read = read_arguments(facet, request, place->values); !read.good()) return read;
-    if (!machine_->bind_command(end, place->slot, place->values) || !place->slot.send())
+    if (Verdict read = read_arguments(facet, request, call.values); !read.good()) return read;
+    if (!machine_->bind_command(end, call.slot, call.values) || !call.slot.send())
         return {Refusal::not_now, Sentence{"it cannot be sent now; ask again"}};
-    place->asker = asker(client, request);
-    place->command = end;
-    place->told = CommandState::sent;
-    place->taken = true;
+    call.command = end;
     Reply reply{request.number, true};
     reply.json().field("state", "sent");
     finish(client, reply);
-    return {};
+    return await(*place, asker(client, request), &BrowserService::look_at_command);
 }
 
-void BrowserService::follow_commands() {
+bool BrowserService::look_at_command(Pending& place) {
+    place.asker.since = now_; // it takes as long as it takes, and its client knows that it was sent
+    auto& call = std::get<FollowedCommand>(place.work);
+    const CommandState state = call.slot.state();
+    if (state == call.told) return false;
+    call.told = state;
+    const bool is_final = !in_flight(state);
+    Client* client = who_waits(place);
+    if (client == nullptr) return is_final;
     const MachineView& table = machine_->machine().table;
-    for (CommandInFlight& each : commands_) {
-        if (!each.taken) continue;
-        const CommandState state = each.slot.state();
-        if (state == each.told) continue;
-        each.told = state;
-        const bool is_final = !in_flight(state);
-        each.taken = !is_final;
-        Client* client = door_.find(each.asker.client);
-        if (client == nullptr) continue;
-        const Facet& facet = facet_at(table, each.command);
-        const Sentence name{table.components[each.command.component].name, ".", facet.name};
-        Reply reply{each.asker.number};
-        JsonText& json = reply.json();
-        json.field("command", name.view()).field("state", to_text(state)).field("time_ns", to_ns(now_));
-        if (is_final) json.field("final", true);
-        if (state == CommandState::done) {
-            json.key("results").open('[');
-            std::size_t at = facet.command->argument_bytes;
-            for (const TypeId type : facet.command->results->elements) {
-                alignas(16) std::array<std::byte, sizeof each.values> value{};
-                std::memcpy(value.data(), each.values.data() + at, type->size);
-                reply.value(*type, value.data());
-                at += type->size;
-            }
-            json.close(']');
+    const Facet& facet = facet_at(table, call.command);
+    const Sentence name{table.components[call.command.component].name, ".", facet.name};
+    Reply reply{place.asker.number};
+    JsonText& json = reply.json();
+    json.field("command", name.view()).field("state", to_text(state)).field("time_ns", to_ns(now_));
+    if (is_final) json.field("final", true);
+    if (state == CommandState::done) {
+        json.key("results").open('[');
+        std::size_t at = facet.command->argument_bytes;
+        for (const TypeId type : facet.command->results->elements) {
+            alignas(16) std::array<std::byte, sizeof call.values> value{};
+            std::memcpy(value.data(), call.values.data() + at, type->size);
+            reply.value(*type, value.data());
+            at += type->size;
         }
-        finish(*client, reply);
+        json.close(']');
     }
+    finish(*client, reply);
+    return is_final;
 }
 
 BrowserService::Verdict BrowserService::change_life(Client& client, const Request& request,
@@ -83,42 +78,29 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
         return {Refusal::unsupported,
                 Sentence{"the browser answers from activity \"", machine.table.activities[activity].name,
                          "\" itself and does not stop or start it; stop the machine instead"}};
-    LifeRequest* place = nullptr;
-    for (LifeRequest& each : lives_)
-        if (!each.taken) place = &each;
-    if (place == nullptr) return {Refusal::not_now, Sentence{"too many of these are under way; ask again"}};
-    place->taken = true;
-    place->asker = asker(client, request);
-    place->component = target.component;
-    place->activity = activity;
-    place->change = change;
-    place->ticket = target.component != nowhere ? machine_->ask_component(target.component, change)
-                                                : machine_->ask_activity(target.activity, change);
-    return {};
+    Pending* place = free_place();
+    if (place == nullptr) return no_place();
+    const LifeTicket ticket = target.component != nowhere ? machine_->ask_component(target.component, change)
+                                                          : machine_->ask_activity(target.activity, change);
+    place->work.emplace<FollowedLife>(target.component, activity, ticket, change);
+    return await(*place, asker(client, request), &BrowserService::look_at_life);
 }
 
-void BrowserService::follow_lives() {
-    for (LifeRequest& each : lives_) {
-        if (!each.taken) continue;
-        const LifeAnswer answer = each.component != nowhere
-                                      ? machine_->answer_of_component(each.component, each.ticket)
-                                      : machine_->answer_of_activity(each.activity, each.ticket);
-        if (answer.outcome == LifeOutcome::pending) {
-            if (now_ - each.asker.since <= patience) continue;
-            reply_bad(
-                each.asker, Refusal::not_now,
-                Sentence{"it has not happened yet; look at its state: what it waits for may still come"});
-        } else if (answer.outcome == LifeOutcome::done) {
-            if (each.change != LifeChange::start && !release_behind(each)) continue;
-            reply_good(each.asker);
-        } else if (answer.outcome == LifeOutcome::superseded) {
-            reply_bad(each.asker, Refusal::not_now,
-                      Sentence{"somebody asked for something else meanwhile; look at its state"});
-        } else {
-            reply_bad(each.asker, Refusal::not_now, machine_->describe(each.activity, answer));
-        }
-        each.taken = false;
+bool BrowserService::look_at_life(Pending& place) {
+    const auto& call = std::get<FollowedLife>(place.work);
+    const LifeAnswer answer = call.component != nowhere
+                                  ? machine_->answer_of_component(call.component, call.ticket)
+                                  : machine_->answer_of_activity(call.activity, call.ticket);
+    switch (answer.outcome) {
+    case LifeOutcome::pending: return false;
+    case LifeOutcome::done:
+        return (call.change == LifeChange::start || release_behind(call)) && answer_good(place);
+    case LifeOutcome::superseded:
+        return answer_bad(place, Refusal::not_now,
+                          Sentence{"somebody asked for something else meanwhile; look at its state"});
+    case LifeOutcome::refused: break;
     }
+    return answer_bad(place, Refusal::not_now, machine_->describe(call.activity, answer));
 }
 
 } // namespace tappet

@@ -6,7 +6,9 @@
 namespace tappet {
 
 BrowserService::Verdict BrowserService::save(Client& client, const Request& request) {
-    if (save_.saving.busy()) return {Refusal::not_now, Sentence{"properties are being saved; ask again"}};
+    for (const Pending& each : pending_)
+        if (each.look == &BrowserService::look_at_saving)
+            return {Refusal::not_now, Sentence{"properties are being saved; ask again"}};
     const MachineView& table = machine_->machine().table;
     std::size_t component = nowhere;
     if (!request.arguments.empty()) {
@@ -17,33 +19,22 @@ BrowserService::Verdict BrowserService::save(Client& client, const Request& requ
                     Sentence{"component \"", request.arguments[0],
                              "\" has no properties file; give its row properties_file(...)"}};
     }
-    save_.asker = asker(client, request);
-    save_.given_up = false;
-    save_.saving.begin(*machine_, own_activity_, component);
-    return {};
+    Pending* place = free_place();
+    if (place == nullptr) return no_place();
+    place->work.emplace<PropertySaving>().begin(*machine_, own_activity_, component);
+    return await(*place, asker(client, request), &BrowserService::look_at_saving);
 }
 
-void BrowserService::follow_saving() {
-    if (!save_.saving.busy()) return;
-    if (save_.saving.step()) {
-        if (save_.given_up || now_ - save_.asker.since <= patience) return;
-        save_.given_up = true;
-        reply_bad(
-            save_.asker, Refusal::not_now,
-            Sentence{
-                "an engine did not come to it yet, the files before it are saved: look at its activity"});
-        return;
+bool BrowserService::look_at_saving(Pending& place) {
+    auto& saving = std::get<PropertySaving>(place.work);
+    if (saving.step()) return false;
+    if (!saving.fault().empty()) return answer_bad(place, Refusal::unsupported, saving.fault());
+    if (Client* client = who_waits(place)) {
+        Reply reply{place.asker.number, true};
+        reply.json().field("files", saving.saved());
+        finish(*client, reply);
     }
-    if (save_.given_up) return;
-    if (!save_.saving.fault().empty()) {
-        reply_bad(save_.asker, Refusal::unsupported, save_.saving.fault());
-        return;
-    }
-    Client* client = door_.find(save_.asker.client);
-    if (client == nullptr) return;
-    Reply reply{save_.asker.number, true};
-    reply.json().field("files", save_.saving.saved());
-    finish(*client, reply);
+    return true;
 }
 
 } // namespace tappet

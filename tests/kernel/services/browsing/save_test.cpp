@@ -47,5 +47,19 @@ TEST_F(Saving, that_cannot_be_done_says_why_and_leaves_the_old_file) {
     EXPECT_EQ(kept(), before);
 }
 
+TEST_F(Saving, of_an_engine_that_does_not_come_may_still_happen_and_does_when_it_comes) {
+    Engine& engine = instance.engines()[0];
+    engine.stop(clock.now());
+    engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that does not come
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 save", 3s), "it has not happened yet and may still happen"));
+    EXPECT_TRUE(has(ask(talker, "2 save"), "properties are being saved; ask again"));
+    engine.start(clock.now());
+    run(100ms);
+    EXPECT_NE(kept(), "");
+    EXPECT_EQ(talker.receive(), "") << "it was answered once";
+    EXPECT_TRUE(has(ask(talker, "3 save"), R"("files": 1)"));
+}
+
 } // namespace
 } // namespace tappet::press

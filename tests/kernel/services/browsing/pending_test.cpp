@@ -1,12 +1,12 @@
 // What a request does inside the machine: not over a component that has stopped, and not after its client was
 // told that nothing was done.
-#include "kernel/services/browsing/errand.hpp"
+#include "kernel/services/browsing/pending.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 namespace tappet::press {
 namespace {
 
-using browsing::Errand;
+using browsing::EngineCall;
 
 constexpr std::size_t motion = 0;
 constexpr std::string_view left_safe =
@@ -58,7 +58,7 @@ TEST_F(Press, requests_that_nobody_came_to_free_their_places_when_their_engine_c
     engine.stop(clock.now());
     engine.plan().parts[0].state.store(ComponentState::running);
     Talker talker{path()};
-    for (std::size_t i = 0; i < BrowserService::max_errands; ++i)
+    for (std::size_t i = 0; i < BrowserService::max_pending; ++i)
         EXPECT_TRUE(has(ask(talker, "1 call ram.let_go", 3s), "did not come to it"));
     EXPECT_TRUE(has(ask(talker, "2 call ram.let_go"), "too many requests are under way"));
     engine.start(clock.now());
@@ -68,48 +68,48 @@ TEST_F(Press, requests_that_nobody_came_to_free_their_places_when_their_engine_c
 }
 
 /// Counts how often it ran; may try to take itself back meanwhile.
-struct AnErrand : Press {
-    Errand errand{};
-    static inline int runs = 0;
-    static inline bool takes_itself_back = false, was_taken_back = false;
+struct AnEngineCall : Press {
+    EngineCall call{};
+    int runs = 0;
+    bool takes_itself_back = false, was_taken_back = false;
 
     void post(bool itself_back) {
-        runs = 0;
         takes_itself_back = itself_back;
-        was_taken_back = false;
-        errand.machine = &instance;
-        errand.act = [](Errand& self) noexcept TAPPET_REALTIME {
-            ++runs;
-            if (takes_itself_back) was_taken_back = self.withdraw();
+        Message message;
+        message.object = this;
+        message.run = [](void* self, const std::byte*) noexcept TAPPET_REALTIME {
+            auto& test = *static_cast<AnEngineCall*>(self);
+            ++test.runs;
+            if (test.takes_itself_back) test.was_taken_back = test.call.withdraw();
         };
-        ASSERT_TRUE(errand.post(motion, 0));
+        ASSERT_TRUE(call.post(instance, motion, message));
     }
 };
 
-TEST_F(AnErrand, that_was_withdrawn_in_time_does_nothing_and_is_over_when_its_engine_came_to_it) {
+TEST_F(AnEngineCall, that_was_withdrawn_in_time_does_nothing_and_is_over_when_its_engine_came_to_it) {
     post(false);
-    EXPECT_TRUE(errand.withdraw());
-    EXPECT_FALSE(errand.is_over()) << "it still lies in the mailbox";
-    EXPECT_FALSE(errand.withdraw()) << "once";
+    EXPECT_TRUE(call.withdraw());
+    EXPECT_FALSE(call.is_over()) << "it still lies in the mailbox";
+    EXPECT_FALSE(call.withdraw()) << "once";
     run(10ms);
     EXPECT_EQ(runs, 0);
-    EXPECT_TRUE(errand.is_over());
+    EXPECT_TRUE(call.is_over());
 }
 
-TEST_F(AnErrand, that_was_withdrawn_too_late_was_done_and_stays_over) {
+TEST_F(AnEngineCall, that_was_withdrawn_too_late_was_done_and_stays_over) {
     post(false);
     run(10ms);
     EXPECT_EQ(runs, 1);
-    EXPECT_FALSE(errand.withdraw());
-    EXPECT_TRUE(errand.is_over());
+    EXPECT_FALSE(call.withdraw());
+    EXPECT_TRUE(call.is_over());
 }
 
-TEST_F(AnErrand, that_is_withdrawn_while_it_runs_is_done_and_over) {
+TEST_F(AnEngineCall, that_is_withdrawn_while_it_runs_is_done_and_over) {
     post(true);
     run(10ms);
     EXPECT_EQ(runs, 1);
     EXPECT_FALSE(was_taken_back);
-    EXPECT_TRUE(errand.is_over());
+    EXPECT_TRUE(call.is_over());
 }
 
 } // namespace
