@@ -180,8 +180,8 @@ TEST(Arrows, make_no_circle) { expect_none(Circles(tree()).found()); }
 TEST(Arrows, are_spelt_from_the_root_in_quotes) { expect_none(foreign_quotes(tree())); }
 
 TEST(ArrowsRule, refuses_a_lower_folder_that_includes_a_higher_one) {
-    const auto found =
-        wrong_arrows({file("kernel/os/clock.hpp", "// A clock.\n#include \"kernel/machine/plan/plan.hpp\"\n")});
+    const auto found = wrong_arrows(
+        {file("kernel/os/clock.hpp", "// A clock.\n#include \"kernel/machine/plan/plan.hpp\"\n")});
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].line, 2u);
 }
@@ -193,7 +193,8 @@ TEST(ArrowsRule, follows_the_table_over_several_steps) {
 
 TEST(ArrowsRule, refuses_drivers_that_include_each_other_and_the_machine) {
     EXPECT_EQ(wrong_arrows({file("drivers/can/x.hpp", "#include \"drivers/gpio/lines.hpp\"\n")}).size(), 1u);
-    EXPECT_EQ(wrong_arrows({file("drivers/can/x.hpp", "#include \"kernel/machine/plan/plan.hpp\"\n")}).size(), 1u);
+    EXPECT_EQ(wrong_arrows({file("drivers/can/x.hpp", "#include \"kernel/machine/plan/plan.hpp\"\n")}).size(),
+              1u);
 }
 
 TEST(ArrowsRule, refuses_whatever_includes_an_app_and_a_plant_that_knows_its_machine) {

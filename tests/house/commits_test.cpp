@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_characters = 72;
 /// The rule holds for what came after this commit.
-constexpr const char* since = "e71bbb0a";
+constexpr const char* since = "e71bbb0f7ab4";
 
 /// What is wrong with a message; empty when nothing is.
 std::string fault_of(const std::string& subject, const std::string& body) {

@@ -4,6 +4,7 @@
 #include "apps/carpet_loom/host/real_run.hpp"
 #include "apps/carpet_loom/host/virtual_run.hpp"
 #include "apps/carpet_loom/summary.hpp"
+#include "kernel/machine/plan_text.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/json.hpp"
@@ -125,6 +126,11 @@ int main(int count, char** words) {
     if (!options) return fail(options.error());
     if (options->help) {
         os::print(carpet::usage);
+        return 0;
+    }
+    if (options->plan) {
+        describe_plan(carpet::loom_on_host(), nullptr,
+                      [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
         return 0;
     }
     if (!options->properties.empty()) carpet::keep_properties_in(options->properties);

@@ -27,15 +27,18 @@ std::expected<Options, Sentence> parse_options(int count, const char* const* wor
     constexpr std::string_view known[] = {"--world",   "--virtual",     "--real",        "--seed",
                                           "--picks",   "--weft-breaks", "--warp-breaks", "--emergency-stops",
                                           "--summary", "--properties",  "--browse",      "--quiet",
-                                          "--help"};
+                                          "--plan",    "--help"};
     for (int i = 1; i < count; ++i) {
         const std::string_view option = words[i];
         if (option == "--virtual" || option == "--real") {
             options.virtual_time = option == "--virtual";
             continue;
         }
-        if (option == "--quiet" || option == "--help") {
-            (option == "--quiet" ? options.quiet : options.help) = true;
+        if (bool* flag = option == "--quiet"  ? &options.quiet
+                         : option == "--plan" ? &options.plan
+                         : option == "--help" ? &options.help
+                                              : nullptr) {
+            *flag = true;
             continue;
         }
         bool takes_value = false;

@@ -18,6 +18,7 @@ struct Options {
     std::string_view properties; ///< a directory; empty: they are not kept
     std::string_view browse;     ///< the directory of the browsers' socket; empty: none
     bool quiet = false;
+    bool plan = false;
     bool help = false;
     loom::Settings plant{};
 };
@@ -35,7 +36,8 @@ inline constexpr std::string_view usage =
     "  --properties DIR    reads the components' properties from there and saves them at the end\n"
     "  --browse DIR        opens a socket for tappet-browse there (with --real: virtual time does not wait "
     "for it)\n"
-    "  --quiet             no status lines\n";
+    "  --quiet             no status lines\n"
+    "  --plan              what the compiler derived from the table: priorities, order, mailboxes, memory\n";
 
 /// An error names the option and the cure.
 std::expected<Options, Sentence> parse_options(int count, const char* const* words);

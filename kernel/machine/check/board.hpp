@@ -2,8 +2,8 @@
 // kind.
 #pragma once
 
-#include "kernel/machine/table/board.hpp"
 #include "kernel/machine/check/components.hpp"
+#include "kernel/machine/table/board.hpp"
 
 namespace tappet::checks {
 

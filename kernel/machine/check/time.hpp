@@ -2,9 +2,9 @@
 // response-time analysis says on each processor whether every deadline holds with the declared budgets.
 #pragma once
 
-#include "kernel/machine/table/board.hpp"
 #include "kernel/machine/check/components.hpp"
 #include "kernel/machine/check/schedulability.hpp"
+#include "kernel/machine/table/board.hpp"
 
 namespace tappet::checks {
 

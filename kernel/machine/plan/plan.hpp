@@ -3,10 +3,10 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
-#include "kernel/machine/slots/behaviour_slot.hpp"
 #include "kernel/machine/plan/operations.hpp"
 #include "kernel/machine/plan/scope.hpp"
 #include "kernel/machine/plan/subscription.hpp"
+#include "kernel/machine/slots/behaviour_slot.hpp"
 
 #include <algorithm>
 #include <array>

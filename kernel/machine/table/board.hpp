@@ -101,8 +101,9 @@ namespace detail {
 
 template <class T, std::size_t N, class... Items>
 constexpr Bounded<T, N> list_of(const Items&... items) {
-    static_assert(sizeof...(Items) <= N,
-                  "a board's list is longer than its room: raise the bound in kernel/machine/table/board.hpp");
+    static_assert(
+        sizeof...(Items) <= N,
+        "a board's list is longer than its room: raise the bound in kernel/machine/table/board.hpp");
     Bounded<T, N> list;
     (static_cast<void>(list.push(T{items})), ...);
     return list;

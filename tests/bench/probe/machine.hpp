@@ -2,8 +2,8 @@
 // activity.
 #pragma once
 
-#include "tests/bench/probe/probe.hpp"
 #include "kernel/machine/table/machine.hpp"
+#include "tests/bench/probe/probe.hpp"
 
 namespace tappet::probe {
 

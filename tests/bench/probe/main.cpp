@@ -1,10 +1,10 @@
 // bench-probe DEED: arms, runs for a third of a second, does the deed meanwhile, and tells what the machine
 // noticed.
-#include "tests/bench/probe/machine.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/terminal.hpp"
+#include "tests/bench/probe/machine.hpp"
 
 #include "board/bench/board.hpp"
 

@@ -1,12 +1,12 @@
 // answering PAIRS FILE: in the guest. Asks the machine and the bare program in turns, in an order drawn by
 // chance, and writes a line for each pair: what was asked, and what each of them took in ns.
-#include "tests/figures/bench/bare.hpp"
-#include "tests/figures/bench/machine.hpp"
 #include "drivers/can/socket_can.hpp"
 #include "drivers/gpio/lines.hpp"
 #include "kernel/base/random.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
+#include "tests/figures/bench/bare.hpp"
+#include "tests/figures/bench/machine.hpp"
 
 #include <array>
 #include <cstdio>

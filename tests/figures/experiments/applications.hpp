@@ -9,10 +9,10 @@
 // and the lowest.
 #pragma once
 
-#include "tests/figures/experiments/board.hpp"
-#include "tests/figures/experiments/task.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/table/machine.hpp"
+#include "tests/figures/experiments/board.hpp"
+#include "tests/figures/experiments/task.hpp"
 
 #include <array>
 #include <span>

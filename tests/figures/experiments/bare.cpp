@@ -1,11 +1,11 @@
 // A periodic loop on clock_nanosleep.
 #include "tests/figures/experiments/bare.hpp"
 
-#include "tests/figures/measure/ticks.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/os/latency.hpp"
 #include "kernel/os/memory.hpp"
 #include "kernel/os/thread.hpp"
+#include "tests/figures/measure/ticks.hpp"
 
 #include <memory>
 

@@ -1,8 +1,8 @@
 // Does this and that.
 #include "tests/figures/experiments/disturbance.hpp"
 
-#include "tests/figures/experiments/load.hpp"
 #include "kernel/os/sleep.hpp"
+#include "tests/figures/experiments/load.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,9 +1,9 @@
 // Configures, assigns, arms, runs and stops a machine of the experiments.
 #include "tests/figures/experiments/run.hpp"
 
+#include "kernel/machine/worlds/real_world.hpp"
 #include "tests/figures/experiments/wiring.hpp"
 #include "tests/figures/measure/candidates.hpp"
-#include "kernel/machine/worlds/real_world.hpp"
 
 #include <algorithm>
 #include <fstream>

@@ -2,13 +2,13 @@
 // above and the one below it. Which of the five settings it runs is a property.
 #pragma once
 
+#include "kernel/activity/timing.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/exchange/mailbox.hpp"
 #include "tests/figures/experiments/load.hpp"
 #include "tests/figures/experiments/locked.hpp"
 #include "tests/figures/experiments/setting.hpp"
 #include "tests/figures/measure/ticks.hpp"
-#include "kernel/activity/timing.hpp"
-#include "kernel/component/component.hpp"
-#include "kernel/exchange/mailbox.hpp"
 
 #include <array>
 #include <atomic>

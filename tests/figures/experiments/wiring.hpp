@@ -1,8 +1,8 @@
 // The rows of a machine once more, behind mutexes: what the setting "locked" exchanges its packets through.
 #pragma once
 
-#include "tests/figures/experiments/task.hpp"
 #include "kernel/machine/table/machine.hpp"
+#include "tests/figures/experiments/task.hpp"
 
 #include <deque>
 #include <span>

@@ -2,8 +2,8 @@
 // thread that sleeps on a futex until a value is there.
 #pragma once
 
-#include "tests/figures/measure/ticks.hpp"
 #include "kernel/base/realtime.hpp"
+#include "tests/figures/measure/ticks.hpp"
 
 #include <array>
 #include <atomic>

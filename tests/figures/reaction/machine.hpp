@@ -2,12 +2,12 @@
 // activity on its own processor and to one on another.
 #pragma once
 
-#include "tests/figures/measure/ticks.hpp"
-#include "tests/figures/reaction/bare.hpp"
 #include "kernel/base/random.hpp"
 #include "kernel/machine/table/board.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/os/clock.hpp"
+#include "tests/figures/measure/ticks.hpp"
+#include "tests/figures/reaction/bare.hpp"
 
 #include <array>
 #include <atomic>

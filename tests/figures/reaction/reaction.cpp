@@ -1,12 +1,12 @@
 // The reaction path on this machine: how late a periodic activity wakes, beside cyclictest's loop, and what
 // an event into another activity takes, beside a bare futex.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/real_world.hpp"
+#include "kernel/os/sleep.hpp"
 #include "tests/figures/measure/candidates.hpp"
 #include "tests/figures/measure/equivalence.hpp"
 #include "tests/figures/reaction/cyclictest.hpp"
 #include "tests/figures/reaction/machine.hpp"
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/worlds/real_world.hpp"
-#include "kernel/os/sleep.hpp"
 
 #include <cstdio>
 #include <memory>

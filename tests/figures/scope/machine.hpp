@@ -2,10 +2,10 @@
 // to life.
 #pragma once
 
-#include "tests/figures/measure/candidates.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
+#include "tests/figures/measure/candidates.hpp"
 
 #include <array>
 #include <cstdlib>

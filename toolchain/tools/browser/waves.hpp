@@ -2,8 +2,8 @@
 // worst ones that it kept.
 #pragma once
 
-#include "toolchain/tools/browser/map_reader.hpp"
 #include "kernel/machine/plan/scope_layout.hpp"
+#include "toolchain/tools/browser/map_reader.hpp"
 
 namespace tappet::browser {
 

@@ -2,9 +2,9 @@
 // export reads this and nothing else; scripts and C++ tables look the same here.
 #pragma once
 
-#include "toolchain/tools/chart/names.hpp"
 #include "kernel/script/reach.hpp"
 #include "kernel/statechart/hierarchy.hpp"
+#include "toolchain/tools/chart/names.hpp"
 
 #include <cstddef>
 #include <span>

@@ -1,8 +1,8 @@
 // Puts the state machines, the reactions of a machine table and the rows of a verification together.
 #include "toolchain/tools/chart/promela.hpp"
 
-#include "toolchain/tools/chart/promela_machine.hpp"
 #include "kernel/base/nearest.hpp"
+#include "toolchain/tools/chart/promela_machine.hpp"
 
 #include <algorithm>
 #include <deque>

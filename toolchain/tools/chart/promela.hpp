@@ -10,9 +10,9 @@
 // state: then each run must end there.
 #pragma once
 
+#include "kernel/machine/table/machine.hpp"
 #include "toolchain/tools/chart/chart.hpp"
 #include "toolchain/tools/chart/model.hpp"
-#include "kernel/machine/table/machine.hpp"
 
 #include <span>
 #include <string>

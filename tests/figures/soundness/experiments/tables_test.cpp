@@ -1,7 +1,7 @@
 // The four applications are the thesis': periods that drift, loads, priorities, and who talks to whom.
+#include "kernel/machine/instance/instance.hpp"
 #include "tests/figures/experiments/applications.hpp"
 #include "tests/figures/experiments/wiring.hpp"
-#include "kernel/machine/instance/instance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Watching cannot disturb: a motion cycle's execution time while another process reads everything of the
 // machine in a loop, against the same cycle of the same run without it (thesis 4.8).
+#include "apps/carpet_loom/host/virtual_run.hpp"
 #include "toolchain/tools/browser/link.hpp"
 #include "toolchain/tools/browser/observer.hpp"
-#include "apps/carpet_loom/host/virtual_run.hpp"
 
 #include <gtest/gtest.h>
 

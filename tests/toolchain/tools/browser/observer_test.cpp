@@ -1,9 +1,9 @@
 // Watching without disturbing: what is shown is whole, of one moment, or said to be busy (thesis 4.8).
 #include "toolchain/tools/browser/observer.hpp"
 
+#include "tests/toolchain/tools/browser/sample_machine.hpp"
 #include "toolchain/tools/browser/reading_text.hpp"
 #include "toolchain/tools/browser/session.hpp"
-#include "tests/toolchain/tools/browser/sample_machine.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The scope of a whole machine as a browser reads it: the carpet loom's own memory, and the same memory
 // damaged (thesis A.2.1).
-#include "toolchain/tools/browser/waves.hpp"
 #include "apps/carpet_loom/host/virtual_run.hpp"
+#include "toolchain/tools/browser/waves.hpp"
 
 #include "tests/toolchain/tools/browser/vcd_reader.hpp"
 

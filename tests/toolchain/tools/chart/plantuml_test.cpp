@@ -1,6 +1,6 @@
 // State machines as UML state charts (thesis 5.2, figure 5.15): what stands in a table stands in the picture.
-#include "toolchain/tools/chart/plantuml.hpp"
 #include "tests/toolchain/tools/chart/sample.hpp"
+#include "toolchain/tools/chart/plantuml.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 // reachable, the final state reached from everywhere, invariants kept; and seeded faults, each of which must
 // be found.
 #include "apps/carpet_loom/loom_model.hpp"
+#include "tests/toolchain/tools/chart/sample.hpp"
 #include "toolchain/tools/chart/machines.hpp"
 #include "toolchain/tools/chart/spin.hpp"
-#include "tests/toolchain/tools/chart/sample.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // internal transition. Its programs are C++ functions.
 #pragma once
 
-#include "toolchain/tools/chart/chart.hpp"
 #include "kernel/statechart/rows.hpp"
+#include "toolchain/tools/chart/chart.hpp"
 
 #include <array>
 

@@ -1,7 +1,7 @@
 // State machines as SCXML (W3C, 2015; thesis 5.2.4: a portable specification): the file is read back by an
 // XML parser, and every reference in it leads somewhere.
-#include "toolchain/tools/chart/scxml.hpp"
 #include "tests/toolchain/tools/chart/sample.hpp"
+#include "toolchain/tools/chart/scxml.hpp"
 
 #include <gtest/gtest.h>
 #include <pugixml.hpp>

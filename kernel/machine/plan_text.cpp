@@ -1,0 +1,87 @@
+// The plan's own sections, in the order in which a reader asks: who runs when, who writes to whom, and what
+// it takes.
+#include "kernel/machine/plan_text.hpp"
+
+namespace tappet {
+
+namespace {
+
+struct Writer {
+    const AcceptedMachine& machine;
+    void* to;
+    void (*line)(void* to, std::string_view);
+
+    void say(const Sentence& text) const { line(to, text.view()); }
+    [[nodiscard]] std::string_view activity(std::size_t a) const { return machine.table.activities[a].name; }
+
+    /// Each activity with its components in the order in which they step; the most urgent first.
+    void activities() const {
+        const auto rows = machine.table.activities;
+        for (std::size_t rank = 0; rank < rows.size(); ++rank)
+            for (std::size_t a = 0; a < rows.size(); ++a) {
+                if (machine.index.rank[a] != rank) continue;
+                const ActivityPlan& plan = machine.plan.activities[a];
+                Sentence text{"activity ", activity(a), ": "};
+                if (plan.priority == 0)
+                    text.add("not real-time");
+                else
+                    text.add("priority ").add(plan.priority);
+                text.add(", processor ").add(plan.processor);
+                text.add(", stack ").add(plan.stack_bytes / 1024).add(" KiB, runs");
+                for (std::size_t position = 0; position < plan.part_count; ++position)
+                    for (std::size_t c = 0; c < machine.table.components.size(); ++c)
+                        if (machine.index.activity[c] == a && machine.index.position[c] == position)
+                            text.add(" ").add(machine.table.components[c].name);
+                say(text);
+            }
+    }
+
+    /// From whom to whom, and how many may wait there; then what observers may ask of each.
+    void mailboxes() const {
+        const std::size_t n = machine.table.activities.size();
+        for (std::size_t receiver = 0; receiver < n; ++receiver) {
+            for (std::size_t sender = 0; sender < n; ++sender) {
+                const auto messages = machine.plan.mail[sender * n + receiver].capacity;
+                const auto commands = machine.plan.command_mail[sender * n + receiver].capacity;
+                if (messages + commands == 0) continue;
+                Sentence text{"mailbox ", activity(sender), " -> ", activity(receiver), ": "};
+                text.add(messages).add(" messages, ").add(commands).add(" commands");
+                say(text);
+            }
+        }
+    }
+
+    void connections() const {
+        std::size_t shared = 0, copied = 0, buffered = 0, waking = 0;
+        for (std::size_t x = 0; x < machine.table.connections.size(); ++x) {
+            const ConnectionRow& row = machine.table.connections[x];
+            (row.buffered ? buffered : machine.plan.connections[x].shared ? shared : copied) += 1;
+            waking += row.wakes_reader;
+        }
+        say(Sentence{"connections: ", copied, " within an activity, ", shared, " across, ", buffered,
+                     " buffered; ", waking, " wake their reader"});
+    }
+
+    void memory() const {
+        const auto kib = [](std::size_t bytes) { return (bytes + 1023) / 1024; };
+        std::size_t components = 0, behaviours = 0;
+        for (const ComponentRow& row : machine.table.components) components += row.type->size;
+        for (const BehaviourPlan& plan : machine.plan.behaviours) behaviours += plan.memory_bytes;
+        say(Sentence{"memory: ", kib(machine.plan.bytes), " KiB; of these components ", kib(components),
+                     ", behaviours ", kib(behaviours), ", map ", kib(machine.map.size()), ", stacks ",
+                     kib(machine.plan.stack_bytes)});
+    }
+};
+
+} // namespace
+
+void describe_plan(const AcceptedMachine& machine, void* to, void (*line)(void* to, std::string_view)) {
+    const Writer writer{machine, to, line};
+    line(to, Sentence{machine.table.name, ", processors of its box: ", machine.board->processors}.view());
+    writer.activities();
+    writer.mailboxes();
+    writer.connections();
+    writer.memory();
+}
+
+} // namespace tappet

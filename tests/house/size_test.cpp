@@ -1,0 +1,92 @@
+// How large each folder may be: growth is a decision, so it edits a number here.
+#include "tests/house/tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace tappet::house {
+namespace {
+
+struct Size {
+    std::string_view folder;
+    std::size_t most_lines; ///< of its sources, comments included
+};
+
+// clang-format off
+const std::vector<Size> sizes{
+    {"kernel/base",           2068},
+    {"kernel/os",             2914},
+    {"kernel/exchange",       797},
+    {"kernel/component",      3623},
+    {"kernel/activity",       1467},
+    {"kernel/program",        3450},
+    {"kernel/statechart",     4046},
+    {"kernel/script",         4672},
+    {"kernel/machine",         8252},
+    {"kernel/cam",            1219},
+    {"kernel/services",       3435},
+    {"drivers",               5085},
+    {"board",                 828},
+    {"apps/carpet_loom",      7886},
+    {"apps/car_tracking",     2037},
+    {"toolchain/tools",       7189},
+    {"tests/kernel",          23099},
+    {"tests/drivers",         4694},
+    {"tests/apps",            4376},
+    {"tests/toolchain",       2594},
+    {"tests/bench",           1381},
+    {"tests/diagnostics",     2683},
+    {"tests/differential",    4287},
+    {"tests/figures",         12723},
+    {"tests/house",           1660},
+};
+// clang-format on
+
+std::size_t lines_under(const Tree& files, std::string_view folder) {
+    std::size_t lines = 0;
+    for (const File& file : files)
+        if (file.is_cpp() && file.is_under(folder)) lines += file.lines.size();
+    return lines;
+}
+
+Findings grown(const Tree& files, const std::vector<Size>& allowed) {
+    Findings found;
+    for (const Size& row : allowed)
+        if (const std::size_t lines = lines_under(files, row.folder); lines > row.most_lines)
+            found.push_back(
+                {std::string(row.folder), lines,
+                 "has " + std::to_string(lines) + " lines, and was allowed " + std::to_string(row.most_lines),
+                 "look what can go; else write the new number in tests/house/size_test.cpp and why "
+                 "in the commit"});
+    return found;
+}
+
+/// A number that nobody lowers lets the folder grow again unseen.
+Findings slack(const Tree& files, const std::vector<Size>& allowed) {
+    Findings found;
+    for (const Size& row : allowed)
+        if (const std::size_t lines = lines_under(files, row.folder);
+            lines + lines / 20 + 50 < row.most_lines)
+            found.push_back(
+                {std::string(row.folder), lines,
+                 "has only " + std::to_string(lines) + " of " + std::to_string(row.most_lines) + " lines",
+                 "lower its number in tests/house/size_test.cpp"});
+    return found;
+}
+
+TEST(Size, of_no_folder_grows_unseen) { expect_none(grown(tree(), sizes)); }
+TEST(Size, that_was_won_is_kept) { expect_none(slack(tree(), sizes)); }
+
+TEST(SizeRule, counts_what_lies_below_and_no_text) {
+    const Tree two{file("kernel/os/a.hpp", "// A.\n// B.\n"), file("kernel/os/deep/b.cpp", "// C.\n"),
+                   file("kernel/os/README.md", "Much.\nText.\n")};
+    EXPECT_EQ(lines_under(two, "kernel/os"), 3u);
+    EXPECT_EQ(grown(two, {{"kernel/os", 2}}).size(), 1u);
+    EXPECT_TRUE(grown(two, {{"kernel/os", 3}}).empty());
+    EXPECT_EQ(slack(two, {{"kernel/os", 60}}).size(), 1u);
+    EXPECT_TRUE(slack(two, {{"kernel/os", 50}}).empty());
+}
+
+} // namespace
+} // namespace tappet::house
