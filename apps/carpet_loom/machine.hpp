@@ -13,6 +13,7 @@
 #include "apps/carpet_loom/warp_tension.hpp"
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "drivers/can/keeper.hpp"
+#include "kernel/limits/limits.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
@@ -165,7 +166,10 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         behaviour("loom", loom_cycle),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
                                peers("shaft", "loom"), operations("weft.lift", "weft.weave_carpet"),
-                               events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(400)))));
+                               events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(400)))),
+    limits( // whatever a component writes, its drive is told no more than this
+        limit("main.target",                 0.0, 700.0, stop_on_breach),
+        limit("warp.target",                -5.0,  40.0)));
 // clang-format on
 
 } // namespace tappet::carpet

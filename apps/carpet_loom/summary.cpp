@@ -108,6 +108,11 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
         .field("can_wrong_lengths", facts.wires.can_wrong_lengths);
     json.field("can_impostors", facts.wires.can_impostors).field("can_malformed", facts.wires.can_malformed);
     write_weave(json, instance);
+    json.key("held_back").open('{'); // by the rows of limits
+    for (std::size_t section = 0; section < instance.machine().table.extras->size(); ++section)
+        for (std::size_t row = 0; !instance.counted(section, row).what.empty(); ++row)
+            json.field(instance.counted(section, row).what, instance.counted(section, row).times);
+    json.close('}');
     json.field("emissions_lost", instance.lost_emissions()).field("forced_ports", instance.forced_ports());
     json.field("heap_allocations_after_arming",
                os::heap::allocations_after_seal() + os::heap::mappings_after_seal())

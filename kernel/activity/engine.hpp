@@ -81,7 +81,8 @@ enum class StopReason : std::uint8_t {
     missed_deadline,
     broken_contract,
     requested,
-    behaviour
+    behaviour,
+    section ///< a row of a section of another folder
 };
 
 struct EnginePlan {

@@ -52,6 +52,7 @@ struct PortOperations {
     void (*link_shared)(void* input, const void* output);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
+    void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
     Time (*expires)(const void* input) noexcept TAPPET_REALTIME;
@@ -193,6 +194,12 @@ struct PortAccess {
             [](void* output, Waker waker) {
                 auto& out = *static_cast<Output<T>*>(output);
                 out.waker_ = waker;
+                out.settle();
+            },
+        .set_filter =
+            [](void* output, PortFilter* filter) {
+                auto& out = *static_cast<Output<T>*>(output);
+                out.filter_ = filter;
                 out.settle();
             },
         .set_policy =

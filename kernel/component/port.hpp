@@ -69,6 +69,12 @@ struct Waker {
     }
 };
 
+/// What each value that a component writes passes on its way out, and may be changed by. In the port's own
+/// activity.
+struct PortFilter {
+    void (*pass)(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME = nullptr;
+};
+
 /// An output port. Written by its own component only, from its own activity. Real-time.
 template <class T>
 class Output {
@@ -95,18 +101,25 @@ private:
     friend struct PortAccess;
 
     [[gnu::noinline]] void write_further(const T& value, Time stamp) noexcept TAPPET_REALTIME {
-        if (forced_) [[unlikely]] {
-            hidden_ = value;
-            last_.stamp = stamp;
-            return publish();
-        }
-        copy_value(value, last_.value);
+        if constexpr (std::is_arithmetic_v<T>)
+            if (filter_ != nullptr) [[unlikely]] {
+                T passed = value; // whoever looks from outside sees what passed only
+                filter_->pass(*filter_, &passed, stamp);
+                return store(passed, stamp);
+            }
+        store(value, stamp);
+    }
+    void store(const T& value, Time stamp) noexcept TAPPET_REALTIME {
         last_.stamp = stamp;
+        if (forced_) [[unlikely]]
+            hidden_ = value;
+        else
+            copy_value(value, last_.value);
         publish();
     }
     /// After each change of what a write has to look at.
     void settle() noexcept TAPPET_REALTIME {
-        inside_only_ = !forced_ && shared_ == nullptr && waker_.wake == nullptr;
+        inside_only_ = !forced_ && shared_ == nullptr && waker_.wake == nullptr && filter_ == nullptr;
     }
     void publish() noexcept TAPPET_REALTIME {
         ++generation_;
@@ -137,6 +150,7 @@ private:
     bool forced_ = false;
     DataObject<Sample<T>>* shared_ = nullptr;
     Waker waker_{};
+    PortFilter* filter_ = nullptr;
     alignas(place_alignment<T>) T hidden_ =
         default_value<T>(); ///< of a forced port: what its component wrote
 

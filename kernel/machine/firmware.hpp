@@ -15,8 +15,8 @@ struct Verdict {
     Sentence refusal{};
 };
 
-template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
-constexpr Verdict<C, A, X, R> judge(const Machine<C, A, X, R, B>& table, const Board& board) {
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B, class... E>
+constexpr Verdict<C, A, X, R> judge(const Machine<C, A, X, R, B, E...>& table, const Board& board) {
     Verdict<C, A, X, R> verdict;
     verdict.refusal = check(table.view(), board, verdict.index.view());
     return verdict;
@@ -29,8 +29,9 @@ struct machine_table;
 template <>
 struct machine_table<text<0>{}> {};
 
-template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
-constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B>& table, const Board& board,
+template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B,
+          class... E>
+constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B, E...>& table, const Board& board,
                                        TableIndex<C, A, X, R> index, std::size_t map_bytes) {
     Plan<C, A, X, S, B> plan;
     PlanView view = plan.view();

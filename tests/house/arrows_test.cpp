@@ -38,6 +38,7 @@ const std::vector<Row> house{
     {"kernel/machine",          {"kernel/machine/map"}},
     {"kernel/machine/instance", {"kernel/machine"}},
     {"kernel/machine/worlds",   {"kernel/machine/instance"}},
+    {"kernel/limits",     {"kernel/machine/instance"}},
     {"kernel/services",   {"kernel/machine/worlds"}},
 
     {"drivers/twin",      {"kernel/base"}},
@@ -46,7 +47,7 @@ const std::vector<Row> house{
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
     {"drivers/canopen",   {"drivers/can"}},
 
-    {"board",             {"kernel/services", "kernel/cam", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
+    {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
     // A machine may say what spin is to prove of it.
     {"apps",              {"board", "toolchain/tools/chart/model.hpp"}},
     // A plant meets its machine at frames, lines and registers only.

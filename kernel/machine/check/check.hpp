@@ -30,6 +30,8 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_reach(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_behaviours(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
+        for (std::size_t e = 0; e < m.extras->size(); ++e)
+            if (Sentence fault = m.extras->at(e)->check(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
         return checks::check_schedulability(m, board, r);
     };

@@ -36,6 +36,23 @@ void MachineInstance::connect_data() {
     }
 }
 
+std::span<std::byte> MachineInstance::extra_memory(std::size_t section) const noexcept {
+    std::size_t place = machine_.plan.extras_at;
+    for (std::size_t before = 0; before < section; ++before)
+        place += align_section(machine_.table.extras->at(before)->bytes(machine_.table));
+    return machine_.memory.subspan(place, machine_.table.extras->at(section)->bytes(machine_.table));
+}
+
+void MachineInstance::connect_extras() {
+    for (std::size_t e = 0; e < machine_.table.extras->size(); ++e)
+        machine_.table.extras->at(e)->connect(*this, extra_memory(e));
+}
+
+SectionCount MachineInstance::counted(std::size_t section, std::size_t row) const noexcept {
+    if (section >= machine_.table.extras->size()) return {};
+    return machine_.table.extras->at(section)->counted(extra_memory(section), row);
+}
+
 void MachineInstance::connect_row(std::size_t x) {
     const ConnectionRow& row = machine_.table.connections[x];
     const ConnectionPlan& plan = machine_.plan.connections[x];

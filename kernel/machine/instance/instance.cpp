@@ -12,6 +12,7 @@ std::expected<void, Sentence> MachineInstance::configure(std::span<const Provide
     place_scope();
     connect_clocks();
     connect_data();
+    connect_extras();
     place_needed_inputs();
     if (const Sentence fault = place_behaviours(); !fault.empty()) return std::unexpected(fault);
     connect_events();
@@ -188,6 +189,13 @@ void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const En
     supervisor_.wake();
 }
 
+void MachineInstance::ask_section_stop(const ExtraSection& section, std::size_t row,
+                                       const Engine* from) noexcept TAPPET_REALTIME {
+    std::uint64_t number = 0;
+    while (machine_.table.extras->at(number) != &section) ++number;
+    ask_stop(StopReason::section, number << 32 | row, from);
+}
+
 Sentence MachineInstance::describe_stop() const {
     const std::string_view who = stop_.from == nullptr ? std::string_view{} : stop_.from->name();
     switch (stop_.reason) {
@@ -221,6 +229,8 @@ Sentence MachineInstance::describe_stop() const {
                         row.max_age.count() / 1000,
                         " us"};
     }
+    case StopReason::section:
+        return machine_.table.extras->at(stop_.detail >> 32)->describe_stop(stop_.detail & 0xFFFFFFFF);
     }
     return {};
 }

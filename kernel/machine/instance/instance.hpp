@@ -181,8 +181,15 @@ public:
     [[nodiscard]] const ReactionTimes* times_of_reaction(std::size_t row) const noexcept;
     [[nodiscard]] const ReactionTimes* times_of_connection(std::size_t row) const noexcept;
 
+    /// What a row of a section of another folder has counted so far; row by row, section by section. Any
+    /// thread.
+    [[nodiscard]] SectionCount counted(std::size_t section, std::size_t row) const noexcept;
+
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
+    /// The same for a row of a section of another folder, which describes it.
+    void ask_section_stop(const ExtraSection& section, std::size_t row, const Engine* from) noexcept
+        TAPPET_REALTIME;
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
         return stop_asked_.load(std::memory_order_acquire) == 2;
     }
@@ -231,6 +238,8 @@ private:
     void place_scope();
     void connect_clocks();
     void connect_data();
+    void connect_extras();
+    [[nodiscard]] std::span<std::byte> extra_memory(std::size_t section) const noexcept;
     void place_needed_inputs();
     [[nodiscard]] GatedComponent* gate_of(std::size_t component) noexcept;
     [[nodiscard]] LifeSign life_sign_of(std::string_view watched) noexcept;

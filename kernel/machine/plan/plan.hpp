@@ -93,6 +93,7 @@ struct PlanView {
     std::span<MailPlan> requests;         ///< into each activity, of the components that see the machine
     std::span<MailPlan> command_mail;     ///< as mail, of commands alone
     std::span<MailPlan> command_requests; ///< as requests, of commands alone
+    std::size_t extras_at = 0;            ///< of the sections of other folders, one behind the other
     std::size_t engines_at = 0;
     std::size_t observed_at = 0; ///< Observed
     std::size_t scope_at = 0;    ///< scope::Directory; 0: nothing records the machine's cycles
@@ -309,6 +310,9 @@ constexpr void make_plan(const MachineView& m, const Board& board, const TableIn
     detail::plan_subscriptions(m, r, p, ground);
     detail::plan_commands(m, r, p, ground);
     detail::plan_behaviours(m, r, p, ground);
+    p.extras_at = ground.take(0, alignof(std::max_align_t));
+    for (std::size_t e = 0; e < m.extras->size(); ++e)
+        ground.take(align_section(m.extras->at(e)->bytes(m)), 1);
     p.engines_at = ground.take<Engine>(m.activities.size());
     detail::plan_scope(m, p, ground);
     const std::size_t before_stacks = ground.used();
@@ -340,6 +344,7 @@ struct Plan {
     std::array<MailPlan, A> requests{};
     std::array<MailPlan, A * A> command_mail{};
     std::array<MailPlan, A> command_requests{};
+    std::size_t extras_at = 0;
     std::size_t engines_at = 0;
     std::size_t observed_at = 0;
     std::size_t scope_at = 0;
@@ -350,12 +355,13 @@ struct Plan {
     std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
-        return {component_at,     part_of,      activities,  connections, subscriptions,
-                subscription_at,  behaviours,   mail,        requests,    command_mail,
-                command_requests, engines_at,   observed_at, scope_at,    recordings_at,
-                recordings,       shared_bytes, bytes,       stack_bytes};
+        return {component_at,     part_of,    activities,   connections, subscriptions,
+                subscription_at,  behaviours, mail,         requests,    command_mail,
+                command_requests, extras_at,  engines_at,   observed_at, scope_at,
+                recordings_at,    recordings, shared_bytes, bytes,       stack_bytes};
     }
     constexpr void take_sizes(const PlanView& v) noexcept {
+        extras_at = v.extras_at;
         engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;
         observed_at = v.observed_at, shared_bytes = v.shared_bytes;
         scope_at = v.scope_at, recordings_at = v.recordings_at, recordings = v.recordings;

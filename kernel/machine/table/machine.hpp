@@ -1,7 +1,9 @@
-// The machine table: five sections of rows that say what a machine is. One value, one page.
+// The machine table: five sections of rows that say what a machine is, and sections of other folders behind
+// them. One value, one page.
 #pragma once
 
 #include "kernel/machine/table/rows.hpp"
+#include "kernel/machine/table/section.hpp"
 
 #include <array>
 #include <span>
@@ -17,6 +19,7 @@ struct MachineView {
     std::span<const ConnectionRow> connections;
     std::span<const ReactionRow> reactions;
     std::span<const BehaviourRow> behaviours;
+    const ExtraList* extras = &no_extras;
 };
 
 template <class Row, std::size_t N>
@@ -25,7 +28,7 @@ struct Section {
 };
 
 template <std::size_t Components, std::size_t Activities, std::size_t Connections, std::size_t Reactions,
-          std::size_t Behaviours>
+          std::size_t Behaviours, class... Extra>
 struct Machine {
     std::string_view name{};
     std::array<ComponentRow, Components> components{};
@@ -33,9 +36,10 @@ struct Machine {
     std::array<ConnectionRow, Connections> connections{};
     std::array<ReactionRow, Reactions> reactions{};
     std::array<BehaviourRow, Behaviours> behaviours{};
+    ExtraSections<Extra...> extras{};
 
     [[nodiscard]] constexpr MachineView view() const noexcept {
-        return {name, components, activities, connections, reactions, behaviours};
+        return {name, components, activities, connections, reactions, behaviours, &extras};
     }
 };
 
@@ -61,12 +65,12 @@ constexpr Section<BehaviourRow, sizeof...(Rows)> behaviours(const Rows&... rows)
     return {{rows...}};
 }
 
-template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
-constexpr Machine<C, A, X, R, B> machine(std::string_view name, const Section<ComponentRow, C>& c,
-                                         const Section<ActivityRow, A>& a, const Section<ConnectionRow, X>& x,
-                                         const Section<ReactionRow, R>& r,
-                                         const Section<BehaviourRow, B>& b) {
-    return {name, c.rows, a.rows, x.rows, r.rows, b.rows};
+template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B, class... Extra>
+constexpr Machine<C, A, X, R, B, Extra...>
+machine(std::string_view name, const Section<ComponentRow, C>& c, const Section<ActivityRow, A>& a,
+        const Section<ConnectionRow, X>& x, const Section<ReactionRow, R>& r,
+        const Section<BehaviourRow, B>& b, const Extra&... extra) {
+    return {name, c.rows, a.rows, x.rows, r.rows, b.rows, {extra...}};
 }
 
 } // namespace tappet

@@ -1,0 +1,127 @@
+// What a limited port does with each value, and how it is wired.
+#include "kernel/limits/limits.hpp"
+
+#include "kernel/base/decimal.hpp"
+
+#include <cstring>
+#include <new>
+
+namespace tappet {
+
+namespace limits_detail {
+
+namespace {
+
+template <class T>
+double read_as(const void* value) noexcept TAPPET_REALTIME {
+    return static_cast<double>(*static_cast<const T*>(value));
+}
+template <class T>
+void write_as(void* value, double number) noexcept TAPPET_REALTIME {
+    if constexpr (std::is_integral_v<T>) number = std::nearbyint(number);
+    *static_cast<T*>(value) = static_cast<T>(number);
+}
+template <class T>
+constexpr Conversion conversion{&read_as<T>, &write_as<T>};
+
+/// Of a type that the check accepts.
+Conversion conversion_of(const TypeTag& type) noexcept {
+    if (type.kind == ValueKind::real) return type.size == 8 ? conversion<double> : conversion<float>;
+    const bool is_signed = type.kind == ValueKind::whole;
+    if (type.size == 1) return is_signed ? conversion<std::int8_t> : conversion<std::uint8_t>;
+    if (type.size == 2) return is_signed ? conversion<std::int16_t> : conversion<std::uint16_t>;
+    return is_signed ? conversion<std::int32_t> : conversion<std::uint32_t>;
+}
+
+/// The nearest value to `wanted` that a row allows. What is no number is none that is allowed.
+double allowed(const LimitRow& row, const Limited& port, double wanted, Time stamp) noexcept TAPPET_REALTIME {
+    if (!is_rate(row)) {
+        if (wanted >= row.low && wanted <= row.high) return wanted;
+        if (wanted > row.high) return row.high;
+        return wanted < row.low || !port.has_last ? row.low : port.last;
+    }
+    if (!port.has_last) return wanted;
+    const double step =
+        row.per_second * static_cast<double>(std::max(stamp - port.at, Duration{}).count()) * 1e-9;
+    if (std::abs(wanted - port.last) <= step) return wanted;
+    if (wanted > port.last) return port.last + step;
+    return wanted < port.last ? port.last - step : port.last;
+}
+
+void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
+    auto& port = static_cast<Limited&>(self);
+    double number = port.convert.read(value);
+    // What a component leaves behind when it stops is safe, whatever the rows say of its values at work.
+    if (port.machine->state_of(port.component) != ComponentState::running) {
+        port.has_last = false;
+        return;
+    }
+    // The range first: what is then reached at the rate lies between two values of the range.
+    std::array<std::size_t, 2> order{port.row, port.other};
+    if (port.other != nowhere && is_rate(port.rows[port.row])) std::swap(order[0], order[1]);
+    bool changed = false;
+    for (const std::size_t i : order) {
+        if (i == nowhere) continue;
+        const LimitRow& row = port.rows[i];
+        const double good = allowed(row, port, number, stamp);
+        if (good == number) continue;
+        port.count_of(i).fetch_add(1, std::memory_order_relaxed);
+        if (row.on_breach == OnBreach::stop) port.machine->ask_section_stop(*port.section, i, port.engine);
+        if (row.on_breach == OnBreach::count) continue;
+        number = good;
+        changed = true;
+    }
+    port.last = number;
+    port.at = stamp;
+    port.has_last = number == number;
+    if (changed) port.convert.write(value, number);
+}
+
+} // namespace
+
+void connect(std::span<const LimitRow> rows, const ExtraSection& section, MachineInstance& machine,
+             std::span<std::byte> memory) {
+    const AcceptedMachine& accepted = machine.machine();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        auto* places = reinterpret_cast<Limited*>(memory.data());
+        auto* port = new (places + i) Limited{};
+        port->row = i;
+        port->rows = rows;
+        std::size_t first = 0;
+        while (!same_letters(rows[first].output, rows[i].output)) ++first;
+        if (first != i) { // one filter for a port, of both rows
+            places[first].other = i;
+            continue;
+        }
+        End end;
+        static_cast<void>(
+            resolve(accepted.table, rows[i].output, FacetKind::output, end).empty()); // was checked
+        const Facet& facet = facet_at(accepted.table, end);
+        port->pass = &pass;
+        port->machine = &machine;
+        port->section = &section;
+        port->engine = &machine.engines()[accepted.index.activity[end.component]];
+        port->component = end.component;
+        port->convert = conversion_of(*facet.type);
+        facet.port->set_filter(machine.place_of(end), port);
+    }
+}
+
+Sentence describe(const LimitRow& row) {
+    if (is_rate(row))
+        return Sentence{"\"", row.output, "\" was to change by more than ", decimal(row.per_second),
+                        " per second"};
+    return Sentence{"\"",   row.output,       "\" was to leave its range from ", decimal(row.low),
+                    " to ", decimal(row.high)};
+}
+
+SectionCount counted(std::span<const LimitRow> rows, std::span<const std::byte> memory,
+                     std::size_t row) noexcept {
+    if (row >= rows.size()) return {};
+    const auto* ports = reinterpret_cast<const Limited*>(memory.data());
+    return {rows[row].output, ports[row].breaches.load(std::memory_order_relaxed)};
+}
+
+} // namespace limits_detail
+
+} // namespace tappet

@@ -1,0 +1,154 @@
+// Limits of what a component writes (thesis 4.4.2: a connector may constrain the flow of data in value and in
+// bandwidth): a section of the machine table.
+//     limits(limit("warp.target", 0.0, 40.0), rate("main.target", 500.0, stop_on_breach))
+#pragma once
+
+#include "kernel/base/letters.hpp"
+#include "kernel/machine/instance/instance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+/// What happens to a value that its row does not allow; each is counted.
+enum class OnBreach : std::uint8_t {
+    clamp, ///< the nearest value that is allowed goes out
+    count, ///< it goes out as it is
+    stop   ///< the nearest value goes out, and the machine stops
+};
+inline constexpr OnBreach clamp_on_breach = OnBreach::clamp;
+inline constexpr OnBreach count_on_breach = OnBreach::count;
+inline constexpr OnBreach stop_on_breach = OnBreach::stop;
+
+struct LimitRow {
+    std::string_view output; ///< "component.output", of a number
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    double per_second = std::numeric_limits<double>::infinity(); ///< it may change by, up or down
+    OnBreach on_breach = OnBreach::clamp;
+};
+
+/// The value lies between `low` and `high`, both allowed, in the port's unit.
+constexpr LimitRow limit(std::string_view output, double low, double high,
+                         OnBreach on_breach = clamp_on_breach) noexcept {
+    return {.output = output, .low = low, .high = high, .on_breach = on_breach};
+}
+/// The value changes by at most `per_second` of the port's unit, from write to write by their stamps. The
+/// first value after a start is free.
+constexpr LimitRow rate(std::string_view output, double per_second,
+                        OnBreach on_breach = clamp_on_breach) noexcept {
+    return {.output = output, .per_second = per_second, .on_breach = on_breach};
+}
+
+namespace limits_detail {
+
+constexpr bool is_rate(const LimitRow& row) noexcept {
+    return row.per_second != std::numeric_limits<double>::infinity();
+}
+
+/// Between a port's value and a double, which holds every value of these types.
+struct Conversion {
+    double (*read)(const void* value) noexcept TAPPET_REALTIME = nullptr;
+    void (*write)(void* value, double number) noexcept TAPPET_REALTIME = nullptr;
+};
+
+/// Of the ports that rows name: what limits it now. In the machine's memory.
+struct Limited : PortFilter {
+    MachineInstance* machine = nullptr;
+    const ExtraSection* section = nullptr;
+    const Engine* engine = nullptr;
+    std::span<const LimitRow> rows;
+    std::size_t row = 0;         ///< the first that names the port
+    std::size_t other = nowhere; ///< the second, of the other kind
+    std::size_t component = 0;
+    Conversion convert{};
+    bool has_last = false;
+    double last = 0.0; ///< that went out, before an integer was made of it
+    Time at{};
+    std::atomic<std::uint64_t> breaches{0}; ///< of the row in whose place it lies
+
+    /// Rows' places lie in their order.
+    [[nodiscard]] std::atomic<std::uint64_t>& count_of(std::size_t i) noexcept TAPPET_REALTIME {
+        return (this - row + i)->breaches;
+    }
+};
+
+void connect(std::span<const LimitRow> rows, const ExtraSection& section, MachineInstance& machine,
+             std::span<std::byte> memory);
+Sentence describe(const LimitRow& row);
+SectionCount counted(std::span<const LimitRow> rows, std::span<const std::byte> memory,
+                     std::size_t row) noexcept;
+
+constexpr Sentence check_row(const LimitRow& row, const MachineView& m, const TableIndexView& r) {
+    End end;
+    if (const Sentence fault = resolve(m, r.by_name, row.output, FacetKind::output, end); !fault.empty())
+        return fault;
+    const Facet& facet = facet_at(m, end);
+    if (facet.kind != FacetKind::output)
+        return Sentence{to_text(facet.kind), " has no limits; name an output"};
+    const ValueKind kind = facet.type->kind;
+    const bool is_whole = kind == ValueKind::whole || kind == ValueKind::natural;
+    if (!facet.type->arithmetic || !(kind == ValueKind::real || (is_whole && facet.type->size <= 4)))
+        return Sentence{"its type is ", facet.type->name,
+                        ", and only numbers that a double holds are limited; limit where one is written"};
+    if (!(row.low < row.high))
+        return Sentence{"its least value is not below its greatest; write the smaller one first"};
+    if (!(row.per_second > 0.0))
+        return Sentence{"it may not change at all; give a rate above zero, in its unit per second"};
+    return {};
+}
+
+} // namespace limits_detail
+
+template <std::size_t N>
+struct Limits final : ExtraSection {
+    std::array<LimitRow, N> rows{};
+
+    constexpr explicit Limits(const std::array<LimitRow, N>& r) : rows{r} {}
+
+    [[nodiscard]] constexpr Sentence check(const MachineView& m, const TableIndexView& r) const override {
+        for (std::size_t i = 0; i < N; ++i) {
+            const bool is_rate = limits_detail::is_rate(rows[i]);
+            const auto said = [&](const Sentence& fault) {
+                return Sentence{is_rate ? "rate \"" : "limit \"", rows[i].output, "\": ", fault};
+            };
+            if (const Sentence fault = limits_detail::check_row(rows[i], m, r); !fault.empty())
+                return said(fault);
+            for (std::size_t j = 0; j < i; ++j)
+                if (same_letters(rows[j].output, rows[i].output) &&
+                    limits_detail::is_rate(rows[j]) == is_rate)
+                    return said(Sentence{"it stands twice; keep one"});
+        }
+        return {};
+    }
+    [[nodiscard]] constexpr std::size_t bytes(const MachineView&) const override {
+        return N * sizeof(limits_detail::Limited);
+    }
+    void connect(MachineInstance& machine, std::span<std::byte> memory) const override {
+        limits_detail::connect(rows, *this, machine, memory);
+    }
+    [[nodiscard]] Sentence describe_stop(std::size_t row) const override {
+        return limits_detail::describe(rows[row]);
+    }
+    [[nodiscard]] SectionCount counted(std::span<const std::byte> memory,
+                                       std::size_t row) const noexcept override {
+        return limits_detail::counted(rows, memory, row);
+    }
+};
+
+/// The section: rows of limit(..) and rate(..). The safe values that a component leaves behind when it stops
+/// are not limited, nor is what somebody forces.
+template <class... Rows>
+constexpr Limits<sizeof...(Rows)> limits(const Rows&... rows) {
+    static_assert(sizeof...(Rows) != 0, "limits() without a row limits nothing; leave the section out");
+    return Limits<sizeof...(Rows)>{{rows...}};
+}
+
+} // namespace tappet
