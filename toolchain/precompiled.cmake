@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# tappet_precompiled(<name> HEADERS ... LIBRARIES ... [OPTIONS ...]): headers that many sources begin with, read once for all of them.
-# A target takes them by target_precompile_headers(<target> REUSE_FROM tappet_header_<name>). Only tests, figures and tools do:
-# what a machine is made of includes what it needs, or does not compile.
+# tappet_precompiled(<name> HEADERS ... LIBRARIES ... [OPTIONS ...]): foreign headers that many sources begin with, read once for
+# all of them. A target takes them by target_precompile_headers(<target> REUSE_FROM tappet_header_<name>).
+# Not our own headers: g++ tells a file that #pragma once has seen by its age, which another clone's cache does not have.
 include_guard(GLOBAL)
 
 function(tappet_precompiled name)

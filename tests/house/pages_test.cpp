@@ -186,6 +186,26 @@ Findings missing_pages(const Tree& files) {
     return found;
 }
 
+/// The numbers of lines that a page's tables have, and those that names of tests below `folder` bear as
+/// line_NN.
+std::set<std::string> numbers_in(const Tree& files, std::string_view folder, const std::regex& form) {
+    std::set<std::string> found;
+    for (const File& each : files) {
+        if (!each.is_under(folder)) continue;
+        for (const std::string& line : each.lines)
+            if (std::smatch number; std::regex_search(line, number, form))
+                found.insert(number[1].length() == 1 ? "0" + number[1].str() : number[1].str());
+    }
+    return found;
+}
+
+TEST(Pages, of_the_order_of_state_machines_have_a_test_for_each_line_and_a_line_for_each_test) {
+    const auto lines = numbers_in(tree(), "kernel/statechart", std::regex("^\\| ([0-9]+) \\|"));
+    const auto tests = numbers_in(tree(), "tests/kernel/statechart", std::regex("^TEST.* line_([0-9]+)_"));
+    EXPECT_GT(lines.size(), 30u);
+    EXPECT_EQ(lines, tests);
+}
+
 TEST(Pages, name_files_that_are_there) { expect_none(missing_files(tree(), is_there)); }
 TEST(Pages, name_functions_that_are_there) {
     expect_none(missing_functions(tree()));

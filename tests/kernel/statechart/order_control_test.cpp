@@ -67,6 +67,33 @@ TEST(StateMachineOrder, line_32_runs_the_run_programs_once_behind_a_request) {
     EXPECT_EQ(m.request("b", true), "!b:");
 }
 
+TEST(StateMachineOrder, line_33_asks_no_condition_while_a_program_is_in_hand_in_either_mode) {
+    const char* table = R"(
+        state a initial
+        state b entry +b..
+        state c
+        state safe final
+        from a to b on go
+        from b to c if g
+        from c to a on back)";
+    Play automatic{table};
+    automatic.yes = {"g"};
+    automatic.start();
+    EXPECT_EQ(automatic.send("go"), "+b:");
+    EXPECT_EQ(automatic.step(), "") << "not g, which holds";
+    EXPECT_EQ(automatic.step(), ":+b ?g");
+    EXPECT_EQ(automatic.active(), "c");
+
+    Play reactive{table};
+    reactive.yes = {"g"};
+    reactive.execution.activate(reactive.now);
+    reactive.send("go");
+    EXPECT_EQ(reactive.request("c"), "") << "it waits behind the program";
+    EXPECT_EQ(reactive.step(), "");
+    EXPECT_EQ(reactive.step(), ":+b ?g");
+    EXPECT_EQ(reactive.active(), "c");
+}
+
 TEST(StateMachineOrder, line_40_defers_events_with_their_arguments_while_a_program_is_in_hand) {
     Play m{R"(
         state a initial
