@@ -94,7 +94,9 @@ bool BrowserService::look_at_life(Pending& place) {
     switch (answer.outcome) {
     case LifeOutcome::pending: return false;
     case LifeOutcome::done:
-        return (call.change == LifeChange::start || release_behind(call)) && answer_good(place);
+        // Places for what is released come back in time, unless every one waits for another's.
+        return (call.change == LifeChange::start || release_behind(call) || place.is_told) &&
+               answer_good(place);
     case LifeOutcome::superseded:
         return answer_bad(place, Refusal::not_now,
                           Sentence{"somebody asked for something else meanwhile; look at its state"});
