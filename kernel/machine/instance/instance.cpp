@@ -192,7 +192,8 @@ void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const En
 void MachineInstance::ask_section_stop(const ExtraSection& section, std::size_t row,
                                        const Engine* from) noexcept TAPPET_REALTIME {
     std::uint64_t number = 0;
-    while (machine_.table.extras->at(number) != &section) ++number;
+    TAPPET_ESCAPE("counts to a section of the table",
+                  while (machine_.table.extras->at(number) != &section)++ number);
     ask_stop(StopReason::section, number << 32 | row, from);
 }
 
