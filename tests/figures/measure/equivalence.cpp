@@ -68,6 +68,7 @@ Comparison compare(const std::vector<PairOfBlocks>& pairs, double q, double marg
     const double of = quantile(theirs, weights, q);
     if (ours.empty() || of <= 0) return result;
     result.ratio = quantile(ours, weights, q) / of;
+    if (pairs.size() < fewest_pairs) return result;
 
     Random random{seed};
     std::vector<double> ratios;

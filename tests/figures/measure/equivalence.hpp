@@ -23,6 +23,11 @@ enum class Verdict : std::uint8_t {
 [[nodiscard]] const char* to_text(Verdict verdict) noexcept;
 
 /// Ours by theirs.
+/// Of fewer pairs nothing is concluded: that all of them lie on one side of the truth is likelier than what
+/// the interval leaves out on that side.
+inline constexpr std::size_t fewest_pairs = 5;
+static_assert(1.0 / (1 << fewest_pairs) < 0.05);
+
 struct Comparison {
     double ratio = 0;
     double low = 0, high = 0; ///< two-sided 90 % interval: each side is left with 5 %

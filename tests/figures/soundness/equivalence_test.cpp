@@ -43,7 +43,10 @@ TEST_F(Equivalence, is_denied_where_ours_is_slower_or_faster_than_the_margin_all
 }
 
 TEST_F(Equivalence, is_not_concluded_from_a_few_samples) {
-    EXPECT_EQ(compare(measured(random, 3, 1.0, 3.0), median, margin).verdict(), Verdict::undecided);
+    for (std::size_t pairs = 1; pairs < fewest_pairs; ++pairs)
+        for (const double ratio : {0.5, 1.0, 2.0})
+            EXPECT_EQ(compare(measured(random, pairs, ratio, 3.0), median, margin).verdict(),
+                      Verdict::undecided);
 }
 
 TEST_F(Equivalence, is_wrongly_found_at_the_margin_in_one_of_twenty_runs) {
