@@ -64,12 +64,13 @@ struct Writer {
 
     void memory() const {
         const auto kib = [](std::size_t bytes) { return (bytes + 1023) / 1024; };
-        std::size_t components = 0, behaviours = 0;
+        std::size_t components = 0, behaviours = 0, stacks = 0;
         for (const ComponentRow& row : machine.table.components) components += row.type->size;
         for (const BehaviourPlan& plan : machine.plan.behaviours) behaviours += plan.memory_bytes;
+        for (const ActivityPlan& plan : machine.plan.activities) stacks += plan.stack_bytes;
         say(Sentence{"memory: ", kib(machine.plan.bytes), " KiB; of these components ", kib(components),
                      ", behaviours ", kib(behaviours), ", map ", kib(machine.map.size()), ", stacks ",
-                     kib(machine.plan.stack_bytes)});
+                     kib(stacks)});
     }
 };
 
