@@ -35,7 +35,7 @@ Conversion conversion_of(const TypeTag& type) noexcept {
 
 /// The nearest value to `wanted` that a row allows. What is no number is none that is allowed.
 double allowed(const LimitRow& row, const Limited& port, double wanted, Time stamp) noexcept TAPPET_REALTIME {
-    if (!is_rate(row)) {
+    if (!row.is_rate) {
         if (wanted >= row.low && wanted <= row.high) return wanted;
         if (wanted > row.high) return row.high;
         return wanted < row.low || !port.has_last ? row.low : port.last;
@@ -58,7 +58,7 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     }
     // The range first: what is then reached at the rate lies between two values of the range.
     std::array<std::size_t, 2> order{port.row, port.other};
-    if (port.other != nowhere && is_rate(port.rows[port.row])) std::swap(order[0], order[1]);
+    if (port.other != nowhere && port.rows[port.row].is_rate) std::swap(order[0], order[1]);
     bool changed = false;
     for (const std::size_t i : order) {
         if (i == nowhere) continue;
@@ -66,7 +66,7 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
         const double good = allowed(row, port, number, stamp);
         if (good == number) continue;
         port.count_of(i).fetch_add(1, std::memory_order_relaxed);
-        if (row.on_breach == OnBreach::stop) port.machine->ask_section_stop(*port.section, i, port.engine);
+        if (row.on_breach == OnBreach::stop) port.machine->ask_section_stop(port.section, i, port.engine);
         if (row.on_breach == OnBreach::count) continue;
         number = good;
         changed = true;
@@ -79,7 +79,7 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
 
 } // namespace
 
-void connect(std::span<const LimitRow> rows, const ExtraSection& section, MachineInstance& machine,
+void connect(std::span<const LimitRow> rows, MachineInstance& machine, std::size_t section,
              std::span<std::byte> memory) {
     const AcceptedMachine& accepted = machine.machine();
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -99,7 +99,7 @@ void connect(std::span<const LimitRow> rows, const ExtraSection& section, Machin
         const Facet& facet = facet_at(accepted.table, end);
         port->pass = &pass;
         port->machine = &machine;
-        port->section = &section;
+        port->section = section;
         port->engine = &machine.engines()[accepted.index.activity[end.component]];
         port->component = end.component;
         port->convert = conversion_of(*facet.type);
@@ -108,7 +108,7 @@ void connect(std::span<const LimitRow> rows, const ExtraSection& section, Machin
 }
 
 Sentence describe(const LimitRow& row) {
-    if (is_rate(row))
+    if (row.is_rate)
         return Sentence{"\"", row.output, "\" was to change by more than ", decimal(row.per_second),
                         " per second"};
     return Sentence{"\"",   row.output,       "\" was to leave its range from ", decimal(row.low),

@@ -31,7 +31,8 @@ struct LimitRow {
     std::string_view output; ///< "component.output", of a number
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
-    double per_second = std::numeric_limits<double>::infinity(); ///< it may change by, up or down
+    double per_second = 0.0; ///< of a rate: it may change by, up or down
+    bool is_rate = false;
     OnBreach on_breach = OnBreach::clamp;
 };
 
@@ -44,13 +45,18 @@ constexpr LimitRow limit(std::string_view output, double low, double high,
 /// first value after a start is free.
 constexpr LimitRow rate(std::string_view output, double per_second,
                         OnBreach on_breach = clamp_on_breach) noexcept {
-    return {.output = output, .per_second = per_second, .on_breach = on_breach};
+    return {.output = output, .per_second = per_second, .is_rate = true, .on_breach = on_breach};
 }
 
 namespace limits_detail {
 
-constexpr bool is_rate(const LimitRow& row) noexcept {
-    return row.per_second != std::numeric_limits<double>::infinity();
+/// Whether a port of that type can be given the number itself: a bound that it cannot is no bound of it.
+constexpr bool holds(const TypeTag& type, double number) noexcept {
+    if (type.kind == ValueKind::real) return true;
+    const bool is_signed = type.kind == ValueKind::whole;
+    const double top = static_cast<double>(std::uint64_t{1} << (8 * type.size - (is_signed ? 1 : 0)));
+    return number >= (is_signed ? -top : 0.0) && number < top &&
+           static_cast<double>(static_cast<std::int64_t>(number)) == number;
 }
 
 /// Between a port's value and a double, which holds every value of these types.
@@ -62,7 +68,7 @@ struct Conversion {
 /// Of the ports that rows name: what limits it now. In the machine's memory.
 struct Limited : PortFilter {
     MachineInstance* machine = nullptr;
-    const ExtraSection* section = nullptr;
+    std::size_t section = 0;
     const Engine* engine = nullptr;
     std::span<const LimitRow> rows;
     std::size_t row = 0;         ///< the first that names the port
@@ -80,7 +86,7 @@ struct Limited : PortFilter {
     }
 };
 
-void connect(std::span<const LimitRow> rows, const ExtraSection& section, MachineInstance& machine,
+void connect(std::span<const LimitRow> rows, MachineInstance& machine, std::size_t section,
              std::span<std::byte> memory);
 Sentence describe(const LimitRow& row);
 SectionCount counted(std::span<const LimitRow> rows, std::span<const std::byte> memory,
@@ -98,10 +104,19 @@ constexpr Sentence check_row(const LimitRow& row, const MachineView& m, const Ta
     if (!facet.type->arithmetic || !(kind == ValueKind::real || (is_whole && facet.type->size <= 4)))
         return Sentence{"its type is ", facet.type->name,
                         ", and only numbers that a double holds are limited; limit where one is written"};
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (row.is_rate) {
+        if (row.per_second > 0.0 && row.per_second < infinity) return {};
+        return Sentence{"its rate is not above zero or has no end; give one in its unit per second"};
+    }
     if (!(row.low < row.high))
         return Sentence{"its least value is not below its greatest; write the smaller one first"};
-    if (!(row.per_second > 0.0))
-        return Sentence{"it may not change at all; give a rate above zero, in its unit per second"};
+    if (row.low == -infinity && row.high == infinity)
+        return Sentence{"it allows everything; give it an end, or leave it out"};
+    if ((row.low != -infinity && !holds(*facet.type, row.low)) ||
+        (row.high != infinity && !holds(*facet.type, row.high)))
+        return Sentence{"an end of it is no value of ", facet.type->name,
+                        "; give one that the port can have"};
     return {};
 }
 
@@ -115,15 +130,13 @@ struct Limits final : ExtraSection {
 
     [[nodiscard]] constexpr Sentence check(const MachineView& m, const TableIndexView& r) const override {
         for (std::size_t i = 0; i < N; ++i) {
-            const bool is_rate = limits_detail::is_rate(rows[i]);
             const auto said = [&](const Sentence& fault) {
-                return Sentence{is_rate ? "rate \"" : "limit \"", rows[i].output, "\": ", fault};
+                return Sentence{rows[i].is_rate ? "rate \"" : "limit \"", rows[i].output, "\": ", fault};
             };
             if (const Sentence fault = limits_detail::check_row(rows[i], m, r); !fault.empty())
                 return said(fault);
             for (std::size_t j = 0; j < i; ++j)
-                if (same_letters(rows[j].output, rows[i].output) &&
-                    limits_detail::is_rate(rows[j]) == is_rate)
+                if (same_letters(rows[j].output, rows[i].output) && rows[j].is_rate == rows[i].is_rate)
                     return said(Sentence{"it stands twice; keep one"});
         }
         return {};
@@ -131,8 +144,8 @@ struct Limits final : ExtraSection {
     [[nodiscard]] constexpr std::size_t bytes(const MachineView&) const override {
         return N * sizeof(limits_detail::Limited);
     }
-    void connect(MachineInstance& machine, std::span<std::byte> memory) const override {
-        limits_detail::connect(rows, *this, machine, memory);
+    void connect(MachineInstance& machine, std::size_t number, std::span<std::byte> memory) const override {
+        limits_detail::connect(rows, machine, number, memory);
     }
     [[nodiscard]] Sentence describe_stop(std::size_t row) const override {
         return limits_detail::describe(rows[row]);

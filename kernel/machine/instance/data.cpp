@@ -45,7 +45,7 @@ std::span<std::byte> MachineInstance::extra_memory(std::size_t section) const no
 
 void MachineInstance::connect_extras() {
     for (std::size_t e = 0; e < machine_.table.extras->size(); ++e)
-        machine_.table.extras->at(e)->connect(*this, extra_memory(e));
+        machine_.table.extras->at(e)->connect(*this, e, extra_memory(e));
 }
 
 SectionCount MachineInstance::counted(std::size_t section, std::size_t row) const noexcept {

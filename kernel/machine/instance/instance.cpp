@@ -189,14 +189,6 @@ void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const En
     supervisor_.wake();
 }
 
-void MachineInstance::ask_section_stop(const ExtraSection& section, std::size_t row,
-                                       const Engine* from) noexcept TAPPET_REALTIME {
-    std::uint64_t number = 0;
-    TAPPET_ESCAPE("counts to a section of the table",
-                  while (machine_.table.extras->at(number) != &section)++ number);
-    ask_stop(StopReason::section, number << 32 | row, from);
-}
-
 Sentence MachineInstance::describe_stop() const {
     const std::string_view who = stop_.from == nullptr ? std::string_view{} : stop_.from->name();
     switch (stop_.reason) {

@@ -188,8 +188,9 @@ public:
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     /// The same for a row of a section of another folder, which describes it.
-    void ask_section_stop(const ExtraSection& section, std::size_t row, const Engine* from) noexcept
-        TAPPET_REALTIME;
+    void ask_section_stop(std::size_t section, std::size_t row, const Engine* from) noexcept TAPPET_REALTIME {
+        ask_stop(StopReason::section, std::uint64_t{section} << 32 | row, from);
+    }
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
         return stop_asked_.load(std::memory_order_acquire) == 2;
     }

@@ -31,8 +31,9 @@ public:
                                                    const TableIndexView& index) const = 0;
     /// What it takes of the machine's memory; it begins where any object may stand.
     [[nodiscard]] constexpr virtual std::size_t bytes(const MachineView& table) const = 0;
-    /// At start-up, when ports are wired and no component is configured yet.
-    virtual void connect(MachineInstance& machine, std::span<std::byte> memory) const = 0;
+    /// At start-up, when ports are wired and no component is configured yet. `number`: of this section, for
+    /// ask_section_stop.
+    virtual void connect(MachineInstance& machine, std::size_t number, std::span<std::byte> memory) const = 0;
     /// Why a row of it asked the machine to stop (ask_section_stop).
     [[nodiscard]] virtual Sentence describe_stop(std::size_t row) const = 0;
 

@@ -242,6 +242,12 @@ constexpr auto reversed = machine_with(limits(limit("source.speed", 1.0, 0.0)));
 constexpr auto no_number =
     machine_with(limits(limit("source.speed", std::numeric_limits<double>::quiet_NaN(), 1.0)));
 constexpr auto at_rest = machine_with(limits(rate("source.speed", 0.0)));
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr auto endless = machine_with(limits(rate("source.speed", infinity)));
+constexpr auto everything = machine_with(limits(limit("source.speed", -infinity, infinity)));
+constexpr auto fraction = machine_with(limits(limit("source.place", 0.5, 3.0)));
+constexpr auto beyond = machine_with(limits(limit("source.place", 0.0, 2147483648.0)));
+constexpr auto one_end = machine_with(limits(limit("source.place", -2147483648.0, infinity)));
 constexpr auto twice = machine_with(
     limits(limit("source.speed", 0.0, 1.0), rate("source.speed", 1.0), limit("source.speed", 0.0, 2.0)));
 
@@ -262,7 +268,12 @@ TEST(LimitRows, are_refused_with_row_fault_and_cure) {
     EXPECT_THAT(refusal<reversed>(),
                 HasSubstr("its least value is not below its greatest; write the smaller"));
     EXPECT_THAT(refusal<no_number>(), HasSubstr("its least value is not below its greatest"));
-    EXPECT_THAT(refusal<at_rest>(), HasSubstr("it may not change at all; give a rate above zero"));
+    EXPECT_THAT(refusal<at_rest>(), HasSubstr("its rate is not above zero or has no end"));
+    EXPECT_THAT(refusal<endless>(), HasSubstr("its rate is not above zero or has no end"));
+    EXPECT_THAT(refusal<everything>(), HasSubstr("it allows everything; give it an end, or leave it out"));
+    EXPECT_THAT(refusal<fraction>(), HasSubstr("an end of it is no value of int;"));
+    EXPECT_THAT(refusal<beyond>(), HasSubstr("an end of it is no value of int;"));
+    EXPECT_EQ(refusal<one_end>(), "");
     EXPECT_EQ(refusal<twice>(), "press: limit \"source.speed\": it stands twice; keep one");
 }
 
