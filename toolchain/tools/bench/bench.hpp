@@ -50,7 +50,7 @@ struct Scenario {
     // command), "@wait NAME while OTHER" (the same, but when OTHER ends first, that has failed).
     std::vector<std::string> commands;
     std::vector<File> collect; // copied out of the guest at the end, whatever the outcome
-    double timeout_s = 120;    // of wall time
+    double timeout_s = 120;    // of wall time, from the first command on
     std::string init;          // PID 1; empty: bench-init beside the running program
     bool keep = false;         // leave the working folder behind
 };

@@ -32,7 +32,7 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --cpus N               processors of the guest (default 1; more only with --clock host)
   --memory MIB           memory of the guest (default 256)
   --append TEXT          more kernel arguments
-  --timeout S            of wall time (default 120)
+  --timeout S            of wall time from the first command on (default 120)
   --init FILE            PID 1 (default: bench-init beside this program)
   --verbose              boot and total time at the end
   --keep                 leave the working folder in the temporary folder
