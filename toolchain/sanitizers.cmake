@@ -26,5 +26,6 @@ endif()
 
 if(tappet_sanitizer_flags)
     add_compile_options(${tappet_sanitizer_flags} -fno-omit-frame-pointer)
+    add_compile_definitions(TAPPET_ASSERTS_THREADS)
     add_link_options(${tappet_sanitizer_flags})
 endif()

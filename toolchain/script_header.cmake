@@ -3,12 +3,12 @@
 get_filename_component(name "${FROM}" NAME_WE)
 file(READ "${FROM}" text)
 if(NOT name MATCHES "^[A-Za-z_][A-Za-z0-9_]*$")
-    message(FATAL_ERROR "script \"${PLACE}\": its name becomes one of C++; use letters, digits and _ only")
+    message(FATAL_ERROR "script \"${PLACE}\": its name becomes one of C++; use characters, digits and _ only")
 endif()
 if(text MATCHES "[)]tappet_script\"")
-    message(FATAL_ERROR "script \"${PLACE}\": it holds the letters that end its constant; write them apart")
+    message(FATAL_ERROR "script \"${PLACE}\": it holds the characters that end its constant; write them apart")
 endif()
-# The text begins behind the bracket, so that its lines are those of the file.
+# The text begins after the bracket, so that its lines are those of the file.
 file(WRITE "${TO}"
 "// The script ${PLACE} as a constant; made when it changed.
 #pragma once

@@ -12,7 +12,7 @@
 #include "apps/carpet_loom/network.hpp"
 #include "apps/carpet_loom/warp_tension.hpp"
 #include "apps/carpet_loom/weft_insertion.hpp"
-#include "drivers/can/keeper.hpp"
+#include "drivers/can/restarter.hpp"
 #include "kernel/limits/limits.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
@@ -33,8 +33,8 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0), properties_file("warp.cpf", optional)),
         component<Network>("network"),                       // CANopen: starts and watches the nodes
         component<Loom>("loom"),                             // the states of the whole
-        component<can::Keeper>("keeper", device("loom-can")), // restarts a bus that went off, a few times
-        component<modbus::Slave<utility_registers>>("utility", device("loom-utility")),
+        component<can::Restarter>("restarter", device("loom-can")), // restarts a bus that went off, a few times
+        component<modbus::Client<utility_registers>>("utility", device("loom-utility")),
         component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // once that activity hangs
         component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
         component<Watchdog>("io_dog", watches("io"), set("limit", 20ms)), // silent: woken, and it does not come
@@ -53,7 +53,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         activity("motion",  every(1ms),                        runs("network", "main", "warp"),         budget(60us)),
         activity("watch",   every(5ms),                        runs("motion_dog", "shaft_dog", "io_dog", "logic_dog", "last_resort"), deadline(250us), budget(10us)),
         activity("logic",   on_work(),        at_most(8, 2ms), runs("loom"),           deadline(2ms),   budget(25us)),
-        activity("keeper",  every(100ms),     runs("keeper"),  not_real_time),
+        activity("restarter", every(100ms),    runs("restarter"), not_real_time),
         activity("console", every(250ms),     runs("new_shift", "record", "console"), not_real_time),
         activity("scope",   every(20ms),      runs("scope"),   not_real_time, stack(32 * 1024)),
         activity("browser", every(20ms),      runs("browser"), not_real_time, stack(224 * 1024))),
@@ -95,7 +95,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("shaft_dog.alive",           "loom.shaft_alive",     wakes),
         data("io_dog.alive",              "loom.io_alive",        wakes),
         data("can.faulted",               "loom.bus_faulted",     wakes),
-        data("can.faulted",               "keeper.faulted"),
+        data("can.faulted",               "restarter.faulted"),
         data("io.faulted",                "loom.io_faulted",      wakes),
         data("network.operational",       "loom.nodes_operational", wakes),
         data("io.drop_wire",              "loom.drop_wire",       wakes),
@@ -118,7 +118,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         data("can.load_cell.tension",     "console.tension_n"),
         data("can.frames_lost",           "console.frames_lost"),
         data("can.state",                 "console.bus_state"),
-        data("keeper.restarts",           "console.bus_restarts"),
+        data("restarter.restarts",        "console.bus_restarts"),
         data("io.edges_lost",             "console.edges_lost"),
         data("utility.unit.oil_pressure", "console.oil_bar"),
         data("utility.outages",           "console.outages")),

@@ -4,7 +4,7 @@
 #include "apps/carpet_loom/wires.hpp"
 #include "drivers/can/bus.hpp"
 #include "drivers/gpio/line_port.hpp"
-#include "drivers/modbus/slave.hpp"
+#include "drivers/modbus/client.hpp"
 
 namespace tappet::carpet {
 
@@ -66,10 +66,10 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("button_acknowledge", gpio::debounce(5ms)),
     gpio::actuator("weft_release"),
     gpio::actuator("brake", gpio::safe_high),
-    gpio::lamp("lamp_run"),
-    gpio::lamp("lamp_stop"),
-    gpio::lamp("lamp_fault"),
-    gpio::lamp("yarn_cutter"));
+    gpio::output("lamp_run"),
+    gpio::output("lamp_stop"),
+    gpio::output("lamp_fault"),
+    gpio::output("yarn_cutter"));
 
 inline constexpr auto utility_registers = modbus::register_map(
     modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms),

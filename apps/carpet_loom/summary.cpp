@@ -14,7 +14,8 @@ namespace {
 
 void write_activities(JsonText& json, const MachineInstance& instance) {
     json.key("activities").open('[');
-    for (const Engine& engine : instance.engines()) {
+    for (std::size_t a = 0; a < instance.engines().size(); ++a) {
+        const Engine& engine = instance.engines()[a];
         const EngineStatistics& seen = engine.statistics();
         json.open('{')
             .field("name", engine.name())
@@ -27,7 +28,9 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
             .field("claim_us", static_cast<double>(engine.plan().claim().count()) * 1e-3);
         json.field("most_processor_us", static_cast<double>(seen.most_processor.count()) * 1e-3)
             .field("over_claim", seen.over_claim);
-        json.field("wakes_too_many", seen.wakes_too_many);
+        json.field("wakes_too_many", seen.wakes_too_many)
+            .field("stack_bytes", instance.machine().plan.activities[a].stack_bytes)
+            .field("stack_used_bytes", instance.observation().stack_high_water_bytes(a));
         json.key("functions").open('[');
         const EnginePlan& plan = engine.plan();
         constexpr std::string_view kinds[] = {"step", "timers", "reactions", "behaviour"};
@@ -78,9 +81,11 @@ void write_reactions(JsonText& json, const MachineInstance& instance) {
     const AcceptedMachine& machine = instance.machine();
     json.key("reactions").open('[');
     for (std::size_t x = 0; x < machine.table.connections.size(); ++x)
-        write_times(json, instance, machine.index.connections[x], "wakes", instance.times_of_connection(x));
+        write_times(json, instance, machine.index.connections[x], "wakes",
+                    instance.observation().times_of_connection(x));
     for (std::size_t i = 0; i < machine.table.reactions.size(); ++i)
-        write_times(json, instance, machine.index.reactions[i], "tells", instance.times_of_reaction(i));
+        write_times(json, instance, machine.index.reactions[i], "tells",
+                    instance.observation().times_of_reaction(i));
     json.close(']');
 }
 
@@ -110,10 +115,12 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
     write_weave(json, instance);
     json.key("held_back").open('{'); // by the rows of limits
     for (std::size_t section = 0; section < instance.machine().table.extras->size(); ++section)
-        for (std::size_t row = 0; !instance.counted(section, row).what.empty(); ++row)
-            json.field(instance.counted(section, row).what, instance.counted(section, row).times);
+        for (std::size_t row = 0; !instance.observation().counted(section, row).what.empty(); ++row)
+            json.field(instance.observation().counted(section, row).what,
+                       instance.observation().counted(section, row).times);
     json.close('}');
-    json.field("emissions_lost", instance.lost_emissions()).field("forced_ports", instance.forced_ports());
+    json.field("emissions_lost", instance.observation().lost_emissions())
+        .field("forced_ports", instance.observation().forced_ports().load());
     json.field("heap_allocations_after_arming",
                os::heap::allocations_after_seal() + os::heap::mappings_after_seal())
         .field("page_faults_after_arming", facts.page_faults_after_arming);
@@ -124,7 +131,7 @@ std::size_t write_machine_summary(const MachineInstance& instance, const RunFact
     json.field("heap_high_water_bytes", os::heap::high_water_bytes()).field("rss_bytes", os::rss_bytes());
     if (facts.start_to_armed > Duration::zero())
         json.field("start_to_armed_ms", static_cast<double>(facts.start_to_armed.count()) * 1e-6);
-    if (facts.with_digest) json.field("machine_digest", instance.event_log_digest());
+    if (facts.with_digest) json.field("machine_digest", instance.observation().event_log_digest());
     write_reactions(json, instance);
     write_activities(json, instance);
     return json.size();

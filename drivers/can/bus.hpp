@@ -40,9 +40,9 @@ template <const auto& map> struct Bus {
     // One port of each sort for each signal: those that the signal's direction and type do not ask for stay
     // unused.
     std::array<Output<double>, signal_count> physical_out{};
-    std::array<Output<std::int64_t>, signal_count> whole_out{};
+    std::array<Output<std::int64_t>, signal_count> integer_out{};
     std::array<Input<double>, signal_count> physical_in{};
-    std::array<Input<std::int64_t>, signal_count> whole_in{};
+    std::array<Input<std::int64_t>, signal_count> integer_in{};
     std::array<Event<>, frame_count> frame_received{};
     Output<bool> is_faulted{};
     Output<std::int64_t> bus_state{};
@@ -72,7 +72,7 @@ template <const auto& map> struct Bus {
         was_faulted_ = false;
         if (was_stopped_) forget_stopped_time();
         lost_ = taken_ = 0;
-        told_ = now_told();
+        status_ = status_now();
         write_state();
         arm(cycle.now);
         waiter_->wake(); // for what arrived before
@@ -170,16 +170,16 @@ private:
                     .kind = sent ? FacetKind::input : FacetKind::output,
                     .required = sent,
                     .index = s};
-        if (is_whole(signal)) {
+        if (is_integer(signal)) {
             facet.type = type_id<std::int64_t>;
             facet.port = &PortAccess::data<std::int64_t>;
             if (sent)
                 facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Bus*>(c)->whole_in[i];
+                    return &static_cast<Bus*>(c)->integer_in[i];
                 };
             else
                 facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Bus*>(c)->whole_out[i];
+                    return &static_cast<Bus*>(c)->integer_out[i];
                 };
         } else {
             facet.type = type_id<double>;
@@ -196,7 +196,7 @@ private:
         return facet;
     }
 
-    /// Absolute times: a late cycle does not move the ones behind it, and whole periods missed are left out.
+    /// Absolute times: a late cycle does not move the ones after it, and whole periods missed are left out.
     void next_period(std::size_t f, Time now) noexcept TAPPET_REALTIME {
         const Duration every = map.frames[f].every;
         due_[f] += ((now - due_[f]) / every + 1) * every;
@@ -220,8 +220,8 @@ private:
         const FrameRow& row = map.frames[f];
         const CausedBy arrival{frame.stamp};
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            if (is_whole(map.signals[s]))
-                whole_out[s].write(store_.integer(s), frame.stamp);
+            if (is_integer(map.signals[s]))
+                integer_out[s].write(store_.integer(s), frame.stamp);
             else
                 physical_out[s].write(store_.physical(s), frame.stamp);
         }
@@ -229,27 +229,29 @@ private:
     }
 
     /// What the outputs say of the bus.
-    struct Told {
+    struct Status {
         State state = State::active;
         std::uint64_t lost = 0;
         std::uint64_t taken = 0;
     };
-    [[nodiscard]] Told now_told() const noexcept TAPPET_REALTIME { return {device_->state(), lost_, taken_}; }
+    [[nodiscard]] Status status_now() const noexcept TAPPET_REALTIME {
+        return {device_->state(), lost_, taken_};
+    }
 
     void write_state() noexcept TAPPET_REALTIME {
-        is_faulted.write(faulted(told_.state));
-        bus_state.write(static_cast<std::int64_t>(told_.state));
-        frames_lost.write(static_cast<std::int64_t>(told_.lost));
-        frames_received.write(static_cast<std::int64_t>(told_.taken));
+        is_faulted.write(faulted(status_.state));
+        bus_state.write(static_cast<std::int64_t>(status_.state));
+        frames_lost.write(static_cast<std::int64_t>(status_.lost));
+        frames_received.write(static_cast<std::int64_t>(status_.taken));
     }
 
     void tell_state(Time now) noexcept TAPPET_REALTIME {
-        const Told before = told_;
-        told_ = now_told();
-        if (told_.lost != before.lost) frames_lost.write(static_cast<std::int64_t>(told_.lost));
-        if (told_.taken != before.taken) frames_received.write(static_cast<std::int64_t>(told_.taken));
-        if (told_.state != before.state) bus_state.write(static_cast<std::int64_t>(told_.state));
-        const bool bad = faulted(told_.state);
+        const Status before = status_;
+        status_ = status_now();
+        if (status_.lost != before.lost) frames_lost.write(static_cast<std::int64_t>(status_.lost));
+        if (status_.taken != before.taken) frames_received.write(static_cast<std::int64_t>(status_.taken));
+        if (status_.state != before.state) bus_state.write(static_cast<std::int64_t>(status_.state));
+        const bool bad = faulted(status_.state);
         if (bad == was_faulted_) return;
         was_faulted_ = bad;
         is_faulted.write(bad);
@@ -275,9 +277,9 @@ private:
         const FrameRow& row = map.frames[f];
         Time first{};
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            const bool whole = is_whole(map.signals[s]);
-            const Flow flow = whole ? whole_in[s].read(whole_[s]) : physical_in[s].read(physical_[s]);
-            const Time stamp = whole ? whole_in[s].stamp() : physical_in[s].stamp();
+            const bool integer = is_integer(map.signals[s]);
+            const Flow flow = integer ? integer_in[s].read(integers_[s]) : physical_in[s].read(physical_[s]);
+            const Time stamp = integer ? integer_in[s].stamp() : physical_in[s].stamp();
             found.usable &= flow == Flow::fresh || flow == Flow::old;
             found.fresh |= flow == Flow::fresh;
             if (s == row.first) first = stamp;
@@ -291,8 +293,8 @@ private:
         const FrameRow& row = map.frames[f];
         const std::uint64_t refused = store_.count.refused;
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            if (is_whole(map.signals[s]))
-                store_.set_bits(s, static_cast<std::uint64_t>(whole_[s]));
+            if (is_integer(map.signals[s]))
+                store_.set_bits(s, static_cast<std::uint64_t>(integers_[s]));
             else
                 store_.set_physical(s, physical_[s]);
         }
@@ -344,7 +346,7 @@ private:
         arm(now);
     }
     void arm(Time now) noexcept TAPPET_REALTIME {
-        if (faulted(told_.state)) {
+        if (faulted(status_.state)) {
             next_send.cancel();
             // The look keeps its time when something else wakes us meanwhile.
             if (next_service.when() <= now || next_service.when() > now + look_while_faulted)
@@ -364,7 +366,7 @@ private:
     }
 
     SignalStore<frame_count, signal_count> store_{map};
-    std::array<std::int64_t, signal_count> whole_{};
+    std::array<std::int64_t, signal_count> integers_{};
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
     std::array<bool, frame_count> demanded_{};   // written since it was last sent
@@ -374,7 +376,7 @@ private:
     std::uint64_t lost_ = 0;
     std::uint64_t taken_ = 0;
     std::uint64_t pressed_ = 0;
-    Told told_{};
+    Status status_{};
     bool was_faulted_ = false;
     bool was_stopped_ = false;
 };

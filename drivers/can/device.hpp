@@ -4,6 +4,7 @@
 
 #include "drivers/can/frame.hpp"
 #include "kernel/base/realtime.hpp"
+#include "kernel/component/one_activity.hpp"
 
 #include <cstdint>
 #include <span>
@@ -100,6 +101,9 @@ public:
     [[nodiscard]] virtual int wait_handle() const noexcept TAPPET_REALTIME = 0;
     using Listener = void (*)(void*) noexcept TAPPET_REALTIME;
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
+
+protected:
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity
 };
 
 } // namespace tappet::can

@@ -9,7 +9,7 @@
 namespace tappet::can {
 
 /// A signal is a whole number unless a factor, an offset or a float makes it a physical value.
-constexpr bool is_whole(const Signal& s) noexcept {
+constexpr bool is_integer(const Signal& s) noexcept {
     return s.factor == 1 && s.offset == 0 &&
            (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
 }
@@ -19,13 +19,13 @@ constexpr bool is_whole(const Signal& s) noexcept {
 template <const auto& map> struct FacetNames {
     static constexpr std::size_t longest = 63;
     struct Name {
-        std::array<char, longest + 1> letters{};
+        std::array<char, longest + 1> characters{};
         std::size_t length = 0;
         constexpr void add(std::string_view piece) {
-            for (const char letter : piece)
-                letters[length++] = letter; // longer than `longest` does not compile
+            for (const char character : piece)
+                characters[length++] = character; // longer than `longest` does not compile
         }
-        [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters.data(), length}; }
+        [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters.data(), length}; }
     };
     static constexpr auto signals = [] {
         std::array<Name, map.signals.size()> names{};

@@ -92,7 +92,7 @@ std::expected<Link, Sentence> find_link(std::string_view interface) {
     char name[IFNAMSIZ] = {};
     if (interface.empty() || interface.size() >= sizeof name)
         return std::unexpected{
-            Sentence{who, " cannot exist: a name has 1 to 15 letters; correct it in the board"}};
+            Sentence{who, " cannot exist: a name has 1 to 15 characters; correct it in the board"}};
     interface.copy(name, interface.size());
     ifinfomsg what{};
     what.ifi_family = AF_UNSPEC;

@@ -150,6 +150,7 @@ void SocketCan::close() noexcept {
 }
 
 Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     if (fd_ < 0) return {};
     // A confirmation, an impostor's or a malformed frame is no answer, so reading goes on; as many as can be
     // in flight suffice, and the bound keeps a flood from holding the caller.
@@ -201,10 +202,12 @@ Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME 
 }
 
 Send SocketCan::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     return controller_.accept(frame, keep);
 }
 
 void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     if (controller_.tick(now)) {
         int told = 0; // the interface was down in between, and the socket remembers it as an error
         socklen_t size = sizeof told;

@@ -29,6 +29,7 @@ bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
 }
 
 Receive Twin::receive(Frame& frame) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     for (std::size_t i = 0; i < inbox; ++i) { // confirmations and what is not for us are no answers
         Arrival arrival;
         if (!inbox_.pop(arrival)) return {};
@@ -66,10 +67,12 @@ Receive Twin::receive(Frame& frame) noexcept TAPPET_REALTIME {
 }
 
 Send Twin::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     return controller_.accept(frame, keep);
 }
 
 void Twin::service(Time now) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     controller_.tick(now);
     hand_over(now);
 }

@@ -67,7 +67,7 @@ public:
     [[nodiscard]] std::uint16_t controlword(std::uint16_t statusword) noexcept TAPPET_REALTIME {
         const DriveState state = drive_state(statusword);
         if (state == DriveState::fault) return controlword_in_fault();
-        // An acknowledgement during the reaction is meant for the fault behind it; one that acted before is
+        // An acknowledgement during the reaction is meant for the fault after it; one that acted before is
         // not.
         if (state != DriveState::fault_reaction_active || reset_ == Reset::raised) reset_ = Reset::none;
         low_cycles_left_ = 0;

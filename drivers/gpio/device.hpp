@@ -3,6 +3,7 @@
 
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/one_activity.hpp"
 
 #include <cstdint>
 #include <span>
@@ -92,6 +93,9 @@ public:
     [[nodiscard]] virtual int wait_handle() const noexcept TAPPET_REALTIME = 0;
     using Listener = void (*)(void*) noexcept TAPPET_REALTIME;
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
+
+protected:
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity
 };
 
 } // namespace tappet::gpio

@@ -54,7 +54,7 @@ template <class... Options> constexpr LineRow sensor(std::string_view name, Opti
     return detail::row(name, Role::input, Driven::by_port, options...);
 }
 /// Follows an input port of the component: lamps, contactors.
-template <class... Options> constexpr LineRow lamp(std::string_view name, Options... options) {
+template <class... Options> constexpr LineRow output(std::string_view name, Options... options) {
     return detail::row(name, Role::output, Driven::by_port, options...);
 }
 /// Set and cleared by events: valves and brakes, which act at an angle.

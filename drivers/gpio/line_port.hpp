@@ -17,15 +17,16 @@ namespace tappet::gpio {
 /// The names of a map's facets: "line", "line.rises", "line.falls", "line.set", "line.clear".
 template <const auto& map> struct LineNames {
     struct Name {
-        std::array<char, 64> letters{};
+        std::array<char, 64> characters{};
         std::size_t length = 0;
-        [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters.data(), length}; }
+        [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters.data(), length}; }
     };
     static constexpr auto with(std::string_view ending) {
         std::array<Name, map.rows.size()> names{};
         for (std::size_t i = 0; i < names.size(); ++i) {
-            for (const char letter : map.rows[i].line.name) names[i].letters[names[i].length++] = letter;
-            for (const char letter : ending) names[i].letters[names[i].length++] = letter;
+            for (const char character : map.rows[i].line.name)
+                names[i].characters[names[i].length++] = character;
+            for (const char character : ending) names[i].characters[names[i].length++] = character;
         }
         return names;
     }
@@ -164,12 +165,12 @@ private:
         std::array<Facet, facet_count> all{};
         std::size_t n = 0;
         (add_line<i>(all, n), ...);
-        all[n++] = output<&LinePort::edges_lost>("edges_lost", "",
-                                                 "edges the kernel could not deliver, since start");
+        all[n++] = tappet::output<&LinePort::edges_lost>("edges_lost", "",
+                                                         "edges the kernel could not deliver, since start");
         all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost",
                                                              "edges were lost; the levels were read anew");
-        all[n++] = output<&LinePort::is_faulted>("faulted", "",
-                                                 "the chip refuses what is asked of it; written on change");
+        all[n++] = tappet::output<&LinePort::is_faulted>(
+            "faulted", "", "the chip refuses what is asked of it; written on change");
         all[n++] = tappet::event<&LinePort::line_fault>("line_fault", "the lines can no longer be relied on");
         all[n++] =
             timer<&LinePort::next_look, &LinePort::step>("next_look", "whether a faulted chip answers again");

@@ -106,6 +106,7 @@ void Lines::close() noexcept {
 }
 
 EdgeBatch Lines::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     EdgeBatch batch;
     if (fd_ < 0) return batch;
     batch.count = fetch(edges.first(edges.size() < edges_at_once ? edges.size() : edges_at_once));
@@ -154,6 +155,7 @@ std::uint32_t Lines::index_of(unsigned offset) const noexcept TAPPET_REALTIME {
 }
 
 Levels Lines::levels() noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     if (fd_ < 0) return {};
     std::array<gpiod_line_value, most_lines> values{};
     int result = 0;
@@ -170,6 +172,7 @@ Levels Lines::levels() noexcept TAPPET_REALTIME {
 }
 
 bool Lines::write(Mask mask, Mask values) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     std::array<unsigned, most_lines> chosen{};
     std::array<gpiod_line_value, most_lines> to{};
     std::size_t n = 0;

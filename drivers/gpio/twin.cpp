@@ -18,6 +18,7 @@ void Twin::set_listener(Listener ready, void* context) noexcept {
 }
 
 EdgeBatch Twin::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     EdgeBatch batch;
     if (refuses()) return batch;
     Edge edge;
@@ -39,12 +40,14 @@ EdgeBatch Twin::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
 }
 
 Levels Twin::levels() noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     if (refuses()) return {};
     const Mask outputs = driven_.load(std::memory_order_relaxed);
     return {.known = true, .mask = inputs_.load(std::memory_order_acquire) | outputs};
 }
 
 bool Twin::write(Mask mask, Mask values) noexcept TAPPET_REALTIME {
+    belongs_to_.used();
     if (refuses()) return false;
     const Mask chosen = mask & plan_.outputs;
     const Mask before = driven_.load(std::memory_order_relaxed);

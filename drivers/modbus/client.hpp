@@ -1,205 +1,168 @@
-// A Modbus client as a state machine: connects, polls its table, reconnects with back-off; its values carry
-// an age.
+// A Modbus server as a component: its ports come from a constexpr register map.
 #pragma once
 
 #include "drivers/modbus/register_map.hpp"
+#include "drivers/modbus/session.hpp"
 #include "drivers/modbus/transport.hpp"
+#include "kernel/component/component.hpp"
 
-#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
 
 namespace tappet::modbus {
 
-enum class Quality : std::uint8_t {
-    never, ///< nothing was read yet
-    good,
-    exception, ///< the server refuses this row; the value is the last good one
+template <const auto& map> struct RegisterNames {
+    struct Name {
+        std::array<char, 64> characters{};
+        std::size_t length = 0;
+        constexpr void add(std::string_view piece) {
+            for (const char character : piece) characters[length++] = character;
+        }
+        [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters.data(), length}; }
+    };
+    static constexpr auto all = [] {
+        std::array<Name, map.registers.size()> names{};
+        for (std::size_t v = 0; v < names.size(); ++v) {
+            names[v].add(map.rows[map.row_of[v]].name);
+            names[v].add(".");
+            names[v].add(map.registers[v].name);
+        }
+        return names;
+    }();
 };
 
-struct Value {
-    double value = 0;
-    Time stamp = Time::min(); ///< when the answer was complete
-    Quality quality = Quality::never;
-    std::uint8_t exception = 0;
-};
+/// For each register read an output, stamped when the answer came and written only then, so that its age
+/// tells of an outage; for each register written a required input. It blocks for the requests that are due,
+/// until one is not answered or a period has gone by: it runs in an activity of its own, one server each,
+/// that is not_real_time. At stop, values written since go out; what the server does when it hears no more is
+/// its own time-out's business.
+template <const auto& map> struct Client {
+    static_assert(map.fault.empty(), "the register map is refused: its member `fault` says why");
+    static constexpr std::size_t count = map.registers.size();
+    static constexpr std::string_view device_kind = "modbus";
 
-struct Counters {
-    std::uint64_t requests = 0;
-    std::uint64_t answers = 0;
-    std::uint64_t exceptions = 0;
-    std::uint64_t timeouts = 0;
-    std::uint64_t garbled = 0;
-    std::uint64_t connects = 0;
-    std::uint64_t refused = 0;
-    std::uint64_t outages = 0;          ///< times the server was lost
-    std::uint64_t outages_survived = 0; ///< and answered again
-    std::uint64_t dropped_stale = 0;    ///< values to write that grew too old before they could be sent
-    std::uint64_t saturated = 0;
-    bool operator==(const Counters&) const = default;
-};
+    std::array<Output<double>, count> read{};
+    std::array<Input<double>, count> wanted{};
+    Output<bool> connected{};
+    Output<std::int64_t> outages{};
+    Output<std::int64_t> outages_survived{};
+    Event<> lost{};
+    Event<> back{};
 
-struct Backoff {
-    Duration first = 100ms;
-    /// Each failure doubles the wait, up to this. Its users wait as much longer for a server that is back.
-    Duration most = 2s;
-};
-
-/// Belongs to one activity of its own, not a real-time one: a step holds its caller for one request at most.
-/// `map` and `transport` outlive the client.
-template <std::size_t R, std::size_t V> class Client {
-public:
-    Client(const RegisterMap<R, V>& map, Transport& transport, Backoff backoff = {}) noexcept
-        : map_{&map}, transport_{&transport}, backoff_{backoff}, wait_{backoff.first} {}
-    ~Client() { transport_->disconnect(); }
-    Client(const Client&) = delete;
-    Client& operator=(const Client&) = delete;
-
-    /// Does what is due, one request at most, and says when to call again.
-    Time step(Time now) noexcept {
-        if (now < busy_until_) return busy_until_;
-        if (!connected_) return connect(now);
-        const std::size_t r = most_urgent();
-        if (due(r) > now) return due(r);
-        const Duration every = map_->rows[r].every;
-        if (due_at_[r] <= now)
-            due_at_[r] = std::max(due_at_[r] + every, now + 1ns); // keeps its grid, misses no turn twice
-        return request(r, now);
+    Sentence configure(Setup& setup) {
+        transport_ = setup.device<Transport>();
+        if (transport_ == nullptr) return setup.no_device();
+        session_.emplace(map, *transport_);
+        return {};
     }
 
-    /// The value by its index in the map; its stamp tells its age.
-    [[nodiscard]] const Value& value(std::size_t v) const noexcept { return values_[v]; }
-    /// Sets a value of a written row, which is sent once all its values were set; false when it is no number,
-    /// or the row is only read.
-    bool set(std::size_t v, double physical, Time now) noexcept {
-        const std::size_t r = map_->row_of[v];
-        const Encoded encoded = to_words(map_->registers[v], physical);
-        if (encoded.refused || !map_->rows[r].write) return false;
-        if (encoded.saturated) ++count_.saturated;
-        if (values_[v].stamp == Time::min() || words_[v] != encoded.words)
-            changed_at_[r] = std::min(changed_at_[r], now);
-        words_[v] = encoded.words;
-        values_[v] = {to_physical(map_->registers[v], encoded.words), now, Quality::good, 0};
-        return true;
+    /// Begins anew: with its own connection, and what is wanted is written again unless it grew too old.
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("this activity is not real-time", session_.emplace(map, *transport_));
+        is_set_ = {};
+        was_lost_ = false;
+        connected.write(false);
+        outages.write(0);
+        outages_survived.write(0);
     }
-    [[nodiscard]] bool connected() const noexcept { return connected_; }
-    /// Whether the server is lost: it answered once, or was tried, and does not answer now.
-    [[nodiscard]] bool outage() const noexcept { return outage_; }
-    [[nodiscard]] Counters counters() const noexcept { return count_; }
-    /// Rises with every answer: what stands for "something arrived".
-    [[nodiscard]] std::uint64_t generation() const noexcept { return count_.answers; }
+
+    void work(const Cycle& cycle) {
+        exchange(cycle);
+        for (std::size_t v = 0; v < count; ++v) {
+            const Value value = session_->value(v);
+            if (is_written(v) || value.stamp == seen_[v] || value.quality != Quality::good) continue;
+            seen_[v] = value.stamp;
+            read[v].write(value.value, value.stamp);
+        }
+        connected.write(session_->connected());
+        outages.write(static_cast<std::int64_t>(session_->counters().outages));
+        outages_survived.write(static_cast<std::int64_t>(session_->counters().outages_survived));
+        if (session_->outage() == was_lost_) return;
+        was_lost_ = !was_lost_;
+        if (was_lost_)
+            lost.emit();
+        else
+            back.emit();
+    }
+
+    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        // A server that is silent now would only hold the machine's stop up.
+        if (session_->connected() && !session_->outage())
+            TAPPET_ESCAPE("this activity is not real-time", exchange(cycle));
+    }
+
+    [[nodiscard]] Counters counters() const noexcept { return session_->counters(); }
+
+    static constexpr auto interface() {
+        std::array<Facet, count + 5> list{};
+        std::size_t n = 0;
+        for (std::size_t v = 0; v < count; ++v) {
+            const bool sent = is_written(v);
+            Facet facet{.name = RegisterNames<map>::all[v].view(),
+                        .unit = map.registers[v].unit,
+                        .doc = sent ? "written to the server" : "read from the server",
+                        .kind = sent ? FacetKind::input : FacetKind::output,
+                        .type = type_id<double>,
+                        .required = sent,
+                        .index = v,
+                        .port = &PortAccess::data<double>};
+            if (sent)
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Client*>(c)->wanted[i];
+                };
+            else
+                facet.at = [](void* c, std::size_t i) noexcept -> void* {
+                    return &static_cast<Client*>(c)->read[i];
+                };
+            list[n++] = facet;
+        }
+        list[n++] = output<&Client::connected>("connected", "", "the server answers");
+        list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
+        list[n++] = output<&Client::outages_survived>("outages_survived", "", "times it came back");
+        list[n++] = event<&Client::lost>("lost", "the server does not answer");
+        list[n++] = event<&Client::back>("back", "the server answers again");
+        return list;
+    }
 
 private:
-    Time connect(Time now) noexcept {
-        const Answer answer = transport_->connect();
-        busy_until_ = now + answer.took;
-        if (answer.outcome != Outcome::ok) {
-            ++count_.refused;
-            return lose(now + answer.took);
-        }
-        ++count_.connects;
-        connected_ = true;
-        // Rows that fell due meanwhile are read once each, not as often as they were missed.
-        for (Time& due : due_at_) due = std::max(due, now);
-        return busy_until_;
-    }
-    /// A changed row is due when it was changed: soon, but not before rows that were due earlier still.
-    [[nodiscard]] Time due(std::size_t r) const noexcept { return std::min(due_at_[r], changed_at_[r]); }
-    [[nodiscard]] std::size_t most_urgent() const noexcept {
-        std::size_t best = 0;
-        for (std::size_t r = 1; r < R; ++r)
-            if (due(r) < due(best)) best = r;
-        return best;
-    }
-    Time request(std::size_t r, Time now) noexcept {
-        const Row& row = map_->rows[r];
-        if (row.write && !fresh(r, now)) return now;
-        const auto address = static_cast<std::uint16_t>(row.run.address);
-        const auto words = std::span{buffer_}.first(row.run.count);
-        if (row.write) fill(row);
-        ++count_.requests;
-        const Answer answer = row.write ? transport_->write(row.run.table, address, words)
-                                        : transport_->read(row.run.table, address, words);
-        const Time done = now + answer.took;
-        busy_until_ = done;
-        switch (answer.outcome) {
-        case Outcome::ok:
-            if (!row.write) take(row, done);
-            changed_at_[r] = never;
-            answered();
-            return done;
-        case Outcome::exception:
-            for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
-                values_[v].quality = Quality::exception;
-                values_[v].exception = answer.exception;
+    static constexpr bool is_written(std::size_t v) noexcept { return map.rows[map.row_of[v]].write; }
+
+    void exchange(const Cycle& cycle) noexcept {
+        for (std::size_t v = 0; v < count; ++v) {
+            if (!is_written(v)) continue;
+            double value = 0;
+            const Flow flow = wanted[v].read(value);
+            if (flow == Flow::fresh || (flow == Flow::old && !is_set_[v])) {
+                const Time since = flow == Flow::fresh ? cycle.now : wanted[v].stamp();
+                is_set_[v] = session_->set(v, value, since);
             }
-            ++count_.exceptions;
-            changed_at_[r] = never; // it would refuse again; the period is soon enough
-            answered();
-            return done;
-        case Outcome::timeout: ++count_.timeouts; break;
-        case Outcome::garbled: ++count_.garbled; break;
-        case Outcome::refused:
-        case Outcome::disconnected: break;
         }
-        connected_ = transport_->recover();
-        return lose(done);
-    }
-    /// False, and the change forgotten, when the row's values were never set or are too old to be sent.
-    bool fresh(std::size_t r, Time now) noexcept {
-        const Row& row = map_->rows[r];
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
-            const bool old = row.stale_after > 0ns && values_[v].stamp != Time::min() &&
-                             now - values_[v].stamp > row.stale_after;
-            if (values_[v].stamp != Time::min() && !old) continue;
-            if (old && changed_at_[r] != never) ++count_.dropped_stale;
-            changed_at_[r] = never;
-            return false;
-        }
-        return true;
-    }
-    void fill(const Row& row) noexcept {
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v)
-            for (unsigned i = 0; i < map_->registers[v].width(); ++i)
-                buffer_[map_->registers[v].at + i] = words_[v][i];
-    }
-    void take(const Row& row, Time stamp) noexcept {
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
-            const Register& one = map_->registers[v];
-            for (unsigned i = 0; i < one.width(); ++i) words_[v][i] = buffer_[one.at + i];
-            values_[v] = {to_physical(one, words_[v]), stamp, Quality::good, 0};
+        // The client says when a request ended; the next one begins then.
+        Time at = cycle.now;
+        for (std::size_t n = 0; n <= map.rows.size(); ++n) {
+            const std::uint64_t before = tried();
+            const Time next = session_->step(at);
+            if (tried() == before && next > at) return; // nothing is due
+            if (session_->outage() || next > cycle.now + cycle.period) return;
+            at = next;
         }
     }
-    void answered() noexcept {
-        ++count_.answers;
-        wait_ = backoff_.first;
-        if (outage_) ++count_.outages_survived;
-        outage_ = false;
-    }
-    Time lose(Time now) noexcept {
-        if (!outage_) ++count_.outages;
-        outage_ = true;
-        busy_until_ = now + wait_;
-        wait_ = std::min(wait_ * 2, backoff_.most);
-        return busy_until_;
+    [[nodiscard]] std::uint64_t tried() const noexcept {
+        const Counters count_now = session_->counters();
+        return count_now.requests + count_now.connects + count_now.refused;
     }
 
-    const RegisterMap<R, V>* map_;
-    Transport* transport_;
-    Backoff backoff_;
-    Duration wait_;
-    Time busy_until_ = Time::min();
-    bool connected_ = false;
-    bool outage_ = false;
-    std::array<Time, R> due_at_{};
-    std::array<Time, R> changed_at_ = [] {
-        std::array<Time, R> none{};
-        none.fill(never);
+    Transport* transport_ = nullptr;
+    std::optional<Session<map.rows.size(), map.registers.size()>> session_{};
+    std::array<Time, count> seen_ = [] {
+        std::array<Time, count> none{};
+        none.fill(Time::min());
         return none;
     }();
-    std::array<Value, V> values_{};
-    std::array<Words, V> words_{};
-    std::array<std::uint16_t, most_words> buffer_{};
-    Counters count_{};
-    static_assert(R > 0, "a client without rows has nothing to do");
+    std::array<bool, count> is_set_{}; ///< in the client, since start
+    bool was_lost_ = false;
 };
 
 } // namespace tappet::modbus

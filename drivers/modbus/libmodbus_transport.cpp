@@ -90,6 +90,7 @@ void LibmodbusTransport::close() noexcept {
 }
 
 Answer LibmodbusTransport::connect() noexcept {
+    belongs_to_.used();
     if (!context_) return {.outcome = Outcome::refused};
     disconnect();
     const Time begin = now();
@@ -105,6 +106,7 @@ void LibmodbusTransport::disconnect() noexcept {
 }
 
 bool LibmodbusTransport::recover() noexcept {
+    belongs_to_.used();
     // A late answer on TCP would be taken for the next one's; a serial line only has to be emptied.
     if (is_serial_ && connected_ && modbus_flush(context_.get()) >= 0) return true;
     disconnect();
@@ -113,6 +115,7 @@ bool LibmodbusTransport::recover() noexcept {
 
 Answer LibmodbusTransport::read(Table table, std::uint16_t address,
                                 std::span<std::uint16_t> values) noexcept {
+    belongs_to_.used();
     if (!connected_ || values.empty() || values.size() > most_values)
         return {.outcome = Outcome::disconnected};
     const int count = static_cast<int>(values.size());
@@ -136,6 +139,7 @@ Answer LibmodbusTransport::read(Table table, std::uint16_t address,
 
 Answer LibmodbusTransport::write(Table table, std::uint16_t address,
                                  std::span<const std::uint16_t> values) noexcept {
+    belongs_to_.used();
     if (!connected_ || values.empty() || values.size() > most_in_write || !writable(table))
         return {.outcome = Outcome::disconnected};
     const int count = static_cast<int>(values.size());

@@ -4,6 +4,7 @@
 
 #include "drivers/modbus/registers.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/one_activity.hpp"
 
 #include <span>
 
@@ -43,6 +44,9 @@ public:
     virtual Answer read(Table table, std::uint16_t address, std::span<std::uint16_t> values) noexcept = 0;
     virtual Answer write(Table table, std::uint16_t address,
                          std::span<const std::uint16_t> values) noexcept = 0;
+
+protected:
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity
 };
 
 } // namespace tappet::modbus

@@ -18,6 +18,7 @@ Fault Twin::strike() noexcept {
 }
 
 Answer Twin::connect() noexcept {
+    belongs_to_.used();
     late_answer_ = false;
     connected_ = fault_.load(std::memory_order_acquire) != Fault::down || strike() != Fault::down;
     return {.outcome = connected_ ? Outcome::ok : Outcome::refused, .took = turnaround_};
@@ -29,6 +30,7 @@ void Twin::disconnect() noexcept {
 }
 
 bool Twin::recover() noexcept {
+    belongs_to_.used();
     disconnect();
     return false;
 }
@@ -65,6 +67,7 @@ Answer Twin::admit(std::uint16_t address, std::size_t count) noexcept {
 }
 
 Answer Twin::read(Table table, std::uint16_t address, std::span<std::uint16_t> values) noexcept {
+    belongs_to_.used();
     const Answer answer = admit(address, values.size());
     if (answer.outcome != Outcome::ok) return answer;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -75,6 +78,7 @@ Answer Twin::read(Table table, std::uint16_t address, std::span<std::uint16_t> v
 }
 
 Answer Twin::write(Table table, std::uint16_t address, std::span<const std::uint16_t> values) noexcept {
+    belongs_to_.used();
     constexpr std::uint8_t illegal_function = 1;
     if (!writable(table))
         return {.outcome = Outcome::exception, .exception = illegal_function, .took = turnaround_};

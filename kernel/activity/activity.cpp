@@ -60,10 +60,6 @@ bool Activity::end(int milliseconds) noexcept {
     return thread_.join_within(milliseconds + 1);
 }
 
-std::size_t Activity::stack_high_water_bytes() const noexcept {
-    return os::stack_high_water_bytes(plan_.stack);
-}
-
 Activity* Activity::current() noexcept TAPPET_REALTIME {
     Activity* found = nullptr;
     TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
@@ -75,7 +71,7 @@ void Activity::enter(void* self) noexcept { static_cast<Activity*>(self)->live()
 
 void Activity::live() noexcept {
     current_activity = this;
-    const RunsActivity here{engine_->plan().activity};
+    const RunsActivity here{engine_->plan().activity, engine_->now_address()};
     while (!ended_.load(std::memory_order_acquire)) {
         if (released_.load(std::memory_order_acquire)) {
             run_once();

@@ -61,7 +61,6 @@ public:
     [[nodiscard]] Engine& engine() const noexcept TAPPET_REALTIME { return *engine_; }
     /// Page faults of its thread from each first cycle to the stop; complete when stopped.
     [[nodiscard]] os::PageFaults page_faults() const noexcept { return faults_; }
-    [[nodiscard]] std::size_t stack_high_water_bytes() const noexcept;
     [[nodiscard]] std::size_t stack_bytes() const noexcept { return plan_.stack.size(); }
 
     /// The activity of the calling thread; null outside. Real-time.

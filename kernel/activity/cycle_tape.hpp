@@ -26,11 +26,11 @@ struct TapeCycle {
     std::uint32_t marks = 0;
     std::uint32_t left_out = 0; ///< functions for which the cycle had no room; 255: or more
     std::uint64_t at = 0;       ///< position of its first mark
-    std::uint64_t behind = 0;   ///< position behind its last word
+    std::uint64_t after = 0;    ///< position after its last word
 
     [[nodiscard]] std::int64_t response() const noexcept { return end - release; }
     [[nodiscard]] std::int64_t busy() const noexcept { return end - begin; }
-    [[nodiscard]] std::size_t words() const noexcept { return static_cast<std::size_t>(behind - at); }
+    [[nodiscard]] std::size_t words() const noexcept { return static_cast<std::size_t>(after - at); }
 };
 
 /// A function of the engine that ended so long after its cycle's begin. It began when the mark before it
@@ -40,7 +40,7 @@ struct TapeMark {
     static constexpr std::uint64_t time_mask = (std::uint64_t{1} << time_bits) - 1;
 
     std::uint32_t function = 0; ///< as FunctionTiming is numbered
-    std::int64_t end = 0;       ///< ns behind the begin of the cycle
+    std::int64_t end = 0;       ///< ns after the begin of the cycle
 
     [[nodiscard]] constexpr std::uint64_t word() const noexcept {
         return std::uint64_t{function} << time_bits | (static_cast<std::uint64_t>(end) & time_mask);
@@ -52,21 +52,21 @@ struct TapeMark {
 
 /// The cycle whose last three words these are; nothing but its numbers is checked by who reads.
 [[nodiscard]] constexpr TapeCycle cycle_of(std::uint64_t release, std::uint64_t begin, std::uint64_t summary,
-                                           std::uint64_t behind) noexcept {
+                                           std::uint64_t after) noexcept {
     TapeCycle cycle;
     cycle.release = static_cast<std::int64_t>(release);
     cycle.begin = static_cast<std::int64_t>(begin);
     cycle.end = cycle.begin + static_cast<std::int64_t>(summary & TapeMark::time_mask);
     cycle.marks = static_cast<std::uint32_t>(summary >> 52);
     cycle.left_out = static_cast<std::uint32_t>(summary >> TapeMark::time_bits & 0xff);
-    cycle.at = behind - TapeCycle::words_beside_marks - cycle.marks;
-    cycle.behind = behind;
+    cycle.at = after - TapeCycle::words_beside_marks - cycle.marks;
+    cycle.after = after;
     return cycle;
 }
 
 /// Written by one engine, wait-free: one store for each function, four for each cycle, no load of what
 /// another wrote, and no line that a reader polls. It overwrites its oldest cycles without asking; a reader
-/// finds out afterwards whether what it read still stood there. Its words lie behind it.
+/// finds out afterwards whether what it read still stood there. Its words lie after it.
 ///
 /// Proof that no torn cycle is handed out: all words are stored with release and loaded with acquire. A
 /// reader that loads a word of a later round than it meant therefore sees in head() at least the position at
@@ -123,7 +123,7 @@ public:
         head_.store(position_, std::memory_order_release); // tape.head
     }
 
-    /// Behind the last complete cycle; any thread, any process.
+    /// After the last complete cycle; any thread, any process.
     [[nodiscard]] std::uint64_t head() const noexcept {
         return head_.load(std::memory_order_acquire); // tape.look
     }
@@ -136,12 +136,12 @@ public:
     [[nodiscard]] bool holds(std::uint64_t at) const noexcept {
         return at + capacity_ >= head() + most_words(); // tape.check
     }
-    /// The cycle that ends where `behind` says: head(), or the `at` of the cycle behind it. False: there is
+    /// The cycle that ends where `after` says: head(), or the `at` of the cycle after it. False: there is
     /// none, or it is overwritten.
-    [[nodiscard]] bool cycle_before(std::uint64_t behind, TapeCycle& cycle) const noexcept {
-        if (behind < TapeCycle::words_beside_marks || behind > head()) return false;
-        cycle = cycle_of(get(behind - 3), get(behind - 2), get(behind - 1), behind);
-        return cycle.marks + TapeCycle::words_beside_marks <= behind && holds(cycle.at);
+    [[nodiscard]] bool cycle_before(std::uint64_t after, TapeCycle& cycle) const noexcept {
+        if (after < TapeCycle::words_beside_marks || after > head()) return false;
+        cycle = cycle_of(get(after - 3), get(after - 2), get(after - 1), after);
+        return cycle.marks + TapeCycle::words_beside_marks <= after && holds(cycle.at);
     }
     /// Words from `at` on, as many as `into` has room for. False: they are not there any more.
     [[nodiscard]] bool copy(std::uint64_t at, std::span<std::uint64_t> into) const noexcept {

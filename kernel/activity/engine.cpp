@@ -19,6 +19,7 @@ void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
 } // namespace
 
 void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
+    expect_standing();
     plan_ = plan;
     clock_ = &clock;
     cycle_.period = plan.period;

@@ -28,7 +28,7 @@ struct Behaviour {
     std::uint32_t part = 0; ///< of the component it drives
     void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     void (*programs)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< null: it has none
-    void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< behind all programs
+    void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< after all programs
     void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     Time (*next)(const void* self) noexcept
         TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened
@@ -136,17 +136,18 @@ public:
     using StopCall = void (*)(void* context, StopReason, std::uint64_t detail, const Engine& from) noexcept
         TAPPET_REALTIME;
 
-    /// Before start. Spans outlive the engine.
+    /// While it stands, as all that says so. Spans outlive the engine.
     void place(const EnginePlan& plan, os::Clock& clock) noexcept;
     void on_stop(StopCall call, void* context) noexcept { stop_call_ = call, stop_context_ = context; }
 
-    /// Before start: its cycles are recorded there, whenever that tape is on. It outlives the engine.
+    /// While it stands: its cycles are recorded there, whenever that tape is on. It outlives the engine.
     void record_to(CycleTape* tape) noexcept {
+        expect_standing();
         recorded_ = tape;
         steps_only_ = steps_only_ && tape == nullptr;
     }
 
-    /// On the starter's thread, while the engine does not run: initialises the components; those that had
+    /// On the starter's thread, while it stands: initialises the components; those that had
     /// been before one refused are finalised again. Empty: all are ready. Not real-time.
     [[nodiscard]] Sentence initialise();
     /// On the stopper's thread, after stop(): the last one initialised comes first. Not real-time.
@@ -158,11 +159,11 @@ public:
     /// One cycle. `woken`: by a message, a connection or the device; otherwise by time.
     void run(bool woken) noexcept TAPPET_REALTIME {
         if (running_activity() == plan_.activity) return cycle(woken); // in its own thread always
-        const RunsActivity here{plan_.activity};
+        const RunsActivity here{plan_.activity, &cycle_.now};
         cycle(woken);
     }
     /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values,
-    /// in data-flow order, so that what a source writes last reaches the driver behind it.
+    /// in data-flow order, so that what a source writes last reaches the driver after it.
     void stop(Time now) noexcept TAPPET_REALTIME;
     /// In the thread that stopped it, when it is woken before the next start: the sender of a command that
     /// looked before the stop and posted after it gets its answer.
@@ -177,7 +178,7 @@ public:
         return active_.load(std::memory_order_acquire); // no step: asked by whoever wants to know
     }
     /// Why it could not start while the rest of the machine runs: an input that another activity writes has
-    /// no valid value. Only while the engine does not run.
+    /// no valid value. While it stands.
     [[nodiscard]] LifeAnswer readiness(Time now) noexcept TAPPET_REALTIME;
     /// Its thread hangs or broke a contract, and its stop was run in its place: its components are failed.
     void mark_failed() noexcept TAPPET_REALTIME;
@@ -227,6 +228,9 @@ public:
     }
 
 private:
+    void expect_standing() const noexcept TAPPET_REALTIME {
+        TAPPET_CONTRACT(!is_active(), Contract::engine_runs, plan_.activity);
+    }
     [[nodiscard]] FunctionTiming& function(std::uint32_t part, FunctionKind kind) noexcept TAPPET_REALTIME {
         return plan_.functions[part * functions_per_part + static_cast<std::uint32_t>(kind)];
     }
@@ -261,7 +265,7 @@ private:
             generation_.load(std::memory_order_relaxed); // no step: nobody else writes it
         if (before % 2 != 0) return is_changing;
         generation_.store(before + 1, std::memory_order_relaxed); // observe.begin
-        std::atomic_thread_fence(std::memory_order_release);      // what follows is stored behind it
+        std::atomic_thread_fence(std::memory_order_release);      // what follows is stored after it
         return before + 2;
     }
     void end_change(std::uint64_t generation) noexcept TAPPET_REALTIME {

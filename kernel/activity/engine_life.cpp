@@ -11,7 +11,8 @@ constexpr std::uint64_t life_note = 0x6c696665u; // "life": no transition of a s
 } // namespace
 
 Sentence Engine::initialise() {
-    const RunsActivity here{plan_.activity}; // it does not run: its share of every event is free
+    expect_standing();
+    const RunsActivity here{plan_.activity, &cycle_.now}; // it does not run: its share of every event is free
     for (std::size_t i = 0; i < plan_.parts.size(); ++i) {
         EnginePart& part = plan_.parts[i];
         if (part.type->initialise != nullptr)
@@ -29,14 +30,15 @@ Sentence Engine::initialise() {
 }
 
 void Engine::finalise() {
-    const RunsActivity here{plan_.activity};
+    expect_standing();
+    const RunsActivity here{plan_.activity, &cycle_.now};
     for (std::size_t i = plan_.parts.size(); i-- > 0;)
         if (plan_.parts[i].type->finalise != nullptr) plan_.parts[i].type->finalise(plan_.parts[i].component);
 }
 
 void Engine::start(Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
-    const RunsActivity here{plan_.activity};
+    const RunsActivity here{plan_.activity, &cycle_.now};
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     next_release_ = plan_.periodic ? now + plan_.period : never;
     if (was_stopped_) {
@@ -65,7 +67,7 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
 
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
-    const RunsActivity here{plan_.activity};
+    const RunsActivity here{plan_.activity, &cycle_.now};
     cycle_.now = cycle_.release = lap_ = now;
     // What others asked before the stop is done, and what the own behaviours ask at their end: a valve that
     // somebody told to close closes. A thread that hangs in its cycle may hang in its mailbox: that is left
@@ -143,6 +145,7 @@ LifeAnswer Engine::check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_R
 
 // Its own components have not written yet: only what other activities give can be judged.
 LifeAnswer Engine::readiness(Time now) noexcept TAPPET_REALTIME {
+    expect_standing();
     cycle_.now = now; // the ages of values are told by it
     for (const NeededInput& each : plan_.inputs) {
         if (each.same_activity) continue;

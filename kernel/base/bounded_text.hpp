@@ -1,4 +1,4 @@
-// A text of at most N letters, in place: a value like a number, copied as bytes.
+// A text of at most N characters, in place: a value like a number, copied as bytes.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -12,7 +12,7 @@ namespace tappet {
 
 template <std::size_t N>
 struct Text {
-    std::array<char, N> letters{};
+    std::array<char, N> characters{};
     std::uint32_t length = 0;
 
     constexpr Text() = default;
@@ -25,13 +25,13 @@ struct Text {
     /// Real-time. False, and nothing changed, when it is too long.
     constexpr bool assign(std::string_view from) noexcept TAPPET_REALTIME {
         if (from.size() > N) return false;
-        letters = {};
-        for (std::size_t i = 0; i < from.size(); ++i) letters[i] = from[i];
+        characters = {};
+        for (std::size_t i = 0; i < from.size(); ++i) characters[i] = from[i];
         length = static_cast<std::uint32_t>(from.size());
         return true;
     }
     [[nodiscard]] constexpr std::string_view view() const noexcept TAPPET_REALTIME {
-        return {letters.data(), length};
+        return {characters.data(), length};
     }
     friend constexpr bool operator==(const Text&, const Text&) = default;
 };

@@ -14,7 +14,8 @@ constexpr bool table_is_sound() {
     for (std::size_t i = 0; i < contract_texts.size(); ++i) {
         const ContractText& row = contract_texts[i];
         if (i > 0 && contract_texts[i - 1].id >= row.id) return false;
-        if (row.name.empty() || !row.sentence.ends_with('.') || values_of(row.id) > Breach::max_values)
+        if (row.name.empty() || !row.sentence.ends_with('.') ||
+            values_of(row.id) > ContractViolation::max_values)
             return false;
         for (std::size_t j = 0; j < i; ++j)
             if (contract_texts[j].name == row.name) return false;
@@ -44,17 +45,17 @@ void add_address(Sentence& text, std::uint64_t address) noexcept {
     text.add(std::string_view{digits, n});
 }
 
-[[noreturn]] void last_resort(const Breach& breach) noexcept {
+[[noreturn]] void last_resort(const ContractViolation& breach) noexcept {
     Sentence text = describe(breach);
     text.add("\n");
     // stderr is unbuffered: this is one write, with no heap behind it.
-    std::fwrite(text.letters, 1, text.length, stderr);
+    std::fwrite(text.characters, 1, text.length, stderr);
     std::abort();
 }
 
 } // namespace
 
-Sentence describe(const Breach& breach) noexcept {
+Sentence describe(const ContractViolation& breach) noexcept {
     Sentence text{"contract ", static_cast<int>(breach.id), " "};
     const ContractText* row = find_text(breach.id);
     if (row == nullptr) return text.add("is not in the table of this build");
@@ -65,7 +66,7 @@ Sentence describe(const Breach& breach) noexcept {
         const bool address = rest.substr(0, hole).ends_with("ddress ");
         text.add(rest.substr(0, hole));
         if (hole == rest.size()) break;
-        const std::int64_t number = breach.values[std::min(value, Breach::max_values - 1)];
+        const std::int64_t number = breach.values[std::min(value, ContractViolation::max_values - 1)];
         if (address)
             add_address(text, static_cast<std::uint64_t>(number));
         else
@@ -81,10 +82,10 @@ ContractHandler install_contract_handler(ContractHandler handler) noexcept TAPPE
     return installed.exchange(handler, std::memory_order_acq_rel);
 }
 
-void break_contract(const Breach& breach) noexcept TAPPET_REALTIME {
+void break_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
     const ContractHandler handler = installed.load(std::memory_order_acquire);
     const ContractText* row = find_text(breach.id);
-    const bool goes_on = row != nullptr && row->after == AfterBreach::thread_goes_on;
+    const bool goes_on = row != nullptr && row->after == AfterViolation::thread_goes_on;
     int depth = 0;
     TAPPET_ESCAPE("constant-initialised and in the program's own block of thread storage: never allocated",
                   depth = ++inside_handler);

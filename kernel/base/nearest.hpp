@@ -10,27 +10,28 @@
 namespace tappet {
 
 /// Names longer than this are compared with nothing: they are no typing error.
-inline constexpr std::size_t nearest_max_letters = 64;
+inline constexpr std::size_t nearest_max_length = 64;
 
 enum class LetterCase { matters, ignored };
 
-constexpr char lower_case(char letter) noexcept {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+constexpr char lower_case(char character) noexcept {
+    return character >= 'A' && character <= 'Z' ? static_cast<char>(character - 'A' + 'a') : character;
 }
 
-/// The least number of letters inserted, left out, changed, or swapped with their neighbour that leads from
-/// one text to the other (Damerau 1964, with no letter edited twice). More than `limit` is reported as limit
+/// The least number of characters inserted, left out, changed, or swapped with their neighbour that leads
+/// from one text to the other (Damerau 1964, with no character edited twice). More than `limit` is reported
+/// as limit
 /// + 1, soon.
 constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
-                                    std::size_t limit = nearest_max_letters,
+                                    std::size_t limit = nearest_max_length,
                                     LetterCase letter_case = LetterCase::matters) noexcept {
     const std::size_t gap = from.size() > to.size() ? from.size() - to.size() : to.size() - from.size();
-    if (gap > limit || from.size() > nearest_max_letters || to.size() > nearest_max_letters) return limit + 1;
+    if (gap > limit || from.size() > nearest_max_length || to.size() > nearest_max_length) return limit + 1;
 
     const auto same = [letter_case](char a, char b) {
         return letter_case == LetterCase::matters ? a == b : lower_case(a) == lower_case(b);
     };
-    using Row = std::array<std::size_t, nearest_max_letters + 1>;
+    using Row = std::array<std::size_t, nearest_max_length + 1>;
     Row rows[3] = {};
     Row* before_last = &rows[0];
     Row* last = &rows[1];
@@ -61,7 +62,7 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
 
 /// Shows every candidate to consider() and keeps the nearest one that is near enough to be meant: at most two
 /// edits, or a third of the written name. Of two equally near the one nearer in lower case wins, then the
-/// first shown. The same name in other case is always near. The candidates' letters must outlive it.
+/// first shown. The same name in other case is always near. The candidates' characters must outlive it.
 class Nearest {
 public:
     explicit constexpr Nearest(std::string_view written) noexcept
@@ -72,7 +73,7 @@ public:
         if (folded > distance_) return; // respecting case never brings texts nearer
         std::size_t distance = edit_distance(written_, candidate, distance_);
         if (folded == 0) distance = std::min<std::size_t>(distance, 1);
-        // Texts without a letter in common are no suggestion, however short.
+        // Texts without a character in common are no suggestion, however short.
         if (folded >= std::max(written_.size(), candidate.size()) && folded != 0) return;
         if (distance > distance_ || (distance == distance_ && folded >= folded_)) return;
         best_ = candidate;

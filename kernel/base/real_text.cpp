@@ -87,7 +87,7 @@ std::size_t write_shortest(char* into, double value, DoubleToStringConverter::Dt
                                                            : write_scientific(into + sign, d));
 }
 
-bool is_digit(char letter) noexcept { return letter >= '0' && letter <= '9'; }
+bool is_digit(char character) noexcept { return character >= '0' && character <= '9'; }
 
 std::size_t count_digits(std::string_view text) noexcept {
     std::size_t n = 0;

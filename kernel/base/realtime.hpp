@@ -3,7 +3,7 @@
 #pragma once
 
 #if defined(__clang__)
-// Stands behind noexcept, as part of the function's type: void step() noexcept TAPPET_REALTIME;
+// Stands after noexcept, as part of the function's type: void step() noexcept TAPPET_REALTIME;
 #define TAPPET_REALTIME [[clang::nonblocking]]
 #define TAPPET_PRAGMA(text) _Pragma(#text)
 #else

@@ -12,7 +12,7 @@ namespace tappet {
 /// A sentence of at most `capacity` characters, built piece by piece; what does not fit is cut, visibly.
 struct Sentence {
     static constexpr std::size_t capacity = 480;
-    char letters[capacity + 1] = {};
+    char characters[capacity + 1] = {};
     std::size_t length = 0;
 
     constexpr Sentence() = default;
@@ -21,12 +21,12 @@ struct Sentence {
         (add(pieces), ...);
     }
     constexpr Sentence& add(std::string_view piece) noexcept {
-        for (char letter : piece) {
+        for (char character : piece) {
             if (length == capacity) {
-                letters[capacity - 1] = letters[capacity - 2] = letters[capacity - 3] = '.';
+                characters[capacity - 1] = characters[capacity - 2] = characters[capacity - 3] = '.';
                 return *this;
             }
-            letters[length++] = letter;
+            characters[length++] = character;
         }
         return *this;
     }
@@ -47,23 +47,23 @@ struct Sentence {
     constexpr Sentence& add(std::size_t number) noexcept { return add(static_cast<std::int64_t>(number)); }
     constexpr Sentence& add(unsigned number) noexcept { return add(static_cast<std::int64_t>(number)); }
 
-    [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters, length}; }
+    [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters, length}; }
     [[nodiscard]] constexpr bool empty() const noexcept { return length == 0; }
     // What static_assert(ok, message) asks of a message object.
     [[nodiscard]] constexpr std::size_t size() const noexcept { return length; }
-    [[nodiscard]] constexpr const char* data() const noexcept { return letters; }
+    [[nodiscard]] constexpr const char* data() const noexcept { return characters; }
 };
 
 /// A text of exactly N characters as a template argument: a compiler that cannot print a message object
 /// prints this.
 template <std::size_t N>
 struct text {
-    char letters[N + 1] = {};
+    char characters[N + 1] = {};
     constexpr text() = default;
-    explicit constexpr text(std::string_view from) { std::copy_n(from.data(), N, letters); }
+    explicit constexpr text(std::string_view from) { std::copy_n(from.data(), N, characters); }
     // NOLINTNEXTLINE: a literal is a text
-    constexpr text(const char (&from)[N + 1]) { std::copy_n(from, N, letters); }
-    [[nodiscard]] constexpr std::string_view view() const noexcept { return {letters, N}; }
+    constexpr text(const char (&from)[N + 1]) { std::copy_n(from, N, characters); }
+    [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters, N}; }
 };
 template <std::size_t M>
 text(const char (&)[M]) -> text<M - 1>;

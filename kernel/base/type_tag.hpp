@@ -22,8 +22,8 @@ namespace tappet {
 /// What the bytes of a value mean.
 enum class ValueKind : std::uint8_t {
     opaque,      ///< nobody but the component's own code knows
-    truth,       ///< bool
-    whole,       ///< signed integer of `size` bytes, also an enumeration without names
+    boolean,     ///< bool
+    integer,     ///< signed integer of `size` bytes, also an enumeration without names
     natural,     ///< unsigned integer of `size` bytes, likewise
     real,        ///< float or double
     duration,    ///< Duration, or Time since the machine's epoch: nanoseconds in an int64
@@ -32,7 +32,7 @@ enum class ValueKind : std::uint8_t {
     record,      ///< a struct that names its fields
     enumeration, ///< an enum that names its values
     sequence,    ///< Bounded<T, N>
-    arguments,   ///< of an event or an operation: `elements`, packed one behind the other without gaps
+    arguments,   ///< of an event or an operation: `elements`, packed one after the other without gaps
 };
 
 struct TypeTag;
@@ -57,7 +57,7 @@ struct TypeTag {
     bool arithmetic = false;
     std::span<const TypeId> elements{}; ///< of an argument list
     ValueKind kind = ValueKind::opaque;
-    bool row_major = false;   ///< of a matrix; otherwise its columns lie one behind the other
+    bool row_major = false;   ///< of a matrix; otherwise its columns lie one after the other
     TypeId element = nullptr; ///< of a matrix or a sequence; of an enumeration the integer that it is
     std::size_t rows = 0;     ///< of a matrix
     std::size_t columns = 0;  ///< of a matrix; of a text or a sequence: how many there may be, from byte 0 on
@@ -125,9 +125,9 @@ template <class T>
 struct ShapeOf {
     static constexpr void put(TypeTag& tag) noexcept {
         if constexpr (std::same_as<T, bool>)
-            tag.kind = ValueKind::truth;
+            tag.kind = ValueKind::boolean;
         else if constexpr (std::integral<T> && sizeof(T) <= sizeof(std::int64_t))
-            tag.kind = std::signed_integral<T> ? ValueKind::whole : ValueKind::natural;
+            tag.kind = std::signed_integral<T> ? ValueKind::integer : ValueKind::natural;
         else if constexpr (std::same_as<T, float> || std::same_as<T, double>)
             tag.kind = ValueKind::real;
         else if constexpr (std::same_as<T, Duration> || std::same_as<T, Time>)
@@ -142,7 +142,7 @@ struct ShapeOf {
     static constexpr void put_enumeration(TypeTag& tag) noexcept {
         using Integer = std::underlying_type_t<T>;
         tag.kind = !names_of<T>.empty()            ? ValueKind::enumeration
-                   : std::signed_integral<Integer> ? ValueKind::whole
+                   : std::signed_integral<Integer> ? ValueKind::integer
                                                    : ValueKind::natural;
         tag.element = &TagOf<Integer>::tag;
         tag.names = names_of<T>;
@@ -167,7 +167,7 @@ struct ShapeOf<Text<N>> {
         tag.columns = N;
         tag.length_bytes = sizeof(Text<N>::length);
         tag.length_at = (N + tag.length_bytes - 1) / tag.length_bytes * tag.length_bytes;
-        static_assert(sizeof(Text<N>) == (N + 3) / 4 * 4 + 4, "the letters, then their number");
+        static_assert(sizeof(Text<N>) == (N + 3) / 4 * 4 + 4, "the characters, then their number");
     }
 };
 template <class T, std::size_t N>

@@ -42,7 +42,7 @@ T load(const std::byte* from) noexcept {
 }
 
 /// An integer of 1, 2, 4 or 8 bytes.
-inline std::int64_t load_whole(const std::byte* from, std::size_t size) noexcept {
+inline std::int64_t load_integer(const std::byte* from, std::size_t size) noexcept {
     switch (size) {
     case 1: return load<std::int8_t>(from);
     case 2: return load<std::int16_t>(from);
@@ -56,7 +56,7 @@ inline std::uint64_t load_natural(const std::byte* from, std::size_t size) noexc
     return value;
 }
 
-/// How many letters or elements there are, never more than there is room for: the bytes may be anything.
+/// How many characters or elements there are, never more than there is room for: the bytes may be anything.
 inline std::size_t length_of(const TypeTag& tag, const std::byte* value) noexcept {
     return static_cast<std::size_t>(
         std::min<std::uint64_t>(load_natural(value + tag.length_at, tag.length_bytes), tag.columns));

@@ -43,7 +43,7 @@ Sentence parse_duration(std::string_view spelled, std::int64_t& into) noexcept {
         return Sentence{"\"", quotable(spelled),
                         "\" is not a time; write a number and its unit, such as 4ms"};
     if (unit == nullptr)
-        return Sentence{"\"", quotable(spelled), "\" has no unit; write ns, us, ms, s, min or h behind it"};
+        return Sentence{"\"", quotable(spelled), "\" has no unit; write ns, us, ms, s, min or h after it"};
 
     while (parts.ends_with('0')) parts.remove_suffix(1);
     while (whole.size() > 1 && whole.starts_with('0')) whole.remove_prefix(1);

@@ -1,8 +1,8 @@
 // Reads values from text: a walk over the type's tag, once to find what is wrong and once to store.
 #include "kernel/base/nearest.hpp"
+#include "kernel/base/quoted_text.hpp"
 #include "kernel/base/real_text.hpp"
 #include "kernel/base/value_bytes.hpp"
-#include "kernel/base/value_letters.hpp"
 #include "kernel/base/value_text.hpp"
 
 #include <charconv>
@@ -31,7 +31,7 @@ public:
         if (!read(tag, into)) return false;
         skip_spaces();
         if (at_ == text_.size()) return true;
-        return refuse("\"", quotable(text_.substr(at_)), "\" is left over behind the value; remove it");
+        return refuse("\"", quotable(text_.substr(at_)), "\" is left over after the value; remove it");
     }
     [[nodiscard]] const Sentence& fault() const noexcept { return fault_; }
 
@@ -47,21 +47,22 @@ private:
         return false;
     }
 
-    static bool is_space(char letter) noexcept {
-        return letter == ' ' || letter == '\t' || letter == '\n' || letter == '\r';
+    static bool is_space(char character) noexcept {
+        return character == ' ' || character == '\t' || character == '\n' || character == '\r';
     }
-    static bool ends_word(char letter) noexcept {
-        return is_space(letter) || letter == ',' || letter == ']' || letter == '}' || letter == ')';
+    static bool ends_word(char character) noexcept {
+        return is_space(character) || character == ',' || character == ']' || character == '}' ||
+               character == ')';
     }
     void skip_spaces() noexcept {
         while (at_ < text_.size() && is_space(text_[at_])) ++at_;
     }
-    [[nodiscard]] bool next_is(char letter) const noexcept {
-        return at_ < text_.size() && text_[at_] == letter;
+    [[nodiscard]] bool next_is(char character) const noexcept {
+        return at_ < text_.size() && text_[at_] == character;
     }
-    bool take(char letter) noexcept {
+    bool take(char character) noexcept {
         skip_spaces();
-        if (!next_is(letter)) return false;
+        if (!next_is(character)) return false;
         ++at_;
         return true;
     }
@@ -82,18 +83,18 @@ private:
     }
     /// What is longer than the room for it is no number and no name.
     std::string_view quoted_word() noexcept {
-        Letters letters{text_.substr(at_ + 1)};
+        QuotedText quoted{text_.substr(at_ + 1)};
         std::size_t used = 0;
         char piece[4];
         std::size_t bytes = 0;
-        Letters::Next next = letters.take(piece, bytes);
-        for (; next == Letters::Next::letters; next = letters.take(piece, bytes)) {
+        QuotedText::Next next = quoted.take(piece, bytes);
+        for (; next == QuotedText::Next::characters; next = quoted.take(piece, bytes)) {
             if (used + bytes > sizeof word_) return {};
             std::memcpy(word_ + used, piece, bytes);
             used += bytes;
         }
-        if (next == Letters::Next::broken) return {};
-        at_ += 1 + letters.taken();
+        if (next == QuotedText::Next::broken) return {};
+        at_ += 1 + quoted.taken();
         return {word_, used};
     }
 
@@ -108,8 +109,8 @@ private:
         switch (tag.kind) {
         case ValueKind::opaque:
             return refuse("a value of type ", tag.name, " has no spelling; name its fields with fields_of");
-        case ValueKind::truth: return read_truth(into);
-        case ValueKind::whole: return read_whole(tag, word(), into);
+        case ValueKind::boolean: return read_boolean(into);
+        case ValueKind::integer: return read_integer(tag, word(), into);
         case ValueKind::natural: return read_natural(tag, word(), into);
         case ValueKind::real:
             return tag.size == sizeof(float) ? read_real<float>(into) : read_real<double>(into);
@@ -124,7 +125,7 @@ private:
         return false;
     }
 
-    bool read_truth(std::byte* into) noexcept {
+    bool read_boolean(std::byte* into) noexcept {
         const std::string_view found = glance(), spelled = word();
         if (spelled != "true" && spelled != "false")
             return refuse("\"", quotable(found), "\" is neither true nor false; write one of them");
@@ -132,7 +133,7 @@ private:
         store(into, &value, sizeof value);
         return true;
     }
-    bool read_whole(const TypeTag& tag, std::string_view spelled, std::byte* into) noexcept {
+    bool read_integer(const TypeTag& tag, std::string_view spelled, std::byte* into) noexcept {
         const std::int64_t most = std::numeric_limits<std::int64_t>::max() >> (64 - 8 * tag.size);
         std::int64_t value = 0;
         const auto done = std::from_chars(spelled.data(), spelled.data() + spelled.size(), value);
@@ -189,22 +190,22 @@ private:
             if (bare.empty()) return refuse("a text is missing; write one such as \"weft\"");
             return store_text(tag, bare, into);
         }
-        Letters letters{text_.substr(at_ + 1)};
+        QuotedText quoted{text_.substr(at_ + 1)};
         clear(into, tag.size);
         std::size_t used = 0;
         char piece[4];
         std::size_t bytes = 0;
-        Letters::Next next = letters.take(piece, bytes);
-        for (; next == Letters::Next::letters; next = letters.take(piece, bytes)) {
+        QuotedText::Next next = quoted.take(piece, bytes);
+        for (; next == QuotedText::Next::characters; next = quoted.take(piece, bytes)) {
             if (used + bytes <= tag.columns) store(into + used, piece, bytes);
             used += bytes;
         }
-        if (next == Letters::Next::broken)
+        if (next == QuotedText::Next::broken)
             return refuse("the text ", quotable(text_.substr(at_)),
                           " does not end well; close the quotes, and write \\\\ for a backslash");
         if (used > tag.columns) return text_too_long(tag, used);
         store(into + tag.length_at, &used, tag.length_bytes);
-        at_ += 1 + letters.taken();
+        at_ += 1 + quoted.taken();
         return true;
     }
     bool store_text(const TypeTag& tag, std::string_view text, std::byte* into) noexcept {
@@ -216,7 +217,8 @@ private:
         return true;
     }
     bool text_too_long(const TypeTag& tag, std::size_t used) noexcept {
-        return refuse("the text has ", used, " letters, but there is room for ", tag.columns, "; shorten it");
+        return refuse("the text has ", used, " characters, but there is room for ", tag.columns,
+                      "; shorten it");
     }
 
     bool read_enumeration(const TypeTag& tag, std::byte* into) noexcept {
@@ -229,8 +231,8 @@ private:
         const bool number = !spelled.empty() &&
                             (spelled.front() == '-' || (spelled.front() >= '0' && spelled.front() <= '9'));
         if (number) // as a value without a name is written
-            return tag.element->kind == ValueKind::whole ? read_whole(tag, spelled, into)
-                                                         : read_natural(tag, spelled, into);
+            return tag.element->kind == ValueKind::integer ? read_integer(tag, spelled, into)
+                                                           : read_natural(tag, spelled, into);
         Nearest nearest{spelled};
         for (const std::string_view name : tag.names) nearest.consider(name);
         if (!nearest.best().empty())
@@ -286,7 +288,7 @@ private:
         }
         return true;
     }
-    /// Behind an element: the list's end, or another one, with or without a comma before it.
+    /// After an element: the list's end, or another one, with or without a comma before it.
     bool goes_on(char closing, bool& more) noexcept {
         more = !take(closing);
         if (!more) return true;
@@ -312,7 +314,7 @@ private:
                 return refuse("field \"", tag.fields[i].name, "\" is given twice; remove one");
             seen |= std::uint64_t{1} << i;
             if (!take(':'))
-                return refuse("behind \"", tag.fields[i].name, "\" a colon is missing; write ",
+                return refuse("after \"", tag.fields[i].name, "\" a colon is missing; write ",
                               tag.fields[i].name, ": ...");
             if (!read(*tag.fields[i].type, into + tag.fields[i].offset()))
                 return refused_at("field \"", tag.fields[i].name, "\"");

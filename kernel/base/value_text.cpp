@@ -23,8 +23,8 @@ public:
     void write(const TypeTag& tag, const std::byte* value) noexcept {
         switch (tag.kind) {
         case ValueKind::opaque: return put_opaque(tag);
-        case ValueKind::truth: return put(load<std::uint8_t>(value) != 0 ? "true" : "false");
-        case ValueKind::whole: return put_number(load_whole(value, tag.size));
+        case ValueKind::boolean: return put(load<std::uint8_t>(value) != 0 ? "true" : "false");
+        case ValueKind::integer: return put_number(load_integer(value, tag.size));
         case ValueKind::natural: return put_number(load_natural(value, tag.size));
         case ValueKind::real:
             return tag.size == sizeof(float) ? put_real(load<float>(value)) : put_real(load<double>(value));
@@ -90,10 +90,10 @@ private:
         if (json()) put("\"");
     }
     void put_enumeration(const TypeTag& tag, const std::byte* value) noexcept {
-        const bool is_signed = tag.element->kind == ValueKind::whole;
+        const bool is_signed = tag.element->kind == ValueKind::integer;
         const std::uint64_t index = load_natural(value, tag.size);
         if (index < tag.names.size()) return quoted_in_json(tag.names[index]);
-        if (is_signed) return put_number(load_whole(value, tag.size));
+        if (is_signed) return put_number(load_integer(value, tag.size));
         put_number(index);
     }
     void put_text(std::string_view text) noexcept {
@@ -106,21 +106,21 @@ private:
             else if (whole == 0 && json())
                 put("\xEF\xBF\xBD"); // U+FFFD
             else
-                put_letter(code);
+                put_character(code);
             text.remove_prefix(whole == 0 ? 1 : whole);
         }
         put("\"");
     }
-    void put_letter(unsigned char code) noexcept {
+    void put_character(unsigned char code) noexcept {
         constexpr char hex[] = "0123456789abcdef";
         const char escape[] = {'\\', static_cast<char>(code == '\n'   ? 'n'
                                                        : code == '\t' ? 't'
                                                        : code == '\r' ? 'r'
                                                                       : code)};
-        const char letter = static_cast<char>(code);
+        const char character = static_cast<char>(code);
         if (code == '"' || code == '\\' || code == '\n' || code == '\t' || code == '\r')
             return put({escape, 2});
-        if (code >= ' ' && code < 0x7f) return put({&letter, 1});
+        if (code >= ' ' && code < 0x7f) return put({&character, 1});
         put(json() ? "\\u00" : "\\x");
         const char digits[] = {hex[code >> 4], hex[code & 15]};
         put({digits, 2});

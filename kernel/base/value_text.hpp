@@ -22,7 +22,7 @@ namespace tappet {
 std::size_t format_value(const TypeTag& tag, const std::byte* value, std::span<char> into) noexcept;
 
 /// As format_value, as one JSON value: times, enumerations and what JSON has no number for ("nan", "inf") are
-/// strings; letters that are no UTF-8 become U+FFFD. parse_value reads this spelling too.
+/// strings; characters that are no UTF-8 become U+FFFD. parse_value reads this spelling too.
 std::size_t format_json(const TypeTag& tag, const std::byte* value, std::span<char> into) noexcept;
 
 /// Reads a value of the type. Empty: it stands in `into`. Else what is wrong and the cure, and `into` is

@@ -18,7 +18,7 @@ namespace tappet {
 struct ShaftProperties {
     std::uint32_t codes_per_turn = 4096;
     Angle zero{};                           // the machine's angle at the encoder's edge of code 0
-    Duration stamp_latency = 0us;           // mean delay of the stamp behind the instant the code was true
+    Duration stamp_latency = 0us;           // mean delay of the stamp after the instant the code was true
     Duration stamp_jitter = 0us;            // standard deviation of that delay (uniform over w: w / sqrt(12))
     Speed max_speed = 2200_rpm;             // a jump faster than this is a fault of the encoder
     double max_acceleration_deg_s2 = 2.0e5; // the hardest braking of the shaft

@@ -331,17 +331,17 @@ private:
         event.forward = e.side > 0;
         event.target = e.side > 0 ? above(e) : e.below;
         event.effect = motion_.at(motion_.stamp + dead(e)).position;
-        const Rotation behind = event.forward ? event.effect - event.target : event.target - event.effect;
-        event.late_deg = behind.in_degrees();
-        const std::int64_t turns = behind > Rotation{} ? 1 + (behind.in_units() >> 32) : 1;
+        const Rotation after = event.forward ? event.effect - event.target : event.target - event.effect;
+        event.late_deg = after.in_degrees();
+        const std::int64_t turns = after > Rotation{} ? 1 + (after.in_units() >> 32) : 1;
         cross(e, turns);
         const bool leaving = event.kind == CamKind::leave;
-        if (!leaving && behind > properties_.skip_from) {
+        if (!leaving && after > properties_.skip_from) {
             counters_.skipped_late += static_cast<std::uint64_t>(turns);
         } else if (!leaving || inside_[e.row]) {
             if (event.kind != CamKind::point) inside_[e.row] = !leaving;
             ++counters_.fired;
-            if (behind >= properties_.late_from) ++counters_.late;
+            if (after >= properties_.late_from) ++counters_.late;
             counters_.latest_deg = std::max(counters_.latest_deg, event.late_deg);
             fire(std::as_const(event));
         }

@@ -64,7 +64,7 @@ struct CommandOperations {
     TypeId arguments = nullptr; ///< of an Arguments<...>: what is sent
     TypeId results = nullptr;   ///< of an Arguments<...>: what comes back
     std::size_t argument_bytes = 0;
-    std::size_t result_bytes = 0; ///< packed behind the arguments
+    std::size_t result_bytes = 0; ///< packed after the arguments
     bool (*begin)(void* component, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
     CommandProgress (*progress)(void* component, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
 
@@ -174,7 +174,7 @@ public:
     void reject() noexcept TAPPET_REALTIME { static_cast<void>(end(CommandState::rejected)); }
 
 private:
-    // The results are read behind the state. From the store on the slot is the sender's, which may place it
+    // The results are read after the state. From the store on the slot is the sender's, which may place it
     // anew.
     CommandState end(CommandState how) noexcept TAPPET_REALTIME {
         const Waker wake_sender = route_.wake_sender;

@@ -2,7 +2,8 @@
 // rows by it; in virtual time, where one thread runs every engine, it changes with the engine.
 #pragma once
 
-#include "kernel/base/realtime.hpp"
+#include "kernel/base/contract.hpp"
+#include "kernel/base/time.hpp"
 
 #include <cstdint>
 
@@ -14,6 +15,8 @@ inline constexpr std::uint32_t no_activity = 0xffffffffu;
 namespace detail {
 
 inline constinit thread_local std::uint32_t running_activity = no_activity;
+/// Its time of the cycle, by which the ports of its components know it; null: it was not said.
+inline constinit thread_local const Time* running_clock = nullptr;
 
 } // namespace detail
 
@@ -25,24 +28,35 @@ inline std::uint32_t running_activity() noexcept TAPPET_REALTIME {
     return found;
 }
 
-/// While it lives, the calling thread runs this activity. Real-time.
+/// Whether the thread that runs the activity of this clock calls, or one that runs none: a test, a start-up.
+/// Real-time.
+inline bool runs_by(const Time* clock) noexcept TAPPET_REALTIME {
+    const Time* found = nullptr;
+    TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
+                  found = detail::running_clock);
+    return found == nullptr || found == clock;
+}
+
+/// While it lives, the calling thread runs this activity, whose time of the cycle `clock` is. Real-time.
 class RunsActivity {
 public:
-    explicit RunsActivity(std::uint32_t activity) noexcept TAPPET_REALTIME : before_{running_activity()} {
-        if (before_ != activity) set(activity);
+    explicit RunsActivity(std::uint32_t activity, const Time* clock = nullptr) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
+                      before_ = detail::running_activity;
+                      clock_before_ = detail::running_clock; detail::running_activity = activity;
+                      detail::running_clock = clock);
     }
     ~RunsActivity() TAPPET_REALTIME {
-        if (running_activity() != before_) set(before_);
+        TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
+                      detail::running_activity = before_;
+                      detail::running_clock = clock_before_);
     }
     RunsActivity(const RunsActivity&) = delete;
     RunsActivity& operator=(const RunsActivity&) = delete;
 
 private:
-    static void set(std::uint32_t activity) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
-                      detail::running_activity = activity);
-    }
-    std::uint32_t before_;
+    std::uint32_t before_ = no_activity;
+    const Time* clock_before_ = nullptr;
 };
 
 } // namespace tappet

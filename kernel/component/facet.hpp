@@ -115,7 +115,7 @@ struct Facet {
     Role least_role = Role::engineer; ///< that may ask for a property, an operation, a method or a command
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
-    std::size_t members = 0; ///< of a bag: so many facets behind it are in it, those of bags in it too
+    std::size_t members = 0; ///< of a bag: so many facets after it are in it, those of bags in it too
     void* (*at)(void* component, std::size_t index) noexcept = nullptr;
     // One of these, by kind.
     const PortOperations* port = nullptr;
@@ -261,7 +261,7 @@ struct PortAccess {
             },
     };
 
-    /// Where a ring's storage begins behind the ring itself.
+    /// Where a ring's storage begins after the ring itself.
     template <class AnyRing>
     static constexpr std::size_t storage_at =
         (sizeof(AnyRing) + AnyRing::alignment - 1) / AnyRing::alignment * AnyRing::alignment;

@@ -36,7 +36,7 @@ struct NeverRun {
     X(stop,       (T & t, const Cycle& c),         { t.stop(c) } noexcept -> std::same_as<void>,        "void stop(const Cycle&) noexcept TAPPET_REALTIME") \
     X(finalise,   (T & t),                         { t.finalise() } -> std::same_as<void>,              "void finalise()")
 
-/// Names that mean nothing else: two letters exchanged, one left out or written twice, or the same word in
+/// Names that mean nothing else: two characters exchanged, one left out or written twice, or the same word in
 /// another spelling.
 #define TAPPET_MISSPELT_LIFE_FUNCTIONS(X) \
     X(confgiure, configure) X(configrue, configure) X(configuer, configure) X(confiugre, configure) \

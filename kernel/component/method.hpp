@@ -1,13 +1,13 @@
 // Methods (thesis 4.5): an algorithm of a component that a peer runs in its own thread, with typed arguments
 // and a result. The peer holds a MethodCall; a row of the table says whose method it is.
 //
-//     struct Keeper {                                          struct Bus {
+//     struct Restarter {                                       struct Bus {
 //         MethodCall<bool(int)> restart;                           bool restart(int tries) noexcept
 //         TAPPET_REALTIME;
-//         ... calls<&Keeper::restart>("restart", "the bus")        ... method<&Bus::restart>("restart",
+//         ... calls<&Restarter::restart>("restart", "the bus")     ... method<&Bus::restart>("restart",
 //         "...", any_thread)
 //     };                                                       };
-//     uses("keeper.restart", "bus.restart")
+//     uses("restarter.restart", "bus.restart")
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -79,7 +79,7 @@ struct MethodFunction {
 };
 
 /// A method that runs once in its component's engine for one that knows no types: there it needs not be
-/// any_thread. Packed arguments first, the result behind them. One at a time.
+/// any_thread. Packed arguments first, the result after them. One at a time.
 class MethodRequest {
 public:
     /// Between place() and done() the engine has it. Any thread, real-time.

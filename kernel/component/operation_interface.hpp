@@ -38,7 +38,7 @@ constexpr Facet calls(std::string_view name, std::string_view doc, Options... op
 
 /// A goal that the component reaches for others. `Action`: `bool f(P...) noexcept TAPPET_REALTIME`, false
 /// rejects. `Completion`: the same parameters or none, returns CommandProgress or bool; asked in each cycle
-/// of the component's activity behind its action. Without it the command is done when its action has run.
+/// of the component's activity after its action. Without it the command is done when its action has run.
 template <auto Action, auto Completion = nullptr, class... Options>
 constexpr Facet command(std::string_view name, std::string_view doc, Options... options) {
     using C = detail::CommandOf<Action, Completion>;

@@ -5,6 +5,7 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/component/current.hpp"
 #include "kernel/exchange/data_object.hpp"
 
 #include <algorithm>
@@ -87,6 +88,7 @@ public:
     void write(const T& value) noexcept TAPPET_REALTIME { write(value, *now_); }
     /// Writes a value that was true at `stamp`.
     void write(const T& value, Time stamp) noexcept TAPPET_REALTIME {
+        TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_writer, running_activity());
         if (!inside_only_) return write_further(value, stamp);
         last_.value = value;
         last_.stamp = stamp;
@@ -166,6 +168,7 @@ public:
     /// Copies the value into `into` and tells what it is. Never written: what the row gives before the first
     /// value, or its substitute, or zero.
     Flow read(T& into) noexcept TAPPET_REALTIME {
+        TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
         if (!inside_only_ || local_->generation_ == 0) return read_further(into);
         into = local_->last_.value;
         const std::uint64_t seen = seen_;
@@ -211,6 +214,7 @@ private:
         return flow;
     }
     Flow refresh() noexcept TAPPET_REALTIME {
+        TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
         static_cast<void>(fetch());
         return judge();
     }

@@ -53,8 +53,8 @@ struct ListElement<T> {
 
 } // namespace detail
 
-/// The value types a property may have: truth, numbers, Duration, Text<N>, enumerations, and lists of these:
-/// Sequence<T, N> and vectors and matrices of Eigen of fixed size (column by column).
+/// The value types a property may have: boolean, numbers, Duration, Text<N>, enumerations, and lists of
+/// these: Sequence<T, N> and vectors and matrices of Eigen of fixed size (column by column).
 template <class T>
 concept PropertyValue =
     detail::PropertyScalar<T> || detail::PropertyScalar<typename detail::ListElement<T>::Type>;
@@ -81,10 +81,10 @@ struct ListSetting;
 
 /// A property's value in a table row, as plain data.
 struct PropertySetting {
-    enum class Kind : std::uint8_t { real, whole, truth, duration, text, enumeration, list };
+    enum class Kind : std::uint8_t { real, integer, boolean, duration, text, enumeration, list };
     Kind kind = Kind::real;
     double real = 0;
-    std::int64_t whole = 0; ///< whole number, truth (0 or 1), nanoseconds, or an enumeration's value
+    std::int64_t integer = 0; ///< whole number, boolean (0 or 1), nanoseconds, or an enumeration's value
     std::string_view text{};
     TypeId type = nullptr; ///< of an enumeration
     const ListSetting* list = nullptr;
@@ -113,7 +113,7 @@ struct PropertyOperations {
     std::size_t most_size = 1;
     std::int64_t least = 0; ///< what a whole number of this type can hold
     std::int64_t most = 0;
-    std::size_t most_letters = 0; ///< of a text
+    std::size_t most_characters = 0; ///< of a text
     /// The value that a table's row gives; a setting that was checked to fit.
     void (*set)(std::byte* value, const PropertySetting&) noexcept = nullptr;
     std::size_t (*size)(const std::byte* value) noexcept TAPPET_REALTIME = nullptr;

@@ -38,24 +38,25 @@ struct MemberOf<Member> {
 
 template <PropertyScalar T>
 inline constexpr PropertySetting::Kind property_kind =
-    std::same_as<T, bool>       ? PropertySetting::Kind::truth
+    std::same_as<T, bool>       ? PropertySetting::Kind::boolean
     : std::floating_point<T>    ? PropertySetting::Kind::real
     : std::same_as<T, Duration> ? PropertySetting::Kind::duration
     : is_text<T>                ? PropertySetting::Kind::text
     : std::is_enum_v<T>         ? PropertySetting::Kind::enumeration
-                                : PropertySetting::Kind::whole;
+                                : PropertySetting::Kind::integer;
 
 template <PropertyScalar T>
 constexpr void assign(T& target, const PropertySetting& setting) noexcept TAPPET_REALTIME {
     if constexpr (std::floating_point<T>)
-        target = static_cast<T>(
-            setting.kind == PropertySetting::Kind::real ? setting.real : static_cast<double>(setting.whole));
+        target = static_cast<T>(setting.kind == PropertySetting::Kind::real
+                                    ? setting.real
+                                    : static_cast<double>(setting.integer));
     else if constexpr (std::same_as<T, bool>)
-        target = setting.whole != 0;
+        target = setting.integer != 0;
     else if constexpr (is_text<T>)
         static_cast<void>(target.assign(setting.text));
     else
-        target = static_cast<T>(setting.whole);
+        target = static_cast<T>(setting.integer);
 }
 
 template <PropertyScalar T>
@@ -76,7 +77,7 @@ constexpr void add_limits(PropertyOperations& operations) noexcept {
         operations.most = static_cast<std::int64_t>(
             std::min<std::uint64_t>(std::numeric_limits<T>::max(), std::numeric_limits<std::int64_t>::max()));
     }
-    if constexpr (is_text<T>) operations.most_letters = sizeof(T::letters);
+    if constexpr (is_text<T>) operations.most_characters = sizeof(T::characters);
 }
 
 template <PropertyValue T>
@@ -183,7 +184,7 @@ struct BagNames {
             close_full();
         }
     };
-    static constexpr std::size_t letters_needed = [] {
+    static constexpr std::size_t characters_needed = [] {
         std::size_t needed = 0;
         Walk walk;
         for (const Facet& facet : spelled) {
@@ -195,11 +196,11 @@ struct BagNames {
         }
         return needed;
     }();
-    static constexpr auto letters = [] {
-        std::array<char, letters_needed> text{};
+    static constexpr auto characters = [] {
+        std::array<char, characters_needed> text{};
         std::size_t at = 0;
         const auto add = [&](std::string_view piece) {
-            for (const char letter : piece) text[at++] = letter;
+            for (const char character : piece) text[at++] = character;
         };
         Walk walk;
         for (const Facet& facet : spelled) {
@@ -220,7 +221,7 @@ struct BagNames {
             if (walk.depth != 0) {
                 std::size_t length = own.name.size();
                 for (std::size_t i = 0; i < walk.depth; ++i) length += walk.open[i].size() + 1;
-                facet.name = {letters.data() + at, length};
+                facet.name = {characters.data() + at, length};
                 at += length;
             }
             walk.pass(own);
@@ -278,7 +279,7 @@ constexpr Facet property(std::string_view name, std::string_view unit, std::stri
     return facet;
 }
 
-/// A bag of properties and bags; their names stand behind its own and a dot.
+/// A bag of properties and bags; their names stand after its own and a dot.
 template <class... Members>
 constexpr auto bag(std::string_view name, std::string_view doc, const Members&... members) {
     constexpr std::size_t count = (std::size_t{0} + ... + detail::facet_count<Members>);

@@ -1,5 +1,5 @@
 // The parameters of methods and commands as plain data: what goes in, what comes out, and how both lie packed
-// one behind the other.
+// one after the other.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -57,7 +57,7 @@ inline constexpr std::size_t list_bytes = 0;
 template <class... T>
 inline constexpr std::size_t list_bytes<Arguments<T...>> = (std::size_t{0} + ... + sizeof(T));
 
-/// The places of a parameter list in packed bytes: arguments first, results behind them.
+/// The places of a parameter list in packed bytes: arguments first, results after them.
 template <class... P>
 struct Packing {
     using Inputs = typename Select<false, Arguments<>, P...>::Type;

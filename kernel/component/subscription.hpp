@@ -179,7 +179,7 @@ namespace detail {
 template <class... A>
 inline constexpr std::size_t packed_bytes = (std::size_t{0} + ... + sizeof(A));
 
-/// Puts the arguments one behind the other into a message.
+/// Puts the arguments one after the other into a message.
 template <class... A>
 void pack(std::byte* into, const A&... arguments) noexcept TAPPET_REALTIME {
     std::size_t at = 0;

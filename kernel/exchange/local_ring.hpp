@@ -37,7 +37,7 @@ public:
         if (used_ == capacity_) {
             ++lost_;
             if (overflow_ == Overflow::reject) return false;
-            first_ = behind(first_);
+            first_ = after(first_);
             --used_;
         }
         const std::size_t to_end = capacity_ - first_;
@@ -50,7 +50,7 @@ public:
     [[nodiscard]] bool pop(T& into) noexcept TAPPET_REALTIME {
         if (used_ == 0) return false;
         into = cells_[first_];
-        first_ = behind(first_);
+        first_ = after(first_);
         --used_;
         return true;
     }
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] std::uint64_t lost() const noexcept TAPPET_REALTIME { return lost_; }
 
 private:
-    [[nodiscard]] std::size_t behind(std::size_t cell) const noexcept TAPPET_REALTIME {
+    [[nodiscard]] std::size_t after(std::size_t cell) const noexcept TAPPET_REALTIME {
         return cell + 1 == capacity_ ? 0 : cell + 1;
     }
 

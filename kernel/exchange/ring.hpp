@@ -93,7 +93,7 @@ public:
     }
 
     /// Consumer only. At most `attempts` copies, without overflow exactly one. False, `into` untouched:
-    /// empty; or, when dropping, the producer overtook every attempt, and the next call goes on behind what
+    /// empty; or, when dropping, the producer overtook every attempt, and the next call goes on after what
     /// was lost.
     [[nodiscard]] bool pop(T& into) noexcept TAPPET_REALTIME {
         return consumer_.place.overflow == Overflow::reject ? pop_next(into) : pop_oldest_left(into);

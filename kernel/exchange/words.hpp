@@ -28,7 +28,7 @@ template <class T>
 concept Exchangeable = copied_as_bytes<T> && std::is_trivially_destructible_v<T>;
 
 // Two words at once where the processor keeps the order of such accesses. Nothing relies on such a move being
-// whole: a copy is thrown away unless the number behind it says that nobody wrote, so a torn pair is two
+// whole: a copy is thrown away unless the number after it says that nobody wrote, so a torn pair is two
 // words of the model, in which every word may be torn from the next. For the thread sanitizer, to which a
 // move that is no atomic is a race, the words go one by one; a test's Atomic may take part in pairs by
 // before_pair().

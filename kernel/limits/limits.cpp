@@ -27,7 +27,7 @@ constexpr Conversion conversion{&read_as<T>, &write_as<T>};
 /// Of a type that the check accepts.
 Conversion conversion_of(const TypeTag& type) noexcept {
     if (type.kind == ValueKind::real) return type.size == 8 ? conversion<double> : conversion<float>;
-    const bool is_signed = type.kind == ValueKind::whole;
+    const bool is_signed = type.kind == ValueKind::integer;
     if (type.size == 1) return is_signed ? conversion<std::int8_t> : conversion<std::uint8_t>;
     if (type.size == 2) return is_signed ? conversion<std::int16_t> : conversion<std::uint16_t>;
     return is_signed ? conversion<std::int32_t> : conversion<std::uint32_t>;
@@ -52,7 +52,7 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     auto& port = static_cast<Limited&>(self);
     double number = port.convert.read(value);
     // What a component leaves behind when it stops is safe, whatever the rows say of its values at work.
-    if (port.machine->state_of(port.component) != ComponentState::running) {
+    if (port.machine->life().state_of(port.component) != ComponentState::running) {
         port.has_last = false;
         return;
     }
@@ -88,7 +88,7 @@ void connect(std::span<const LimitRow> rows, MachineInstance& machine, std::size
         port->row = i;
         port->rows = rows;
         std::size_t first = 0;
-        while (!same_letters(rows[first].output, rows[i].output)) ++first;
+        while (!same_text(rows[first].output, rows[i].output)) ++first;
         if (first != i) { // one filter for a port, of both rows
             places[first].other = i;
             continue;

@@ -3,7 +3,7 @@
 //     limits(limit("warp.target", 0.0, 40.0), rate("main.target", 500.0, stop_on_breach))
 #pragma once
 
-#include "kernel/base/letters.hpp"
+#include "kernel/base/compare.hpp"
 #include "kernel/machine/instance/instance.hpp"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ namespace limits_detail {
 /// Whether a port of that type can be given the number itself: a bound that it cannot is no bound of it.
 constexpr bool holds(const TypeTag& type, double number) noexcept {
     if (type.kind == ValueKind::real) return true;
-    const bool is_signed = type.kind == ValueKind::whole;
+    const bool is_signed = type.kind == ValueKind::integer;
     const double top = static_cast<double>(std::uint64_t{1} << (8 * type.size - (is_signed ? 1 : 0)));
     return number >= (is_signed ? -top : 0.0) && number < top &&
            static_cast<double>(static_cast<std::int64_t>(number)) == number;
@@ -100,8 +100,8 @@ constexpr Sentence check_row(const LimitRow& row, const MachineView& m, const Ta
     if (facet.kind != FacetKind::output)
         return Sentence{to_text(facet.kind), " has no limits; name an output"};
     const ValueKind kind = facet.type->kind;
-    const bool is_whole = kind == ValueKind::whole || kind == ValueKind::natural;
-    if (!facet.type->arithmetic || !(kind == ValueKind::real || (is_whole && facet.type->size <= 4)))
+    const bool is_integer = kind == ValueKind::integer || kind == ValueKind::natural;
+    if (!facet.type->arithmetic || !(kind == ValueKind::real || (is_integer && facet.type->size <= 4)))
         return Sentence{"its type is ", facet.type->name,
                         ", and only numbers that a double holds are limited; limit where one is written"};
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -136,7 +136,7 @@ struct Limits final : ExtraSection {
             if (const Sentence fault = limits_detail::check_row(rows[i], m, r); !fault.empty())
                 return said(fault);
             for (std::size_t j = 0; j < i; ++j)
-                if (same_letters(rows[j].output, rows[i].output) && rows[j].is_rate == rows[i].is_rate)
+                if (same_text(rows[j].output, rows[i].output) && rows[j].is_rate == rows[i].is_rate)
                     return said(Sentence{"it stands twice; keep one"});
         }
         return {};

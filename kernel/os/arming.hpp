@@ -16,7 +16,7 @@ namespace tappet::os {
 enum class Severity : std::uint8_t { passed, warning, refused };
 
 struct Finding {
-    std::string_view name; ///< of the check; its letters outlive the report
+    std::string_view name; ///< of the check; its characters outlive the report
     Severity severity = Severity::passed;
     Sentence finding;
     Sentence cure;

@@ -178,7 +178,7 @@ ProcessFacts observe_process(int highest_priority) noexcept {
     if (clock_getres(CLOCK_MONOTONIC, &resolution) == 0)
         facts.clock_resolution_ns = resolution.tv_sec * 1'000'000'000 + resolution.tv_nsec;
 
-    // Trying SCHED_FIFO gives the thread its default slack back: it is read before, and restored behind.
+    // Trying SCHED_FIFO gives the thread its default slack back: it is read before, and restored after.
     facts.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
     int policy = SCHED_OTHER;
     sched_param before{};

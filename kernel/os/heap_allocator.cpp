@@ -1,4 +1,4 @@
-// Blocks lie back to back, each behind a header with its size and its lower neighbour; free ones hang in the
+// Blocks lie back to back, each after a header with its size and its lower neighbour; free ones hang in the
 // list of their class. A class is searched one size up, so that any block in it fits.
 #include "kernel/os/heap_allocator.hpp"
 

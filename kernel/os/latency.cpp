@@ -36,7 +36,7 @@ CpuDmaLatency::~CpuDmaLatency() {
 
 std::expected<CpuDmaLatency, Sentence> hold_cpu_dma_latency(std::string_view root) noexcept {
     const Sentence path{root, "/dev/cpu_dma_latency"};
-    const int file = open(path.letters, O_WRONLY | O_CLOEXEC);
+    const int file = open(path.characters, O_WRONLY | O_CLOEXEC);
     if (file < 0) {
         const int error = errno;
         return std::unexpected(Sentence{path, " cannot be opened (", std::strerror(error), "): ",

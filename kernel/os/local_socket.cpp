@@ -131,8 +131,8 @@ std::expected<void, Sentence> LocalListener::listen(std::string_view path, unsig
                                                     std::int64_t group) noexcept {
     close();
     if (path.size() >= sizeof path_)
-        return std::unexpected(
-            Sentence{"the socket's path \"", path, "\" has more than 107 letters; use a shorter directory"});
+        return std::unexpected(Sentence{"the socket's path \"", path,
+                                        "\" has more than 107 characters; use a shorter directory"});
     std::copy(path.begin(), path.end(), path_);
     path_[path.size()] = '\0';
     const auto refused = [&](std::string_view cure) {

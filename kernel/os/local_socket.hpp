@@ -88,8 +88,8 @@ public:
     LocalListener& operator=(const LocalListener&) = delete;
     ~LocalListener() { close(); }
 
-    /// Listens at `path` (at most 107 letters), made with `mode`; a socket that nobody listens at any more is
-    /// replaced, the path's directory made when it is missing. Not real-time. The error names the cure.
+    /// Listens at `path` (at most 107 characters), made with `mode`; a socket that nobody listens at any more
+    /// is replaced, the path's directory made when it is missing. Not real-time. The error names the cure.
     std::expected<void, Sentence> listen(std::string_view path, unsigned mode,
                                          std::int64_t group = -1) noexcept;
     [[nodiscard]] bool open() const noexcept { return descriptor_ >= 0; }

@@ -10,10 +10,10 @@ namespace tappet::os {
 
 SystemFile::SystemFile(std::string_view root, const Sentence& path) noexcept {
     const Sentence full{root, path};
-    const int file = open(full.letters, O_RDONLY | O_CLOEXEC);
+    const int file = open(full.characters, O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     while (length < capacity) {
-        const auto got = read(file, letters + length, capacity - length);
+        const auto got = read(file, characters + length, capacity - length);
         if (got < 0) break;
         readable = true;
         if (got == 0) break;
@@ -23,7 +23,7 @@ SystemFile::SystemFile(std::string_view root, const Sentence& path) noexcept {
 }
 
 std::string_view SystemFile::text() const noexcept {
-    std::string_view all{letters, length};
+    std::string_view all{characters, length};
     while (!all.empty() && (all.back() == '\n' || all.back() == ' ')) all.remove_suffix(1);
     return all;
 }

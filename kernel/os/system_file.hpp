@@ -14,7 +14,7 @@ namespace tappet::os {
 /// The first 4 kB of a file: the answers looked at are shorter. Not real-time.
 struct SystemFile {
     static constexpr std::size_t capacity = 4096;
-    char letters[capacity] = {};
+    char characters[capacity] = {};
     std::size_t length = 0;
     bool readable = false;
 
@@ -24,7 +24,7 @@ struct SystemFile {
     [[nodiscard]] std::string_view text() const noexcept;
 };
 
-/// The number behind a key: number_after("VmLck:\t 64 kB", "VmLck:", 10) is 64.
+/// The number after a key: number_after("VmLck:\t 64 kB", "VmLck:", 10) is 64.
 std::optional<std::uint64_t> number_after(std::string_view text, std::string_view key, int base) noexcept;
 
 /// Whether one of the kernel's lists, as "0-3,6", has a number. A list that is none has nothing.

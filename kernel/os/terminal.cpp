@@ -47,7 +47,7 @@ public:
             how_ = How::as_socket;
         } else {
             const Sentence path{"/proc/self/fd/", file_};
-            own_ = open(path.letters, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+            own_ = open(path.characters, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
             // ENXIO: a pipe whose reader is gone already.
             how_ = own_ >= 0 ? How::opened_anew : errno == ENXIO ? How::not_at_all : How::asked_first;
             piece_ = isatty(file_) != 0 ? 1 : PIPE_BUF;

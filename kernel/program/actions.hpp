@@ -80,7 +80,7 @@ constexpr FacetAction buffer_empty(const Facet& facet) noexcept {
                                 type_id<bool>);
 }
 
-// Below, `a` holds the arguments packed one behind the other without gaps, each in its C++ type; they are
+// Below, `a` holds the arguments packed one after the other without gaps, each in its C++ type; they are
 // listed in facet.type->elements, those of a command in facet.command->arguments->elements.
 
 constexpr FacetAction emit_event(const Facet& facet) noexcept {

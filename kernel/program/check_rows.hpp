@@ -86,7 +86,7 @@ constexpr Sentence check(const ProgramSpelling& program) {
             if (arc.condition == no_condition && arc.after == no_data)
                 return Sentence{where, "node \"",
                                 name,  "\": arc ",
-                                a + 1, " of it is always open, those behind it are never asked; put it last"};
+                                a + 1, " of it is always open, those after it are never asked; put it last"};
         }
     }
     return {};

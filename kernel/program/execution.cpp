@@ -75,7 +75,7 @@ bool ProgramExecution::single_step(Time now) noexcept TAPPET_REALTIME {
 void ProgramExecution::run(Time now, std::uint32_t statements) noexcept TAPPET_REALTIME {
     context_.now = now;
     left_over_ = waits_ = false;
-    // A turn behind one that failed begins with a statement, so that there are no more of them than
+    // A turn after one that failed begins with a statement, so that there are no more of them than
     // statements.
     for (std::uint32_t turn = 0, turns = statements; turn <= turns; ++turn) {
         switch (code_.run(*code_.tables, context_, statements)) {

@@ -37,23 +37,23 @@ ConditionResult is_open(const ProgramTables& tables, ProgramContext& context, co
                                          : test_condition(tables, context, arc.condition);
 }
 
-enum class Way : std::uint8_t { on, waits, failed };
+enum class Next : std::uint8_t { on, waits, failed };
 
 /// Asks the node's arcs from number `first` on; `on`: the position is where the first open one leads. Before
 /// the action is done those without a condition alone: the time-outs.
-Way follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& node,
-           std::size_t first) noexcept TAPPET_REALTIME {
+Next follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& node,
+            std::size_t first) noexcept TAPPET_REALTIME {
     const ArcRow* arc = tables.arcs.data() + node.first_arc + first;
     for (std::size_t i = first; i < node.arcs; ++i, ++arc) {
         if (!context.position.acted && (arc->condition != no_condition || arc->after == no_data)) continue;
         const ConditionResult open = is_open(tables, context, *arc);
         if (open == ConditionResult::no) continue;
-        if (open == ConditionResult::failed || arc->to == no_node) return Way::failed;
+        if (open == ConditionResult::failed || arc->to == no_node) return Next::failed;
         context.position = {.node = arc->to};
-        return Way::on;
+        return Next::on;
     }
     if (node.repeats) context.position.acted = false;
-    return Way::waits;
+    return Next::waits;
 }
 
 /// No node: the program stays where it is.
@@ -78,14 +78,14 @@ constexpr NodeIndex stays = end_node - 1;
 }
 
 /// What follows an action; `on`: the node's arcs are to be asked.
-Way behind_action(ProgramContext& context, const NodeRow& node, ActionResult result) noexcept
+Next after_action(ProgramContext& context, const NodeRow& node, ActionResult result) noexcept
     TAPPET_REALTIME {
     ProgramPosition& position = context.position;
     if (!position.entered) position.entered = true, position.entered_at = context.now;
-    if (result == ActionResult::failed) return Way::failed;
-    if (result == ActionResult::again) return Way::on;
+    if (result == ActionResult::failed) return Next::failed;
+    if (result == ActionResult::again) return Next::on;
     position.acted = true;
-    return node.yields ? Way::waits : Way::on;
+    return node.yields ? Next::waits : Next::on;
 }
 
 } // namespace
@@ -112,7 +112,7 @@ ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
     if (at != end_node) row += at;
     while (at != end_node) {
         const NodeRow& node = *row;
-        Way way = Way::on;
+        Next next = Next::on;
         if (!acted) {
             if (left == 0) break;
             --left;
@@ -135,19 +135,19 @@ ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
                 continue;
             }
             position.node = at;
-            way = behind_action(context, node, result);
-            if (to == no_node) way = Way::failed;
-            if (way == Way::on) way = follow(tables, context, node, asked);
+            next = after_action(context, node, result);
+            if (to == no_node) next = Next::failed;
+            if (next == Next::on) next = follow(tables, context, node, asked);
         } else {
-            way = follow(tables, context, node, 0);
+            next = follow(tables, context, node, 0);
         }
-        if (way == Way::failed && node.on_error != no_node) {
+        if (next == Next::failed && node.on_error != no_node) {
             position = {.node = node.on_error};
-            way = Way::on;
+            next = Next::on;
         }
-        if (way != Way::on) {
+        if (next != Next::on) {
             statements = left;
-            return way == Way::waits ? ProgramReturn::waits : ProgramReturn::failed;
+            return next == Next::waits ? ProgramReturn::waits : ProgramReturn::failed;
         }
         at = position.node;
         if (at != end_node) row = nodes + at;

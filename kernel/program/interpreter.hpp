@@ -4,10 +4,10 @@
 //   entered       the time is noted; then the action: its instructions in order, once. That is one statement.
 //   again         an instruction could not act yet: the program waits, the next step executes the action once more;
 //                 of the arcs only time-outs, those without a condition, are asked until then.
-//   arcs          asked in their order behind the action, and in each later step without it; the first open one is
+//   arcs          asked in their order after the action, and in each later step without it; the first open one is
 //                 followed. An arc is open when its time has passed and its condition holds.
 //   none open     the program waits. The action of a node that `repeats` is executed again in the next step.
-//   yields        the program waits behind the action although an arc is open.
+//   yields        the program waits after the action although an arc is open.
 //   failed        of an instruction or a condition, or the arc leads to no_node: on to the node of on_error, or the
 //                 program has failed there.
 //   left over     the statements are used up: the program stands before the next action.
@@ -31,7 +31,7 @@ constexpr ProgramCode interpreted(const ProgramTables& tables) noexcept {
 }
 
 /// Where a program that failed at `node` goes on when errors are to be passed over (thesis 5.1.3): where its
-/// last arc without a time-out leads; that is behind a statement, and out of a loop.
+/// last arc without a time-out leads; that is after a statement, and out of a loop.
 constexpr NodeIndex past_failure(const ProgramTables& tables, NodeIndex node) noexcept TAPPET_REALTIME {
     const NodeRow& row = tables.nodes[node];
     NodeIndex to = end_node;

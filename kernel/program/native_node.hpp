@@ -82,8 +82,8 @@ template <const auto& source, std::size_t type> struct NodeCode {
                            read<in.b>(data, scratch));
         if (result == ActionResult::done) return true;
         if (result != ActionResult::skip) return false;
-        constexpr std::size_t behind = i + 1 + in.size;
-        next = behind;
+        constexpr std::size_t after = i + 1 + in.size;
+        next = after;
         result = ActionResult::done;
         return true;
     }
@@ -129,7 +129,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
             in.run == &primitive::skip_if || in.run == &primitive::skip_unless || in.run == &primitive::fail;
         return in.facet == nullptr && in.link == 0xffff && (in.to != no_data || is_silent);
     }
-    // A later step goes on behind its entry: of a node that does not stand, because it could not act yet.
+    // A later step goes on after its entry: of a node that does not stand, because it could not act yet.
     static constexpr bool is_resumed(NodeIndex node) {
         for (const ProgramRow& program : tables.programs)
             if (node >= program.first && node < program.last && !program.may_wait) return false;

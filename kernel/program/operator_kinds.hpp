@@ -60,8 +60,8 @@ inline constexpr TypeId script_text = type_id<ScriptText>;
 /// every C++ type of that kind, else the type itself.
 constexpr TypeId script_type(TypeId stored) noexcept {
     switch (stored->kind) {
-    case ValueKind::truth: return script_bool;
-    case ValueKind::whole:
+    case ValueKind::boolean: return script_bool;
+    case ValueKind::integer:
     case ValueKind::natural: return script_int;
     case ValueKind::real: return script_double;
     case ValueKind::duration: return script_duration;

@@ -41,7 +41,8 @@ constexpr ElementKind element_kind(TypeId type) noexcept {
     const TypeTag& element = *type->element;
     if (element.kind == ValueKind::real)
         return element.size == sizeof(double) ? ElementKind::of_double : ElementKind::of_float;
-    if (element.kind == ValueKind::whole && element.size == sizeof(std::int32_t)) return ElementKind::of_int;
+    if (element.kind == ValueKind::integer && element.size == sizeof(std::int32_t))
+        return ElementKind::of_int;
     return ElementKind::none;
 }
 constexpr Primitive matrix_binary(ElementKind kind, Operator op) noexcept {

@@ -48,11 +48,11 @@ inline constexpr Primitive order = &primitive::binary<T, T, bool, F>;
 
 // clang-format off
 inline constexpr BinaryRow binary_rows[] = {
-    {Operator::add,       script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::add_whole>},
-    {Operator::subtract,  script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::subtract_whole>},
-    {Operator::multiply,  script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::multiply_whole>},
-    {Operator::divide,    script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::divide_whole>},
-    {Operator::remainder, script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::remainder_whole>},
+    {Operator::add,       script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::add_integer>},
+    {Operator::subtract,  script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::subtract_integer>},
+    {Operator::multiply,  script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::multiply_integer>},
+    {Operator::divide,    script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::divide_integer>},
+    {Operator::remainder, script_int, script_int, script_int, of_two<ScriptInt, ScriptInt, ScriptInt, &primitive::remainder_integer>},
     {Operator::equal,     script_int, script_int, script_bool, order<ScriptInt, &primitive::equal>},
     {Operator::unequal,   script_int, script_int, script_bool, order<ScriptInt, &primitive::unequal>},
     {Operator::less,      script_int, script_int, script_bool, order<ScriptInt, &primitive::less>},
@@ -71,16 +71,16 @@ inline constexpr BinaryRow binary_rows[] = {
     {Operator::greater,   script_double, script_double, script_bool, order<double, &primitive::greater>},
     {Operator::at_least,  script_double, script_double, script_bool, order<double, &primitive::at_least>},
 
-    {Operator::add,       script_duration, script_duration, script_duration, times<Duration, Duration, &primitive::add_whole>},
-    {Operator::subtract, script_duration, script_duration, script_duration, times<Duration, Duration, &primitive::subtract_whole>},
-    {Operator::multiply, script_duration, script_int, script_duration, of_two<Duration, ScriptInt, Duration, &primitive::multiply_whole>},
-    {Operator::multiply, script_int, script_duration, script_duration, of_two<ScriptInt, Duration, Duration, &primitive::multiply_whole>},
+    {Operator::add,       script_duration, script_duration, script_duration, times<Duration, Duration, &primitive::add_integer>},
+    {Operator::subtract, script_duration, script_duration, script_duration, times<Duration, Duration, &primitive::subtract_integer>},
+    {Operator::multiply, script_duration, script_int, script_duration, of_two<Duration, ScriptInt, Duration, &primitive::multiply_integer>},
+    {Operator::multiply, script_int, script_duration, script_duration, of_two<ScriptInt, Duration, Duration, &primitive::multiply_integer>},
     {Operator::multiply,  script_duration, script_double,   script_duration, of_two<Duration, double, Duration, &primitive::scale_time>},
     {Operator::multiply,  script_double,   script_duration, script_duration, of_two<double, Duration, Duration, &primitive::scale_by_time>},
-    {Operator::divide, script_duration, script_int, script_duration, of_two<Duration, ScriptInt, Duration, &primitive::divide_whole>},
+    {Operator::divide, script_duration, script_int, script_duration, of_two<Duration, ScriptInt, Duration, &primitive::divide_integer>},
     {Operator::divide,    script_duration, script_double,   script_duration, of_two<Duration, double, Duration, &primitive::shrink_time>},
     {Operator::divide, script_duration, script_duration, script_double,  of_two<Duration, Duration, double, &primitive::ratio_of_times>},
-    {Operator::remainder, script_duration, script_duration, script_duration, times<Duration, Duration, &primitive::remainder_whole>},
+    {Operator::remainder, script_duration, script_duration, script_duration, times<Duration, Duration, &primitive::remainder_integer>},
     {Operator::equal,     script_duration, script_duration, script_bool, order<Duration, &primitive::equal>},
     {Operator::unequal,   script_duration, script_duration, script_bool, order<Duration, &primitive::unequal>},
     {Operator::less,      script_duration, script_duration, script_bool, order<Duration, &primitive::less>},
@@ -95,9 +95,9 @@ inline constexpr BinaryRow binary_rows[] = {
 };
 
 inline constexpr UnaryRow unary_rows[] = {
-    {Operator::negate, script_int,      script_int,      of_one<ScriptInt, ScriptInt, &primitive::negate_whole>},
+    {Operator::negate, script_int,      script_int,      of_one<ScriptInt, ScriptInt, &primitive::negate_integer>},
     {Operator::negate, script_double,   script_double,   of_one<double, double, &primitive::negate_real>},
-    {Operator::negate, script_duration, script_duration, of_one<Duration, Duration, &primitive::negate_whole>},
+    {Operator::negate, script_duration, script_duration, of_one<Duration, Duration, &primitive::negate_integer>},
     {Operator::invert, script_bool,     script_bool,     of_one<bool, bool, &primitive::invert>},
 };
 
@@ -110,7 +110,7 @@ inline constexpr Primitive least = &primitive::binary<T, T, T, &primitive::lesse
 template <class T>
 inline constexpr Primitive most = &primitive::binary<T, T, T, &primitive::greater_of<T>>;
 template <class T>
-inline constexpr Primitive absolute = &primitive::unary<T, T, &primitive::absolute_whole<T>>;
+inline constexpr Primitive absolute = &primitive::unary<T, T, &primitive::absolute_integer<T>>;
 
 /// Not all of <cmath>: each inverse takes tens of kB of a firmware, and atan2 and sqrt make the others.
 inline constexpr FunctionRow function_rows[] = {
@@ -142,9 +142,9 @@ inline constexpr std::string_view known_functions[] = {
     "round", "exp", "log", "pow",     "seconds",  "duration", "norm", "dot", "cross", "transpose", "size", "int", "double"};
 
 inline constexpr ConversionRow conversion_rows[] = {
-    {script_int,    script_double, of_one<ScriptInt, double, &primitive::whole_to_real>, true},
-    {script_double, script_int,    of_one<double, ScriptInt, &primitive::real_to_whole>, false},
-    {script_bool,   script_int,    of_one<bool, ScriptInt, &primitive::truth_to_whole>,  false},
+    {script_int,    script_double, of_one<ScriptInt, double, &primitive::integer_to_real>, true},
+    {script_double, script_int,    of_one<double, ScriptInt, &primitive::real_to_integer>, false},
+    {script_bool,   script_int,    of_one<bool, ScriptInt, &primitive::boolean_to_integer>,  false},
 };
 // clang-format on
 
@@ -165,7 +165,7 @@ constexpr std::size_t width_index(TypeId type, bool natural) noexcept {
     return width + (natural ? 4 : 0);
 }
 constexpr bool is_integer(TypeId type) noexcept {
-    return type->kind == ValueKind::whole || type->kind == ValueKind::natural;
+    return type->kind == ValueKind::integer || type->kind == ValueKind::natural;
 }
 constexpr bool is_float(TypeId type) noexcept {
     return type->kind == ValueKind::real && type->size == sizeof(float);

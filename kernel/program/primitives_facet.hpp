@@ -54,7 +54,7 @@ inline ActionResult port_age(ProgramContext& context, const Instruction& in, std
 
 // ---- buffers
 
-/// `to`: a truth, whether every reader had room.
+/// `to`: a boolean, whether every reader had room.
 inline ActionResult push_buffer(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     store_value(to, in.facet->buffer->push(link_of(context, in).place, a));
@@ -108,7 +108,7 @@ inline ActionResult call_checked(ProgramContext& context, const Instruction& in,
 }
 
 // ---- commands. The own component's run here and now (thesis 5.1.5): `to` of the first and `a` of the second
-// hold the arguments and, behind them, the results, where they stay while the program runs.
+// hold the arguments and, after them, the results, where they stay while the program runs.
 
 /// A command that is rejected fails the action.
 inline ActionResult begin_command(ProgramContext& context, const Instruction& in, std::byte* to,
@@ -116,7 +116,7 @@ inline ActionResult begin_command(ProgramContext& context, const Instruction& in
     return in.facet->command->begin(link_of(context, in).component, to) ? ActionResult::done
                                                                         : ActionResult::failed;
 }
-/// `to`: a truth, whether it is done; one that failed fails the condition.
+/// `to`: a boolean, whether it is done; one that failed fails the condition.
 inline ActionResult command_progress(ProgramContext& context, const Instruction& in, std::byte* to,
                                      const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     // The values are the program's own, and the completion writes its results there.
@@ -136,7 +136,7 @@ inline ActionResult send_command(ProgramContext& context, const Instruction& in,
     std::memset(slot->values() + command.argument_bytes, 0, command.result_bytes);
     return slot->send() ? ActionResult::done : ActionResult::failed;
 }
-/// `to`: a truth, whether it is done; one that was rejected or failed fails the condition.
+/// `to`: a boolean, whether it is done; one that was rejected or failed fails the condition.
 inline ActionResult command_ended(ProgramContext& context, const Instruction& in, std::byte* to,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const CommandState state = link_of(context, in).slot->state();

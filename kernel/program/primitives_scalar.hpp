@@ -29,27 +29,27 @@ constexpr ActionResult unary(ProgramContext&, const Instruction&, std::byte* to,
 
 // ---- whole numbers and times, which are whole numbers of nanoseconds
 
-constexpr ScriptInt whole_of(ScriptInt value) noexcept TAPPET_REALTIME { return value; }
-constexpr ScriptInt whole_of(Duration value) noexcept TAPPET_REALTIME { return value.count(); }
+constexpr ScriptInt integer_of(ScriptInt value) noexcept TAPPET_REALTIME { return value; }
+constexpr ScriptInt integer_of(Duration value) noexcept TAPPET_REALTIME { return value.count(); }
 
 template <class A, class B, class R>
-constexpr bool add_whole(A a, B b, R& to) noexcept TAPPET_REALTIME {
+constexpr bool add_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
     ScriptInt sum = 0;
-    if (__builtin_add_overflow(whole_of(a), whole_of(b), &sum)) return false;
+    if (__builtin_add_overflow(integer_of(a), integer_of(b), &sum)) return false;
     to = R{sum};
     return true;
 }
 template <class A, class B, class R>
-constexpr bool subtract_whole(A a, B b, R& to) noexcept TAPPET_REALTIME {
+constexpr bool subtract_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
     ScriptInt difference = 0;
-    if (__builtin_sub_overflow(whole_of(a), whole_of(b), &difference)) return false;
+    if (__builtin_sub_overflow(integer_of(a), integer_of(b), &difference)) return false;
     to = R{difference};
     return true;
 }
 template <class A, class B, class R>
-constexpr bool multiply_whole(A a, B b, R& to) noexcept TAPPET_REALTIME {
+constexpr bool multiply_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
     ScriptInt product = 0;
-    if (__builtin_mul_overflow(whole_of(a), whole_of(b), &product)) return false;
+    if (__builtin_mul_overflow(integer_of(a), integer_of(b), &product)) return false;
     to = R{product};
     return true;
 }
@@ -58,36 +58,36 @@ constexpr bool divisible(ScriptInt a, ScriptInt b) noexcept TAPPET_REALTIME {
 }
 /// Towards zero.
 template <class A, class B, class R>
-constexpr bool divide_whole(A a, B b, R& to) noexcept TAPPET_REALTIME {
-    if (!divisible(whole_of(a), whole_of(b))) return false;
-    to = R{whole_of(a) / whole_of(b)};
+constexpr bool divide_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
+    if (!divisible(integer_of(a), integer_of(b))) return false;
+    to = R{integer_of(a) / integer_of(b)};
     return true;
 }
 /// With the sign of `a`.
 template <class A, class B, class R>
-constexpr bool remainder_whole(A a, B b, R& to) noexcept TAPPET_REALTIME {
-    if (!divisible(whole_of(a), whole_of(b))) return false;
-    to = R{whole_of(a) % whole_of(b)};
+constexpr bool remainder_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
+    if (!divisible(integer_of(a), integer_of(b))) return false;
+    to = R{integer_of(a) % integer_of(b)};
     return true;
 }
 template <class A>
-constexpr bool negate_whole(A a, A& to) noexcept TAPPET_REALTIME {
-    return subtract_whole(ScriptInt{0}, a, to);
+constexpr bool negate_integer(A a, A& to) noexcept TAPPET_REALTIME {
+    return subtract_integer(ScriptInt{0}, a, to);
 }
 template <class A>
-constexpr bool absolute_whole(A a, A& to) noexcept TAPPET_REALTIME {
-    if (whole_of(a) < 0) return negate_whole(a, to);
+constexpr bool absolute_integer(A a, A& to) noexcept TAPPET_REALTIME {
+    if (integer_of(a) < 0) return negate_integer(a, to);
     to = a;
     return true;
 }
 
 /// Rounds a real to a whole number that it is near to; false: there is none.
-constexpr bool fits_whole(double value) noexcept TAPPET_REALTIME {
+constexpr bool fits_integer(double value) noexcept TAPPET_REALTIME {
     return value >= -0x1p63 && value < 0x1p63;
 }
 inline bool scale_time(Duration a, double b, Duration& to) noexcept TAPPET_REALTIME {
     const double product = std::nearbyint(static_cast<double>(a.count()) * b);
-    if (!fits_whole(product)) return false;
+    if (!fits_integer(product)) return false;
     to = Duration{static_cast<ScriptInt>(product)};
     return true;
 }
@@ -96,7 +96,7 @@ inline bool scale_by_time(double a, Duration b, Duration& to) noexcept TAPPET_RE
 }
 inline bool shrink_time(Duration a, double b, Duration& to) noexcept TAPPET_REALTIME {
     const double quotient = std::nearbyint(static_cast<double>(a.count()) / b);
-    if (!fits_whole(quotient)) return false;
+    if (!fits_integer(quotient)) return false;
     to = Duration{static_cast<ScriptInt>(quotient)};
     return true;
 }
@@ -200,17 +200,17 @@ constexpr bool invert(bool a, bool& to) noexcept TAPPET_REALTIME {
 
 // ---- conversions between the script's types
 
-constexpr bool whole_to_real(ScriptInt a, double& to) noexcept TAPPET_REALTIME {
+constexpr bool integer_to_real(ScriptInt a, double& to) noexcept TAPPET_REALTIME {
     to = static_cast<double>(a);
     return true;
 }
 /// Towards zero; one that no integer holds, or no number, fails.
-constexpr bool real_to_whole(double a, ScriptInt& to) noexcept TAPPET_REALTIME {
-    if (!fits_whole(a)) return false;
+constexpr bool real_to_integer(double a, ScriptInt& to) noexcept TAPPET_REALTIME {
+    if (!fits_integer(a)) return false;
     to = static_cast<ScriptInt>(a);
     return true;
 }
-constexpr bool truth_to_whole(bool a, ScriptInt& to) noexcept TAPPET_REALTIME {
+constexpr bool boolean_to_integer(bool a, ScriptInt& to) noexcept TAPPET_REALTIME {
     to = a ? 1 : 0;
     return true;
 }

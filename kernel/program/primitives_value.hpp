@@ -46,13 +46,13 @@ constexpr ActionResult bytes_unequal(ProgramContext&, const Instruction& in, std
     return ActionResult::done;
 }
 
-// ---- texts: letters from the first byte on, their number behind them as Text<N> has it
+// ---- texts: characters from the first byte on, their number after them as Text<N> has it
 
 constexpr std::size_t text_length(const std::byte* text, std::size_t length_at) noexcept TAPPET_REALTIME {
     const std::size_t length = load_value<std::uint32_t>(text + length_at);
     return length < length_at ? length : length_at;
 }
-/// `size`: most letters of `to`; count(): where `a` has its length. A text that is too long fails.
+/// `size`: most characters of `to`; count(): where `a` has its length. A text that is too long fails.
 constexpr ActionResult text_copy(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                                  const std::byte*) noexcept TAPPET_REALTIME {
     const std::size_t length = text_length(a, in.count());
@@ -134,7 +134,7 @@ constexpr std::size_t sequence_length(const std::byte* a, std::size_t length_at,
     const auto length = load_value<std::uint64_t>(a + length_at);
     return length < most ? static_cast<std::size_t>(length) : most;
 }
-/// Where a sequence of count() elements of `size` bytes has its length: behind them (Bounded).
+/// Where a sequence of count() elements of `size` bytes has its length: after them (Bounded).
 constexpr std::size_t length_place(const Instruction& in) noexcept TAPPET_REALTIME {
     return (in.count() * in.size + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t) * sizeof(std::uint64_t);
 }

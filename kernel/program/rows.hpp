@@ -203,7 +203,7 @@ struct ProgramTable {
     std::array<NodeRow, N> nodes{};
     std::array<ArcRow, A> arcs{};
     std::array<ProgramRow, 1> programs{};
-    /// The times of the arcs; behind them, in the data, the answer of a condition.
+    /// The times of the arcs; after them, in the data, the answer of a condition.
     std::array<std::byte, A * value_bytes> image{};
 
     /// Views this table, which therefore stays where it is.

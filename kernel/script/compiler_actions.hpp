@@ -63,7 +63,7 @@ constexpr void Statements::parse_set_place(const Token& at, Operand place) {
         Instruction in = element_write(place.type);
         if (in.run == nullptr)
             return fail(at, {"elements of a ", type_name(place.type), " cannot be written"});
-        if (!is(Sign::assign)) return fail_expected("\"=\" behind an index that is not constant");
+        if (!is(Sign::assign)) return fail_expected("\"=\" after an index that is not constant");
         advance();
         const Token where = token_;
         const Operand value = as(where, parse_expression(element), element, "");

@@ -77,8 +77,8 @@ constexpr Expressions::Expansion Expressions::begin_expansion(const Token& name,
             symbols_[symbols_used_++] = symbol;
         if (!is(Sign::close_round)) need(Sign::comma, "\",\" or \")\"");
     }
-    need(Sign::close_round, "\")\" behind the arguments");
-    expansion.behind = here();
+    need(Sign::close_round, "\")\" after the arguments");
+    expansion.after = here();
     if (!ok()) return expansion;
     for (std::size_t i = expansion.symbols; i < symbols_used_; ++i) {
         const std::uint32_t hash = hash_of(symbols_[i].name);
@@ -99,7 +99,7 @@ constexpr void Expressions::end_expansion(Function& function, const Expansion& e
     scope_ = expansion.scope;
     hidden_begin_ = expansion.hidden_begin;
     hidden_end_ = expansion.hidden_end;
-    go_to(expansion.behind);
+    go_to(expansion.after);
 }
 
 constexpr void Expressions::parse_arguments(std::span<const TypeId> types, DataOffset to) {

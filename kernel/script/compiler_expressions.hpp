@@ -132,7 +132,7 @@ private:
         emit(skip_instruction(is_and, 0));
         const Token where = token_;
         const Operand right = parse_binary(level.binds + 1, script_bool);
-        store(where, right, script_bool, to, is_and ? " behind &&" : " behind ||");
+        store(where, right, script_bool, to, is_and ? " after &&" : " after ||");
         finish_skip(skip, to);
         return at_place(script_bool, to);
     }
@@ -161,10 +161,10 @@ private:
     static constexpr bool fold(Operator op, const Operand& a, const Operand& b, Operand& into) noexcept {
         if (a.type == b.type && (a.type == script_int || a.type == script_duration)) {
             std::int64_t result = 0;
-            if (op == Operator::add        ? __builtin_add_overflow(a.whole, b.whole, &result)
-                : op == Operator::subtract ? __builtin_sub_overflow(a.whole, b.whole, &result)
+            if (op == Operator::add        ? __builtin_add_overflow(a.integer, b.integer, &result)
+                : op == Operator::subtract ? __builtin_sub_overflow(a.integer, b.integer, &result)
                                            : op != Operator::multiply || a.type == script_duration ||
-                                                 __builtin_mul_overflow(a.whole, b.whole, &result))
+                                                 __builtin_mul_overflow(a.integer, b.integer, &result))
                 return false;
             into = literal_of(a.type, result, static_cast<double>(result));
             return true;
@@ -203,11 +203,11 @@ private:
         const bool negates = at.sign == Sign::minus;
         if (inner.literal && negates &&
             (inner.type == script_int || inner.type == script_double || inner.type == script_duration) &&
-            inner.whole != std::numeric_limits<std::int64_t>::min())
-            return inner.type == script_int ? whole_literal(-inner.whole) // there is no -0 of integers
-                                            : literal_of(inner.type, -inner.whole, -inner.real);
+            inner.integer != std::numeric_limits<std::int64_t>::min())
+            return inner.type == script_int ? integer_literal(-inner.integer) // there is no -0 of integers
+                                            : literal_of(inner.type, -inner.integer, -inner.real);
         if (inner.literal && !negates && inner.type == script_bool)
-            return literal_of(script_bool, inner.whole == 0, 0);
+            return literal_of(script_bool, inner.integer == 0, 0);
         const OperatorMatch match = find_unary(negates ? Operator::negate : Operator::invert, inner.type);
         if (!match) {
             fail(at, {"there is no ", negates ? "-" : "!", " of ", type_name(inner.type),
@@ -226,16 +226,16 @@ private:
     }
 
 protected:
-    /// The field or element behind a dot or bracket of a value; parts of a place are places.
-    constexpr Operand take_part(const Operand& whole);
+    /// The field or element after a dot or bracket of a value; parts of a place are places.
+    constexpr Operand take_part(const Operand& integer);
 
 private:
-    static constexpr Operand part_of(const Operand& whole, TypeId type, std::size_t offset) noexcept {
-        Operand part = at_place(type, moved(whole.at, offset));
-        part.constant = whole.constant;
+    static constexpr Operand part_of(const Operand& integer, TypeId type, std::size_t offset) noexcept {
+        Operand part = at_place(type, moved(integer.at, offset));
+        part.constant = integer.constant;
         return part;
     }
-    constexpr Operand take_element(const Operand& whole);
+    constexpr Operand take_element(const Operand& integer);
 
 protected:
     struct Index {
@@ -254,9 +254,9 @@ private:
     constexpr Operand parse_primary(TypeId expected) {
         const Token at = token_;
         switch (at.sign) {
-        case Sign::integer: advance(); return whole_literal(at.whole);
+        case Sign::integer: advance(); return integer_literal(at.integer);
         case Sign::real: advance(); return literal_of(script_double, 0, at.real);
-        case Sign::duration: advance(); return literal_of(script_duration, at.whole, 0);
+        case Sign::duration: advance(); return literal_of(script_duration, at.integer, 0);
         case Sign::k_true:
         case Sign::k_false: advance(); return literal_of(script_bool, at.sign == Sign::k_true, 0);
         case Sign::text: {
@@ -341,13 +341,13 @@ private:
 
 protected:
     struct Expansion {
-        Place behind{};
+        Place after{};
         std::size_t symbols = 0;
         std::size_t scope = 0;
         std::size_t hidden_begin = 0;
         std::size_t hidden_end = 0;
     };
-    /// Reads the arguments at the call and stands behind the opening brace of the body then. An argument that
+    /// Reads the arguments at the call and stands after the opening brace of the body then. An argument that
     /// is no constant is reckoned once, into the scratch or where `keeps` says.
     constexpr Expansion begin_expansion(const Token& name, Function& function, bool keeps = false);
     constexpr void end_expansion(Function& function, const Expansion& expansion);

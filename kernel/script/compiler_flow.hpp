@@ -39,7 +39,7 @@ protected:
         region_used_[static_cast<std::size_t>(Region::scratch)] = 0;
         first_instruction_ = instruction_count();
     }
-    /// Behind them: the node; all arcs that hang lead to it.
+    /// After them: the node; all arcs that hang lead to it.
     constexpr NodeIndex end_action(const Token& at) {
         if (nodes_.count() == max_script_nodes) fail_limit("nodes");
         const NodeIndex node =
@@ -91,7 +91,7 @@ protected:
     }
     /// The condition whose instructions begin at `first`.
     constexpr ConditionIndex make_condition(const Token& at, std::uint16_t first, const Operand& value) {
-        if (!ok() || (value.literal && value.whole != 0)) return no_condition;
+        if (!ok() || (value.literal && value.integer != 0)) return no_condition;
         const Operand ready = as(at, value, script_bool, " as a condition");
         return add(conditions_,
                    ConditionRow{first, static_cast<std::uint16_t>(instruction_count() - first), ready.at},
@@ -113,7 +113,7 @@ protected:
         }
         return false;
     }
-    /// Behind a loop. `rounds`: how often it runs at most; 0: nobody knows.
+    /// After a loop. `rounds`: how often it runs at most; 0: nobody knows.
     constexpr void check_loop(const Token& at, NodeIndex head, std::uint64_t cost_before,
                               std::uint64_t rounds) {
         if (!ok() || !is_free_loop(head)) return;

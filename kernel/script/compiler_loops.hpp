@@ -11,10 +11,10 @@ constexpr void Statements::parse_if(const Token& at) {
     static_cast<void>(take(Sign::k_then));
     parse_statement();
     if (!take(Sign::k_else)) return join(pending_, otherwise);
-    const Chain behind = pending_;
+    const Chain after = pending_;
     pending_ = otherwise;
     parse_statement();
-    join(pending_, behind);
+    join(pending_, after);
 }
 
 constexpr NodeIndex Statements::parse_branch(const Token& at, Chain& otherwise) {
@@ -57,7 +57,7 @@ constexpr void Statements::parse_for(const Token& at) {
         has_counter && ok() && symbols_used_ == symbols + 1 ? &symbols_[symbols] : nullptr;
     const std::uint64_t rounds =
         counter != nullptr && counter->operand.type == script_int && last_value_.literal
-            ? count_rounds(*counter, last_value_.whole)
+            ? count_rounds(*counter, last_value_.integer)
             : 0;
     Loop loop;
     Loop* const outer = loop_;
@@ -68,7 +68,7 @@ constexpr void Statements::parse_for(const Token& at) {
     need(Sign::semicolon, "\";\" and the step of the loop");
     const Place step = here();
     for (std::size_t depth = 0; ok() && (depth != 0 || !is(Sign::close_round)); advance()) {
-        if (is(Sign::end) || is(Sign::broken)) fail_expected("\")\" behind the step of the loop");
+        if (is(Sign::end) || is(Sign::broken)) fail_expected("\")\" after the step of the loop");
         if (is(Sign::open_round)) ++depth;
         if (is(Sign::close_round)) --depth;
     }
@@ -77,11 +77,11 @@ constexpr void Statements::parse_for(const Token& at) {
     parse_statement();
     if (rounds != 0) counter->fixed = false;
     join(pending_, loop.continues);
-    const Place behind = here();
+    const Place after = here();
     go_to(step);
     if (!is(Sign::close_round)) parse_step_statement();
-    if (ok() && !is(Sign::close_round)) fail_expected("\")\" behind the step of the loop");
-    go_to(behind);
+    if (ok() && !is(Sign::close_round)) fail_expected("\")\" after the step of the loop");
+    go_to(after);
     lead(pending_, head);
     check_loop(at, head, cost, rounds);
     pending_ = otherwise;
@@ -111,7 +111,7 @@ constexpr std::uint64_t Statements::count_rounds(const Symbol& counter, std::int
         const bool is_known = is(Sign::integer) || (named != nullptr && named->operand.literal &&
                                                     named->operand.type == script_int);
         if (!is_known) return false;
-        into = is(Sign::integer) ? token_.whole : named->operand.whole;
+        into = is(Sign::integer) ? token_.integer : named->operand.integer;
         if (negative) into = -into;
         advance();
         return true;
@@ -163,14 +163,14 @@ constexpr void Statements::parse_try() {
     if (!need(Sign::k_catch, "\"catch\" and what is done when an action failed")) return;
     const Token at = token_;
     const auto last = static_cast<NodeIndex>(nodes_.count());
-    const Chain behind = pending_;
+    const Chain after = pending_;
     pending_ = no_chain;
     if (ok() && first == last) return fail(at, {"there is nothing in this try that could fail"});
     pending_ = pass(at); // where failures lead, whatever the catch holds
     for (NodeIndex n = first; ok() && n < last; ++n)
         if (nodes_[n].on_error == to_catch) nodes_[n].on_error = last;
     parse_statement();
-    join(pending_, behind);
+    join(pending_, after);
 }
 
 constexpr void Statements::parse_wait(const Token& at) {
@@ -194,7 +194,7 @@ constexpr void Statements::parse_wait(const Token& at) {
         return fail_type(where, value.type, "a condition or a duration", "");
     const DataOffset time = persistent_time(where, value);
     const NodeIndex node = end_action(at);
-    if (ok()) waits_.put(node, value.literal && value.whole > 0);
+    if (ok()) waits_.put(node, value.literal && value.integer > 0);
     ++timers_;
     pending_ = add_arc(node, no_condition, time);
 }

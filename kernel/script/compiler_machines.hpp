@@ -95,8 +95,9 @@ protected:
                 const Operand value = parse_known(wanted, "an argument of a state machine");
                 if (!ok()) return 0;
                 if (!value.literal) {
-                    fail(where, {"an argument of a state machine is a number, a time, a truth, a text or the "
-                                 "name of a value"});
+                    fail(where,
+                         {"an argument of a state machine is a number, a time, a boolean, a text or the "
+                          "name of a value"});
                     return 0;
                 }
                 std::byte bytes[sizeof(ScriptText)] = {};
@@ -312,7 +313,7 @@ private:
         need(Sign::close_brace, "\"}\"");
     }
     constexpr void make_preconditions(std::uint16_t number, std::span<const Place> places) {
-        const Place behind = here();
+        const Place after = here();
         begin_action();
         const std::uint16_t first = first_instruction_;
         Operand all;
@@ -336,7 +337,7 @@ private:
         }
         const ConditionIndex condition = make_condition(at, first, all);
         if (ok()) states_[number].precondition = ConditionRef{condition};
-        go_to(behind);
+        go_to(after);
     }
     constexpr void parse_state_program(std::uint16_t number, ProgramRef StateRow::* part) {
         const Token at = token_;
@@ -355,7 +356,7 @@ private:
     // ---- transitions
 
     constexpr void parse_transitions(std::uint16_t state);
-    /// Behind "transition", or an item of "transitions".
+    /// After "transition", or an item of "transitions".
     constexpr void parse_transition(const Token& at, std::uint16_t state, bool may_hear);
     constexpr ProgramRef parse_branch_program(std::string_view state, std::string_view label);
     /// "select State", "select history(State)", "select deep history(State)", with "because" and a reason.

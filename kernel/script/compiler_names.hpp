@@ -14,7 +14,7 @@ struct Operand {
         false; ///< it stands below, not in the data: truths, numbers, times, texts, names of values
     bool constant = false; ///< its bytes stand among the constants
     bool simple = false; ///< the last instruction made it, whole and in the scratch: it may be made elsewhere
-    std::int64_t whole = 0;
+    std::int64_t integer = 0;
     double real = 0;
     std::string_view text{};
 
@@ -35,7 +35,7 @@ struct Symbol {
 /// Functions are expanded where they are called; what is kept is where to read them.
 struct Function {
     std::string_view name{};
-    Lexer lexer{}; ///< behind its opening bracket
+    Lexer lexer{}; ///< after its opening bracket
     Token token{}; ///< the first one there
     TypeId result = nullptr;
     bool is_value = false; ///< its body is one return: it may stand in an expression
@@ -115,7 +115,7 @@ protected:
         const auto all = facets(component);
         return find_facet(all, name, 0, all.size());
     }
-    /// A facet behind its component's name and dot, bags followed; `none` after a fault.
+    /// A facet after its component's name and dot, bags followed; `none` after a fault.
     constexpr std::uint16_t parse_facet(std::uint16_t component, Token name) {
         const auto all = facets(component);
         std::size_t first = 0, last = all.size();
@@ -182,8 +182,8 @@ protected:
     static constexpr std::string_view type_name(TypeId type) noexcept {
         if (type == nullptr) return "nothing";
         switch (type->kind) {
-        case ValueKind::truth: return "bool";
-        case ValueKind::whole:
+        case ValueKind::boolean: return "bool";
+        case ValueKind::integer:
         case ValueKind::natural: return "int";
         case ValueKind::real: return "double";
         case ValueKind::duration: return "duration";

@@ -12,15 +12,15 @@ namespace tappet {
 
 /// Expressions, statements and functions inside each other, together.
 inline constexpr std::uint32_t script_max_depth = 32;
-/// Tokens that compiling a text of so many letters reads at most; more would be functions that multiply.
-constexpr std::uint64_t script_work(std::size_t letters) noexcept {
-    return 16 * std::uint64_t{letters} + 4096;
+/// Tokens that compiling a text of so many characters reads at most; more would be functions that multiply.
+constexpr std::uint64_t script_work(std::size_t characters) noexcept {
+    return 16 * std::uint64_t{characters} + 4096;
 }
 
 namespace script_detail {
 
 /// While a type is compiled its values have places within one of four regions; when it is complete the
-/// regions are laid one behind the other and the places become offsets.
+/// regions are laid one after the other and the places become offsets.
 enum class Region : std::uint8_t { constants, variables, arguments, scratch };
 inline constexpr unsigned region_bits = 14;
 inline constexpr std::uint32_t region_bytes = (1u << region_bits) - 16;
@@ -148,7 +148,7 @@ protected:
             advance();
         return name;
     }
-    /// Behind a dot or in an interface's place a keyword is a name too.
+    /// After a dot or in an interface's place a keyword is a name too.
     constexpr Token need_word(std::string_view wanted) {
         const Token name = token_;
         if (!token_.is_word())
@@ -187,12 +187,12 @@ protected:
     }
     constexpr Instruction& last_instruction() noexcept { return instructions_[instructions_.count() - 1]; }
 
-    /// Letters that outlive the text.
+    /// Characters that outlive the text.
     constexpr std::string_view keep(std::initializer_list<std::string_view> pieces) {
         const std::size_t from = names_used_;
         for (const std::string_view piece : pieces) {
             if (room_.names.size() - names_used_ < piece.size()) {
-                fail_room("letters of names");
+                fail_room("characters of names");
                 return {};
             }
             std::copy_n(piece.data(), piece.size(), room_.names.data() + names_used_);
@@ -271,7 +271,7 @@ protected:
                                                 2 * region_used(Region::variables));
     }
 
-    // ---- a type: its rows begin behind those of the types before it
+    // ---- a type: its rows begin after those of the types before it
 
     constexpr void begin_type() {
         instructions_.base = instructions_.used;

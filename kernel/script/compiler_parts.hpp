@@ -69,7 +69,7 @@ constexpr Expressions::Index Expressions::parse_index(TypeId type) {
         need(Sign::close_square, "\"]\"");
         if (!ok()) return index;
         index.is_known = row.literal && type->kind == ValueKind::matrix;
-        index.number = static_cast<std::size_t>(row.whole);
+        index.number = static_cast<std::size_t>(row.integer);
         if (!index.is_known) index.at = in_data(at, row).at;
         return index;
     }
@@ -81,7 +81,7 @@ constexpr Expressions::Index Expressions::parse_index(TypeId type) {
     need(Sign::close_square, "\"]\"");
     if (!ok()) return index;
     if (row.literal && column.literal) {
-        const auto r = static_cast<std::size_t>(row.whole), c = static_cast<std::size_t>(column.whole);
+        const auto r = static_cast<std::size_t>(row.integer), c = static_cast<std::size_t>(column.integer);
         index.is_known = true;
         index.number = type->row_major ? r * type->columns + c : c * type->rows + r;
         return index;
@@ -101,7 +101,7 @@ constexpr Operand Expressions::parse_subscript(std::size_t size) {
     if (!ok()) return {};
     if (value.type != script_int)
         fail_type(at, value.type, "an int", " as an index");
-    else if (value.literal && (value.whole < 0 || value.whole >= static_cast<std::int64_t>(size)))
+    else if (value.literal && (value.integer < 0 || value.integer >= static_cast<std::int64_t>(size)))
         fail(at,
              {"found an index out of range; elements are counted from 0 on, and there are ", digits(size)});
     return value;

@@ -33,7 +33,7 @@ constexpr void Machines::parse_transition(const Token& at, std::uint16_t state, 
         if (ok() && (!time.literal || time.type != script_duration))
             fail_type(where, time.type, "a duration such as 5s", "");
         row.timed = true;
-        row.after = Duration{time.whole};
+        row.after = Duration{time.integer};
         ++timers_;
     } else if (may_hear && !is(Sign::k_if) && !is(Sign::k_select) && !is(Sign::open_brace)) {
         parse_event(row);
@@ -141,7 +141,7 @@ constexpr void Machines::parse_event(TransitionRow& row) {
     const Facet& facet = facet_of(component, number);
     check_reach(event_name, component, facet.name, reach_.events, "events");
     row.on_event = true;
-    for (std::size_t i = transitions_.count(); row.event.empty() && i-- > 0;) // the letters once
+    for (std::size_t i = transitions_.count(); row.event.empty() && i-- > 0;) // the characters once
         if (transitions_[i].on_event && is_event(transitions_[i].event, component, facet.name))
             row.event = transitions_[i].event;
     if (row.event.empty())

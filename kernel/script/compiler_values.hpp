@@ -11,15 +11,15 @@ protected:
 
     // ---- values
 
-    static constexpr Operand literal_of(TypeId type, std::int64_t whole, double real) noexcept {
+    static constexpr Operand literal_of(TypeId type, std::int64_t integer, double real) noexcept {
         Operand value;
         value.type = type;
         value.literal = true;
-        value.whole = whole;
+        value.integer = integer;
         value.real = real;
         return value;
     }
-    static constexpr Operand whole_literal(std::int64_t value) noexcept {
+    static constexpr Operand integer_literal(std::int64_t value) noexcept {
         return literal_of(script_int, value, static_cast<double>(value));
     }
     static constexpr Operand at_place(TypeId type, DataOffset at) noexcept {
@@ -38,20 +38,21 @@ protected:
     /// The bytes of a literal as a value of `type`; false: it is none.
     static constexpr bool encode(const Operand& value, TypeId type, std::byte* into) noexcept {
         switch (type->kind) {
-        case ValueKind::truth:
+        case ValueKind::boolean:
             if (value.type != script_bool) return false;
-            store_value(into, value.whole != 0);
+            store_value(into, value.integer != 0);
             return true;
-        case ValueKind::whole:
+        case ValueKind::integer:
         case ValueKind::natural: {
             if (value.type != script_int) return false;
-            const bool is_signed = type->kind == ValueKind::whole;
+            const bool is_signed = type->kind == ValueKind::integer;
             const std::size_t bits = 8 * type->size - (is_signed ? 1 : 0);
-            if (value.whole < 0 && (!is_signed || (bits < 63 && value.whole < -(std::int64_t{1} << bits))))
+            if (value.integer < 0 &&
+                (!is_signed || (bits < 63 && value.integer < -(std::int64_t{1} << bits))))
                 return false;
-            if (value.whole >= 0 && bits < 63 && value.whole >> bits != 0) return false;
+            if (value.integer >= 0 && bits < 63 && value.integer >> bits != 0) return false;
             for (std::size_t i = 0; i < type->size; ++i)
-                into[i] = static_cast<std::byte>(static_cast<std::uint64_t>(value.whole) >> (8 * i));
+                into[i] = static_cast<std::byte>(static_cast<std::uint64_t>(value.integer) >> (8 * i));
             return true;
         }
         case ValueKind::real:
@@ -65,27 +66,27 @@ protected:
             return true;
         case ValueKind::duration:
             if (value.type != script_duration) return false;
-            store_value(into, value.whole);
+            store_value(into, value.integer);
             return true;
         case ValueKind::enumeration:
             if (value.type != type) return false;
             for (std::size_t i = 0; i < type->size; ++i)
-                into[i] = static_cast<std::byte>(static_cast<std::uint64_t>(value.whole) >> (8 * i));
+                into[i] = static_cast<std::byte>(static_cast<std::uint64_t>(value.integer) >> (8 * i));
             return true;
         case ValueKind::text: {
             if (value.type != script_text) return false;
             std::size_t used = 0;
             for (std::size_t i = 0; i < value.text.size(); ++i) {
-                char letter = value.text[i];
-                if (letter == '\\' && i + 1 < value.text.size()) {
-                    letter = value.text[++i];
-                    if (letter == 'n')
-                        letter = '\n';
-                    else if (letter == 't')
-                        letter = '\t';
+                char character = value.text[i];
+                if (character == '\\' && i + 1 < value.text.size()) {
+                    character = value.text[++i];
+                    if (character == 'n')
+                        character = '\n';
+                    else if (character == 't')
+                        character = '\t';
                 }
                 if (used == type->columns) return false;
-                into[used++] = static_cast<std::byte>(letter);
+                into[used++] = static_cast<std::byte>(character);
             }
             store_value(into + type->length_at, static_cast<std::uint32_t>(used));
             return true;

@@ -28,7 +28,7 @@ struct ScriptSizes {
     std::uint32_t captures = 0;
     std::uint32_t types = 0;
     std::uint32_t instances = 0;
-    std::uint32_t names = 0; ///< letters
+    std::uint32_t names = 0; ///< characters
     std::uint32_t reach = 0; ///< components
     // Not of the room, but of who runs it, over all instances.
     std::uint32_t data = 0; ///< bytes, each instance's aligned to data_alignment

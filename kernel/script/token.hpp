@@ -19,7 +19,8 @@ enum class Sign : std::uint8_t {
     real,
     duration,
     text,
-    broken, ///< no token: a letter that means nothing, a text or comment without its end, a number too large
+    broken, ///< no token: a character that means nothing, a text or comment without its end, a number too
+            ///< large
     // punctuation
     open_brace,
     close_brace,
@@ -93,7 +94,7 @@ enum class Sign : std::uint8_t {
 
 constexpr std::uint32_t hash_of(std::string_view name) noexcept {
     std::uint32_t key = 2166136261u; // FNV-1a
-    for (const char letter : name) key = (key ^ static_cast<unsigned char>(letter)) * 16777619u;
+    for (const char character : name) key = (key ^ static_cast<unsigned char>(character)) * 16777619u;
     return key;
 }
 
@@ -174,7 +175,7 @@ struct Token {
     std::uint16_t column = 1;
     std::uint32_t hash = 0;   ///< of a word
     std::string_view text{};  ///< as written; of a text what is between its quotes, escapes and all
-    std::int64_t whole = 0;   ///< of an integer; of a duration its nanoseconds
+    std::int64_t integer = 0; ///< of an integer; of a duration its nanoseconds
     double real = 0;          ///< of a real, and of an integer
     std::string_view fault{}; ///< of a broken one
 
@@ -213,7 +214,7 @@ public:
     /// After end or broken: the same again.
     constexpr void next(Token& token) noexcept {
         token.hash = 0;
-        if (!skip_blanks()) return make_broken(token, "a comment without its end; write */ behind it");
+        if (!skip_blanks()) return make_broken(token, "a comment without its end; write */ after it");
         token.line = line_;
         token.column = column();
         if (at_ == end_) return make(token, Sign::end, 0);
@@ -228,10 +229,10 @@ private:
     constexpr std::uint16_t column() const noexcept {
         return static_cast<std::uint16_t>(std::min<std::ptrdiff_t>(at_ - row_ + 1, 0xffff));
     }
-    constexpr void make(Token& token, Sign sign, std::size_t letters) noexcept {
+    constexpr void make(Token& token, Sign sign, std::size_t characters) noexcept {
         token.sign = sign;
-        token.text = {at_, letters};
-        at_ += letters;
+        token.text = {at_, characters};
+        at_ += characters;
     }
     constexpr void make_broken(Token& token, std::string_view fault) noexcept {
         token.line = line_;
@@ -332,13 +333,13 @@ private:
         if (!is_real && too_large)
             return make_broken(token, "an integer of more than 63 bits; write a real number such as 1e20");
         if (is_real && exponent > 308 + 19) return make_broken(token, "a number too large for a double");
-        token.whole = static_cast<std::int64_t>(digits);
+        token.integer = static_cast<std::int64_t>(digits);
         token.real = exponent < -400 ? 0 : real_of(digits, exponent);
         if (is_real && token.real > 1.7976931348623157e308)
             return make_broken(token, "a number too large for a double");
         at_ = p;
     }
-    /// Of the word at `p`, behind blanks; the nanoseconds of the unit that it is, and `p` behind it.
+    /// Of the word at `p`, after blanks; the nanoseconds of the unit that it is, and `p` after it.
     constexpr std::int64_t read_unit(const char*& p) const noexcept {
         const char* q = p;
         while (q != end_ && (*q == ' ' || *q == '\t')) ++q;
@@ -372,7 +373,7 @@ private:
             return make_broken(token, "a time too long for nanoseconds in 63 bits");
         token.text = {from, static_cast<std::size_t>(to - from)};
         token.sign = Sign::duration;
-        token.whole = static_cast<std::int64_t>(ns);
+        token.integer = static_cast<std::int64_t>(ns);
         at_ = to;
     }
     constexpr void read_text(Token& token) noexcept {
@@ -418,7 +419,7 @@ private:
             break;
         default: break;
         }
-        make_broken(token, "a letter that means nothing here");
+        make_broken(token, "a character that means nothing here");
     }
 
     const char* at_ = nullptr;

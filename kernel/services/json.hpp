@@ -39,10 +39,10 @@ public:
     JsonText& value(std::string_view text) noexcept {
         separate();
         put("\"");
-        for (const char letter : text) {
-            if (letter == '"' || letter == '\\') put("\\");
-            const bool control = static_cast<unsigned char>(letter) < 0x20;
-            put(control ? std::string_view{" "} : std::string_view{&letter, 1});
+        for (const char character : text) {
+            if (character == '"' || character == '\\') put("\\");
+            const bool control = static_cast<unsigned char>(character) < 0x20;
+            put(control ? std::string_view{" "} : std::string_view{&character, 1});
         }
         put("\"");
         return *this;

@@ -198,7 +198,7 @@ private:
                         "\" has no states inside; lead it to a composite state");
         if (row.has_otherwise && !row.on_event)
             return fail(transition_text(t),
-                        " has an else branch and no event; write a second transition behind it");
+                        " has an else branch and no event; write a second transition after it");
         if (row.has_otherwise && row.guard.empty() && !has_precondition(names_.from[t], names_.to[t]))
             return fail(transition_text(t), " has an else branch and nothing to refuse it; give it guard<>");
         if (!row.otherwise_to.empty() && names_.otherwise_to[t] == no_state)

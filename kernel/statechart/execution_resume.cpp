@@ -4,7 +4,7 @@
 
 namespace tappet {
 
-// The walk skips the programs that have run. An error that came from elsewhere is seen behind the last.
+// The walk skips the programs that have run. An error that came from elsewhere is seen after the last.
 void StateMachineExecution::hand_over(std::size_t part, ProgramReturn why) noexcept TAPPET_REALTIME {
     handed_parts_ = static_cast<std::uint8_t>(part + 1);
     handed_why_ = why;
@@ -43,7 +43,7 @@ void StateMachineExecution::resume_transition(ArcIndex arc, std::size_t part, Pr
     finish(now);
 }
 
-// Behind the last transition of an event or a step whose code keeps nothing of it itself.
+// After the last transition of an event or a step whose code keeps nothing of it itself.
 void StateMachineExecution::tell(StateIndex from, StateIndex to, TransitionIndex transition,
                                  Time now) noexcept TAPPET_REALTIME {
     set(busy);

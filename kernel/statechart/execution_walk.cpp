@@ -24,7 +24,7 @@ std::size_t StateMachineExecution::index_of(StateIndex state) const noexcept TAP
     return i;
 }
 
-// The active states inside one stand behind it.
+// The active states inside one stand after it.
 std::size_t StateMachineExecution::end_of(std::size_t index) const noexcept TAPPET_REALTIME {
     if (index >= status_.states.size()) return index;
     const std::uint16_t depth = machine_.plans[status_.states[index].state].depth;

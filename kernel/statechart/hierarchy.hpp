@@ -123,7 +123,7 @@ private:
 
     static constexpr std::uint32_t key_of(std::string_view name) noexcept {
         std::uint32_t key = 2166136261u; // FNV-1a
-        for (char letter : name) key = (key ^ static_cast<unsigned char>(letter)) * 16777619u;
+        for (char character : name) key = (key ^ static_cast<unsigned char>(character)) * 16777619u;
         return key;
     }
     constexpr void find_parents() noexcept {

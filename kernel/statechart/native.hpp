@@ -19,7 +19,7 @@ template <const auto& source, std::size_t type> struct MachineCode {
     using Transition = TransitionCode<source, type>;
     using Programs = Code<source, type>;
     using Execution = StateMachineExecution;
-    using Way = Transition::Way;
+    using Reaction = Transition::Reaction;
     using Extent = Transition::Extent;
     using Round = Execution::Round;
     using Step = StepCode<source, type>;
@@ -44,7 +44,7 @@ template <const auto& source, std::size_t type> struct MachineCode {
     }();
     // ---- an event
 
-    // Behind an arc's programs; the trace may turn to this machine, and is the last to do so.
+    // After an arc's programs; the trace may turn to this machine, and is the last to do so.
     [[gnu::noinline, gnu::cold]] static void tells(Execution& execution, std::int64_t statements,
                                                    StateIndex from, ArcIndex arc, Time now) noexcept
         TAPPET_REALTIME {
@@ -54,7 +54,7 @@ template <const auto& source, std::size_t type> struct MachineCode {
             static_cast<void>(execution.finish_with(StateOutcome::taken, statements, now));
     }
     template <StateIndex leaf, ArcIndex arc>
-    [[gnu::always_inline]] static Way takes(Execution& execution, Run& run, Time now) noexcept
+    [[gnu::always_inline]] static Reaction takes(Execution& execution, Run& run, Time now) noexcept
         TAPPET_REALTIME {
         Transition::template gives_reason<arc>(execution, now);
         Next next = end_node;
@@ -63,42 +63,42 @@ template <const auto& source, std::size_t type> struct MachineCode {
                 std::make_index_sequence<Transition::template parts<leaf, arc>.count>{}, execution, run, next,
                 part)) [[unlikely]] {
             Transition::breaks_off_at(execution, run.statements, run.fresh, next, arc, part, now);
-            return Way::handed;
+            return Reaction::handed;
         }
         Transition::template arrives<leaf, arc>(execution, now);
         if (execution.trace_ == nullptr) [[likely]]
-            return Way::taken;
+            return Reaction::taken;
         tells(execution, run.statements, leaf, arc, now);
-        return Way::handed;
+        return Reaction::handed;
     }
 
-    // True when the arcs behind it are not asked.
+    // True when the arcs after it are not asked.
     template <StateIndex leaf, ArcIndex arc>
     [[gnu::always_inline]] static bool reacts(Execution& execution, Run& run, Time now,
-                                              const std::byte* arguments, Way& way, ArcIndex& asked) noexcept
-        TAPPET_REALTIME {
+                                              const std::byte* arguments, Reaction& reaction,
+                                              ArcIndex& asked) noexcept TAPPET_REALTIME {
         constexpr bool has_otherwise = view.table.transitions[view.arcs[arc].transition].has_otherwise;
         if constexpr (has_otherwise) { // asked there, once
-            way = Way::by_table;
+            reaction = Reaction::by_table;
             asked = arc;
         } else {
             const ConditionResult result = Transition::template may_take<arc>(execution, arguments);
             if (result == ConditionResult::yes) {
-                way = takes<leaf, arc>(execution, run, now);
+                reaction = takes<leaf, arc>(execution, run, now);
             } else if (result == ConditionResult::failed) {
-                way = Way::by_table;
+                reaction = Reaction::by_table;
                 asked = arc;
             }
         }
-        return way != Way::on;
+        return reaction != Reaction::on;
     }
     template <StateIndex leaf, ArcIndex first, std::size_t... i>
-    [[gnu::always_inline]] static Way reacts(std::index_sequence<i...>, Execution& execution, Run& run,
-                                             Time now, const std::byte* arguments, ArcIndex& asked) noexcept
-        TAPPET_REALTIME {
-        Way way = Way::on;
-        static_cast<void>((reacts<leaf, first + i>(execution, run, now, arguments, way, asked) || ...));
-        return way;
+    [[gnu::always_inline]] static Reaction reacts(std::index_sequence<i...>, Execution& execution, Run& run,
+                                                  Time now, const std::byte* arguments,
+                                                  ArcIndex& asked) noexcept TAPPET_REALTIME {
+        Reaction reaction = Reaction::on;
+        static_cast<void>((reacts<leaf, first + i>(execution, run, now, arguments, reaction, asked) || ...));
+        return reaction;
     }
 
     template <std::size_t number>
@@ -119,20 +119,21 @@ template <const auto& source, std::size_t type> struct MachineCode {
         Run run = Step::template begins<extent.calls, !extent.is_bounded()>(execution, now,
                                                                             execution.policy_.statements);
         ArcIndex asked = at.first + arcs;
-        Way way = reacts<at.leaf, at.first>(std::make_index_sequence<arcs>{}, execution, run, now, arguments,
-                                            asked);
-        if (way == Way::handed) [[unlikely]]
+        Reaction reaction = reacts<at.leaf, at.first>(std::make_index_sequence<arcs>{}, execution, run, now,
+                                                      arguments, asked);
+        if (reaction == Reaction::handed) [[unlikely]]
             return StateOutcome::taken;
         if constexpr (!handle.empty())
-            if (way == Way::on) {
+            if (reaction == Reaction::on) {
                 if constexpr (is_folded)
                     handle.call(execution.context_.component);
                 else
-                    way = Way::by_table;
+                    reaction = Reaction::by_table;
             }
-        if (way == Way::by_table) [[unlikely]]
+        if (reaction == Reaction::by_table) [[unlikely]]
             return execution.resume_event(at.trigger, now, arguments, asked);
-        const StateOutcome outcome = way == Way::taken ? StateOutcome::taken : StateOutcome::ignored;
+        const StateOutcome outcome =
+            reaction == Reaction::taken ? StateOutcome::taken : StateOutcome::ignored;
         return Step::template ends<extent.calls>(execution)
                    ? outcome
                    : execution.finish_with(outcome, run.statements, now);

@@ -76,7 +76,7 @@ template <const auto& source, std::size_t type> struct StepCode {
     template <StateIndex leaf, std::size_t level>
     static constexpr StateRow row_at = view.table.states[Transition::ancestor(leaf, level + 1)];
 
-    // All that one round in a leaf may run, up to the transition behind it.
+    // All that one round in a leaf may run, up to the transition after it.
     static constexpr Extent extent_of(StateIndex leaf) {
         Extent extent = Transition::extent_of(leaf, view.plans[leaf].conditions, {});
         for (StateIndex s = leaf; s != no_state; s = view.plans[s].parent) {
@@ -159,7 +159,7 @@ template <const auto& source, std::size_t type> struct StepCode {
         round.held &= kept_bits;
         (enters_level<leaf, target, kept + level>(execution, round), ...);
     }
-    // A condition held: its transition, and the round behind it.
+    // A condition held: its transition, and the round after it.
     template <StateIndex leaf, ArcIndex arc>
     [[gnu::always_inline]] static void goes_over(Execution& execution, Run& run, Round round,
                                                  Time now) noexcept TAPPET_REALTIME {
@@ -186,12 +186,12 @@ template <const auto& source, std::size_t type> struct StepCode {
             std::make_index_sequence<std::size_t{row.target_levels} - row.kept_levels>{}, execution, round);
         round.statements = run.statements;
         ++round.taken;
-        constexpr Extent before = extent_at<leaf>, behind = extent_at<row.target>;
-        constexpr bool may_lack = !is_folded && behind.is_bounded();
+        constexpr Extent before = extent_at<leaf>, after = extent_at<row.target>;
+        constexpr bool may_lack = !is_folded && after.is_bounded();
         if (execution.mode_ != (before.calls ? Execution::busy : Execution::ready) ||
-            (may_lack && round.statements < behind.statements)) [[unlikely]]
+            (may_lack && round.statements < after.statements)) [[unlikely]]
             return execution.resume_round(round, row.kept_levels, now);
-        if constexpr (before.calls && !behind.calls) execution.mode_ = Execution::ready;
+        if constexpr (before.calls && !after.calls) execution.mode_ = Execution::ready;
         execution.conditions_left_ = round.taken == Execution::max_transitions_per_step;
         if (execution.conditions_left_) {
             execution.mode_ = Execution::ready;
@@ -200,7 +200,7 @@ template <const auto& source, std::size_t type> struct StepCode {
         state<number_of(row.target)>(execution, now, round);
     }
 
-    // True when the conditions behind it are not asked.
+    // True when the conditions after it are not asked.
     template <StateIndex leaf, ArcIndex arc>
     [[gnu::always_inline]] static bool holds(Execution& execution, Run& run, Round round, Time now) noexcept
         TAPPET_REALTIME {
@@ -246,7 +246,7 @@ template <const auto& source, std::size_t type> struct StepCode {
         return (waits_at<leaf, level>(execution) || ...);
     }
 
-    // One round of run programs, conditions and handle programs, and those behind it.
+    // One round of run programs, conditions and handle programs, and those after it.
     template <std::size_t number>
     static void state(Execution& execution, Time now, Round round) noexcept TAPPET_REALTIME {
         constexpr StateIndex leaf = leaves[number];

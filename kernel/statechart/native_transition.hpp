@@ -124,10 +124,10 @@ template <const auto& source, std::size_t type> struct TransitionCode {
     }
 
     /// How far a call came.
-    enum class Way : std::uint8_t {
+    enum class Reaction : std::uint8_t {
         on,       ///< nothing of it was taken
         taken,    ///< and done with
-        by_table, ///< the walk asks what was asked last, and all behind it
+        by_table, ///< the walk asks what was asked last, and all after it
         handed    ///< the walk has gone on from where it stood, and has ended the call
     };
 
@@ -218,7 +218,7 @@ template <const auto& source, std::size_t type> struct TransitionCode {
         }
         return true;
     }
-    // How a program stands that has not ended, or no program behind it may run.
+    // How a program stands that has not ended, or no program after it may run.
     static ProgramReturn breaks_off(Execution& execution, std::int64_t statements, bool fresh,
                                     Next next) noexcept TAPPET_REALTIME {
         Run run{execution.context_.data, statements, fresh};
@@ -269,7 +269,7 @@ template <const auto& source, std::size_t type> struct TransitionCode {
         (enters_level<leaf, arc, row.kept_levels + level>(states[row.kept_levels + level], now), ...);
         if constexpr (view.plans[leaf].depth != row.target_levels) states.used = row.target_levels;
     }
-    // Behind its programs.
+    // After its programs.
     template <StateIndex leaf, ArcIndex arc>
     [[gnu::always_inline]] static void arrives(Execution& execution, Time now) noexcept TAPPET_REALTIME {
         constexpr StateArc row = view.arcs[arc];

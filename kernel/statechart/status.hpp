@@ -10,8 +10,8 @@ namespace tappet {
 enum class StateOutcome : std::uint8_t {
     taken,   ///< a transition was taken; it may need more steps, see under_way()
     ignored, ///< inactive, no transition for it here, no guard held, or the request is not valid now
-    queued, ///< called out of a program or guard, or behind something that waits: it will be handled in order
-    lost,   ///< no room to queue it; counted
+    queued,  ///< called out of a program or guard, or after something that waits: it will be handled in order
+    lost,    ///< no room to queue it; counted
 };
 
 /// The status of thesis fig. 5.19.
@@ -103,7 +103,7 @@ struct StateMachineStatus {
     std::uint64_t deferred_events = 0; ///< that had to wait for a program or for their turn
     Time reason_at{};
     /// The active states, each before those inside it, regions in their order. A state stands here from
-    /// before its entry program to behind its exit program.
+    /// before its entry program to after its exit program.
     Bounded<ActiveState, max_active_states> states;
     StateMachineFault fault;
 };

@@ -27,7 +27,7 @@ namespace {
 
 /// Everything a compiler may print for one faulty table, the sentence and its surroundings included.
 constexpr std::size_t most_lines = 9;
-/// Of a script: the sentence comes first, the way through which it was compiled behind it.
+/// Of a script: the sentence comes first, the way through which it was compiled after it.
 constexpr std::size_t most_script_lines = 13;
 constexpr unsigned at_a_time = 2;
 constexpr std::size_t most_told = 10;
@@ -100,9 +100,9 @@ std::string sentence_of(const std::string& error) {
 /// Equal, where # in what is expected stands for any number.
 bool matches(std::string_view expected, std::string_view said) {
     std::size_t at = 0;
-    for (const char letter : expected) {
-        if (letter != '#') {
-            if (at == said.size() || said[at++] != letter) return false;
+    for (const char character : expected) {
+        if (character != '#') {
+            if (at == said.size() || said[at++] != character) return false;
             continue;
         }
         const std::size_t begin = at;

@@ -62,9 +62,9 @@ private:
 
     // ---- names
 
-    std::string_view keep(std::string text) { return letters_.emplace_back(std::move(text)); }
+    std::string_view keep(std::string text) { return characters_.emplace_back(std::move(text)); }
 
-    /// Each letter changed, dropped and doubled.
+    /// Each character changed, dropped and doubled.
     std::vector<std::string_view> misspellings(std::string_view name) {
         std::vector<std::string_view> list;
         for (std::size_t i = 0; i < name.size(); ++i) {
@@ -215,11 +215,11 @@ private:
     template <class Row>
     void drop(std::vector<Row> Copy::* section,
               const std::function<std::vector<std::string>(const Row&)>& named) {
-        const Copy whole{table_};
-        for (std::size_t i = 0; i < (whole.*section).size(); ++i) {
+        const Copy integer{table_};
+        for (std::size_t i = 0; i < (integer.*section).size(); ++i) {
             Copy copy{table_};
             (copy.*section).erase((copy.*section).begin() + static_cast<std::ptrdiff_t>(i));
-            const Row& row = (whole.*section)[i];
+            const Row& row = (integer.*section)[i];
             if (refusal_of(copy.view(), board_).empty())
                 tally_.may_be_dropped.push_back(label(row));
             else
@@ -250,8 +250,8 @@ private:
     }
 
     template <class Row> void twice(std::vector<Row> Copy::* section) {
-        const Copy whole{table_};
-        for (std::size_t i = 0; i < (whole.*section).size(); ++i) {
+        const Copy integer{table_};
+        for (std::size_t i = 0; i < (integer.*section).size(); ++i) {
             Copy copy{table_};
             const Row row = (copy.*section)[i];
             (copy.*section).push_back(row);
@@ -326,8 +326,8 @@ private:
         for (std::size_t s = 0; s < row.settings.size(); ++s) {
             Copy copy{table_};
             PropertySetting& setting = copy.components[i].settings[s].setting;
-            setting.kind = setting.kind == PropertySetting::Kind::truth ? PropertySetting::Kind::duration
-                                                                        : PropertySetting::Kind::truth;
+            setting.kind = setting.kind == PropertySetting::Kind::boolean ? PropertySetting::Kind::duration
+                                                                          : PropertySetting::Kind::boolean;
             expect(tally_.retyped,
                    label(row) + " with \"" + std::string{row.settings[s].name} + "\" of another type", copy,
                    {label(row)});
@@ -336,7 +336,7 @@ private:
 
     MachineView table_;
     const Board& board_;
-    std::deque<std::string> letters_; // the misspelt names; a deque's elements stay where they are
+    std::deque<std::string> characters_; // the misspelt names; a deque's elements stay where they are
     Tally tally_;
 };
 

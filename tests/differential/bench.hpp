@@ -76,7 +76,7 @@ struct Bench {
         return facets(
             property<&Bench::gain>("gain", "", "a whole number", range(-50, 50)),
             property<&Bench::level>("level", "", "a real one", range(-1000, 1000)),
-            property<&Bench::open>("open", "", "a truth"),
+            property<&Bench::open>("open", "", "a boolean"),
             input<&Bench::measured>("measured", "", "comes from outside", optional),
             output<&Bench::setpoint>("setpoint", "", "goes there"),
             event<&Bench::tick>("tick", "without arguments"), event<&Bench::moved>("moved", "with two"),

@@ -25,7 +25,7 @@ public:
     std::string script();
 
 private:
-    enum class Kind : std::uint8_t { whole, real, truth, time, vector };
+    enum class Kind : std::uint8_t { integer, real, boolean, time, vector };
     struct Named {
         std::string name;
         Kind kind;

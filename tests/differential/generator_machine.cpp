@@ -37,13 +37,13 @@ void Generator::declare(std::string_view word, Kind kind, const std::string& nam
 }
 
 void Generator::variables() {
-    declare("var", Kind::whole, "a");
-    declare("var", Kind::whole, "b");
-    declare("const", Kind::whole, "k");
+    declare("var", Kind::integer, "a");
+    declare("var", Kind::integer, "b");
+    declare("const", Kind::integer, "k");
     declare("var", Kind::real, "x");
     declare("var", Kind::real, "y");
-    declare("var", Kind::truth, "p");
-    declare("var", Kind::truth, "q");
+    declare("var", Kind::boolean, "p");
+    declare("var", Kind::boolean, "q");
     declare("var", Kind::time, "t");
     declare("var", Kind::vector, "v");
     declare("var", Kind::vector, "w");
@@ -60,8 +60,8 @@ void Generator::child_type() {
     open("StateMachine Child");
     in_child_ = true;
     const std::vector<Named> kept = names_;
-    declare("param", Kind::whole, "load");
-    declare("var", Kind::truth, "p");
+    declare("param", Kind::integer, "load");
+    declare("var", Kind::boolean, "p");
     open("initial state A");
     program_of("entry", 3, one_in(3));
     program_of("run", 3, one_in(2));
@@ -72,7 +72,7 @@ void Generator::child_type() {
     program_of("entry", 3, one_in(3));
     program_of("run", 2, one_in(2));
     program_of("exit", 3, one_in(3));
-    line("transitions { if " + expression(Kind::truth, 1) + " then select A");
+    line("transitions { if " + expression(Kind::boolean, 1) + " then select A");
     line("after(" + literal(Kind::time) + ") select F }");
     close();
     open("final state F");
@@ -120,14 +120,14 @@ std::vector<std::size_t> Generator::inside(int parent, const std::string& region
 
 void Generator::machine() {
     open("StateMachine Machine");
-    declare("param", Kind::whole, "goal");
+    declare("param", Kind::integer, "goal");
     declare("param", Kind::real, "speed");
     variables();
     if (has_child_) line("SubStateMachine Child left(" + std::to_string(below(6)) + ")");
     if (one_in(2)) {
         functions_.push_back("helper");
         open("function helper(int n)");
-        names_.push_back({"n", Kind::whole, false});
+        names_.push_back({"n", Kind::integer, false});
         in_function_ = true;
         block(2, 1, one_in(2));
         in_function_ = false;
@@ -144,7 +144,7 @@ void Generator::state(std::size_t index) {
     const Planned planned = states_[index];
     open(std::string{planned.initial ? "initial " : planned.final ? "final " : ""} + "state " + planned.name);
     if (!planned.initial && !planned.final && one_in(6))
-        line("precondition(" + expression(Kind::truth, 1) + ")");
+        line("precondition(" + expression(Kind::boolean, 1) + ")");
     program_of("entry", 2, one_in(3));
     program_of("run", 2, one_in(2));
     program_of("exit", 2, one_in(4));
@@ -220,7 +220,7 @@ void Generator::condition_transition(std::size_t index, bool always) {
     const bool timed = always || one_in(4);
     const bool guarded = !always || one_in(2);
     const std::string after = timed ? "after(" + literal(Kind::time) + ") " : "";
-    const std::string guard = guarded ? "if " + expression(Kind::truth, 2) + " then " : "";
+    const std::string guard = guarded ? "if " + expression(Kind::boolean, 2) + " then " : "";
     if (one_in(2)) return line(after + guard + select(index));
     open(after + guard);
     block(1 + static_cast<int>(below(2)), 1, one_in(3));
@@ -229,7 +229,7 @@ void Generator::condition_transition(std::size_t index, bool always) {
     if (guarded && always && one_in(2)) line("else " + select(index));
 }
 
-// What always comes first hides what comes behind it: without a guard, or with an else branch, a state hears
+// What always comes first hides what comes after it: without a guard, or with an else branch, a state hears
 // the event of its circle, and an outermost one another one; nobody hears with a guard that of a circle
 // inside. `always`: what is selected then.
 void Generator::event_transition(std::size_t index, std::string_view event, const std::string& always) {
@@ -242,7 +242,7 @@ void Generator::event_transition(std::size_t index, std::string_view event, cons
     const bool internal = guarded && one_in(3);
     const std::string way = internal ? "" : " " + (guarded ? select(index) : always);
     std::string head = "transition " + std::string{event};
-    if (guarded) head += " if " + expression(Kind::truth, 2) + " then";
+    if (guarded) head += " if " + expression(Kind::boolean, 2) + " then";
     if (internal || one_in(2)) {
         open(head);
         block(1 + static_cast<int>(below(2)), 1, one_in(3));

@@ -7,9 +7,9 @@ namespace tappet {
 
 std::string_view Generator::type_of(Kind kind) {
     switch (kind) {
-    case Kind::whole: return "int";
+    case Kind::integer: return "int";
     case Kind::real: return "double";
-    case Kind::truth: return "bool";
+    case Kind::boolean: return "bool";
     case Kind::time: return "Duration";
     case Kind::vector: return "vector3";
     }
@@ -28,9 +28,9 @@ std::string Generator::literal(Kind kind) {
     static constexpr std::array<std::string_view, 5> reals = {"0.5", "2.0", "1.25e2", "0.1", "3.75"};
     static constexpr std::array<std::string_view, 4> times = {"10ms", "25ms", "1s", "1500us"};
     switch (kind) {
-    case Kind::whole: return one_in(60) ? "9223372036854775807" : std::string{any(wholes)};
+    case Kind::integer: return one_in(60) ? "9223372036854775807" : std::string{any(wholes)};
     case Kind::real: return std::string{any(reals)};
-    case Kind::truth: return one_in(2) ? "true" : "false";
+    case Kind::boolean: return one_in(2) ? "true" : "false";
     case Kind::time: return std::string{any(times)};
     case Kind::vector: return {};
     }
@@ -42,9 +42,9 @@ std::string Generator::expression(Kind kind, int depth) {
     if (named != nullptr && (depth == 0 || one_in(3))) return named->name;
     if (depth == 0 && kind != Kind::vector) return literal(kind);
     switch (kind) {
-    case Kind::whole: return whole(depth - 1);
+    case Kind::integer: return whole(depth - 1);
     case Kind::real: return real(depth - 1);
-    case Kind::truth: return truth(depth - 1);
+    case Kind::boolean: return truth(depth - 1);
     case Kind::time: return time(depth - 1);
     case Kind::vector: return vector(depth - 1);
     }
@@ -52,20 +52,20 @@ std::string Generator::expression(Kind kind, int depth) {
 }
 
 std::string Generator::whole(int depth) {
-    const std::string a = expression(Kind::whole, depth);
+    const std::string a = expression(Kind::integer, depth);
     switch (below(10)) {
-    case 0: return "(" + a + " + " + expression(Kind::whole, depth) + ")";
-    case 1: return "(" + a + " - " + expression(Kind::whole, depth) + ")";
-    case 2: return "(" + a + " * " + expression(Kind::whole, depth) + ")";
+    case 0: return "(" + a + " + " + expression(Kind::integer, depth) + ")";
+    case 1: return "(" + a + " - " + expression(Kind::integer, depth) + ")";
+    case 2: return "(" + a + " * " + expression(Kind::integer, depth) + ")";
     case 3:
-        return "(" + a + (one_in(2) ? " / " : " % ") + (one_in(4) ? expression(Kind::whole, depth) : "3") +
+        return "(" + a + (one_in(2) ? " / " : " % ") + (one_in(4) ? expression(Kind::integer, depth) : "3") +
                ")";
     case 4: return "(-" + a + ")";
     case 5: return (one_in(2) ? "abs(" : "max(3, ") + a + ")";
-    case 6: return "min(" + a + ", " + expression(Kind::whole, depth) + ")";
+    case 6: return "min(" + a + ", " + expression(Kind::integer, depth) + ")";
     case 7: return "gain";
     case 8: return std::string{one_in(2) ? "note(" : "mate.note("} + a + ")";
-    default: return literal(Kind::whole);
+    default: return literal(Kind::integer);
     }
 }
 
@@ -74,7 +74,7 @@ std::string Generator::real(int depth) {
     switch (below(11)) {
     case 0: return a + " + " + expression(Kind::real, depth);
     case 1: return "(" + a + " - " + expression(Kind::real, depth) + ")";
-    case 2: return "(" + a + " * " + expression(Kind::whole, depth) + ")";
+    case 2: return "(" + a + " * " + expression(Kind::integer, depth) + ")";
     case 3: return "(" + a + ") / (" + expression(Kind::real, depth) + ")";
     case 4: return "sqrt(abs(" + a + "))";
     case 5: return "mix(" + a + ", " + std::to_string(below(9)) + ")";
@@ -92,9 +92,9 @@ std::string Generator::real(int depth) {
 std::string Generator::truth(int depth) {
     static constexpr std::array<std::string_view, 6> orders = {" == ", " != ", " < ", " > ", " <= ", " >= "};
     switch (below(9)) {
-    case 0: return "!" + expression(Kind::truth, 0);
-    case 1: return "(" + expression(Kind::truth, depth) + " && " + expression(Kind::truth, depth) + ")";
-    case 2: return "(" + expression(Kind::truth, depth) + " || " + expression(Kind::truth, depth) + ")";
+    case 0: return "!" + expression(Kind::boolean, 0);
+    case 1: return "(" + expression(Kind::boolean, depth) + " && " + expression(Kind::boolean, depth) + ")";
+    case 2: return "(" + expression(Kind::boolean, depth) + " || " + expression(Kind::boolean, depth) + ")";
     case 3:
         return "(" + expression(Kind::real, depth) + std::string{any(orders)} +
                expression(Kind::real, depth) + ")";
@@ -104,8 +104,8 @@ std::string Generator::truth(int depth) {
         return "(" + expression(Kind::time, depth) + std::string{any(orders)} +
                expression(Kind::time, depth) + ")";
     default:
-        return "(" + expression(Kind::whole, depth) + std::string{any(orders)} +
-               expression(Kind::whole, depth) + ")";
+        return "(" + expression(Kind::integer, depth) + std::string{any(orders)} +
+               expression(Kind::integer, depth) + ")";
     }
 }
 
@@ -113,7 +113,7 @@ std::string Generator::time(int depth) {
     const std::string a = expression(Kind::time, depth);
     switch (below(4)) {
     case 0: return "(" + a + " + " + expression(Kind::time, depth) + ")";
-    case 1: return "(" + a + " * " + expression(Kind::whole, depth) + ")";
+    case 1: return "(" + a + " * " + expression(Kind::integer, depth) + ")";
     default: return literal(Kind::time);
     }
 }
@@ -146,12 +146,12 @@ void Generator::statement(int depth, bool may_wait) {
     case 7: return has_child_ && !in_child_ && !in_function_ ? child_call() : assignment();
     case 8:
         if (!functions_.empty() && !in_function_ && !in_child_)
-            return line("do " + any(functions_) + "(" + expression(Kind::whole, 1) + ");");
+            return line("do " + any(functions_) + "(" + expression(Kind::integer, 1) + ");");
         return assignment();
     case 9:
     case 10:
     case 11:
-        open("if " + expression(Kind::truth, 2) + " then");
+        open("if " + expression(Kind::boolean, 2) + " then");
         block(1 + static_cast<int>(below(2)), depth - 1, may_wait);
         if (one_in(2)) {
             --depth_, line("} else {"), ++depth_;
@@ -166,11 +166,11 @@ void Generator::statement(int depth, bool may_wait) {
         block(1, depth - 1, may_wait);
         return close();
     case 14:
-        if (one_in(2)) return line("if " + expression(Kind::truth, 1) + " then return;");
-        if (loops_ > 0) return line("if " + expression(Kind::truth, 1) + " then break;");
+        if (one_in(2)) return line("if " + expression(Kind::boolean, 1) + " then return;");
+        if (loops_ > 0) return line("if " + expression(Kind::boolean, 1) + " then break;");
         return call();
     default: {
-        const Kind kind = one_in(2) ? Kind::whole : Kind::real;
+        const Kind kind = one_in(2) ? Kind::integer : Kind::real;
         const std::string name = "local" + std::to_string(++counters_);
         line("var " + std::string{type_of(kind)} + " " + name + " = " + expression(kind, 1) + ";");
         names_.push_back({name, kind});
@@ -200,7 +200,7 @@ void Generator::waiting(int depth) {
 std::string Generator::goal() {
     if (one_in(12)) return "7";
     if (one_in(12)) return "-1";
-    return one_in(6) ? expression(Kind::whole, 1) + " % 5" : std::to_string(below(4));
+    return one_in(6) ? expression(Kind::integer, 1) + " % 5" : std::to_string(below(4));
 }
 
 void Generator::command() {
@@ -208,7 +208,7 @@ void Generator::command() {
     switch (below(4)) {
     case 0: return line("do work(" + goal() + ")" + limit + ";");
     case 1:
-        return line("do arm.grip(" + expression(Kind::real, 1) + ", " + expression(Kind::truth, 1) + ")" +
+        return line("do arm.grip(" + expression(Kind::real, 1) + ", " + expression(Kind::boolean, 1) + ")" +
                     limit + ";");
     default: return line("do arm.move(" + goal() + ")" + limit + ";");
     }
@@ -216,29 +216,31 @@ void Generator::command() {
 
 void Generator::call() {
     switch (below(9)) {
-    case 0: return line("do note(" + expression(Kind::whole, 2) + ");");
-    case 1: return line("do mate.note(" + expression(Kind::whole, 1) + ");");
+    case 0: return line("do note(" + expression(Kind::integer, 2) + ");");
+    case 1: return line("do mate.note(" + expression(Kind::integer, 1) + ");");
     case 2:
-        return line("do mix(" + expression(Kind::real, 1) + ", " + expression(Kind::whole, 1) + " % 1000);");
-    case 3: return line("do poke(" + expression(Kind::truth, 1) + ");");
-    case 4: return line("do arm.sum(" + expression(Kind::whole, 1) + ", 4);");
+        return line("do mix(" + expression(Kind::real, 1) + ", " + expression(Kind::integer, 1) +
+                    " % 1000);");
+    case 3: return line("do poke(" + expression(Kind::boolean, 1) + ");");
+    case 4: return line("do arm.sum(" + expression(Kind::integer, 1) + ", 4);");
     case 5: return line("do mate.poke(true);");
     case 6: return line("do tick();");
     case 7:
-        return line("do moved(" + expression(Kind::whole, 1) + " % 100, " + expression(Kind::real, 1) + ");");
-    default: return line("do ask(" + expression(Kind::whole, 1) + " % 100);");
+        return line("do moved(" + expression(Kind::integer, 1) + " % 100, " + expression(Kind::real, 1) +
+                    ");");
+    default: return line("do ask(" + expression(Kind::integer, 1) + " % 100);");
     }
 }
 
 void Generator::assignment() {
-    static constexpr std::array<Kind, 10> kinds = {Kind::whole,  Kind::whole, Kind::whole, Kind::real,
-                                                   Kind::real,   Kind::truth, Kind::truth, Kind::time,
-                                                   Kind::vector, Kind::real};
+    static constexpr std::array<Kind, 10> kinds = {Kind::integer, Kind::integer, Kind::integer, Kind::real,
+                                                   Kind::real,    Kind::boolean, Kind::boolean, Kind::time,
+                                                   Kind::vector,  Kind::real};
     switch (below(12)) {
-    case 0: return line("set gain = " + expression(Kind::whole, 1) + " % 50;");
+    case 0: return line("set gain = " + expression(Kind::integer, 1) + " % 50;");
     case 1: return line("set level = " + expression(Kind::real, 1) + ";");
     case 2: return line("set setpoint = " + expression(Kind::real, 2) + ";");
-    case 3: return line("set mate.open = " + expression(Kind::truth, 1) + ";");
+    case 3: return line("set mate.open = " + expression(Kind::boolean, 1) + ";");
     default: break;
     }
     const Kind kind = any(kinds);
@@ -248,7 +250,7 @@ void Generator::assignment() {
         return line("set " + to->name + "[" + (one_in(8) ? "(b % 4)" : std::to_string(below(3))) +
                     "] = " + expression(Kind::real, 1) + ";");
     // A real takes a whole number as well.
-    const Kind from = kind == Kind::real && one_in(5) ? Kind::whole : kind;
+    const Kind from = kind == Kind::real && one_in(5) ? Kind::integer : kind;
     line("set " + to->name + " = " + expression(from, 2) + ";");
 }
 
@@ -258,12 +260,12 @@ void Generator::loop(int depth, bool may_wait) {
     ++loops_;
     if (one_in(2)) {
         open("for (var int " + i + " = 0; " + i + " < " + times + "; set " + i + " = " + i + " + 1)");
-        names_.push_back({i, Kind::whole, false});
+        names_.push_back({i, Kind::integer, false});
         block(1 + static_cast<int>(below(2)), depth - 1, may_wait);
     } else {
         line("var int " + i + " = 0;");
         open("while (" + i + " < " + times + ")");
-        names_.push_back({i, Kind::whole, false});
+        names_.push_back({i, Kind::integer, false});
         line("set " + i + " = " + i + " + 1;");
         block(1 + static_cast<int>(below(2)), depth - 1, may_wait);
     }
@@ -284,7 +286,7 @@ void Generator::child_call() {
                                                                "requestState(\"A\")",
                                                                "pause()",
                                                                "deactivate()"};
-    if (one_in(4)) return line("set left.load = " + expression(Kind::whole, 1) + ";");
+    if (one_in(4)) return line("set left.load = " + expression(Kind::integer, 1) + ";");
     line("do left." + std::string{any(calls)} + ";");
 }
 

@@ -14,9 +14,9 @@ namespace tappet {
 namespace {
 
 constexpr ScriptSizes capacity = script_sizes_for(1000, 16000, 3);
-constexpr std::size_t letters = 60'000;
+constexpr std::size_t characters = 60'000;
 
-std::string repeated(std::string_view what, std::size_t bytes = letters) {
+std::string repeated(std::string_view what, std::size_t bytes = characters) {
     std::string text;
     while (text.size() < bytes) text += what;
     return text;
@@ -97,7 +97,7 @@ TEST(A_hostile_script, that_is_larger_than_its_room_is_refused) {
 TEST(A_hostile_script, that_ends_nowhere_or_means_nothing_is_refused) {
     for (const std::string& text :
          {repeated("a"), repeated("1"), repeated("\""), repeated("/*"), repeated("."), repeated("\xff"),
-          repeated("StateMachine "), std::string(letters, '\0'), program(repeated("x.y.z."))})
+          repeated("StateMachine "), std::string(characters, '\0'), program(repeated("x.y.z."))})
         expect_refused(text);
 }
 

@@ -18,7 +18,7 @@ public:
     Arm arm{};
     double measured = 0; ///< what the input gets
     double setpoint = 0;
-    /// Hears what is emitted, behind the diary.
+    /// Hears what is emitted, after the diary.
     std::function<void(const std::string& event, const std::vector<Value>& arguments)> heard;
 
     BenchWorld() {

@@ -163,7 +163,7 @@ bool Machine::do_acts(std::int64_t now) {
             continue;
         }
         case Act::Kind::enter: {
-            // Behind those that stand before it in a walk through the whole tree.
+            // After those that stand before it in a walk through the whole tree.
             const std::vector<const State*> path = chain(act.state);
             const auto is_behind = [&](const State* state) {
                 const std::vector<const State*> other = chain(state);

@@ -23,8 +23,8 @@ std::string print(TypeId type, const std::byte* at) {
         return std::to_string(number);
     };
     switch (type->kind) {
-    case ValueKind::truth: return *at != std::byte{0} ? "true" : "false";
-    case ValueKind::whole: return type->size == 8 ? whole(std::int64_t{}) : whole(std::int32_t{});
+    case ValueKind::boolean: return *at != std::byte{0} ? "true" : "false";
+    case ValueKind::integer: return type->size == 8 ? whole(std::int64_t{}) : whole(std::int32_t{});
     case ValueKind::duration: return whole(std::int64_t{}) + "ns";
     case ValueKind::real: {
         double number = 0;

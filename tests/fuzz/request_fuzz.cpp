@@ -45,10 +45,10 @@ void check(Rig& rig) {
     const auto& ram = *rig.instance.find<press::Ram>("ram");
     demand(ram.speed.get() * ram.force.get() <= 100);
     std::uint32_t forced = 0;
-    const auto view = map::View::open(rig.instance.shared_memory());
+    const auto view = map::View::open(rig.instance.observation().shared_memory());
     demand(view.has_value());
     for (const map::Facet& each : view->facets()) forced += view->word<std::uint8_t>(each.forced_at) != 0;
-    demand(forced == rig.instance.observed().forced.load());
+    demand(forced == rig.instance.observation().forced_ports().load());
 }
 
 } // namespace

@@ -74,10 +74,10 @@ bool ends_like_a_file(std::string_view word) {
 /// The file or folder that the words between two backticks mean; empty when they mean something else. A
 /// command counts by its first word.
 std::string file_in(const std::string& code) {
-    static constexpr std::string_view letters =
+    static constexpr std::string_view characters =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
     const std::string word = code.substr(0, code.find(' '));
-    if (word.empty() || word.find_first_not_of(letters) != word.npos || word.starts_with('/')) return {};
+    if (word.empty() || word.find_first_not_of(characters) != word.npos || word.starts_with('/')) return {};
     const bool is_of_a_floor = std::ranges::any_of(
         floors, [&](std::string_view floor) { return word.starts_with(std::string{floor} + "/"); });
     return is_of_a_floor || (word == code && word.size() > 1 && ends_like_a_file(word)) ? word : "";

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_word_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 std::vector<std::string> split(std::string_view text) {
     std::vector<std::string> lines;
@@ -71,11 +71,11 @@ private:
         while (at_ < last) take(into_.comments);
     }
     [[nodiscard]] bool is_raw_literal() const {
-        return text_.substr(at_).starts_with("R\"") && (at_ == 0 || !is_letter(text_[at_ - 1]));
+        return text_.substr(at_).starts_with("R\"") && (at_ == 0 || !is_word_character(text_[at_ - 1]));
     }
     /// Not the mark between digits.
     [[nodiscard]] bool is_character() const {
-        return text_[at_] == '\'' && (at_ == 0 || !is_letter(text_[at_ - 1]));
+        return text_[at_] == '\'' && (at_ == 0 || !is_word_character(text_[at_ - 1]));
     }
     void raw_literal() {
         const std::size_t open = std::min(text_.find('(', at_), text_.size());
@@ -172,9 +172,10 @@ void expect_none(const Findings& findings) {
 
 std::size_t find_word(std::string_view text, std::string_view word, std::size_t from) {
     for (std::size_t at = text.find(word, from); at != text.npos; at = text.find(word, at + 1)) {
-        const bool begins = at == 0 || !is_letter(word.front()) || !is_letter(text[at - 1]);
+        const bool begins = at == 0 || !is_word_character(word.front()) || !is_word_character(text[at - 1]);
         const std::size_t end = at + word.size();
-        const bool ends = end == text.size() || !is_letter(word.back()) || !is_letter(text[end]);
+        const bool ends =
+            end == text.size() || !is_word_character(word.back()) || !is_word_character(text[end]);
         if (begins && ends) return at;
     }
     return text.npos;

@@ -28,7 +28,7 @@ inline wake() {
 waiter_look:
     atomic { seen = state; steps++ }
     if
-    :: seen == WOKEN -> goto awake      /* it takes that wake after this look, and looks at the bits behind it */
+    :: seen == WOKEN -> goto awake      /* it takes that wake after this look, and looks at the bits after it */
     :: else
     fi;
 #ifdef TWIN_WAKE_BY_STORE

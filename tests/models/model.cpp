@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// The words behind "Source:" or "Twins:".
+/// The words after "Source:" or "Twins:".
 std::vector<std::string> listed(const std::string& text, const std::string& heading) {
     std::vector<std::string> words;
     for (const std::string& line : lines_of(text)) {

@@ -51,27 +51,27 @@ tape_head:
 }
 
 active proctype reader() {
-    byte behind, at, marks, summary, mark, now, last, reads, steps;
+    byte after, at, marks, summary, mark, now, last, reads, steps;
     do
     :: reads < READS ->
         atomic { reads++; last = 0 }
 tape_look:
-        behind = head;
+        after = head;
         do
-        :: behind == 0 -> break
+        :: after == 0 -> break
         :: else ->
             steps = 0;
 tape_take:
             atomic {
-                summary = words[(behind - 1) % ROOM];
+                summary = words[(after - 1) % ROOM];
                 steps++;
                 marks = (summary % 4 == 0 -> 1 : summary % 4 - 1)
             }
             if
-            :: marks >= behind -> break
+            :: marks >= after -> break
             :: else
             fi;
-            atomic { at = behind - 1 - marks; mark = summary }
+            atomic { at = after - 1 - marks; mark = summary }
             if
             :: marks == 1 -> atomic { mark = words[at % ROOM]; steps++ }
             :: else
@@ -92,7 +92,7 @@ tape_check:
             fi;
             assert(summary % 4 != 0 && mark / 4 == summary / 4);
             assert(last == 0 || summary / 4 == last - 1);
-            atomic { last = summary / 4; behind = at }
+            atomic { last = summary / 4; after = at }
             assert(steps <= MOST + 1)
         od
     :: else -> break

@@ -91,8 +91,8 @@ void tape_mark(CycleTape& tape, std::uint32_t function, std::int64_t end) noexce
     tape.mark(function, end);
 }
 void tape_end(CycleTape& tape, std::int64_t begin, std::int64_t end) noexcept { tape.end(begin, begin, end); }
-bool tape_read(const CycleTape& tape, std::uint64_t behind, TapeCycle& cycle) noexcept {
-    return tape.cycle_before(behind, cycle);
+bool tape_read(const CycleTape& tape, std::uint64_t after, TapeCycle& cycle) noexcept {
+    return tape.cycle_before(after, cycle);
 }
 
 std::uint32_t life_ask(LifeRequests& requests) noexcept { return requests.ask(LifeChange::stop).number; }

@@ -26,7 +26,8 @@ const Permission plain{{"memcpy", "memset", "memmove"}, false};
 const Permission calling{plain.outside, true};
 const Permission waking{{"syscall", "write"}, false};
 /// A broken contract ends the thread: what it does then is no step of the operation.
-const Permission sending{{"memcpy", "memset", "memmove", "_ZN6tappet14break_contractERKNS_6BreachE"}, true};
+const Permission sending{
+    {"memcpy", "memset", "memmove", "_ZN6tappet14break_contractERKNS_17ContractViolationE"}, true};
 /// The end of a command wakes the one who waits for it, besides what the component does.
 const Permission ending{{"memcpy", "memset", "memmove", "syscall", "write"}, true};
 

@@ -26,7 +26,7 @@ std::expected<Options, Sentence> parse_options(int count, const char* const* wor
             return std::unexpected(error);
         }
         if (i + 1 == count)
-            return std::unexpected(Sentence{"option ", option, " needs a value behind it; see --help"});
+            return std::unexpected(Sentence{"option ", option, " needs a value after it; see --help"});
         const std::string_view word = words[++i];
         if (option == "--picture") {
             options.picture = word;

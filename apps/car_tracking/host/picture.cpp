@@ -1,4 +1,4 @@
-// Writes the picture as SVG: lines, circles and letters only, so that any browser shows it.
+// Writes the picture as SVG: lines, circles and characters only, so that any browser shows it.
 #include "apps/car_tracking/host/picture.hpp"
 
 #include <algorithm>
@@ -37,8 +37,8 @@ constexpr double width = left + map_width + 230.0;
 
 class Svg {
 public:
-    Svg& raw(std::string_view letters) {
-        text_ += letters;
+    Svg& raw(std::string_view characters) {
+        text_ += characters;
         return *this;
     }
     Svg& number(double value) {
@@ -63,9 +63,9 @@ public:
         raw("<circle").at("cx", x).at("cy", y).at("r", radius);
         return raw(" ").raw(style).raw("/>\n");
     }
-    Svg& words(double x, double y, std::string_view letters, std::string_view style = {}) {
+    Svg& words(double x, double y, std::string_view characters, std::string_view style = {}) {
         raw("<text").at("x", x).at("y", y);
-        return raw(" ").raw(style).raw(">").raw(letters).raw("</text>\n");
+        return raw(" ").raw(style).raw(">").raw(characters).raw("</text>\n");
     }
     [[nodiscard]] std::string take() { return std::move(text_); }
 

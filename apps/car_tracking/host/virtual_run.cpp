@@ -19,7 +19,8 @@ VirtualRun::VirtualRun(std::uint64_t seed, const AcceptedMachine& machine)
       world_{instance_} {}
 
 std::expected<void, Sentence> VirtualRun::start() {
-    if (auto configured = instance_.configure(devices_); !configured) return configured;
+    if (auto configured = instance_.configure(devices_); !configured)
+        return std::unexpected(configured.error());
     world_.add({&scene_, [](void* scene) { return static_cast<Scene*>(scene)->next(); },
                 [](void* scene, Time now) { static_cast<Scene*>(scene)->advance(now); }});
     if (const Sentence refusal = world_.start(); !refusal.empty()) return std::unexpected(refusal);
@@ -63,7 +64,7 @@ void VirtualRun::look() {
 
 std::uint64_t VirtualRun::digest() const {
     Digest digest;
-    digest.add(instance_.event_log_digest());
+    digest.add(instance_.observation().event_log_digest());
     const auto add = [&digest](double value) { digest.add(std::bit_cast<std::uint64_t>(value)); };
     for (const Moment& each : moments_)
         for (const double value : {each.car_x, each.car_y, each.looks_x, each.looks_y}) add(value);

@@ -23,7 +23,7 @@ std::optional<std::int64_t> whole(std::string_view text, std::string_view unit) 
     return whole(text);
 }
 
-/// The words behind the first one, if that is `kind`. Nothing when a word is no pair or is there twice.
+/// The words after the first one, if that is `kind`. Nothing when a word is no pair or is there twice.
 using Pairs = std::vector<std::pair<std::string_view, std::string_view>>;
 std::optional<Pairs> pairs_of(std::string_view line, std::string_view kind) {
     if (!line.starts_with(kind) || line.size() == kind.size() || line[kind.size()] != ' ')

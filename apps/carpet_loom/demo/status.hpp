@@ -52,12 +52,12 @@ class Lines {
 public:
     /// Calls take(line) for each line that is complete now; carriage returns are dropped.
     template <class Take> void add(std::string_view bytes, Take&& take) {
-        for (const char letter : bytes) {
-            if (letter == '\n') {
+        for (const char character : bytes) {
+            if (character == '\n') {
                 take(std::string_view{rest_});
                 rest_.clear();
-            } else if (letter != '\r' && rest_.size() < longest) {
-                rest_ += letter;
+            } else if (character != '\r' && rest_.size() < longest) {
+                rest_ += character;
             }
         }
     }

@@ -17,7 +17,7 @@ struct Frame {
 /// The screen's lines with colours, none wider than 100 characters.
 [[nodiscard]] std::vector<std::string> screen(const Story& story, const Frame& frame);
 
-/// One line without colours or letters beyond ASCII.
+/// One line without colours or characters beyond ASCII.
 [[nodiscard]] std::string plain_line(const Story& story, const Frame& frame);
 [[nodiscard]] std::string plain_stop(const SeenStop& stop);
 

@@ -57,7 +57,7 @@ Options parse(int count, char** words) {
                 "option ", std::string_view{words[i]},
                 " is unknown; there are --summary FILE, --properties DIRECTORY and --browse DIRECTORY"};
         else if (i + 1 == count)
-            options.error = Sentence{"option ", std::string_view{words[i]}, " needs a name behind it"};
+            options.error = Sentence{"option ", std::string_view{words[i]}, " needs a name after it"};
         else
             *place = words[++i];
     }
@@ -67,7 +67,7 @@ Options parse(int count, char** words) {
 int write_summary(MachineInstance& instance, const RealWorld& world, const carpet::Devices& devices,
                   const Sentence& reason, Duration start_to_armed, const char* path) {
     const auto* bus = instance.find<can::Bus<carpet::can_signals>>("can");
-    const auto* utility = instance.find<modbus::Slave<carpet::utility_registers>>("utility");
+    const auto* utility = instance.find<modbus::Client<carpet::utility_registers>>("utility");
     carpet::RunFacts facts;
     facts.world = board_here.world;
     facts.realtime = os::kernel_is_realtime();
@@ -125,7 +125,7 @@ void tell_reason(const StateMachineExecution& loom, StateMachineExecution::News&
 
 void list_misses(const MachineInstance& instance) {
     for (std::size_t a = 0; a < instance.engines().size(); ++a)
-        if (const Sentence claim = instance.describe_budget(a); !claim.empty())
+        if (const Sentence claim = instance.observation().describe_budget(a); !claim.empty())
             os::print(Sentence{"carpet-loom: ", claim, "\n"}.view());
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
@@ -163,9 +163,10 @@ int main(int count, char** words) {
     static os::ArmingReport arming{{board_here.only_warned.begin(), board_here.only_warned.end()}};
     arming.passed("can-bus", devices.can().found()); // a bus that is not fit was refused when it was opened
     os::print(Sentence{"carpet-loom: ", devices.can().found(), "\n"}.view());
-    if (!world.arm(arming, 2)) return refused_to_arm;
+    const auto armed = world.arm(arming, 2);
+    if (!armed) return refused_to_arm;
     const Duration start_to_armed = machine_clock.now() - begun;
-    if (!world.start()) return fail(stopped_by_fault, world.refusal());
+    if (!world.start(*armed)) return fail(stopped_by_fault, world.refusal());
     os::print(Sentence{"carpet-loom: armed on board \"", board_here.name, "\", ",
                        static_cast<std::int64_t>(arming.warnings()), " warnings, ",
                        start_to_armed.count() / 1000, " us after its start\n"}
@@ -183,9 +184,13 @@ int main(int count, char** words) {
     for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
         os::print(Sentence{"carpet-loom: then: ", world.describe_breach(i), "\n"}.view());
     list_misses(instance);
-    if (properties.keeps())
-        if (const Sentence fault = instance.save_properties(); !fault.empty())
-            os::print(Sentence{"carpet-loom: ", fault, "\n"}.view());
+    if (properties.keeps()) {
+        const auto standing = instance.standing();
+        const Sentence fault = standing ? instance.save_properties(*standing)
+                                        : Sentence{"the properties are not saved: a thread that hangs may "
+                                                   "still change them; the files are as they were"};
+        if (!fault.empty()) os::print(Sentence{"carpet-loom: ", fault, "\n"}.view());
+    }
     if (options.summary != nullptr)
         if (const int written =
                 write_summary(instance, world, devices, reason, start_to_armed, options.summary);

@@ -8,7 +8,7 @@ namespace tappet::carpet {
 
 AcceptedMachine loom_on_host();
 /// Where its properties are kept: nowhere unless named, so that a run depends on its seed alone. Before the
-/// run starts; the letters outlive it.
+/// run starts; the characters outlive it.
 void keep_properties_in(std::string_view directory);
 PropertyStore properties_on_host();
 

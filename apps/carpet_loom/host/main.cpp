@@ -44,7 +44,7 @@ std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom
     facts.can_frames_lost = seen.lost_in_kernel;
     facts.gpio_edges_lost = loom.lines().counters().missed;
     facts.modbus_outages_survived =
-        instance.find<modbus::Slave<carpet::utility_registers>>("utility")->counters().outages_survived;
+        instance.find<modbus::Client<carpet::utility_registers>>("utility")->counters().outages_survived;
     facts.wires = {seen.faults, seen.restarts, bus.decoding().wrong_lengths, seen.impostors, seen.malformed};
     Sentence reason{outcome.woven ? "the picks are woven" : "the picks were not woven in time"};
     if (!outcome.broken_contract.empty())
@@ -72,15 +72,21 @@ std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom
     return ending.size() == 0 ? 0 : length - 1 + ending.size();
 }
 
+Sentence saved(MachineInstance& instance) {
+    const auto standing = instance.standing();
+    return standing ? instance.save_properties(*standing)
+                    : Sentence{"the properties are not saved: a thread that hangs may still change them"};
+}
+
 int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options,
            const Outcome& outcome) {
     if (!outcome.broken_contract.empty())
         os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
     for (std::size_t a = 0; a < instance.engines().size(); ++a)
-        if (const Sentence claim = instance.describe_budget(a); !claim.empty())
+        if (const Sentence claim = instance.observation().describe_budget(a); !claim.empty())
             os::print(Sentence{"carpet_loom: ", claim, "\n"}.view());
     if (!options.properties.empty())
-        if (const Sentence fault = instance.save_properties(); !fault.empty()) return fail(fault);
+        if (const Sentence fault = saved(instance); !fault.empty()) return fail(fault);
     if (!options.summary.empty()) {
         const std::size_t length = write_summary(instance, loom, options, outcome);
         if (length == 0) return fail(Sentence{"the summary does not fit its buffer"});

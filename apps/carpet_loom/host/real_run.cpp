@@ -15,17 +15,18 @@ RealRun::~RealRun() { static_cast<void>(stop()); }
 std::expected<void, Sentence> RealRun::start(int file) {
     if (auto opened = loom_.open(); !opened) return opened;
     instance_.read_properties_from(properties_on_host());
-    if (auto configured = instance_.configure(loom_.devices()); !configured) return configured;
+    if (auto configured = instance_.configure(loom_.devices()); !configured)
+        return std::unexpected(configured.error());
     instance_.find<Console>("console")->quiet.set(quiet_);
     const Board& board = *instance_.machine().board;
     os::ArmingReport arming{{board.only_warned.begin(), board.only_warned.end()}};
-    if (!world_.arm(arming, file))
-        return std::unexpected(Sentence{"the machine refuses to arm; the reasons stand above"});
+    const auto armed = world_.arm(arming, file);
+    if (!armed) return std::unexpected(Sentence{"the machine refuses to arm; the reasons stand above"});
     loom_.begin_at(clock_.now());
     plant_plan_ = {"plant", plant_priority, -1, plant_stack_, &RealRun::live, this};
     if (auto started = plant_thread_.start(plant_plan_); !started) return started;
     running_ = true;
-    if (!world_.start()) return std::unexpected(world_.refusal());
+    if (!world_.start(*armed)) return std::unexpected(world_.refusal());
     return {};
 }
 

@@ -27,7 +27,8 @@ std::expected<void, Sentence> VirtualRun::start_again() {
 std::expected<void, Sentence> VirtualRun::start_machine() {
     MachineInstance& instance = machine_->instance;
     instance.read_properties_from(properties_on_host());
-    if (auto configured = instance.configure(loom_.devices()); !configured) return configured;
+    if (auto configured = instance.configure(loom_.devices()); !configured)
+        return std::unexpected(configured.error());
     instance.find<Console>("console")->quiet.set(quiet_);
     machine_->world.add({this,
                          [](void* self) {
@@ -57,7 +58,7 @@ bool VirtualRun::weave(std::uint64_t picks, Duration limit) {
 
 std::uint64_t VirtualRun::event_log_digest() {
     Digest digest;
-    digest.add(instance().event_log_digest());
+    digest.add(instance().observation().event_log_digest());
     digest.add(loom_.plant().report().digest);
     return digest.value();
 }

@@ -54,7 +54,7 @@ public:
     [[nodiscard]] bool line(unsigned input) const noexcept TAPPET_REALTIME;
     [[nodiscard]] bool next_edge(Edge& edge) noexcept TAPPET_REALTIME { return edges_.pop(edge); }
 
-    // Modbus: the slave's registers, with the exception a wrong request gets.
+    // Modbus: the server's registers, with the exception a wrong request gets.
     [[nodiscard]] const Climate& climate() const noexcept TAPPET_REALTIME { return climate_; }
     [[nodiscard]] Climate& climate() noexcept TAPPET_REALTIME { return climate_; }
 

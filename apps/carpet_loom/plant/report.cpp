@@ -95,12 +95,12 @@ public:
         put("\"");
     }
     void put(std::string_view text) noexcept {
-        for (const char letter : text) {
+        for (const char character : text) {
             if (used_ == buffer_.size()) {
                 full_ = true;
                 return;
             }
-            buffer_[used_++] = letter;
+            buffer_[used_++] = character;
         }
     }
     [[nodiscard]] std::size_t written() const noexcept { return full_ ? 0 : used_; }

@@ -17,7 +17,7 @@ constexpr std::size_t faulty_facet(const ComponentType* type) noexcept {
     for (std::size_t f = 0; f < facets.size(); ++f) {
         if (facets[f].name.empty()) return f;
         for (std::size_t g = 0; g < f; ++g)
-            if (same_letters(facets[f].name, facets[g].name)) return f;
+            if (same_text(facets[f].name, facets[g].name)) return f;
     }
     return nowhere;
 }
@@ -26,7 +26,7 @@ constexpr Sentence check_interface(const ComponentRow& row) {
     const std::size_t faulty = faulty_facet(row.type);
     if (faulty == nowhere) return {};
     const Facet& facet = row.type->facets[faulty];
-    // A facet's name may have dots: a table row's path is cut at its first one, behind the component.
+    // A facet's name may have dots: a table row's path is cut at its first one, after the component.
     if (facet.name.empty())
         return of_component(row.name, ": its interface has a facet without a name; name it in ",
                             row.type->tag->name);
@@ -62,7 +62,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         return Sentence{"the table has no components; add component<Type>(\"name\") rows to components(...)"};
     for (std::size_t i = 0; i < m.components.size(); ++i) {
         const ComponentRow& row = m.components[i];
-        if (row.name.empty() || find_letter(row.name, '.') != std::string_view::npos)
+        if (row.name.empty() || find_character(row.name, '.') != std::string_view::npos)
             return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
         if (Sentence fault = check_life(row); !fault.empty()) return fault;

@@ -38,11 +38,11 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
 /// A number must be one that the port's type can hold exactly, but for the rounding of a float.
 constexpr bool holds(const TypeTag& type, double number) noexcept {
     if (type.kind == ValueKind::real) return true;
-    if (type.kind == ValueKind::truth) return number == 0 || number == 1;
+    if (type.kind == ValueKind::boolean) return number == 0 || number == 1;
     if (!type.arithmetic || type.size > 8) return false;
-    double past = type.kind == ValueKind::whole ? 128 : 256; // the first number beyond one byte
+    double past = type.kind == ValueKind::integer ? 128 : 256; // the first number beyond one byte
     for (std::size_t bytes = 1; bytes < type.size; ++bytes) past *= 256;
-    const double least = type.kind == ValueKind::whole ? -past : 0;
+    const double least = type.kind == ValueKind::integer ? -past : 0;
     if (!(number >= least && number < past)) return false;
     return number >= 0 ? number == static_cast<double>(static_cast<std::uint64_t>(number))
                        : number == static_cast<double>(static_cast<std::int64_t>(number));
@@ -267,7 +267,7 @@ private:
                              m_.activities[activity_].name, "\" (", way,
                              "); add delayed to the row whose reader shall see the last cycle's value");
     }
-    /// A row behind which the component waits for one that waits too.
+    /// A row after which the component waits for one that waits too.
     [[nodiscard]] constexpr std::size_t row_into(std::size_t component) const noexcept {
         for (const std::size_t reader : members_)
             for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))

@@ -15,12 +15,12 @@ template <class... Pieces> constexpr Sentence of_activity(std::string_view name,
     return Sentence{"activity \"", name, "\"", fault...};
 }
 
-/// The fault of one value, as the part of a sentence that stands behind "sets property ... to ...".
+/// The fault of one value, as the part of a sentence that stands after "sets property ... to ...".
 constexpr bool of_kind(const PropertyOperations& wanted, const PropertySetting& setting,
                        TypeId element) noexcept {
     using Kind = PropertySetting::Kind;
     if (wanted.kind == Kind::enumeration) return setting.kind == Kind::enumeration && setting.type == element;
-    return wanted.kind == setting.kind || (wanted.kind == Kind::real && setting.kind == Kind::whole);
+    return wanted.kind == setting.kind || (wanted.kind == Kind::real && setting.kind == Kind::integer);
 }
 
 constexpr bool fits(const Facet& property, const PropertySetting& setting) {
@@ -35,8 +35,8 @@ constexpr bool fits(const Facet& property, const PropertySetting& setting) {
 /// In the unit of a range: seconds for a time.
 constexpr double value_of(const PropertySetting& setting) noexcept {
     if (setting.kind == PropertySetting::Kind::real) return setting.real;
-    const auto whole = static_cast<double>(setting.whole);
-    return setting.kind == PropertySetting::Kind::duration ? whole * 1e-9 : whole;
+    const auto integer = static_cast<double>(setting.integer);
+    return setting.kind == PropertySetting::Kind::duration ? integer * 1e-9 : integer;
 }
 
 constexpr Sentence value_text(const PropertySetting& setting) {
@@ -44,21 +44,21 @@ constexpr Sentence value_text(const PropertySetting& setting) {
     switch (setting.kind) {
     case Kind::real: return decimal(setting.real);
     case Kind::duration: return decimal(value_of(setting)).add(" s");
-    case Kind::truth: return Sentence{setting.whole != 0 ? "true" : "false"};
+    case Kind::boolean: return Sentence{setting.integer != 0 ? "true" : "false"};
     case Kind::text: return Sentence{"\"", setting.text, "\""};
-    case Kind::enumeration: return Sentence{setting.type->name, " ", setting.whole};
+    case Kind::enumeration: return Sentence{setting.type->name, " ", setting.integer};
     case Kind::list: return Sentence{"a list of ", setting.list->size};
-    case Kind::whole: break;
+    case Kind::integer: break;
     }
-    return Sentence{setting.whole};
+    return Sentence{setting.integer};
 }
 
 constexpr std::string_view kind_text(PropertySetting::Kind kind) noexcept {
     using Kind = PropertySetting::Kind;
     switch (kind) {
     case Kind::real: return "a number";
-    case Kind::whole: return "a whole number";
-    case Kind::truth: return "true or false";
+    case Kind::integer: return "a whole number";
+    case Kind::boolean: return "true or false";
     case Kind::text: return "a text";
     case Kind::enumeration: return "an enumeration";
     case Kind::duration:
@@ -80,8 +80,8 @@ constexpr Sentence wanted_text(const PropertyOperations& wanted) {
     Sentence text{kind_text(wanted.kind)};
     switch (wanted.kind) {
     case Kind::real: return text.add("; write it like 2.5");
-    case Kind::whole: return text.add("; write it like 2");
-    case Kind::truth: return text.add("; write true or false");
+    case Kind::integer: return text.add("; write it like 2");
+    case Kind::boolean: return text.add("; write true or false");
     case Kind::text: return text.add("; write it in quotes, like \"left\"");
     case Kind::enumeration: return text.add("; write a value of ").add(wanted.element->name);
     case Kind::duration:
@@ -109,10 +109,12 @@ constexpr Sentence check_value(const ComponentRow& row, std::string_view name, c
                             ", which is ");
     };
     if (wanted.kind == Kind::text)
-        return setting.text.size() <= wanted.most_letters
-                   ? Sentence{}
-                   : sets().add("longer than its ").add(wanted.most_letters).add(" letters; shorten it");
-    if (wanted.kind == Kind::whole && (setting.whole < wanted.least || setting.whole > wanted.most))
+        return setting.text.size() <= wanted.most_characters ? Sentence{}
+                                                             : sets()
+                                                                   .add("longer than its ")
+                                                                   .add(wanted.most_characters)
+                                                                   .add(" characters; shorten it");
+    if (wanted.kind == Kind::integer && (setting.integer < wanted.least || setting.integer > wanted.most))
         return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
     const double value = value_of(setting);
     if (value >= facet.range.low && value <= facet.range.high) return {};
@@ -158,7 +160,7 @@ constexpr Sentence check_settings(const ComponentRow& row) {
     for (std::size_t i = 0; i < row.settings.size(); ++i) {
         const PropertyRow& setting = row.settings[i];
         for (std::size_t j = 0; j < i; ++j)
-            if (same_letters(row.settings[j].name, setting.name))
+            if (same_text(row.settings[j].name, setting.name))
                 return of_component(row.name, " sets property \"", setting.name, "\" twice; keep one");
         if (Sentence fault = check_setting(row, setting); !fault.empty()) return fault;
     }
@@ -180,7 +182,7 @@ constexpr Sentence check_bags(const ComponentRow& row) {
                                     to_text(facet.kind), "; a bag holds properties and bags");
             continue;
         }
-        if (f >= bag_ends && find_letter(facet.name, '.') != std::string_view::npos)
+        if (f >= bag_ends && find_character(facet.name, '.') != std::string_view::npos)
             return of_component(row.name, ": its property \"", facet.name,
                                 "\" has a dot in its name; put it into a bag(...) in ", row.type->tag->name);
         ++properties;

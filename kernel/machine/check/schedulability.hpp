@@ -138,7 +138,7 @@ constexpr Response response_time(std::span<const TaskTiming> by_priority_highest
     return {true, worst_ns};
 }
 
-/// The longest a frame can take on the wire, stuff bits and the gap behind it included; rounded up. -1: no
+/// The longest a frame can take on the wire, stuff bits and the gap after it included; rounded up. -1: no
 /// such frame.
 constexpr std::int64_t can_frame_time_ns(const CanMessageTiming& message, std::int64_t bitrate) noexcept {
     if (message.data_bytes > 8 || bitrate <= 0) return -1;

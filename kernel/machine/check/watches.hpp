@@ -8,7 +8,7 @@ namespace tappet::checks {
 /// The limit that the row sets; nothing: the component's own.
 constexpr Duration limit_of(const ComponentRow& row) noexcept {
     for (const PropertyRow& setting : row.settings)
-        if (setting.name == "limit") return Duration{setting.setting.whole};
+        if (setting.name == "limit") return Duration{setting.setting.integer};
     return Duration::zero();
 }
 

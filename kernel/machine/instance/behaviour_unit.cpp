@@ -13,14 +13,14 @@ namespace tappet {
 namespace {
 
 template <class T>
-T* make(detail::UnitGround& ground, std::size_t count) noexcept {
-    T* memory = ground.take<T>(count);
+T* make(detail::UnitLayout& layout, std::size_t count) noexcept {
+    T* memory = layout.take<T>(count);
     for (std::size_t i = 0; i < count && memory != nullptr; ++i) new (memory + i) T{};
     return memory;
 }
 
 /// The addresses behind an instance's links, and slots for the commands that it sends to other activities.
-void bind_links(const ScriptUnit& unit, UnitPart& part, detail::UnitGround& ground, MachineInstance& machine,
+void bind_links(const ScriptUnit& unit, UnitPart& part, detail::UnitLayout& layout, MachineInstance& machine,
                 std::size_t driven) {
     const MachineView& table = machine.machine().table;
     const std::string_view name = table.components[driven].name;
@@ -36,10 +36,10 @@ void bind_links(const ScriptUnit& unit, UnitPart& part, detail::UnitGround& grou
     std::size_t slot = 0;
     const std::size_t sender = machine.machine().index.activity[driven];
     detail::for_each_slot_link(unit, *part.type, [&](std::size_t i, const Facet& facet) {
-        std::byte* values = ground.take(facet.command->value_bytes(), data_alignment);
+        std::byte* values = layout.take(facet.command->value_bytes(), data_alignment);
         if (values == nullptr) return;
         const std::size_t c = component_of(table, name, unit, rows[i].peer);
-        part.slots[slot].place(machine.command_route({c, rows[i].facet}, sender), values);
+        part.slots[slot].place(machine.requests().command_route({c, rows[i].facet}, sender), values);
         part.links[i].slot = &part.slots[slot++];
     });
 }
@@ -71,12 +71,12 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     engine_ = &machine.engines()[machine.machine().index.activity[driven]];
     driven_ = driven;
     const std::size_t instances = unit.instances.size();
-    detail::UnitGround ground{memory};
-    auto* parts = make<UnitPart>(ground, instances);
-    auto* machines = make<StateMachineExecution>(ground, instances); // children side by side
-    auto* views = make<ResolvedView>(ground, unit.types.size());
-    auto* routes = make<UnitRoute>(ground, events.size() * instances);
-    if (ground.full()) return too_small("instances");
+    detail::UnitLayout layout{memory};
+    auto* parts = make<UnitPart>(layout, instances);
+    auto* machines = make<StateMachineExecution>(layout, instances); // children side by side
+    auto* views = make<ResolvedView>(layout, unit.types.size());
+    auto* routes = make<UnitRoute>(layout, events.size() * instances);
+    if (layout.full()) return too_small("instances");
     for (std::size_t t = 0; t < unit.types.size(); ++t) {
         const BehaviourType& type = unit.types[t];
         // Native code is made of tables that the C++ compiler checked; what it leaves of them is not walked.
@@ -87,12 +87,12 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
         if (Sentence fault = check(type.machine); !fault.empty()) return fault;
         if (!is_native)
             if (Sentence fault = check_references(type.machine); !fault.empty()) return fault;
-        const ResolvedRoom room = take_room(ground, measure(type.machine));
-        if (ground.full()) return too_small("states and transitions");
+        const ResolvedRoom room = take_room(layout, measure(type.machine));
+        if (layout.full()) return too_small("states and transitions");
         views[t] = resolve_into(type.machine, room);
         for (std::size_t i = 0; i < instances; ++i) {
             if (unit.instances[i].type != t) continue;
-            const MachineMemory kept = take_machine_memory(ground, views[t].sizes);
+            const MachineMemory kept = take_machine_memory(layout, views[t].sizes);
             parts[i].machine = &machines[i];
             parts[i].binding.history = kept.history;
             parts[i].binding.deferred = kept.deferred;
@@ -104,16 +104,16 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
         part.row = &row;
         part.type = &unit.types[row.type];
         const BehaviourCode native = row.type < code.size() ? code[row.type] : BehaviourCode{};
-        if (part.type->is_program()) part.program = make<ProgramExecution>(ground, 1);
+        if (part.type->is_program()) part.program = make<ProgramExecution>(layout, 1);
         if (row.children != 0) part.binding.machines = &machines[row.first_child];
         const std::size_t bytes = part.type->tables.layout.size;
-        part.data = ground.take(bytes, data_alignment);
-        part.links = make<ProgramLink>(ground, part.type->tables.links.size());
+        part.data = layout.take(bytes, data_alignment);
+        part.links = make<ProgramLink>(layout, part.type->tables.links.size());
         detail::for_each_slot_link(unit, *part.type, [&](std::size_t, const Facet&) { ++part.slot_count; });
-        part.slots = make<CommandSlot>(ground, part.slot_count);
-        if (ground.full()) return too_small("data and commands");
-        bind_links(unit, part, ground, machine, driven);
-        if (ground.full()) return too_small("commands");
+        part.slots = make<CommandSlot>(layout, part.slot_count);
+        if (layout.full()) return too_small("data and commands");
+        bind_links(unit, part, layout, machine, driven);
+        if (layout.full()) return too_small("commands");
         std::fill_n(part.data, bytes, std::byte{});
         std::copy(row.image.begin(), row.image.end(), part.data);
         bind(part, native, views[row.type]);

@@ -20,10 +20,10 @@ void BehaviourSlot::place(const Place& place) {
     reach(place.component);
     for (const std::string_view peer : place.row->slot.peers) reach(find_component(table, peer));
     for (std::size_t bank = 0; bank < 2; ++bank) {
-        detail::UnitGround ground{place.banks[bank]};
-        rooms_[bank] = detail::take_script_room(ground, slot_sizes(place.row->slot));
-        ground.take(0, unit_alignment);
-        unit_memory_[bank] = place.banks[bank].subspan(ground.used());
+        detail::UnitLayout layout{place.banks[bank]};
+        rooms_[bank] = detail::take_script_room(layout, slot_sizes(place.row->slot));
+        layout.take(0, unit_alignment);
+        unit_memory_[bank] = place.banks[bank].subspan(layout.used());
     }
 }
 
@@ -42,7 +42,7 @@ Sentence BehaviourSlot::may_load() const noexcept {
     return {};
 }
 
-Sentence BehaviourSlot::compile(std::size_t letters, std::string_view name) {
+Sentence BehaviourSlot::compile(std::size_t characters, std::string_view name) {
     if (Sentence fault = may_load(); !fault.empty()) return fault;
     const auto number = static_cast<std::size_t>(spare());
     Bank& bank = banks_[number];
@@ -59,7 +59,7 @@ Sentence BehaviourSlot::compile(std::size_t letters, std::string_view name) {
     reach.depth = row.slot.depth;
     reach.statements_per_step = row.options.statements;
     const ScriptOutcome outcome =
-        compile_loaded({place_.text.data(), letters}, bank.name.view(), reach, rooms_[number]);
+        compile_loaded({place_.text.data(), characters}, bank.name.view(), reach, rooms_[number]);
     if (!outcome.good()) return outcome.fault;
     if (Sentence fault = bank.unit.place(outcome.unit, {}, row.options, unit_memory_[number], place_.events,
                                          *place_.machine, place_.component);
@@ -92,27 +92,28 @@ Sentence BehaviourSlot::parse_moment(std::string_view text, SlotMoment& moment) 
         return {};
     }
     Sentence sentence{"the slot of \"", place_.row->component, "\" has no event \"",
-                      text.substr(0, nearest_max_letters), "\""};
+                      text.substr(0, nearest_max_length), "\""};
     detail::add_suggestion(sentence, nearest, "name an event of its reach, an angle, or now");
     return sentence;
 }
 
-Sentence BehaviourSlot::may(Wish wish) const noexcept {
+Sentence BehaviourSlot::may(Change change) const noexcept {
     const std::string_view name = place_.row->component;
     if (asked_.load(std::memory_order_acquire) || phase() == SlotPhase::handing_over)
         return Sentence{"another change of behaviour of \"", name, "\" is under way; wait until it is done"};
-    if (wish == Wish::unload && active() == nullptr && phase() != SlotPhase::waiting)
+    if (change == Change::unload && active() == nullptr && phase() != SlotPhase::waiting)
         return Sentence{"nothing is loaded in the slot of \"", name, "\"; load a script first"};
-    if (wish == Wish::roll_back && (previous_ == none || !banks_[static_cast<std::size_t>(previous_)].filled))
+    if (change == Change::roll_back &&
+        (previous_ == none || !banks_[static_cast<std::size_t>(previous_)].filled))
         return Sentence{"the slot of \"", name, "\" has no earlier behaviour; load one"};
-    if (wish == Wish::take_over && !banks_[static_cast<std::size_t>(spare())].filled)
+    if (change == Change::take_over && !banks_[static_cast<std::size_t>(spare())].filled)
         return Sentence{"no script was compiled for the slot of \"", name, "\"; load one"};
     return {};
 }
 
-bool BehaviourSlot::wish(Wish wish, const SlotMoment& moment) noexcept {
+bool BehaviourSlot::ask(Change change, const SlotMoment& moment) noexcept {
     if (asked_.load(std::memory_order_acquire)) return false;
-    wish_ = wish;
+    change_ = change;
     moment_ = moment;
     asked_.store(true, std::memory_order_relaxed);
     return true;

@@ -12,7 +12,7 @@
 /// little-endian. A section is an array of records; a reader steps by the section's stride, so that a later
 /// machine may append members to a record. What changes otherwise gets a new layout_version.
 ///
-/// What lies in the map itself never changes once Header::ready is 1. Live values lie behind it. A value of a
+/// What lies in the map itself never changes once Header::ready is 1. Live values lie after it. A value of a
 /// component changes only while the generation of its activity is odd: read the generation, copy, read it
 /// again; equal and even means the copy is whole. Places of single words (forced flags, counters) need none.
 namespace tappet::map {
@@ -22,7 +22,7 @@ inline constexpr std::uint32_t layout_version = 3;
 /// Of an index: there is none.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
-/// Letters in the map; not terminated.
+/// Characters in the map; not terminated.
 struct Text {
     std::uint32_t at = 0;
     std::uint32_t length = 0;
@@ -177,12 +177,12 @@ struct Behaviour {
 /// What a value looks like. The numbers are part of the layout.
 enum class Shape : std::uint8_t {
     opaque = 0,      ///< bytes that nobody but the machine understands
-    truth = 1,       ///< bool
-    whole = 2,       ///< signed integer of 1, 2, 4 or 8 bytes
+    boolean = 1,     ///< bool
+    integer = 2,     ///< signed integer of 1, 2, 4 or 8 bytes
     natural = 3,     ///< unsigned integer of 1, 2, 4 or 8 bytes
     real = 4,        ///< float or double
     duration = 5,    ///< int64, nanoseconds
-    text = 6,        ///< letters at items_at, their number (unsigned, length_bytes wide) at length_at
+    text = 6,        ///< characters at items_at, their number (unsigned, length_bytes wide) at length_at
     matrix = 7,      ///< rows * columns elements from items_at on
     record = 8,      ///< fields
     enumeration = 9, ///< an integer of 1, 2, 4 or 8 bytes with names

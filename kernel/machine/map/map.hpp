@@ -14,10 +14,10 @@
 
 namespace tappet::map {
 
-/// How many records of each section, and how many letters.
+/// How many records of each section, and how many characters.
 struct Counts {
     std::size_t components = 0, facets = 0, activities = 0, connections = 0, reactions = 0, behaviours = 0;
-    std::size_t types = 0, fields = 0, enumerators = 0, figures = 0, letters = 0;
+    std::size_t types = 0, fields = 0, enumerators = 0, figures = 0, characters = 0;
 };
 
 /// The map's memory, in the order in which it is read. Every record's size is a multiple of 8 and no array is
@@ -36,11 +36,11 @@ struct Storage {
     std::array<Field, room(counts.fields)> fields{};
     std::array<Enumerator, room(counts.enumerators)> enumerators{};
     std::array<Figure, room(counts.figures)> figures{};
-    std::array<char, (counts.letters / 8 + 1) * 8> letters{};
+    std::array<char, (counts.characters / 8 + 1) * 8> characters{};
 
     /// A text of this map.
     [[nodiscard]] constexpr std::string_view text(const Text& text) const noexcept {
-        return {letters.data() + (text.at - header.texts.at), text.length};
+        return {characters.data() + (text.at - header.texts.at), text.length};
     }
 };
 
@@ -64,9 +64,9 @@ struct Room {
     std::span<Field> fields;
     std::span<Enumerator> enumerators;
     std::span<Figure> figures;
-    std::span<char> letters;
+    std::span<char> characters;
     std::span<TypeId> type_ids; ///< the types themselves
-    std::size_t letters_at = 0;
+    std::size_t characters_at = 0;
 };
 
 /// Walks a checked table and writes what it finds into a room, or counts it.
@@ -96,13 +96,13 @@ private:
         if (n < into.size()) into[n] = record;
         ++n;
     }
-    constexpr Text text(std::string_view letters) {
-        const Text text{static_cast<std::uint32_t>(room_.letters_at + n_.letters),
-                        static_cast<std::uint32_t>(letters.size())};
-        if (n_.letters + letters.size() <= room_.letters.size())
-            std::copy(letters.begin(), letters.end(),
-                      room_.letters.begin() + static_cast<std::ptrdiff_t>(n_.letters));
-        n_.letters += letters.size();
+    constexpr Text text(std::string_view characters) {
+        const Text text{static_cast<std::uint32_t>(room_.characters_at + n_.characters),
+                        static_cast<std::uint32_t>(characters.size())};
+        if (n_.characters + characters.size() <= room_.characters.size())
+            std::copy(characters.begin(), characters.end(),
+                      room_.characters.begin() + static_cast<std::ptrdiff_t>(n_.characters));
+        n_.characters += characters.size();
         return text;
     }
     static constexpr std::uint32_t flag(bool set, std::uint32_t bit) { return set ? bit : 0; }
@@ -353,17 +353,17 @@ constexpr Drawn<counts> draw(const MachineView& table, const Board& board, Table
     place(header.fields, map.fields, counts.fields);
     place(header.enumerators, map.enumerators, counts.enumerators);
     place(header.figures, map.figures, counts.figures);
-    place(header.texts, map.letters, counts.letters);
+    place(header.texts, map.characters, counts.characters);
     header.map_bytes = at;
     const TableIndexView view = index.view();
     Cartographer cartographer{table,
                               view,
                               {map.components, map.facets, map.activities, map.connections, map.reactions,
                                map.behaviours, map.types, map.fields, map.enumerators, map.figures,
-                               map.letters, drawn.types, header.texts.at}};
+                               map.characters, drawn.types, header.texts.at}};
     cartographer.draw(header, board);
     Digest structure;
-    for (const char letter : map.letters) structure.add(static_cast<std::uint64_t>(letter));
+    for (const char character : map.characters) structure.add(static_cast<std::uint64_t>(character));
     for (const Connection& row : map.connections) structure.add(std::uint64_t{row.from} << 32 | row.to);
     for (const Reaction& row : map.reactions) structure.add(std::uint64_t{row.from} << 32 | row.to);
     for (const Type& row : map.types) structure.add(row.size);

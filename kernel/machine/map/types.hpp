@@ -38,8 +38,8 @@ private:
 constexpr Shape shape_of(const TypeTag& tag) noexcept {
     switch (tag.kind) {
     case ValueKind::opaque: return Shape::opaque;
-    case ValueKind::truth: return Shape::truth;
-    case ValueKind::whole: return Shape::whole;
+    case ValueKind::boolean: return Shape::boolean;
+    case ValueKind::integer: return Shape::integer;
     case ValueKind::natural: return Shape::natural;
     case ValueKind::real: return Shape::real;
     case ValueKind::duration: return Shape::duration;

@@ -31,8 +31,8 @@ constexpr bool is_command_row(const MachineView& m, const TableIndexView& r, std
 namespace detail {
 
 /// Of a checked table. `Plan` and `Ground` are those of kernel/machine/plan/plan.hpp.
-template <class Plan, class Ground>
-constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan& p, Ground& ground) {
+template <class Plan, class Layout>
+constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan& p, Layout& layout) {
     const std::size_t n = m.activities.size();
     const bool seen = is_seen(m);
     for (std::size_t row = 0; row < m.reactions.size(); ++row) {
@@ -64,9 +64,9 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
         const auto place = [&](auto& mail) {
             mail.sender_index = activity.command_sender_count++;
             mail.storage_at =
-                ground.take(CommandMailbox::bytes_for(mail.capacity), CommandMailbox::alignment);
+                layout.take(CommandMailbox::bytes_for(mail.capacity), CommandMailbox::alignment);
         };
-        // Senders in order of their urgency; what only watches the machine stands behind them all.
+        // Senders in order of their urgency; what only watches the machine stands after them all.
         for (const std::size_t sender : r.by_rank)
             if (auto& mail = p.command_mail[sender * n + receiver]; mail.capacity != 0) place(mail);
         if (seen) {
@@ -74,8 +74,8 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
             place(p.command_requests[receiver]);
             activity.followed_count += requests_waiting;
         }
-        activity.command_mailboxes_at = ground.template take<CommandMailbox>(activity.command_sender_count);
-        activity.followed_at = ground.template take<CommandSlot*>(activity.followed_count);
+        activity.command_mailboxes_at = layout.template take<CommandMailbox>(activity.command_sender_count);
+        activity.followed_at = layout.template take<CommandSlot*>(activity.followed_count);
     }
 }
 

@@ -66,7 +66,7 @@ struct BehaviourPlan {
     std::size_t events_at = nowhere; ///< names of the events that it hears, or may hear
     std::size_t event_count = 0;
     std::size_t unit_at = nowhere;   ///< BehaviourUnit
-    std::size_t memory_at = nowhere; ///< of the unit; of a slot its two banks, one behind the other
+    std::size_t memory_at = nowhere; ///< of the unit; of a slot its two banks, one after the other
     std::size_t memory_bytes = 0;
     std::size_t slot_at = nowhere;    ///< BehaviourSlot
     std::size_t handles_at = nowhere; ///< of a slot's events
@@ -93,7 +93,7 @@ struct PlanView {
     std::span<MailPlan> requests;         ///< into each activity, of the components that see the machine
     std::span<MailPlan> command_mail;     ///< as mail, of commands alone
     std::span<MailPlan> command_requests; ///< as requests, of commands alone
-    std::size_t extras_at = 0;            ///< of the sections of other folders, one behind the other
+    std::size_t extras_at = 0;            ///< of the sections of other folders, one after the other
     std::size_t engines_at = 0;
     std::size_t observed_at = 0; ///< Observed
     std::size_t scope_at = 0;    ///< scope::Directory; 0: nothing records the machine's cycles
@@ -146,7 +146,7 @@ constexpr bool is_needed_input(const MachineView& m, const ConnectionRow& row, c
 
 namespace detail {
 
-class Ground {
+class Layout {
 public:
     constexpr std::size_t take(std::size_t bytes, std::size_t align) noexcept {
         at_ = (at_ + align - 1) / align * align;
@@ -164,27 +164,27 @@ private:
     std::size_t at_ = 0;
 };
 
-constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
     // Activity by activity, so that what runs together lies together, each on lines of its own.
     std::size_t begin = 0;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& activity = p.activities[a];
-        ground.take(0, line_pair_bytes);
+        layout.take(0, line_pair_bytes);
         activity.part_count = m.activities[a].runs.size();
         for (const std::size_t c : r.in_order.subspan(begin, activity.part_count)) {
-            p.component_at[c] = ground.take(m.components[c].type->size, m.components[c].type->align);
+            p.component_at[c] = layout.take(m.components[c].type->size, m.components[c].type->align);
             p.part_of[c] = static_cast<std::uint32_t>(r.position[c]);
             for (const auto& facet : m.components[c].type->facets)
                 activity.timer_count += facet.kind == FacetKind::timer;
         }
         begin += activity.part_count;
-        activity.parts_at = ground.take<EnginePart>(activity.part_count);
-        activity.functions_at = ground.take<FunctionTiming>(activity.part_count * functions_per_part);
-        activity.timers_at = ground.take<EngineTimer>(activity.timer_count);
+        activity.parts_at = layout.take<EnginePart>(activity.part_count);
+        activity.functions_at = layout.take<FunctionTiming>(activity.part_count * functions_per_part);
+        activity.timers_at = layout.take<EngineTimer>(activity.timer_count);
     }
 }
 
-constexpr void plan_connections(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+constexpr void plan_connections(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
     for (std::size_t x = 0; x < m.connections.size(); ++x) {
         const ConnectionRow& row = m.connections[x];
         const Link& link = r.connections[x];
@@ -195,7 +195,7 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
         const Facet& from = facet_at(m, link.from);
         if (row.buffered) {
             const auto& buffer = *from.buffer;
-            plan.memory_at = ground.take(buffer.ring_bytes(row.capacity, plan.shared), buffer.ring_align);
+            plan.memory_at = layout.take(buffer.ring_bytes(row.capacity, plan.shared), buffer.ring_align);
         } else if (plan.shared) {
             // Rows of one output share one object; the chain leads from this row to those before it.
             for (std::size_t j = r.connections_from.next[x]; j != nowhere && plan.first_of_output;
@@ -203,20 +203,20 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
                 if (r.connections[j].from == link.from && p.connections[j].shared)
                     plan.memory_at = p.connections[j].memory_at, plan.first_of_output = false;
             const auto& port = *from.port;
-            if (plan.first_of_output) plan.memory_at = ground.take(port.shared_bytes, port.shared_align);
+            if (plan.first_of_output) plan.memory_at = layout.take(port.shared_bytes, port.shared_align);
         }
-        if (row.wakes_reader) plan.waker_at = ground.take<WakerNode>();
+        if (row.wakes_reader) plan.waker_at = layout.take<WakerNode>();
         if (is_guarded(row)) ++p.activities[reader].guarded_count;
         if (is_needed_input(m, row, link)) ++p.activities[reader].input_count;
     }
     for (auto& activity : p.activities) {
-        activity.guarded_at = ground.take<GuardedInput>(activity.guarded_count);
-        activity.inputs_at = ground.take<NeededInput>(activity.input_count);
+        activity.guarded_at = layout.take<GuardedInput>(activity.guarded_count);
+        activity.inputs_at = layout.take<NeededInput>(activity.input_count);
     }
 }
 
 constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r, PlanView& p,
-                                  Ground& ground) {
+                                  Layout& layout) {
     list_subscriptions(m, r, p.subscriptions);
     const std::size_t activities = m.activities.size();
     std::size_t lane_of_at = nowhere;
@@ -227,22 +227,22 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
             std::size_t listeners = 1;
             while (s + listeners < p.subscriptions.size() && p.subscriptions[s + listeners].turn != 0)
                 ++listeners;
-            plan.subscribers_at = ground.take(listeners * facet_at(m, row.event).event->subscriber_bytes,
+            plan.subscribers_at = layout.take(listeners * facet_at(m, row.event).event->subscriber_bytes,
                                               alignof(std::max_align_t));
         }
         if (s == 0 || p.subscriptions[s - 1].event.component != row.event.component) lane_of_at = nowhere;
         if (row.synchronous) continue;
-        if (lane_of_at == nowhere) lane_of_at = ground.take<std::uint8_t>(activities);
+        if (lane_of_at == nowhere) lane_of_at = layout.take<std::uint8_t>(activities);
         plan.lane_of_at = lane_of_at;
-        plan.async_at = ground.take<AsyncReaction>();
+        plan.async_at = layout.take<AsyncReaction>();
         plan.lane_count = static_cast<std::size_t>(std::popcount(row.emitters));
-        plan.lanes_at = ground.take<EventLane>(plan.lane_count);
-        if (row.keeps_latest) plan.latest_at = ground.take<LatestMessage>(plan.lane_count);
-        if (row.kind == SubscriberKind::trigger) plan.binding_at = ground.take<TriggerBinding>();
-        if (row.kind == SubscriberKind::observer) plan.binding_at = ground.take<ObserverBinding>();
+        plan.lanes_at = layout.take<EventLane>(plan.lane_count);
+        if (row.keeps_latest) plan.latest_at = layout.take<LatestMessage>(plan.lane_count);
+        if (row.kind == SubscriberKind::trigger) plan.binding_at = layout.take<TriggerBinding>();
+        if (row.kind == SubscriberKind::observer) plan.binding_at = layout.take<ObserverBinding>();
         if (row.kind == SubscriberKind::wait) {
-            plan.mailboxes_at = ground.take<Mailbox>(plan.lane_count);
-            plan.mail_at = ground.take(plan.lane_count * Mailbox::bytes_for(row.quota), Mailbox::alignment);
+            plan.mailboxes_at = layout.take<Mailbox>(plan.lane_count);
+            plan.mail_at = layout.take(plan.lane_count * Mailbox::bytes_for(row.quota), Mailbox::alignment);
             continue;
         }
         for (std::size_t sender = 0; sender < activities; ++sender)
@@ -259,42 +259,42 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
             MailPlan& mail = p.mail[sender * n + receiver];
             if (mail.capacity == 0) continue;
             mail.sender_index = activity.sender_count++;
-            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+            mail.storage_at = layout.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
         }
-        // Behind them all stand the requests: what only watches the machine delays nobody's message.
+        // After them all stand the requests: what only watches the machine delays nobody's message.
         if (seen) {
             MailPlan& mail = p.requests[receiver];
             mail.capacity = requests_waiting;
             mail.sender_index = activity.sender_count++;
-            mail.storage_at = ground.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
+            mail.storage_at = layout.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
         }
-        activity.mailboxes_at = ground.take<Mailbox>(activity.sender_count);
+        activity.mailboxes_at = layout.take<Mailbox>(activity.sender_count);
     }
 }
 
-constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, PlanView& p, Ground& ground) {
+constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
     for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
         const BehaviourRow& row = m.behaviours[b];
         BehaviourPlan& plan = p.behaviours[b];
         if (row.is_slot()) {
             plan.event_count = count_slot_events(m, row);
-            plan.slot_at = ground.take<BehaviourSlot>();
-            plan.handles_at = ground.take<EventHandle>(plan.event_count);
+            plan.slot_at = layout.take<BehaviourSlot>();
+            plan.handles_at = layout.take<EventHandle>(plan.event_count);
             plan.text_bytes = slot_text_bytes(row.slot);
-            plan.text_at = ground.take(plan.text_bytes, 1);
+            plan.text_at = layout.take(plan.text_bytes, 1);
             plan.memory_bytes = 2 * slot_bank_bytes(row.slot, plan.event_count);
         } else {
             const ScriptUnit unit = row.unit();
             plan.event_count = events_of(unit).count;
-            plan.unit_at = ground.take<BehaviourUnit>();
+            plan.unit_at = layout.take<BehaviourUnit>();
             plan.memory_bytes = unit_bytes(unit, plan.event_count);
         }
-        plan.events_at = ground.take<std::string_view>(plan.event_count);
-        plan.memory_at = ground.take(plan.memory_bytes, unit_alignment);
+        plan.events_at = layout.take<std::string_view>(plan.event_count);
+        plan.memory_at = layout.take(plan.memory_bytes, unit_alignment);
         ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
     }
     for (auto& activity : p.activities)
-        activity.behaviours_at = ground.take<Behaviour>(activity.behaviour_count);
+        activity.behaviours_at = layout.take<Behaviour>(activity.behaviour_count);
 }
 
 } // namespace detail
@@ -302,32 +302,32 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
 /// Plans a checked table for a board. The map comes first: whoever looks at the memory begins there.
 constexpr void make_plan(const MachineView& m, const Board& board, const TableIndexView& r,
                          std::size_t map_bytes, PlanView& p) {
-    detail::Ground ground;
-    ground.take(map_bytes, alignof(std::max_align_t));
-    p.observed_at = ground.take<Observed>();
-    detail::plan_components(m, r, p, ground);
-    detail::plan_connections(m, r, p, ground);
-    detail::plan_subscriptions(m, r, p, ground);
-    detail::plan_commands(m, r, p, ground);
-    detail::plan_behaviours(m, r, p, ground);
-    p.extras_at = ground.take(0, alignof(std::max_align_t));
+    detail::Layout layout;
+    layout.take(map_bytes, alignof(std::max_align_t));
+    p.observed_at = layout.take<Observed>();
+    detail::plan_components(m, r, p, layout);
+    detail::plan_connections(m, r, p, layout);
+    detail::plan_subscriptions(m, r, p, layout);
+    detail::plan_commands(m, r, p, layout);
+    detail::plan_behaviours(m, r, p, layout);
+    p.extras_at = layout.take(0, alignof(std::max_align_t));
     for (std::size_t e = 0; e < m.extras->size(); ++e)
-        ground.take(align_section(m.extras->at(e)->bytes(m)), 1);
-    p.engines_at = ground.take<Engine>(m.activities.size());
-    detail::plan_scope(m, p, ground);
-    const std::size_t before_stacks = ground.used();
+        layout.take(align_section(m.extras->at(e)->bytes(m)), 1);
+    p.engines_at = layout.take<Engine>(m.activities.size());
+    detail::plan_scope(m, p, layout);
+    const std::size_t before_stacks = layout.used();
     constexpr std::size_t page = 4096;
     p.shared_bytes = (before_stacks + page - 1) / page * page;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& plan = p.activities[a];
         const ActivityRow& row = m.activities[a];
         plan.stack_bytes = (row.stack + page - 1) / page * page;
-        plan.stack_at = ground.take(plan.stack_bytes, page);
+        plan.stack_at = layout.take(plan.stack_bytes, page);
         plan.priority = row.real_time ? board.highest_priority - static_cast<int>(r.rank[a]) : 0;
         plan.processor = checks::processor_of(board, row.name);
     }
-    p.bytes = (ground.used() + page - 1) / page * page;
-    p.stack_bytes = ground.used() - before_stacks;
+    p.bytes = (layout.used() + page - 1) / page * page;
+    p.stack_bytes = layout.used() - before_stacks;
 }
 
 /// The storage of a plan, of the table's own sizes.

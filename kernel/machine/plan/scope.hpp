@@ -38,20 +38,20 @@ constexpr std::size_t tape_words(const ActivityRow& row) noexcept {
 }
 
 /// `Plan` and `Ground` are those of kernel/machine/plan/plan.hpp.
-template <class Plan, class Ground>
-constexpr void plan_scope(const MachineView& m, Plan& p, Ground& ground) {
+template <class Plan, class Layout>
+constexpr void plan_scope(const MachineView& m, Plan& p, Layout& layout) {
     if (!records_cycles(m)) return;
-    p.scope_at = ground.take(sizeof(scope::Directory), CycleTape::alignment);
-    ground.template take<scope::Tape>(m.activities.size());
+    p.scope_at = layout.take(sizeof(scope::Directory), CycleTape::alignment);
+    layout.template take<scope::Tape>(m.activities.size());
     std::size_t ranked = 0;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         p.activities[a].tape_words = tape_words(m.activities[a]);
         p.activities[a].tape_at =
-            ground.take(CycleTape::bytes_for(p.activities[a].tape_words), CycleTape::alignment);
+            layout.take(CycleTape::bytes_for(p.activities[a].tape_words), CycleTape::alignment);
         ranked += m.activities[a].real_time;
     }
     p.recordings = ranked * scope::generations * scope::kept;
-    p.recordings_at = ground.take(p.recordings * scope::recording_bytes, alignof(scope::Recording));
+    p.recordings_at = layout.take(p.recordings * scope::recording_bytes, alignof(scope::Recording));
 }
 
 } // namespace detail

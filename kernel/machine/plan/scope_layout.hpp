@@ -24,10 +24,10 @@ struct Tape {
     std::uint64_t at = 0;     ///< CycleTape
     std::uint32_t ranked = 0; ///< 1: its worst cycles are kept; it is real-time
     std::uint32_t reserved = 0;
-    std::uint64_t judged_until = 0; ///< position on it, behind the last cycle that was looked at
+    std::uint64_t judged_until = 0; ///< position on it, after the last cycle that was looked at
 };
 
-/// A kept cycle. Behind it stand `words` words: for each activity that ran from `from` on until `to` a word
+/// A kept cycle. After it stand `words` words: for each activity that ran from `from` on until `to` a word
 /// of activity << 48 and the number of words that follow, which are its cycles, oldest first, as on its tape.
 struct Recording {
     std::uint64_t serial = 0;     ///< of the place's contents; 0: it is empty

@@ -18,12 +18,12 @@ constexpr double full_turn_deg = 360;
 void BehaviourSlot::obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME {
     auto& self = *static_cast<BehaviourSlot*>(slot);
     self.why_ = RollBack::none;
-    self.is_roll_back_ = self.wish_ == Wish::roll_back;
+    self.is_roll_back_ = self.change_ == Change::roll_back;
     self.last_angle_ = -1;
-    switch (self.wish_) {
-    case Wish::take_over: self.target_ = self.spare(); break;
-    case Wish::unload: self.target_ = none; break;
-    case Wish::roll_back:
+    switch (self.change_) {
+    case Change::take_over: self.target_ = self.spare(); break;
+    case Change::unload: self.target_ = none; break;
+    case Change::roll_back:
         self.target_ = self.previous_;
         self.why_ = RollBack::asked;
         ++self.roll_backs_;

@@ -51,9 +51,9 @@ enum class RollBack : std::uint8_t {
 namespace detail {
 
 /// The rows of a compiled script, in a bank.
-constexpr ScriptRoom take_script_room(UnitGround& ground, const ScriptSizes& sizes) noexcept {
-    const auto take = [&ground]<class T>(std::span<T>& into, std::size_t count) {
-        into = {ground.take<T>(count), count};
+constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& sizes) noexcept {
+    const auto take = [&layout]<class T>(std::span<T>& into, std::size_t count) {
+        into = {layout.take<T>(count), count};
     };
     ScriptRoom room;
     take(room.instructions, sizes.instructions);
@@ -63,7 +63,7 @@ constexpr ScriptRoom take_script_room(UnitGround& ground, const ScriptSizes& siz
     take(room.programs, sizes.programs);
     take(room.variables, sizes.variables);
     take(room.links, sizes.links);
-    room.image = {ground.take(sizes.image, data_alignment), sizes.image};
+    room.image = {layout.take(sizes.image, data_alignment), sizes.image};
     take(room.states, sizes.states);
     take(room.transitions, sizes.transitions);
     take(room.captures, sizes.captures);
@@ -103,25 +103,25 @@ inline constexpr std::size_t slot_deferred_bytes =
 /// than this keeps for its resolved form; then it is refused.
 constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noexcept {
     const ScriptSizes sizes = slot_sizes(slot);
-    detail::UnitGround ground;
-    static_cast<void>(detail::take_script_room(ground, sizes));
-    ground.take(0, unit_alignment);
-    ground.take<UnitPart>(sizes.instances);
-    ground.take<ResolvedView>(sizes.types);
-    ground.take<UnitRoute>(events * sizes.instances);
-    static_cast<void>(take_room(ground, slot_resolved_sizes(sizes, events)));
-    ground.take<StateIndex>(sizes.states);
+    detail::UnitLayout layout;
+    static_cast<void>(detail::take_script_room(layout, sizes));
+    layout.take(0, unit_alignment);
+    layout.take<UnitPart>(sizes.instances);
+    layout.take<ResolvedView>(sizes.types);
+    layout.take<UnitRoute>(events * sizes.instances);
+    static_cast<void>(take_room(layout, slot_resolved_sizes(sizes, events)));
+    layout.take<StateIndex>(sizes.states);
     for (std::size_t i = 0; i < sizes.instances; ++i) {
-        ground.take<StateMachineExecution>(1);
-        ground.take<ProgramExecution>(1);
-        ground.take(slot_deferred_bytes, data_alignment);
+        layout.take<StateMachineExecution>(1);
+        layout.take<ProgramExecution>(1);
+        layout.take(slot_deferred_bytes, data_alignment);
     }
-    ground.take(sizes.data + sizes.instances * data_alignment, data_alignment);
-    ground.take<ProgramLink>(2 * sizes.links);
-    ground.take<CommandSlot>(slot.command_slots);
-    ground.take(slot.command_slots * slot_command_bytes, data_alignment);
-    ground.take(0, unit_alignment); // the other bank stands behind it
-    return ground.used();
+    layout.take(sizes.data + sizes.instances * data_alignment, data_alignment);
+    layout.take<ProgramLink>(2 * sizes.links);
+    layout.take<CommandSlot>(slot.command_slots);
+    layout.take(slot.command_slots * slot_command_bytes, data_alignment);
+    layout.take(0, unit_alignment); // the other bank stands after it
+    return layout.used();
 }
 
 class BehaviourSlot {
@@ -143,23 +143,23 @@ public:
 
     // ---- in a background activity, one at a time; not real-time
 
-    /// Where the letters of a script are gathered.
+    /// Where the characters of a script are gathered.
     [[nodiscard]] std::span<char> text() noexcept { return place_.text; }
     /// Whether a script may be compiled now; a sentence says why not.
     [[nodiscard]] Sentence may_load() const noexcept;
-    /// Compiles the first `letters` of text() into the spare bank. An error is the script's, with its line,
-    /// or says what the slot has no room for; the behaviour that is at work does not notice.
-    [[nodiscard]] Sentence compile(std::size_t letters, std::string_view name);
+    /// Compiles the first `characters` of text() into the spare bank. An error is the script's, with its
+    /// line, or says what the slot has no room for; the behaviour that is at work does not notice.
+    [[nodiscard]] Sentence compile(std::size_t characters, std::string_view name);
     /// A moment as it is written: "now", "component.event" of the reach, or an angle in degrees.
     [[nodiscard]] Sentence parse_moment(std::string_view text, SlotMoment& moment) const;
 
-    enum class Wish : std::uint8_t { take_over, unload, roll_back };
+    enum class Change : std::uint8_t { take_over, unload, roll_back };
     /// What obey() is to do; false: it has not obeyed the last one yet.
-    [[nodiscard]] bool wish(Wish wish, const SlotMoment& moment = {}) noexcept;
+    [[nodiscard]] bool ask(Change change, const SlotMoment& moment = {}) noexcept;
     /// It could not be posted.
-    void forget_wish() noexcept { asked_.store(false, std::memory_order_relaxed); }
-    /// Whether a wish makes sense now; a sentence says why not.
-    [[nodiscard]] Sentence may(Wish wish) const noexcept;
+    void withdraw() noexcept { asked_.store(false, std::memory_order_relaxed); }
+    /// Whether a change makes sense now; a sentence says why not.
+    [[nodiscard]] Sentence may(Change change) const noexcept;
 
     // ---- what it tells; any thread, real-time. Of the units only between two steps of the engine.
 
@@ -190,7 +190,7 @@ public:
 
     // ---- in its engine, real-time
 
-    /// As a message: carries out the wish.
+    /// As a message: carries out the change.
     static void obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME;
     void start(Time now) noexcept TAPPET_REALTIME;
     void step_programs(Time now) noexcept TAPPET_REALTIME;
@@ -223,8 +223,8 @@ private:
     std::span<std::byte> unit_memory_[2]{};
     std::array<Reachable, Slot::max_names + 1> reachable_{};
     std::size_t reachable_count_ = 0;
-    // Written by the background while no wish is on its way, read by the engine.
-    Wish wish_ = Wish::take_over;
+    // Written by the background while no change is on its way, read by the engine.
+    Change change_ = Change::take_over;
     SlotMoment moment_{};
     std::atomic<bool> asked_{false};
     // Written by the engine.

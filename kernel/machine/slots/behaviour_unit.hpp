@@ -36,11 +36,11 @@ struct UnitRoute {
 
 namespace detail {
 
-/// Lays things one behind the other in a piece of memory, or, without one, counts.
-class UnitGround {
+/// Lays things one after the other in a piece of memory, or, without one, counts.
+class UnitLayout {
 public:
-    constexpr UnitGround() = default;
-    explicit constexpr UnitGround(std::span<std::byte> memory) noexcept : memory_{memory} {}
+    constexpr UnitLayout() = default;
+    explicit constexpr UnitLayout(std::span<std::byte> memory) noexcept : memory_{memory} {}
     template <class T>
     constexpr T* take(std::size_t count) noexcept {
         std::byte* place = take(count * sizeof(T), alignof(T));
@@ -73,14 +73,14 @@ constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& t
 } // namespace detail
 
 /// Where a type's resolved state machine lies.
-constexpr ResolvedRoom take_room(detail::UnitGround& ground, const ResolvedSizes& sizes) noexcept {
-    auto* plans = ground.take<StatePlan>(sizes.states);
-    auto* triggers = ground.take<std::string_view>(sizes.triggers);
-    auto* cells = ground.take<ArcIndex>(sizes.states * sizes.triggers);
-    auto* arcs = ground.take<StateArc>(sizes.arcs);
-    auto* programs = ground.take<StateProgram>(sizes.programs);
-    auto* regions = ground.take<StateIndex>(sizes.regions);
-    auto* captured = ground.take<std::uint16_t>(sizes.triggers);
+constexpr ResolvedRoom take_room(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
+    auto* plans = layout.take<StatePlan>(sizes.states);
+    auto* triggers = layout.take<std::string_view>(sizes.triggers);
+    auto* cells = layout.take<ArcIndex>(sizes.states * sizes.triggers);
+    auto* arcs = layout.take<StateArc>(sizes.arcs);
+    auto* programs = layout.take<StateProgram>(sizes.programs);
+    auto* regions = layout.take<StateIndex>(sizes.regions);
+    auto* captured = layout.take<std::uint16_t>(sizes.triggers);
     return {{plans, sizes.states},     {triggers, sizes.triggers}, {cells, sizes.states * sizes.triggers},
             {arcs, sizes.arcs},        {programs, sizes.programs}, {regions, sizes.regions},
             {captured, sizes.triggers}};
@@ -91,10 +91,10 @@ struct MachineMemory {
     std::span<StateIndex> history{};
     std::span<std::byte> deferred{};
 };
-constexpr MachineMemory take_machine_memory(detail::UnitGround& ground, const ResolvedSizes& sizes) noexcept {
+constexpr MachineMemory take_machine_memory(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
     const std::size_t bytes = sizes.captured * StateMachineExecution::max_raised_events;
-    auto* history = ground.take<StateIndex>(sizes.history);
-    return {{history, sizes.history}, {ground.take(bytes, data_alignment), bytes}};
+    auto* history = layout.take<StateIndex>(sizes.history);
+    return {{history, sizes.history}, {layout.take(bytes, data_alignment), bytes}};
 }
 
 /// Of the memory of a unit.
@@ -103,31 +103,31 @@ inline constexpr std::size_t unit_alignment = std::max(alignof(CommandSlot), dat
 /// What a unit that hears so many events takes of memory aligned to unit_alignment. The same sums as
 /// BehaviourUnit::place.
 constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
-    detail::UnitGround ground;
-    ground.take<UnitPart>(unit.instances.size());
-    ground.take<StateMachineExecution>(unit.instances.size());
-    ground.take<ResolvedView>(unit.types.size());
-    ground.take<UnitRoute>(events * unit.instances.size());
+    detail::UnitLayout layout;
+    layout.take<UnitPart>(unit.instances.size());
+    layout.take<StateMachineExecution>(unit.instances.size());
+    layout.take<ResolvedView>(unit.types.size());
+    layout.take<UnitRoute>(events * unit.instances.size());
     for (std::size_t t = 0; t < unit.types.size(); ++t) {
         if (unit.types[t].is_program()) continue;
         const ResolvedSizes sizes = measure(unit.types[t].machine);
-        static_cast<void>(take_room(ground, sizes));
+        static_cast<void>(take_room(layout, sizes));
         for (const BehaviourInstance& instance : unit.instances)
-            if (instance.type == t) static_cast<void>(take_machine_memory(ground, sizes));
+            if (instance.type == t) static_cast<void>(take_machine_memory(layout, sizes));
     }
     for (const BehaviourInstance& instance : unit.instances) {
         const BehaviourType& type = unit.types[instance.type];
-        if (type.is_program()) ground.take<ProgramExecution>(1);
-        ground.take(type.tables.layout.size, data_alignment);
-        ground.take<ProgramLink>(type.tables.links.size());
+        if (type.is_program()) layout.take<ProgramExecution>(1);
+        layout.take(type.tables.layout.size, data_alignment);
+        layout.take<ProgramLink>(type.tables.links.size());
         std::size_t slots = 0;
         detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet&) { ++slots; });
-        ground.take<CommandSlot>(slots);
+        layout.take<CommandSlot>(slots);
         detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet& facet) {
-            ground.take(facet.command->value_bytes(), data_alignment);
+            layout.take(facet.command->value_bytes(), data_alignment);
         });
     }
-    return ground.used();
+    return layout.used();
 }
 
 /// Not real-time but for what says so. place() while nobody steps it.

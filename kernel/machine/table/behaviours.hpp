@@ -152,7 +152,7 @@ template <class... Names>
 constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) {
     return {names(each...)};
 }
-/// Letters of a script.
+/// Characters of a script.
 constexpr detail::SlotNumber<detail::TextTag> text_bytes(std::uint32_t n) noexcept { return {n}; }
 /// Steps in which a new behaviour must show that it works.
 constexpr detail::SlotNumber<detail::TrialTag> trial(std::uint32_t steps) noexcept { return {steps}; }

@@ -27,19 +27,19 @@ template <class T>
 constexpr PropertySetting setting_of(const T& value) noexcept {
     using Kind = PropertySetting::Kind;
     if constexpr (std::same_as<T, bool>)
-        return {.kind = Kind::truth, .whole = value ? 1 : 0};
+        return {.kind = Kind::boolean, .integer = value ? 1 : 0};
     else if constexpr (std::integral<T>)
-        return {.kind = Kind::whole, .whole = static_cast<std::int64_t>(value)};
+        return {.kind = Kind::integer, .integer = static_cast<std::int64_t>(value)};
     else if constexpr (std::floating_point<T>)
         return {.kind = Kind::real, .real = static_cast<double>(value)};
     else if constexpr (std::is_enum_v<T>)
-        return {.kind = Kind::enumeration, .whole = static_cast<std::int64_t>(value), .type = type_id<T>};
+        return {.kind = Kind::enumeration, .integer = static_cast<std::int64_t>(value), .type = type_id<T>};
     else if constexpr (std::is_convertible_v<T, std::string_view>)
         return {.kind = Kind::text, .text = value};
     else if constexpr (is_text<T>)
         return {.kind = Kind::text, .text = value.view()};
     else
-        return {.kind = Kind::duration, .whole = Duration{value}.count()};
+        return {.kind = Kind::duration, .integer = Duration{value}.count()};
 }
 
 template <const auto& values>
@@ -47,7 +47,7 @@ inline constexpr ListSetting list_setting{values.size(), [](std::size_t i) { ret
 
 } // namespace detail
 
-/// A property's value in this machine: truth, a number, a time with its unit, a text, a value of an
+/// A property's value in this machine: boolean, a number, a time with its unit, a text, a value of an
 /// enumeration. Of a property in a bag the whole name: "gains.roll.p".
 template <class T>
 constexpr PropertyRow set(std::string_view name, const T& value) {

@@ -1,4 +1,4 @@
-// The machine table: five sections of rows that say what a machine is, and sections of other folders behind
+// The machine table: five sections of rows that say what a machine is, and sections of other folders after
 // them. One value, one page.
 #pragma once
 

@@ -2,7 +2,7 @@
 // and what was probably meant.
 #pragma once
 
-#include "kernel/base/letters.hpp"
+#include "kernel/base/compare.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/machine/table/machine.hpp"
@@ -23,7 +23,7 @@ struct End {
 
 constexpr std::size_t find_component(const MachineView& m, std::string_view name) noexcept {
     for (std::size_t i = 0; i < m.components.size(); ++i)
-        if (same_letters(m.components[i].name, name)) return i;
+        if (same_text(m.components[i].name, name)) return i;
     return nowhere;
 }
 
@@ -37,7 +37,7 @@ constexpr bool is_named(std::string_view path, std::string_view component, std::
 constexpr void sort_by_name(const MachineView& m, std::span<std::size_t> by_name) noexcept {
     for (std::size_t i = 0; i < by_name.size(); ++i) by_name[i] = i;
     std::sort(by_name.begin(), by_name.end(), [&m](std::size_t a, std::size_t b) {
-        const int order = compare_letters(m.components[a].name, m.components[b].name);
+        const int order = compare_text(m.components[a].name, m.components[b].name);
         return order != 0 ? order < 0 : a < b;
     });
 }
@@ -49,7 +49,7 @@ constexpr std::size_t find_component(const MachineView& m, std::span<const std::
     std::size_t high = by_name.size();
     while (low < high) {
         const std::size_t middle = (low + high) / 2;
-        const int order = compare_letters(m.components[by_name[middle]].name, name);
+        const int order = compare_text(m.components[by_name[middle]].name, name);
         if (order == 0) return by_name[middle];
         if (order < 0)
             low = middle + 1;
@@ -61,14 +61,14 @@ constexpr std::size_t find_component(const MachineView& m, std::span<const std::
 
 constexpr std::size_t find_activity(const MachineView& m, std::string_view name) noexcept {
     for (std::size_t i = 0; i < m.activities.size(); ++i)
-        if (same_letters(m.activities[i].name, name)) return i;
+        if (same_text(m.activities[i].name, name)) return i;
     return nowhere;
 }
 
 constexpr std::size_t find_facet(const ComponentRow& row, std::string_view name) noexcept {
     std::size_t i = 0;
     for (const Facet& facet : row.type->facets) {
-        if (same_letters(facet.name, name)) return i;
+        if (same_text(facet.name, name)) return i;
         ++i;
     }
     return nowhere;
@@ -118,7 +118,7 @@ constexpr Sentence unknown_component(const MachineView& m, std::string_view name
 /// the answer is the fault and its cure.
 constexpr Sentence resolve(const MachineView& m, std::span<const std::size_t> by_name, std::string_view path,
                            FacetKind wanted, End& found) {
-    const std::size_t dot = find_letter(path, '.');
+    const std::size_t dot = find_character(path, '.');
     if (dot == std::string_view::npos)
         return Sentence{"\"", path, "\" is not of the form \"component.",
                         wanted == FacetKind::input ? "port"

@@ -45,7 +45,7 @@ protected:
     constexpr ~ExtraSection() = default;
 };
 
-/// The sections of a table behind the five that every machine has; here none. They are found by their number,
+/// The sections of a table after the five that every machine has; here none. They are found by their number,
 /// since a constant that holds the address of a part of itself is refused by g++ 12.
 struct ExtraList {
     [[nodiscard]] constexpr virtual std::size_t size() const noexcept { return 0; }

@@ -45,7 +45,7 @@ void RealWorld::on_signal(int) noexcept {
     if (os::Waiter* waiter = signal_waiter.load(std::memory_order_acquire)) waiter->wake();
 }
 
-void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
+void RealWorld::on_breach(const ContractViolation& breach) noexcept TAPPET_REALTIME {
     RealWorld* world = current_world.load(std::memory_order_acquire);
     if (world == nullptr) return;
     Activity* activity = Activity::current();
@@ -53,7 +53,7 @@ void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
     world->instance_.ask_stop(StopReason::broken_contract, static_cast<std::uint64_t>(breach.id),
                               activity == nullptr ? nullptr : &activity->engine());
     const ContractText* text = find_text(breach.id);
-    if (text != nullptr && text->after == AfterBreach::thread_goes_on) return;
+    if (text != nullptr && text->after == AfterViolation::thread_goes_on) return;
     if (activity != nullptr) activity->park();
     bool is_supervisor = false;
     TAPPET_ESCAPE("thread-local memory of the main program", is_supervisor = supervises);
@@ -64,7 +64,7 @@ void RealWorld::on_breach(const Breach& breach) noexcept TAPPET_REALTIME {
                   static_cast<void>(os::write_all(2, describe(breach).add("\n").view())); std::abort());
 }
 
-void RealWorld::keep(const Breach& breach) noexcept TAPPET_REALTIME {
+void RealWorld::keep(const ContractViolation& breach) noexcept TAPPET_REALTIME {
     const std::size_t place = breaches_.fetch_add(1, std::memory_order_acq_rel);
     if (place >= max_breaches) return;
     kept_breaches_[place].breach = breach;
@@ -77,7 +77,7 @@ Sentence RealWorld::describe_breach(std::size_t index) const noexcept {
     return describe(kept_breaches_[index].breach);
 }
 
-bool RealWorld::arm(os::ArmingReport& report, int file) {
+std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
     const auto& machine = instance_.machine();
     os::never_wait();
     os::touch(machine.memory); // before there are threads: their stacks are part of it
@@ -104,8 +104,9 @@ bool RealWorld::arm(os::ArmingReport& report, int file) {
     check_system(report, options, os::observe_process(highest));
     const bool fit = report.conclude();
     print(report, file);
-    if (!fit) os::heap::release();
-    return fit;
+    if (fit) return Armed{};
+    os::heap::release();
+    return {};
 }
 
 ActivityControl RealWorld::control() noexcept {
@@ -116,14 +117,14 @@ ActivityControl RealWorld::control() noexcept {
             [](void* self, std::size_t a) { return static_cast<RealWorld*>(self)->stop_engine(a); }};
 }
 
-bool RealWorld::start() {
-    refusal_ = instance_.start_activities(control());
+bool RealWorld::start(Armed) {
+    refusal_ = instance_.life().start_activities(control());
     if (!refusal_.empty()) static_cast<void>(stop());
     return refusal_.empty();
 }
 
 Sentence RealWorld::change_activity(std::size_t activity, LifeChange change) {
-    return instance_.change_activity(activity, change, control());
+    return instance_.life().change_activity(activity, change, control());
 }
 
 bool RealWorld::stop_engine(std::size_t a) noexcept {
@@ -138,7 +139,7 @@ bool RealWorld::stop_engine(std::size_t a) noexcept {
 bool RealWorld::supervise(Duration time) {
     const Time end = instance_.clock().now() + time;
     while (!instance_.stop_asked()) {
-        instance_.serve_activity_requests(control());
+        instance_.life().serve_activity_requests(control());
         if (signal_came.load(std::memory_order_acquire)) {
             instance_.ask_stop(StopReason::requested, 0, nullptr);
             return false;
@@ -151,7 +152,7 @@ bool RealWorld::supervise(Duration time) {
 
 int RealWorld::stop() {
     const auto stop_now = [this](std::size_t a) {
-        return instance_.change_activity(a, LifeChange::stop, control()).empty() ? 0 : 1;
+        return instance_.life().change_activity(a, LifeChange::stop, control()).empty() ? 0 : 1;
     };
     int hung = 0;
     const Time grace = os::Clock::monotonic() + grace_ms * 1ms;

@@ -26,19 +26,20 @@ public:
     static constexpr int grace_ms = 20;
     static constexpr std::size_t max_breaches = 8;
 
-    /// The instance is configured and its clock is real.
+    /// Its clock is real; it is configured before it is armed.
     explicit RealWorld(MachineInstance& instance) noexcept;
     ~RealWorld();
     RealWorld(const RealWorld&) = delete;
     RealWorld& operator=(const RealWorld&) = delete;
 
     /// Starts the threads, which wait; then looks at everything the machine relies on, seals the heap and
-    /// locks the memory. False: the report says why, on `file`, each reason with its cure; nothing has moved.
-    [[nodiscard]] bool arm(os::ArmingReport& report, int file);
+    /// locks the memory. Nothing: the report says why, on `file`, each reason with its cure; nothing has
+    /// moved.
+    [[nodiscard]] std::optional<Armed> arm(os::ArmingReport& report, int file);
 
     /// Activities start in the table's order, each initialised on this thread. False: one did not, refusal()
     /// says why; the machine is stopped again.
-    [[nodiscard]] bool start();
+    [[nodiscard]] bool start(Armed);
     [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
 
     /// Starts, stops or restarts one activity while the others run; initialise and finalise of its components
@@ -65,8 +66,8 @@ public:
     [[nodiscard]] std::uint64_t page_faults_in_real_time_threads() const noexcept;
 
 private:
-    static void on_breach(const Breach& breach) noexcept TAPPET_REALTIME;
-    void keep(const Breach& breach) noexcept TAPPET_REALTIME;
+    static void on_breach(const ContractViolation& breach) noexcept TAPPET_REALTIME;
+    void keep(const ContractViolation& breach) noexcept TAPPET_REALTIME;
     static void on_signal(int) noexcept;
     [[nodiscard]] ActivityControl control() noexcept;
     [[nodiscard]] bool stop_engine(std::size_t activity) noexcept;
@@ -75,7 +76,7 @@ private:
     std::array<Activity, checks::max_activities> activities_{};
     os::CpuDmaLatency latency_{};
     struct KeptBreach {
-        Breach breach{};
+        ContractViolation breach{};
         std::atomic<bool> complete{false};
     };
     std::array<KeptBreach, max_breaches> kept_breaches_{};

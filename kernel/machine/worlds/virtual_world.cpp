@@ -33,13 +33,13 @@ ActivityControl VirtualWorld::control() noexcept {
 }
 
 Sentence VirtualWorld::start() {
-    const Sentence refusal = instance_.start_activities(control());
+    const Sentence refusal = instance_.life().start_activities(control());
     if (!refusal.empty()) stop();
     return refusal;
 }
 
 Sentence VirtualWorld::change_activity(std::size_t activity, LifeChange change) {
-    return instance_.change_activity(activity, change, control());
+    return instance_.life().change_activity(activity, change, control());
 }
 
 Time VirtualWorld::next_time() const {
@@ -91,7 +91,7 @@ void VirtualWorld::run_engines(Time now) {
 bool VirtualWorld::run_until(Time end) {
     os::Clock& clock = instance_.clock();
     while (!instance_.stop_asked()) {
-        instance_.serve_activity_requests(control());
+        instance_.life().serve_activity_requests(control());
         const Time next = std::max(next_time(), clock.now());
         if (next > end) {
             clock.advance_to(end);

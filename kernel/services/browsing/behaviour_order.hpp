@@ -43,8 +43,8 @@ struct BehaviourOrder {
     bool done = false;
 };
 
-/// The letters of a word of a request: what stands between its outer quotes, \" and \\ for themselves. False:
-/// it is not quoted well.
+/// The characters of a word of a request: what stands between its outer quotes, \" and \\ for themselves.
+/// False: it is not quoted well.
 template <class Put>
 constexpr bool unquote(std::string_view word, const Put& put) {
     const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';

@@ -11,56 +11,56 @@ using browsing::Verb;
 Sentence BrowserService::configure(Setup& setup) {
     machine_ = setup.machine;
     own_activity_ = activity_of(machine_->machine().table, setup.component);
-    machine_->show_events_to({&observe, this});
+    machine_->observation().show_events_to({&observe, this});
     return initialise();
 }
 
 Sentence BrowserService::initialise() {
     const std::string_view directory = machine_->browsing_directory();
-    if (directory.empty() || door_.is_open()) return {};
+    if (directory.empty() || connections_.is_open()) return {};
     const AcceptedMachine& machine = machine_->machine();
-    const auto opened = door_.open(directory, machine.table.name, machine.board->browsing);
+    const auto opened = connections_.open(directory, machine.table.name, machine.board->browsing);
     return opened ? Sentence{} : opened.error();
 }
 
 void BrowserService::finalise() {
     for (Subscribed& each : subscribed_)
         if (each.taken) drop(each);
-    door_.close();
+    connections_.close();
 }
 
 void BrowserService::work(const Cycle& cycle) {
-    if (!door_.is_open()) return;
+    if (!connections_.is_open()) return;
     now_ = cycle.now;
     welcome();
-    for (Client& each : door_.clients()) hear(each);
+    for (Client& each : connections_.clients()) hear(each);
     follow_pending();
     tell_events();
     std::int64_t connected = 0;
-    for (const Client& each : door_.clients()) connected += each.serial != 0;
+    for (const Client& each : connections_.clients()) connected += each.serial != 0;
     clients.write(connected);
     requests.write(static_cast<std::int64_t>(accepted_));
     refused.write(static_cast<std::int64_t>(refused_));
 }
 
 void BrowserService::welcome() {
-    for (std::size_t i = 0; i < browsing::Door::most_each_cycle; ++i) {
-        const Client* client = door_.welcome();
+    for (std::size_t i = 0; i < browsing::Connections::most_each_cycle; ++i) {
+        const Client* client = connections_.welcome();
         if (client == nullptr) break;
         note(*client, "connected", {}, {});
     }
-    if (turned_away_ == door_.turned_away()) return;
-    turned_away_ = door_.turned_away();
+    if (turned_away_ == connections_.turned_away()) return;
+    turned_away_ = connections_.turned_away();
     if (log)
         os::print("browser: a client was turned away: all places are taken, or one of a higher role took its "
                   "own\n");
 }
 
 void BrowserService::hear(Client& client) {
-    for (std::size_t i = 0; i < browsing::Door::packets_each_cycle && client.serial != 0; ++i) {
+    for (std::size_t i = 0; i < browsing::Connections::packets_each_cycle && client.serial != 0; ++i) {
         bool cut = false;
         const Client before{{}, client.peer, client.role, client.serial};
-        const auto packet = door_.receive(client, packet_, cut);
+        const auto packet = connections_.receive(client, packet_, cut);
         if (packet)
             handle(client, *packet, cut);
         else if (client.serial == 0)
@@ -96,6 +96,7 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::map: return map(client, request);
     case Verb::get: return get(client, request);
     case Verb::forced: return forced(client, request);
+    case Verb::counters: return counters(client, request);
     case Verb::set: return set(client, request);
     case Verb::force: return force(client, request);
     case Verb::release: return release(client, request);
@@ -111,14 +112,14 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::behave: return behave(client, request);
     case Verb::script: return script(client, request);
     case Verb::load: return load(client, request);
-    case Verb::unload: return unload(client, request, BehaviourSlot::Wish::unload);
-    case Verb::roll_back: return unload(client, request, BehaviourSlot::Wish::roll_back);
+    case Verb::unload: return unload(client, request, BehaviourSlot::Change::unload);
+    case Verb::roll_back: return unload(client, request, BehaviourSlot::Change::roll_back);
     }
     return {Refusal::unsupported,
             Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};
 }
 
-/// One line: what, when, who, and what was asked, without letters that a terminal would obey.
+/// One line: what, when, who, and what was asked, without characters that a terminal would obey.
 void BrowserService::note(const Client& client, std::string_view what, std::string_view packet,
                           const Verdict& verdict) {
     if (!log) return;
@@ -127,10 +128,10 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
     line.add(" at ").add(to_ns(now_) / 1000).add(" us, uid ").add(client.peer.user).add(", pid ");
     line.add(static_cast<int>(client.peer.process)).add(", ").add(to_text(client.role));
     if (!packet.empty()) line.add(": ");
-    for (const char letter : packet.substr(0, 240)) {
+    for (const char character : packet.substr(0, 240)) {
         const bool shown =
-            static_cast<unsigned char>(letter) >= 0x20 && static_cast<unsigned char>(letter) < 0x7f;
-        line.add(shown ? std::string_view{&letter, 1} : std::string_view{letter == '\n' ? "" : "?"});
+            static_cast<unsigned char>(character) >= 0x20 && static_cast<unsigned char>(character) < 0x7f;
+        line.add(shown ? std::string_view{&character, 1} : std::string_view{character == '\n' ? "" : "?"});
     }
     os::print(line.add("\n").view());
 }

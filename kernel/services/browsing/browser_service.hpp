@@ -4,7 +4,7 @@
 
 #include "kernel/component/component.hpp"
 #include "kernel/machine/map/view.hpp"
-#include "kernel/services/browsing/door.hpp"
+#include "kernel/services/browsing/connections.hpp"
 #include "kernel/services/browsing/pending.hpp"
 #include "kernel/services/browsing/reply.hpp"
 
@@ -73,7 +73,7 @@ private:
     void handle(Client& client, std::string_view packet, bool cut);
     Verdict answer(Client& client, const Request& request);
     void note(const Client& client, std::string_view what, std::string_view packet, const Verdict& verdict);
-    void finish(Client& client, Reply& reply) noexcept { door_.send(client, reply.finish()); }
+    void finish(Client& client, Reply& reply) noexcept { connections_.send(client, reply.finish()); }
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
         return {client.serial, request.number, now_};
     }
@@ -94,6 +94,7 @@ private:
     Verdict map(Client& client, const Request& request);
     Verdict get(Client& client, const Request& request);
     Verdict forced(Client& client, const Request& request);
+    Verdict counters(Client& client, const Request& request);
     void put_value(Reply& reply, End end, std::string_view name);
 
     // What is changed; requests_change.cpp
@@ -134,16 +135,16 @@ private:
     struct Upload {
         BehaviourSlot* slot = nullptr;
         std::uint64_t client = 0;
-        std::size_t letters = 0;
+        std::size_t characters = 0;
         Time since{};
     };
     Verdict behaviours(Client& client, const Request& request);
     Verdict behave(Client& client, const Request& request);
     Verdict script(Client& client, const Request& request);
     Verdict load(Client& client, const Request& request);
-    Verdict unload(Client& client, const Request& request, BehaviourSlot::Wish wish);
-    Verdict change_slot(Client& client, const Request& request, BehaviourSlot& slot, BehaviourSlot::Wish wish,
-                        const SlotMoment& moment);
+    Verdict unload(Client& client, const Request& request, BehaviourSlot::Change change);
+    Verdict change_slot(Client& client, const Request& request, BehaviourSlot& slot,
+                        BehaviourSlot::Change change, const SlotMoment& moment);
     bool look_at_behave(Pending& place);
     [[nodiscard]] BehaviourUnit* unit_of(std::size_t row) noexcept;
     Sentence find_behaviour(std::string_view name, FoundBehaviour& found) noexcept;
@@ -161,7 +162,7 @@ private:
     MachineInstance* machine_ = nullptr;
     std::size_t own_activity_ = nowhere;
     Time now_{};
-    browsing::Door door_{};
+    browsing::Connections connections_{};
     std::uint64_t accepted_ = 0;
     std::uint64_t refused_ = 0;
     std::uint64_t turned_away_ = 0;

@@ -8,7 +8,7 @@ namespace tappet::browsing {
 namespace {
 
 /// Names come from outside: a long one is cut in a sentence.
-std::string_view shown(std::string_view name) noexcept { return name.substr(0, nearest_max_letters); }
+std::string_view shown(std::string_view name) noexcept { return name.substr(0, nearest_max_length); }
 
 Sentence with_nearest(Sentence sentence, const Nearest& nearest, std::string_view otherwise) noexcept {
     if (nearest.best().empty()) return sentence.add("; ").add(otherwise);

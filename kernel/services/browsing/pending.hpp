@@ -35,7 +35,7 @@ public:
         Message message = call;
         message.run = &run;
         message.object = this;
-        const bool posted = machine.post_request(activity, message);
+        const bool posted = machine.requests().post(activity, message);
         if (!posted) state_.store(State::over, std::memory_order_relaxed);
         return posted;
     }
@@ -75,7 +75,7 @@ struct FacetCall {
     void* place = nullptr; ///< of the port, or the component
     bool refused = false;  ///< the engine's: the component had stopped by then
     alignas(
-        16) std::array<std::byte, max_value_bytes> value{}; ///< of a method: the result behind the arguments
+        16) std::array<std::byte, max_value_bytes> value{}; ///< of a method: the result after the arguments
 };
 
 /// A command, followed to its end.

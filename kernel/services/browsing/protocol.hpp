@@ -36,8 +36,8 @@
 /// it. What a client does not read is not kept for it: beyond its socket's buffer packets are dropped, and
 /// the next that it gets says "dropped": n.
 ///
-/// A packet of number 0 that is not "ok" is the door's: no place was free, or one of a higher role took this
-/// one. The connection ends behind it.
+/// A packet of number 0 that is not "ok" comes before any request: no place was free, or one of a higher role
+/// took this one. The connection ends after it.
 ///
 /// Times are the machine's: nanoseconds of CLOCK_MONOTONIC on a box, virtual ones under virtual time.
 namespace tappet::browsing {
@@ -59,6 +59,7 @@ enum class Verb : std::uint8_t {
     subscribe,
     unsubscribe,
     forced,
+    counters,
     call,
     send,
     set,
@@ -97,6 +98,8 @@ inline constexpr auto verbs = std::to_array<VerbRow>({
     {Verb::subscribe,   "subscribe",   Role::observer,         "subscribe EVENT",                  1, 1, ""},
     {Verb::unsubscribe, "unsubscribe", Role::observer,         "unsubscribe EVENT",                1, 1, ""},
     {Verb::forced,      "forced",      Role::observer,         "forced",                           0, 0, R"("forced": ["NAME", ..])"},
+    {Verb::counters,    "counters",    Role::observer,         "counters",                         0, 0,
+     R"("stacks": [{"activity": "...", "bytes": n, "used_bytes": n, as deep as it went}], "held_back": [{"row": "...", "times": n, by rows of limits}])"},
     {Verb::call,        "call",        Role::machine_operator, "call METHOD [ARGUMENT...]",        1, max_words, R"("result": .. unless it returns nothing)"},
     {Verb::send,        "send",        Role::machine_operator, "send COMMAND [ARGUMENT...]",       1, max_words, R"("state": "sent"; packets with its states follow)"},
     {Verb::set,         "set",         Role::engineer,         "set NAME VALUE [NAME VALUE...]",   2, max_words, R"("set": n: all of one component and in one transaction, or none)"},
@@ -154,8 +157,8 @@ constexpr const VerbRow* find_verb(std::string_view name) noexcept {
 
 namespace detail {
 
-constexpr bool is_blank(char letter) noexcept {
-    return letter == ' ' || letter == '\t' || letter == '\n' || letter == '\r';
+constexpr bool is_blank(char character) noexcept {
+    return character == ' ' || character == '\t' || character == '\n' || character == '\r';
 }
 
 /// Takes the next word off `rest`. False: a quote or a bracket is not closed. Empty when nothing is left.
@@ -166,17 +169,17 @@ constexpr bool take_word(std::string_view& rest, std::string_view& word) noexcep
     std::size_t depth = 0;
     bool quoted = false;
     for (; end < rest.size() && (quoted || depth > 0 || !is_blank(rest[end])); ++end) {
-        const char letter = rest[end];
+        const char character = rest[end];
         if (quoted) {
-            if (letter == '\\')
+            if (character == '\\')
                 ++end;
-            else if (letter == '"')
+            else if (character == '"')
                 quoted = false;
-        } else if (letter == '"') {
+        } else if (character == '"') {
             quoted = true;
-        } else if (letter == '[' || letter == '{' || letter == '(') {
+        } else if (character == '[' || character == '{' || character == '(') {
             ++depth;
-        } else if ((letter == ']' || letter == '}' || letter == ')') && depth > 0) {
+        } else if ((character == ']' || character == '}' || character == ')') && depth > 0) {
             --depth;
         }
     }
@@ -194,8 +197,8 @@ inline Sentence parse_request(std::string_view text, Request& request) noexcept 
     request = {};
     if (text.size() > max_packet_bytes)
         return Sentence{"a request has at most ", max_packet_bytes, " bytes; send several"};
-    for (const char letter : text)
-        if (static_cast<unsigned char>(letter) < 0x20 && !detail::is_blank(letter))
+    for (const char character : text)
+        if (static_cast<unsigned char>(character) < 0x20 && !detail::is_blank(character))
             return Sentence{"a request holds a control character; requests are text"};
     std::string_view word;
     if (!detail::take_word(text, word)) return Sentence{"a quote or a bracket is not closed"};
@@ -207,7 +210,7 @@ inline Sentence parse_request(std::string_view text, Request& request) noexcept 
     if (request.verb == nullptr) {
         Nearest nearest{word};
         for (const VerbRow& row : verbs) nearest.consider(row.name);
-        Sentence sentence{"there is no request \"", word.substr(0, nearest_max_letters), "\""};
+        Sentence sentence{"there is no request \"", word.substr(0, nearest_max_length), "\""};
         if (nearest.best().empty()) return sentence.add("; send one that protocol.hpp lists");
         return sentence.add("; did you mean \"").add(nearest.best()).add("\"?");
     }

@@ -22,7 +22,7 @@ public:
     Reply& operator=(const Reply&) = delete;
 
     [[nodiscard]] JsonText& json() noexcept { return json_; }
-    /// A value as JSON, behind a key or in an array.
+    /// A value as JSON, after a key or in an array.
     Reply& value(const TypeTag& type, const std::byte* value) noexcept {
         std::array<char, max_packet_bytes> text;
         const std::size_t length = format_json(type, value, text);

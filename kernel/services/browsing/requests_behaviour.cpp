@@ -14,7 +14,7 @@ using browsing::BehaviourOrder;
 namespace {
 
 constexpr int reading_attempts = 1000;
-constexpr std::size_t shown_letters = 64;
+constexpr std::size_t shown_characters = 64;
 
 bool command_machine(StateMachineExecution& machine, const BehaviourOrder& order, Time now) noexcept
     TAPPET_REALTIME {
@@ -88,7 +88,7 @@ Sentence BrowserService::find_behaviour(std::string_view name, FoundBehaviour& f
             nearest.consider(names[kept++].view());
         }
     }
-    Sentence text{"there is no behaviour \"", name.substr(0, nearest_max_letters), "\""};
+    Sentence text{"there is no behaviour \"", name.substr(0, nearest_max_length), "\""};
     if (nearest.best().empty()) return text.add("; list them with behaviours");
     return text.add("; did you mean \"").add(nearest.best()).add("\"?");
 }
@@ -99,7 +99,7 @@ Sentence BrowserService::find_slot(std::string_view name, BehaviourSlot*& slot) 
     Nearest nearest{name};
     for (const BehaviourRow& row : machine_->machine().table.behaviours)
         if (row.is_slot()) nearest.consider(row.component);
-    Sentence text{"no slot is reserved for \"", name.substr(0, nearest_max_letters), "\""};
+    Sentence text{"no slot is reserved for \"", name.substr(0, nearest_max_length), "\""};
     if (nearest.best().empty()) return text.add("; add behaviour(\"...\", slot(...)) to the machine's table");
     return text.add("; did you mean \"").add(nearest.best()).add("\"?");
 }
@@ -111,7 +111,7 @@ bool BrowserService::read_between_steps(std::size_t activity, const Copy& copy) 
         copy();
         return true;
     }
-    const auto view = map::View::open(machine_->shared_memory());
+    const auto view = map::View::open(machine_->observation().shared_memory());
     return view && view->consistent(static_cast<std::uint32_t>(activity), reading_attempts, copy);
 }
 
@@ -218,7 +218,7 @@ BrowserService::Verdict BrowserService::behave(Client& client, const Request& re
     BehaviourOrder order;
     if (!browsing::parse(request.arguments[0], order.action))
         return {Refusal::bad_request,
-                Sentence{"a behaviour does not \"", request.arguments[0].substr(0, shown_letters),
+                Sentence{"a behaviour does not \"", request.arguments[0].substr(0, shown_characters),
                          "\"; it is spelled: ", request.verb->usage}};
     FoundBehaviour found;
     if (const Sentence unknown = find_behaviour(request.arguments[1], found); !unknown.empty())
@@ -237,7 +237,7 @@ BrowserService::Verdict BrowserService::behave(Client& client, const Request& re
         }
         if (order.state == no_state) {
             Sentence text{"\"", request.arguments[1], "\" has no state \"",
-                          request.arguments[2].substr(0, shown_letters), "\""};
+                          request.arguments[2].substr(0, shown_characters), "\""};
             if (!nearest.best().empty()) text.add("; did you mean \"").add(nearest.best()).add("\"?");
             return {Refusal::unknown, text};
         }
@@ -276,26 +276,26 @@ BrowserService::Verdict BrowserService::script(Client& client, const Request& re
                 Sentence{"a piece of a script begins at a number of bytes; it is spelled: ",
                          request.verb->usage}};
     const bool mine = upload_.slot == slot && upload_.client == client.serial;
-    if (at != 0 && (!mine || at != upload_.letters))
+    if (at != 0 && (!mine || at != upload_.characters))
         return {Refusal::bad_request,
                 Sentence{"the pieces of a script come one after the other from 0 on, from "
                          "one browser; begin again"}};
-    if (!mine && upload_.slot != nullptr && door_.find(upload_.client) != nullptr &&
+    if (!mine && upload_.slot != nullptr && connections_.find(upload_.client) != nullptr &&
         now_ - upload_.since < patience)
         return {Refusal::not_now, Sentence{"another browser is sending a script; ask again"}};
     upload_ = {slot, client.serial, at, now_};
     const std::span<char> room = slot->text();
     std::size_t end = at;
-    const bool fits = browsing::unquote(request.arguments[2], [&](char letter) {
-        if (end < room.size()) room[end] = letter;
+    const bool fits = browsing::unquote(request.arguments[2], [&](char character) {
+        if (end < room.size()) room[end] = character;
         ++end;
     });
     if (!fits) return {Refusal::bad_request, Sentence{"the piece is not quoted well; see protocol.hpp"}};
     if (end > room.size())
         return {Refusal::unsupported,
                 Sentence{"the slot of \"", request.arguments[0], "\" has room for ", room.size(),
-                         " letters of a script; shorten it, or raise text_bytes(...)"}};
-    upload_.letters = end;
+                         " characters of a script; shorten it, or raise text_bytes(...)"}};
+    upload_.characters = end;
     Reply reply{request.number, true};
     reply.json().field("bytes", end);
     finish(client, reply);
@@ -306,30 +306,30 @@ BrowserService::Verdict BrowserService::load(Client& client, const Request& requ
     BehaviourSlot* slot = nullptr;
     if (const Sentence unknown = find_slot(request.arguments[0], slot); !unknown.empty())
         return {Refusal::unknown, unknown};
-    if (upload_.slot != slot || upload_.client != client.serial || upload_.letters == 0)
+    if (upload_.slot != slot || upload_.client != client.serial || upload_.characters == 0)
         return {Refusal::not_now, Sentence{"no script was sent for the slot of \"", request.arguments[0],
                                            "\"; send one with script"}};
-    const std::size_t letters = upload_.letters;
+    const std::size_t characters = upload_.characters;
     upload_ = {};
     SlotMoment moment;
     if (request.arguments.size() > 2)
         if (const Sentence fault = slot->parse_moment(request.arguments[2], moment); !fault.empty())
             return {Refusal::bad_value, fault};
     if (const Sentence fault = slot->may_load(); !fault.empty()) return {Refusal::not_now, fault};
-    if (const Sentence fault = slot->compile(letters, request.arguments[1]); !fault.empty())
+    if (const Sentence fault = slot->compile(characters, request.arguments[1]); !fault.empty())
         return {Refusal::bad_value, fault};
-    return change_slot(client, request, *slot, BehaviourSlot::Wish::take_over, moment);
+    return change_slot(client, request, *slot, BehaviourSlot::Change::take_over, moment);
 }
 
 BrowserService::Verdict BrowserService::change_slot(Client& client, const Request& request,
-                                                    BehaviourSlot& slot, BehaviourSlot::Wish wish,
+                                                    BehaviourSlot& slot, BehaviourSlot::Change change,
                                                     const SlotMoment& moment) {
-    if (const Sentence fault = slot.may(wish); !fault.empty()) return {Refusal::not_now, fault};
+    if (const Sentence fault = slot.may(change); !fault.empty()) return {Refusal::not_now, fault};
     if (Verdict alive = check_alive(slot.component()); !alive.good()) return alive;
-    if (!slot.wish(wish, moment))
+    if (!slot.ask(change, moment))
         return {Refusal::not_now, Sentence{"another change is under way; ask again"}};
-    if (!machine_->post_wish(slot)) {
-        slot.forget_wish();
+    if (!machine_->requests().post_change(slot)) {
+        slot.withdraw();
         return {Refusal::not_now, Sentence{"that engine has too many requests to serve; ask again"}};
     }
     Reply reply{request.number, true};
@@ -338,11 +338,11 @@ BrowserService::Verdict BrowserService::change_slot(Client& client, const Reques
 }
 
 BrowserService::Verdict BrowserService::unload(Client& client, const Request& request,
-                                               BehaviourSlot::Wish wish) {
+                                               BehaviourSlot::Change change) {
     BehaviourSlot* slot = nullptr;
     if (const Sentence unknown = find_slot(request.arguments[0], slot); !unknown.empty())
         return {Refusal::unknown, unknown};
-    return change_slot(client, request, *slot, wish, {});
+    return change_slot(client, request, *slot, change, {});
 }
 
 } // namespace tappet

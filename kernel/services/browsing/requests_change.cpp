@@ -21,16 +21,16 @@ bool is_forced(const FacetCall& call) noexcept TAPPET_REALTIME {
 // What a component left behind when it stopped is its safe value: nothing is laid over that.
 void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
-    call.refused = call.machine->state_of(call.end.component) >= ComponentState::stopping;
+    call.refused = call.machine->life().state_of(call.end.component) >= ComponentState::stopping;
     if (call.refused) return;
     // The count is for observers: nobody decides by it, so its sum is not used here.
-    if (!is_forced(call)) call.machine->observed().forced.fetch_add(1, std::memory_order_relaxed);
+    if (!is_forced(call)) call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
     call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
 }
 
 void release_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     const FacetCall& call = call_of(self);
-    if (is_forced(call)) call.machine->observed().forced.fetch_sub(1, std::memory_order_relaxed);
+    if (is_forced(call)) call.machine->observation().forced_ports().fetch_sub(1, std::memory_order_relaxed);
     call.facet->port->release(call.place, is_input(*call.facet));
 }
 
@@ -114,7 +114,7 @@ BrowserService::Verdict BrowserService::release(Client& client, const Request& r
 // there. False: not all could be asked for in this cycle.
 bool BrowserService::release_behind(const browsing::FollowedLife& stopped) {
     const AcceptedMachine& machine = machine_->machine();
-    const auto view = map::View::open(machine_->shared_memory());
+    const auto view = map::View::open(machine_->observation().shared_memory());
     if (!view) return true;
     for (std::size_t x = 0; x < machine.table.connections.size(); ++x) {
         const Link& link = machine.index.connections[x];
@@ -172,7 +172,7 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
     if (place == nullptr) return no_place();
     auto& values = place->work.emplace<FacetCall>().value;
     if (Verdict read = read_arguments(facet, request, values); !read.good()) return read;
-    if (machine_->state_of(end.component) != ComponentState::running)
+    if (machine_->life().state_of(end.component) != ComponentState::running)
         return {Refusal::not_now, Sentence{"component \"", table.components[end.component].name,
                                            "\" does not run; start it first"}};
     if (facet.method != nullptr && facet.type->size + facet.method->result_bytes > values.size())

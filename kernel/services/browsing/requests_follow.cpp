@@ -25,7 +25,7 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     if (facet.command->value_bytes() > call.values.size())
         return {Refusal::unsupported, Sentence{"its arguments are too large to come from outside"}};
     if (Verdict read = read_arguments(facet, request, call.values); !read.good()) return read;
-    if (!machine_->bind_command(end, call.slot, call.values) || !call.slot.send())
+    if (!machine_->requests().bind_command(end, call.slot, call.values) || !call.slot.send())
         return {Refusal::not_now, Sentence{"it cannot be sent now; ask again"}};
     call.command = end;
     Reply reply{request.number, true};
@@ -80,8 +80,9 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
                          "\" itself and does not stop or start it; stop the machine instead"}};
     Pending* place = free_place();
     if (place == nullptr) return no_place();
-    const LifeTicket ticket = target.component != nowhere ? machine_->ask_component(target.component, change)
-                                                          : machine_->ask_activity(target.activity, change);
+    const LifeTicket ticket = target.component != nowhere
+                                  ? machine_->life().ask_component(target.component, change)
+                                  : machine_->life().ask_activity(target.activity, change);
     place->work.emplace<FollowedLife>(target.component, activity, ticket, change);
     return await(*place, asker(client, request), &BrowserService::look_at_life);
 }
@@ -89,8 +90,8 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
 bool BrowserService::look_at_life(Pending& place) {
     const auto& call = std::get<FollowedLife>(place.work);
     const LifeAnswer answer = call.component != nowhere
-                                  ? machine_->answer_of_component(call.component, call.ticket)
-                                  : machine_->answer_of_activity(call.activity, call.ticket);
+                                  ? machine_->life().answer_of_component(call.component, call.ticket)
+                                  : machine_->life().answer_of_activity(call.activity, call.ticket);
     switch (answer.outcome) {
     case LifeOutcome::pending: return false;
     case LifeOutcome::done:
@@ -102,7 +103,7 @@ bool BrowserService::look_at_life(Pending& place) {
                           Sentence{"somebody asked for something else meanwhile; look at its state"});
     case LifeOutcome::refused: break;
     }
-    return answer_bad(place, Refusal::not_now, machine_->describe(call.activity, answer));
+    return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
 }
 
 } // namespace tappet

@@ -52,7 +52,7 @@ void BrowserService::follow_pending() {
 }
 
 BrowserService::Client* BrowserService::who_waits(const Pending& place) noexcept {
-    return place.is_told ? nullptr : door_.find(place.asker.client);
+    return place.is_told ? nullptr : connections_.find(place.asker.client);
 }
 
 bool BrowserService::answer_good(const Pending& place) noexcept {

@@ -13,7 +13,8 @@ constexpr int reading_attempts = 1000;
 } // namespace
 
 BrowserService::Verdict BrowserService::hello(Client& client, const Request& request) {
-    const auto& header = *reinterpret_cast<const map::Header*>(machine_->shared_memory().data());
+    const auto& header =
+        *reinterpret_cast<const map::Header*>(machine_->observation().shared_memory().data());
     const AcceptedMachine& machine = machine_->machine();
     Reply reply{request.number, true};
     reply.json()
@@ -30,8 +31,31 @@ BrowserService::Verdict BrowserService::hello(Client& client, const Request& req
 
 BrowserService::Verdict BrowserService::map(Client& client, const Request& request) {
     Reply reply{request.number, true};
-    reply.json().field("bytes", machine_->shared_memory().size());
-    door_.send(client, reply.finish(), machine_->shared_descriptor());
+    reply.json().field("bytes", machine_->observation().shared_memory().size());
+    connections_.send(client, reply.finish(), machine_->observation().shared_descriptor());
+    return {};
+}
+
+BrowserService::Verdict BrowserService::counters(Client& client, const Request& request) {
+    Reply reply{request.number, true};
+    JsonText& json = reply.json();
+    const MachineObservation& seen = machine_->observation();
+    json.key("stacks").open('[');
+    const auto engines = machine_->engines();
+    for (std::size_t a = 0; a < engines.size(); ++a)
+        json.open('{')
+            .field("activity", engines[a].name())
+            .field("bytes", machine_->stack_of(a).size())
+            .field("used_bytes", seen.stack_high_water_bytes(a))
+            .close('}');
+    json.close(']').key("held_back").open('[');
+    for (std::size_t section = 0; section < machine_->machine().table.extras->size(); ++section)
+        for (std::size_t row = 0; !seen.counted(section, row).what.empty(); ++row) {
+            const SectionCount count = seen.counted(section, row);
+            json.open('{').field("row", count.what).field("times", count.times).close('}');
+        }
+    json.close(']');
+    finish(client, reply);
     return {};
 }
 
@@ -51,7 +75,7 @@ BrowserService::Verdict BrowserService::get(Client& client, const Request& reque
 }
 
 void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
-    const auto view = map::View::open(machine_->shared_memory());
+    const auto view = map::View::open(machine_->observation().shared_memory());
     const Facet& facet = facet_at(machine_->machine().table, end);
     JsonText& json = reply.json();
     json.open('{').field("name", name);
@@ -102,7 +126,7 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
 BrowserService::Verdict BrowserService::forced(Client& client, const Request& request) {
     Reply reply{request.number, true};
     reply.json().key("forced").open('[');
-    const auto view = map::View::open(machine_->shared_memory());
+    const auto view = map::View::open(machine_->observation().shared_memory());
     if (view)
         for (const map::Facet& each : view->facets()) {
             if (each.forced_at == 0 || view->word<std::uint8_t>(each.forced_at) == 0) continue;

@@ -21,12 +21,12 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
     }
     if (place == nullptr)
         return {Refusal::not_now, Sentence{"all ", max_subscriptions, " subscriptions are taken; end one"}};
-    const EventHandle handle = machine_->observe_event(event.component, event.facet);
+    const EventHandle handle = machine_->observation().observe_event(event.component, event.facet);
     if (!handle.valid())
         return {Refusal::unsupported,
                 Sentence{"\"", request.arguments[0],
                          "\" has arguments that exceed a message; read its ports instead"}};
-    *place = {asker(client, request), true, event, machine_->observed_index(event), handle};
+    *place = {asker(client, request), true, event, machine_->observation().observed_index(event), handle};
     handle.connect();
     Reply reply{request.number, true};
     finish(client, reply);
@@ -73,17 +73,17 @@ void BrowserService::observe(void* self, std::size_t index, const std::byte* arg
 void BrowserService::tell_events() {
     const MachineView& table = machine_->machine().table;
     for (Subscribed& each : subscribed_)
-        if (each.taken && door_.find(each.asker.client) == nullptr) drop(each);
+        if (each.taken && connections_.find(each.asker.client) == nullptr) drop(each);
     for (std::size_t i = 0; i < seen_count_; ++i)
         for (const Subscribed& each : subscribed_) {
-            Client* client = door_.find(each.asker.client);
+            Client* client = connections_.find(each.asker.client);
             if (!each.taken || each.index != seen_[i].index || client == nullptr) continue;
             const Facet& facet = facet_at(table, each.event);
             const Sentence name{table.components[each.event.component].name, ".", facet.name};
             Reply reply{each.asker.number};
             reply.json().field("event", name.view()).field("time_ns", to_ns(seen_[i].at)).key("arguments");
             reply.value(*facet.type, seen_[i].arguments.data());
-            reply.json().field("lost", machine_->counts_of(each.index).lost + unseen_);
+            reply.json().field("lost", machine_->observation().counts_of(each.index).lost + unseen_);
             finish(*client, reply);
         }
     seen_count_ = 0;

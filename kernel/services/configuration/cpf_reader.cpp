@@ -26,14 +26,14 @@ public:
         length_ = 0;
         for (const pugi::xml_node& piece : node.children()) {
             if (piece.type() != pugi::node_pcdata && piece.type() != pugi::node_cdata) return false;
-            const std::string_view letters = view(piece.value());
-            if (letters.size() > letters_.size() - length_) return false;
-            std::copy(letters.begin(), letters.end(), letters_.begin() + length_);
-            length_ += letters.size();
+            const std::string_view characters = view(piece.value());
+            if (characters.size() > characters_.size() - length_) return false;
+            std::copy(characters.begin(), characters.end(), characters_.begin() + length_);
+            length_ += characters.size();
         }
         return true;
     }
-    [[nodiscard]] std::string_view whole() const noexcept { return {letters_.data(), length_}; }
+    [[nodiscard]] std::string_view whole() const noexcept { return {characters_.data(), length_}; }
     [[nodiscard]] std::string_view trimmed() const noexcept {
         std::string_view text = whole();
         while (!text.empty() && cpf::is_blank(text.front())) text.remove_prefix(1);
@@ -42,24 +42,24 @@ public:
     }
 
 private:
-    std::array<char, PropertyTransaction::max_bytes> letters_{};
+    std::array<char, PropertyTransaction::max_bytes> characters_{};
     std::size_t length_ = 0;
 };
 
 /// "gains.roll.p" while the reader is inside those structs.
 struct Path {
     static constexpr std::size_t capacity = 256;
-    std::array<char, capacity> letters{};
+    std::array<char, capacity> characters{};
     std::size_t length = 0;
     bool add(std::string_view name) noexcept {
         const bool dotted = length != 0;
         if (name.size() + (dotted ? 1 : 0) > capacity - length) return false;
-        if (dotted) letters[length++] = '.';
-        std::copy(name.begin(), name.end(), letters.begin() + static_cast<std::ptrdiff_t>(length));
+        if (dotted) characters[length++] = '.';
+        std::copy(name.begin(), name.end(), characters.begin() + static_cast<std::ptrdiff_t>(length));
         length += name.size();
         return true;
     }
-    [[nodiscard]] std::string_view view() const noexcept { return {letters.data(), length}; }
+    [[nodiscard]] std::string_view view() const noexcept { return {characters.data(), length}; }
 };
 
 class Reader {
@@ -213,11 +213,11 @@ private:
         if (type.kind == ValueKind::text) {
             if (put_text(type, text_of_value_.whole(), place)) return {};
             return at(value, Sentence{"gives \"", facet.name, "\" more than its ", type.columns,
-                                      " letters; shorten it"}
+                                      " characters; shorten it"}
                                  .view());
         }
         std::string_view text = text_of_value_.trimmed();
-        if (type.kind == ValueKind::truth) text = text == "1" ? "true" : text == "0" ? "false" : text;
+        if (type.kind == ValueKind::boolean) text = text == "1" ? "true" : text == "0" ? "false" : text;
         if (const Sentence fault = parse_value(type, text, place); !fault.empty())
             return at(value, Sentence{"property \"", facet.name, "\": ", fault}.view());
         return {};

@@ -11,26 +11,26 @@ namespace tappet::cpf {
 constexpr std::string_view type_name(const TypeTag& type) noexcept {
     const std::size_t size = type.size;
     switch (type.kind) {
-    case ValueKind::truth: return "boolean";
-    case ValueKind::whole: return size <= 2 ? "short" : size == 4 ? "long" : "llong";
+    case ValueKind::boolean: return "boolean";
+    case ValueKind::integer: return size <= 2 ? "short" : size == 4 ? "long" : "llong";
     case ValueKind::natural: return size <= 2 ? "ushort" : size == 4 ? "ulong" : "ullong";
     case ValueKind::real: return size == 4 ? "float" : "double";
     default: return "string";
     }
 }
 
-inline constexpr std::array<std::string_view, 6> whole_names{"short", "ushort", "long",
-                                                             "ulong", "llong",  "ullong"};
+inline constexpr std::array<std::string_view, 6> integer_names{"short", "ushort", "long",
+                                                               "ulong", "llong",  "ullong"};
 
 /// A whole number is a number; otherwise the kinds must agree. How wide a number is, is not looked at: the
 /// value itself is.
 constexpr bool reads_as(const TypeTag& type, std::string_view name) noexcept {
-    bool whole = false;
-    for (const std::string_view each : whole_names) whole |= name == each;
+    bool integer = false;
+    for (const std::string_view each : integer_names) integer |= name == each;
     switch (type.kind) {
-    case ValueKind::whole:
-    case ValueKind::natural: return whole;
-    case ValueKind::real: return whole || name == "float" || name == "double";
+    case ValueKind::integer:
+    case ValueKind::natural: return integer;
+    case ValueKind::real: return integer || name == "float" || name == "double";
     default: return name == type_name(type);
     }
 }

@@ -93,7 +93,7 @@ private:
                                         std::min<std::size_t>(length, type.columns)};
             if (text.find('\0') != text.npos && fault_.empty())
                 fault_ = Sentence{"component \"", from_.name(), "\": property \"", facet.name,
-                                  "\" holds a zero letter, which no file keeps; set another text"};
+                                  "\" holds a zero character, which no file keeps; set another text"};
             escape(text);
         } else {
             std::array<char, 64> text{};
@@ -124,17 +124,17 @@ private:
         for (std::size_t i = 0; i < depth; ++i) put("  ");
     }
     void escape(std::string_view text) noexcept {
-        for (const char letter : text) {
-            switch (letter) {
+        for (const char character : text) {
+            switch (character) {
             case '&': put("&amp;"); break;
             case '<': put("&lt;"); break;
             case '>': put("&gt;"); break;
             case '"': put("&quot;"); break;
             default:
-                if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f)
-                    put(Sentence{"&#", static_cast<int>(letter), ";"}.view());
+                if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f)
+                    put(Sentence{"&#", static_cast<int>(character), ";"}.view());
                 else
-                    put({&letter, 1});
+                    put({&character, 1});
             }
         }
     }

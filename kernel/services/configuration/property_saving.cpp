@@ -39,7 +39,7 @@ void PropertySaving::ask(std::size_t component) noexcept {
     const std::size_t activity = machine.index.activity[component];
     if (activity == activity_)
         copy_.capture();
-    else if (!machine_->post_request(activity, copy_.capture_message(machine.plan.part_of[component])))
+    else if (!machine_->requests().post(activity, copy_.capture_message(machine.plan.part_of[component])))
         return; // its engine has much to do: again in the next step
     asked_ = true;
 }

@@ -7,8 +7,8 @@
 
 namespace tappet::cpf {
 
-constexpr bool is_blank(char letter) noexcept {
-    return letter == ' ' || letter == '\t' || letter == '\n' || letter == '\r';
+constexpr bool is_blank(char character) noexcept {
+    return character == ' ' || character == '\t' || character == '\n' || character == '\r';
 }
 
 struct XmlFault {
@@ -21,14 +21,14 @@ constexpr bool is_character_number(std::string_view name) noexcept {
     const bool hexadecimal = name.size() > 1 && name[1] == 'x';
     name.remove_prefix(hexadecimal ? 2 : 1);
     std::uint32_t number = 0;
-    for (const char letter : name) {
+    for (const char character : name) {
         std::uint32_t digit = 0;
-        if (letter >= '0' && letter <= '9')
-            digit = static_cast<std::uint32_t>(letter - '0');
-        else if (hexadecimal && letter >= 'a' && letter <= 'f')
-            digit = static_cast<std::uint32_t>(letter - 'a' + 10);
-        else if (hexadecimal && letter >= 'A' && letter <= 'F')
-            digit = static_cast<std::uint32_t>(letter - 'A' + 10);
+        if (character >= '0' && character <= '9')
+            digit = static_cast<std::uint32_t>(character - '0');
+        else if (hexadecimal && character >= 'a' && character <= 'f')
+            digit = static_cast<std::uint32_t>(character - 'a' + 10);
+        else if (hexadecimal && character >= 'A' && character <= 'F')
+            digit = static_cast<std::uint32_t>(character - 'A' + 10);
         else
             return false;
         number = number * (hexadecimal ? 16 : 10) + digit;

@@ -38,7 +38,7 @@ Sentence ThreadScope::initialise() {
 void ThreadScope::work(const Cycle& cycle) {
     if (on.get() != was_on_) turn_tapes();
     if (forgets_ || span.get() != span_used_ || by_busy.get() != by_busy_used_) empty();
-    // What is kept behind a cycle's end must be on the tapes before they are looked at.
+    // What is kept after a cycle's end must be on the tapes before they are looked at.
     const std::int64_t until = to_ns(cycle.now - after.get());
     std::uint32_t rank = 0;
     for (std::uint32_t a = 0; a < directory_->tapes; ++a)
@@ -67,15 +67,15 @@ void ThreadScope::look(std::uint32_t activity, std::uint32_t rank, std::int64_t 
     const CycleTape& tape = scope::tape(*directory_, activity);
     std::uint64_t& seen = scope::tapes(*directory_)[activity].judged_until;
     std::uint64_t newest = seen;
-    for (std::uint64_t behind = tape.head(); behind > seen;) {
+    for (std::uint64_t end_at = tape.head(); end_at > seen;) {
         TapeCycle cycle;
-        if (!tape.cycle_before(behind, cycle)) {
+        if (!tape.cycle_before(end_at, cycle)) {
             ++directory_->overtaken;
             break;
         }
-        behind = cycle.at;
+        end_at = cycle.at;
         if (cycle.end > until) continue;
-        newest = std::max(newest, cycle.behind);
+        newest = std::max(newest, cycle.after);
         ++directory_->judged;
         if (cycle.at != 0) consider(activity, rank, cycle); // the first one warms the caches
     }
@@ -113,10 +113,10 @@ ThreadScope::Window ThreadScope::window(std::uint32_t activity, std::int64_t fro
     const CycleTape& tape = scope::tape(*directory_, activity);
     Window found;
     TapeCycle cycle;
-    for (std::uint64_t behind = tape.head(); tape.cycle_before(behind, cycle) && cycle.end >= from;
-         behind = cycle.at) {
+    for (std::uint64_t end_at = tape.head(); tape.cycle_before(end_at, cycle) && cycle.end >= from;
+         end_at = cycle.at) {
         if (cycle.begin > to) continue;
-        if (found.behind == 0) found.behind = cycle.behind;
+        if (found.after == 0) found.after = cycle.after;
         found.at = cycle.at;
     }
     return found;

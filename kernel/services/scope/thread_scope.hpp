@@ -38,15 +38,15 @@ public:
             property<&ThreadScope::span>("span", "s", "of which the worst cycles are kept", range(1, 604800)),
             property<&ThreadScope::before>("before", "s", "kept before the release of a worst cycle",
                                            range(0, 0.05)),
-            property<&ThreadScope::after>("after", "s", "kept behind its end", range(0, 0.02)),
+            property<&ThreadScope::after>("after", "s", "kept after its end", range(0, 0.02)),
             operation<&ThreadScope::forget>("forget", "empties what is kept"));
     }
 
 private:
     struct Window {
         std::uint64_t at = 0; ///< on a tape
-        std::uint64_t behind = 0;
-        [[nodiscard]] std::size_t words() const noexcept { return static_cast<std::size_t>(behind - at); }
+        std::uint64_t after = 0;
+        [[nodiscard]] std::size_t words() const noexcept { return static_cast<std::size_t>(after - at); }
     };
     void turn_tapes() noexcept;
     void empty() noexcept;

@@ -51,7 +51,7 @@ TEST(Options, refuse_with_the_cure) {
         return options ? std::string{} : std::string{options.error().view()};
     };
     EXPECT_EQ(refusal({"--sed", "1"}), "option --sed is unknown; did you mean --seed");
-    EXPECT_EQ(refusal({"--seed"}), "option --seed needs a value behind it; see --help");
+    EXPECT_EQ(refusal({"--seed"}), "option --seed needs a value after it; see --help");
     EXPECT_EQ(refusal({"--seed", "1x"}),
               "option --seed: \"1x\" is not a whole number; write for example --seed 60");
     EXPECT_EQ(refusal({"--seconds", "0"}), "option --seconds: a run takes from 1 to 3600 s");

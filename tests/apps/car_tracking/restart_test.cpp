@@ -27,14 +27,14 @@ struct Restarted : testing::Test {
     std::string change(std::string_view name, LifeChange how) {
         MachineInstance& machine = run.instance();
         const std::size_t c = find_component(machine.machine().table, name);
-        const LifeTicket ticket = machine.ask_component(c, how);
+        const LifeTicket ticket = machine.life().ask_component(c, how);
         EXPECT_TRUE(run.run_for(200ms)) << name << ": " << machine.describe_stop().view();
-        const LifeAnswer answer = machine.answer_of_component(c, ticket);
-        return std::string{machine.describe(machine.machine().index.activity[c], answer).view()};
+        const LifeAnswer answer = machine.life().answer_of_component(c, ticket);
+        return std::string{machine.life().describe(machine.machine().index.activity[c], answer).view()};
     }
     [[nodiscard]] ComponentState state_of(std::string_view name) {
         MachineInstance& machine = run.instance();
-        return machine.state_of(find_component(machine.machine().table, name));
+        return machine.life().state_of(find_component(machine.machine().table, name));
     }
     void stop(std::string_view name) {
         EXPECT_THAT(change(name, LifeChange::stop), IsEmpty());

@@ -49,7 +49,7 @@ TEST_P(Angles, a_weft_that_is_missed_by_a_stop_inside_its_window_is_told) {
 }
 
 TEST_P(Angles, the_cutter_is_off_when_the_shaft_stands) {
-    for (const double deg : {260.0, 310.0}) { // behind the weft's arrival and before the beat-up
+    for (const double deg : {260.0, 310.0}) { // after the weft's arrival and before the beat-up
         ByHand rig{GetParam()};
         ASSERT_TRUE(rig.weave_by_hand());
         rig.stop_at(deg);

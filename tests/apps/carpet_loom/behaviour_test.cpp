@@ -35,8 +35,8 @@ protected:
         SlotMoment at;
         if (const Sentence fault = slot.parse_moment(moment, at); !fault.empty())
             return std::string{fault.view()};
-        EXPECT_TRUE(slot.wish(BehaviourSlot::Wish::take_over, at));
-        EXPECT_TRUE(rig.run().instance().post_wish(slot));
+        EXPECT_TRUE(slot.ask(BehaviourSlot::Change::take_over, at));
+        EXPECT_TRUE(rig.run().instance().requests().post_change(slot));
         return {};
     }
     std::uint64_t picks_of(std::uint16_t pattern) {
@@ -106,8 +106,8 @@ TEST_F(WeaveBehaviour, one_that_misbehaves_is_taken_back_and_the_weave_before_it
 TEST_F(WeaveBehaviour, without_it_the_loom_weaves_its_carpet_again) {
     ASSERT_EQ(load("twill.osd", "now"), "");
     ASSERT_TRUE(rig.weave(20));
-    ASSERT_TRUE(slot.wish(BehaviourSlot::Wish::unload));
-    ASSERT_TRUE(rig.run().instance().post_wish(slot));
+    ASSERT_TRUE(slot.ask(BehaviourSlot::Change::unload));
+    ASSERT_TRUE(rig.run().instance().requests().post_change(slot));
     ASSERT_TRUE(rig.weave(3));
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
     const std::uint64_t before = twill_picks();

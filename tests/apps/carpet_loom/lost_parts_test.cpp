@@ -27,9 +27,9 @@ struct Parts : LoomRig {
         const MachineView& table = instance.machine().table;
         const std::string name = what.substr(what.find(':') + 1);
         if (what.starts_with("component:"))
-            static_cast<void>(instance.ask_component(find_component(table, name), how));
+            static_cast<void>(instance.life().ask_component(find_component(table, name), how));
         else
-            static_cast<void>(instance.ask_activity(find_activity(table, name), how));
+            static_cast<void>(instance.life().ask_activity(find_activity(table, name), how));
         run_for(1ms);
     }
     void expect_stopped_and_staying_so(Duration within) {
@@ -128,15 +128,16 @@ TEST(LostParts, every_component_runs_again_after_it_was_stopped_and_started) {
     MachineInstance& instance = rig.run().instance();
     for (std::size_t c = 0; c < instance.machine().table.components.size(); ++c) {
         const std::string_view name = instance.machine().table.components[c].name;
-        static_cast<void>(instance.ask_component(c, LifeChange::stop));
+        static_cast<void>(instance.life().ask_component(c, LifeChange::stop));
         rig.run_for(300ms); // a period of the slowest activity
-        EXPECT_EQ(instance.state_of(c), ComponentState::stopped) << name;
-        const LifeTicket ticket = instance.ask_component(c, LifeChange::start);
+        EXPECT_EQ(instance.life().state_of(c), ComponentState::stopped) << name;
+        const LifeTicket ticket = instance.life().ask_component(c, LifeChange::start);
         rig.run_for(300ms);
-        EXPECT_EQ(instance.state_of(c), ComponentState::running)
+        EXPECT_EQ(instance.life().state_of(c), ComponentState::running)
             << name << ": "
-            << instance
-                   .describe(instance.machine().index.activity[c], instance.answer_of_component(c, ticket))
+            << instance.life()
+                   .describe(instance.machine().index.activity[c],
+                             instance.life().answer_of_component(c, ticket))
                    .view();
     }
     rig.acknowledge();

@@ -58,7 +58,7 @@ TEST(Options, name_the_nearest_option_when_one_is_misspelt) {
 }
 
 TEST(Options, miss_the_value_that_was_left_out) {
-    EXPECT_EQ(error_of("--seed", "3", "--picks"), "option --picks needs a value behind it; see --help");
+    EXPECT_EQ(error_of("--seed", "3", "--picks"), "option --picks needs a value after it; see --help");
 }
 
 TEST(Options, refuse_what_is_no_whole_number) {

@@ -28,9 +28,9 @@ inline Ended run_loom(const std::vector<std::string>& words) {
     Ended ended;
     std::FILE* output = popen(line.c_str(), "r");
     if (output == nullptr) return ended;
-    char letters[4096];
-    for (std::size_t n = 0; (n = std::fread(letters, 1, sizeof letters, output)) != 0;)
-        ended.text.append(letters, n);
+    char characters[4096];
+    for (std::size_t n = 0; (n = std::fread(characters, 1, sizeof characters, output)) != 0;)
+        ended.text.append(characters, n);
     const int status = pclose(output);
     ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return ended;

@@ -190,7 +190,7 @@ TEST_P(SafeStates, the_loom_weaves_again_after_the_bus_was_restarted_and_the_fau
     rig.wires().bus().bus_off(rig.wires().machine_can());
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
     rig.run_for(3s);
-    static_cast<void>(rig.wires().machine_can().restart()); // not needed where a keeper has restarted it
+    static_cast<void>(rig.wires().machine_can().restart()); // not needed where a restarter has restarted it
     expect_weaves_again(rig);
 }
 

@@ -64,7 +64,7 @@ TEST_P(Weaving, stops_for_broken_wefts_and_warp_ends_within_ten_degrees_of_the_s
     EXPECT_EQ(report.patterns.size(), 3u);
     EXPECT_GE(picks_lifted, report.picks);
     EXPECT_EQ(rig.component<MainShaft>("shaft").stops.last() > 0, true);
-    EXPECT_EQ(rig.run().instance().lost_emissions(), 0u);
+    EXPECT_EQ(rig.run().instance().observation().lost_emissions(), 0u);
 }
 
 TEST_P(Weaving, learns_the_brake_from_its_stops) {

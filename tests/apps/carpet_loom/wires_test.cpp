@@ -17,7 +17,7 @@ INSTANTIATE_TEST_SUITE_P(seed, Wires, testing::Range<std::uint64_t>(1, seeds + 1
 
 using CanBus = can::Bus<can_signals>;
 using LinePort = gpio::LinePort<io_lines>;
-using Utility = modbus::Slave<utility_registers>;
+using Utility = modbus::Client<utility_registers>;
 
 loom::Settings breaks_of_yarn(std::uint64_t last_pick) {
     loom::Settings settings;

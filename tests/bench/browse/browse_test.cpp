@@ -20,7 +20,7 @@ using testing::Not;
 
 struct Outcome {
     int code = -1;
-    std::string text{}; ///< standard output, and errors behind it
+    std::string text{}; ///< standard output, and errors after it
 };
 
 constexpr uid_t root = 0;
@@ -56,7 +56,7 @@ Outcome browse(std::vector<std::string> words, uid_t user = root) {
     return outcome;
 }
 
-/// The number behind "NAME = ".
+/// The number after "NAME = ".
 double value_of(const std::string& name) {
     const Outcome outcome = browse({"get", name});
     const std::size_t at = outcome.text.find(" = ");

@@ -112,7 +112,7 @@ public:
         machine.emplace("carpet_loom --summary " + std::string{summary_file});
     }
 
-    /// The machine wrote it, behind what was seen last; then that is seen, too.
+    /// The machine wrote it, after what was seen last; then that is seen, too.
     bool says(std::string_view text, std::chrono::milliseconds patience = 6s) {
         return soon(
             [&] {
@@ -129,7 +129,7 @@ public:
     void forget() { seen_ = machine->output().size(); }
     /// What is told after what was seen last.
     [[nodiscard]] std::string since() const { return machine->output().substr(seen_); }
-    /// The last value the console printed behind "KEY=".
+    /// The last value the console printed after "KEY=".
     [[nodiscard]] std::string last(const std::string& key) const {
         const std::string all = machine->output();
         const std::size_t at = all.rfind(" " + key + "=");

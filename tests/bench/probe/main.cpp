@@ -1,5 +1,5 @@
-// bench-probe DEED: arms, runs for a third of a second, does the deed meanwhile, and tells what the machine
-// noticed.
+// bench-probe FAULT: arms, runs for a third of a second, commits the fault meanwhile, and tells what the
+// machine noticed.
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/os/heap.hpp"
@@ -21,10 +21,10 @@ enum Ending : int { ended_well = 0, wrong_set_up = 2, refused_to_arm = 3, stoppe
 
 constinit os::Clock machine_clock{os::Clock::Kind::real};
 
-bool find_deed(const char* word, probe::Deed& deed) {
-    for (std::size_t i = 0; i < probe::deed_names.size(); ++i)
-        if (probe::deed_names[i] == word) {
-            deed = static_cast<probe::Deed>(i);
+bool find_fault(const char* word, probe::Fault& fault) {
+    for (std::size_t i = 0; i < probe::fault_names.size(); ++i)
+        if (probe::fault_names[i] == word) {
+            fault = static_cast<probe::Fault>(i);
             return true;
         }
     return false;
@@ -49,8 +49,8 @@ void print_counters(const MachineInstance& instance, const RealWorld& world, boo
 } // namespace
 
 int main(int count, char** words) {
-    probe::Deed deed{};
-    if (count != 2 || !find_deed(words[1], deed)) {
+    probe::Fault fault{};
+    if (count != 2 || !find_fault(words[1], fault)) {
         os::print("usage: bench-probe nothing|allocate|map|touch|overrun|break-contract\n");
         return wrong_set_up;
     }
@@ -60,12 +60,13 @@ int main(int count, char** words) {
         return wrong_set_up;
     }
     auto* culprit = instance.find<probe::Culprit>("culprit");
-    culprit->deed = deed;
+    culprit->fault = fault;
 
     static RealWorld world{instance};
     static os::ArmingReport arming{{board::bench.only_warned.begin(), board::bench.only_warned.end()}};
-    if (!world.arm(arming, 2)) return refused_to_arm;
-    if (!world.start()) return stopped_by_fault;
+    const auto armed = world.arm(arming, 2);
+    if (!armed) return refused_to_arm;
+    if (!world.start(*armed)) return stopped_by_fault;
     const bool by_itself = !world.supervise(300ms);
     static_cast<void>(world.stop());
     const Sentence reason = !by_itself                        ? Sentence{"its time is over"}

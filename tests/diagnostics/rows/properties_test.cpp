@@ -51,7 +51,7 @@ constexpr Fault setting_faults[] = {
     {"property_too_large", [](Table& m) { m.put(component<Shaft>("shaft", set("teeth", 128))); },
      R"(loom: component "shaft" sets property "teeth" to 128, which is more than signed char holds; set a value it can hold)"},
     {"property_text_too_long", [](Table& m) { m.put(component<Shaft>("shaft", set("label", "main shaft"))); },
-     R"(loom: component "shaft" sets property "label" to "main shaft", which is longer than its 8 letters; shorten it)"},
+     R"(loom: component "shaft" sets property "label" to "main shaft", which is longer than its 8 characters; shorten it)"},
     {"property_list_range", [](Table& m) { m.put(component<Shaft>("shaft", set<one_too_low>("offsets"))); },
      R"(loom: component "shaft" sets property "offsets" to -2, which is under its least value -1; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
     {"property_list_too_long",

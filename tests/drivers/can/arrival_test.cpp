@@ -39,7 +39,7 @@ TEST_F(ArrivalsTest, are_now_when_the_clock_was_set_between_stamp_and_reading) {
         const Time stamp = wall(20ms);
         ahead += step;
         EXPECT_EQ(read(stamp, 21ms), at(21ms)) << step.count();
-        EXPECT_EQ(read(wall(30ms), 31ms), at(30ms)) << "those behind it are as ever";
+        EXPECT_EQ(read(wall(30ms), 31ms), at(30ms)) << "those after it are as ever";
     }
 }
 

@@ -39,9 +39,9 @@ Bytes joined(const std::vector<Bytes>& pieces) {
     for (const Bytes& each : pieces) all.insert(all.end(), each.begin(), each.end());
     return all;
 }
-Bytes text(std::string_view letters) {
-    Bytes bytes(letters.size() + 1);
-    std::memcpy(bytes.data(), letters.data(), letters.size());
+Bytes text(std::string_view characters) {
+    Bytes bytes(characters.size() + 1);
+    std::memcpy(bytes.data(), characters.data(), characters.size());
     return bytes;
 }
 

@@ -24,8 +24,8 @@ TEST(SocketCan, refuses_an_interface_that_does_not_exist_and_says_how_to_make_it
 }
 
 TEST(SocketCan, refuses_names_that_no_interface_can_have) {
-    EXPECT_NE(refusal("").find("1 to 15 letters"), std::string::npos);
-    EXPECT_NE(refusal("can-with-a-long-name").find("1 to 15 letters"), std::string::npos);
+    EXPECT_NE(refusal("").find("1 to 15 characters"), std::string::npos);
+    EXPECT_NE(refusal("can-with-a-long-name").find("1 to 15 characters"), std::string::npos);
 }
 
 TEST(SocketCan, refuses_an_interface_that_is_no_can_bus) {

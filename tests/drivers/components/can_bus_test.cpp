@@ -159,7 +159,7 @@ TEST_F(CanBus, tells_how_many_frames_were_lost) {
     send(0x181, 6, {1});
     run_until(12ms);
     EXPECT_EQ(master->lost.get(), 7);
-    EXPECT_EQ(master->statusword.get(), 1) << "the frame behind the lost ones counts";
+    EXPECT_EQ(master->statusword.get(), 1) << "the frame after the lost ones counts";
 }
 
 TEST_F(CanBus, takes_a_burst_to_its_end_without_another_frame_to_wake_it) {
@@ -187,7 +187,7 @@ TEST_F(CanBus, drops_at_a_fault_what_waited_and_what_is_demanded_until_the_resta
     master->word = 9;
     run_until(110ms);
     EXPECT_EQ(heard.size(), before) << "nothing is sent";
-    run_until(200ms); // the keeper restarted it
+    run_until(200ms); // restarted on purpose
     EXPECT_EQ(master->recoveries, 1);
     EXPECT_FALSE(master->was_faulted);
     EXPECT_TRUE(heard_of(0x000).empty()) << "what was demanded meanwhile is dropped";
@@ -226,7 +226,7 @@ TEST_F(CanBus, sends_nothing_that_waited_for_an_acknowledgement_when_the_bus_com
 }
 
 TEST_F(CanBus, costs_next_to_nothing_while_it_is_faulted) {
-    keeper->attempts.set(0);
+    restarter->attempts.set(0);
     run_until(20ms);
     wire.bus_off(twin);
     run_until(30ms);
@@ -310,7 +310,7 @@ TEST_F(CanBus, drops_at_its_start_what_still_waited_to_be_sent_when_it_was_stopp
     demand_each_once();
     run_until(20300us);
     wire.set_acknowledged(false);
-    run_until(30300us); // four frames are in the controller, the safe values and this wait behind them
+    run_until(30300us); // four frames are in the controller, the safe values and this wait after them
     demand(1, 7);
     run_until(33300us);
     change(0, LifeChange::stop);
@@ -338,7 +338,7 @@ TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
     EXPECT_EQ(master->faults, 2);
     EXPECT_EQ(master->recoveries, 0);
     EXPECT_TRUE(master->was_faulted);
-    run_until(200ms); // the keeper restarted it
+    run_until(200ms); // restarted on purpose
     EXPECT_EQ(master->recoveries, 1);
     EXPECT_FALSE(master->was_faulted);
 }

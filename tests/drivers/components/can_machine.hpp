@@ -1,9 +1,9 @@
-// A machine with one CAN bus: a master that writes and reads its signals, a bus, a keeper; and the far end of
-// the wire.
+// A machine with one CAN bus: a master that writes and reads its signals, a bus, a restarter; and the far end
+// of the wire.
 #pragma once
 
 #include "drivers/can/bus.hpp"
-#include "drivers/can/keeper.hpp"
+#include "drivers/can/restarter.hpp"
 #include "drivers/can/twin_bus.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
@@ -105,18 +105,18 @@ inline constexpr auto can_machine = machine("can-machine",
     components(
         component<Bus>("can", device("wire")),
         component<Master>("master"),
-        component<can::Keeper>("keeper", device("wire"), set("attempts", 2), set("pause", 100ms))),
+        component<can::Restarter>("restarter", device("wire"), set("attempts", 2), set("pause", 100ms))),
     activities(
         activity("can",    on_device("can"), at_most(8, 1ms), runs("can"), deadline(500us), budget(20us)),
         activity("master", every(1ms), runs("master"), budget(20us)),
-        activity("keeper", every(10ms), runs("keeper"), not_real_time)),
+        activity("restarter", every(10ms), runs("restarter"), not_real_time)),
     connections(
         data("can.drive.statusword", "master.statusword"),
         data("can.drive.velocity",   "master.velocity"),
         data("can.faulted",          "master.faulted"),
         data("can.frames_lost",      "master.lost"),
         data("can.frames_received",  "master.received"),
-        data("can.faulted",          "keeper.faulted"),
+        data("can.faulted",          "restarter.faulted"),
         data("master.controlword",   "can.drive_command.controlword", stale_after(10ms), hold),
         data("master.target",        "can.drive_command.velocity",    stale_after(10ms), hold),
         data("master.command",       "can.nmt.command", wakes),
@@ -126,7 +126,7 @@ inline constexpr auto can_machine = machine("can-machine",
         when("can.drive.received",  tell("master.on_frame", queue(64))),
         when("can.bus_fault",       tell("master.on_fault")),
         when("can.bus_recovered",   tell("master.on_recovery")),
-        when("keeper.gave_up",      tell("master.on_surrender"))),
+        when("restarter.gave_up",      tell("master.on_surrender"))),
     behaviours());
 // clang-format on
 
@@ -156,7 +156,7 @@ struct CanMachine : testing::Test {
         ASSERT_TRUE(configured) << configured.error().view();
         bus = instance.find<Bus>("can");
         master = instance.find<Master>("master");
-        keeper = instance.find<can::Keeper>("keeper");
+        restarter = instance.find<can::Restarter>("restarter");
     }
     /// Runs to `end`, counted from the start.
     void run_until(Duration end) {
@@ -202,7 +202,7 @@ struct CanMachine : testing::Test {
         run_until(clock.now().time_since_epoch() + 2ms);
         heard.clear();
     }
-    /// Of the activity by its row: 0 is the bus', 2 the keeper's.
+    /// Of the activity by its row: 0 is the bus', 2 the restarter's.
     void change(std::size_t activity, LifeChange change) {
         const Sentence refusal = world.change_activity(activity, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
@@ -220,7 +220,7 @@ struct CanMachine : testing::Test {
     std::vector<can::Frame> heard;
     Bus* bus = nullptr;
     Master* master = nullptr;
-    can::Keeper* keeper = nullptr;
+    can::Restarter* restarter = nullptr;
 };
 
 } // namespace tappet::test

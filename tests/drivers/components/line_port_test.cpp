@@ -12,7 +12,7 @@ namespace tappet::test {
 namespace {
 
 inline constexpr auto lines =
-    gpio::line_map(gpio::sensor("stop_button"), gpio::sensor("weft"), gpio::lamp("lamp"),
+    gpio::line_map(gpio::sensor("stop_button"), gpio::sensor("weft"), gpio::output("lamp"),
                    gpio::actuator("valve"), gpio::actuator("brake", gpio::safe_high));
 constexpr std::size_t stop_button = 0, weft = 1, lamp = 2, valve = 3, brake = 4;
 constexpr gpio::Mask at(std::size_t line) { return gpio::Mask{1} << line; }

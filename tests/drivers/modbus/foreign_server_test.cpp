@@ -1,7 +1,7 @@
 // The client and its transport against a device that is not ours (pymodbus), by TCP on loopback and by RTU on
 // a pair of terminals (socat): reading, writing, exceptions, and an outage of the whole process.
-#include "drivers/modbus/client.hpp"
 #include "drivers/modbus/libmodbus_transport.hpp"
+#include "drivers/modbus/session.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
@@ -71,18 +71,18 @@ protected:
     }
     template <class Until> bool run_until(Until until) {
         for (const Time end = now() + 15s; now() < end;) {
-            const Duration rest = client.step(now()) - now();
+            const Duration rest = session.step(now()) - now();
             if (until()) return true;
             if (rest > 0ns) std::this_thread::sleep_for(std::min<Duration>(rest, 5ms));
         }
         return false;
     }
-    [[nodiscard]] Value value(std::string_view path) const { return client.value(map.value(path)); }
+    [[nodiscard]] Value value(std::string_view path) const { return session.value(map.value(path)); }
 
     std::string where, ours;
     std::unique_ptr<Foreign> socat, server;
     LibmodbusTransport transport;
-    Client<5, 7> client{map, transport, {.first = 50ms, .most = 200ms}};
+    Session<5, 7> session{map, transport, {.first = 50ms, .most = 200ms}};
 };
 
 TEST_P(ForeignDevice, is_read_written_lost_and_found_again) {
@@ -96,15 +96,15 @@ TEST_P(ForeignDevice, is_read_written_lost_and_found_again) {
     ASSERT_TRUE(run_until([&] { return value("nowhere.w").quality == Quality::exception; }));
     EXPECT_EQ(value("nowhere.w").exception, 2) << "illegal data address";
 
-    ASSERT_TRUE(client.set(map.value("setpoint.both"), -123456, now()));
+    ASSERT_TRUE(session.set(map.value("setpoint.both"), -123456, now()));
     EXPECT_TRUE(run_until([&] { return value("echo.both").value == -123456; }));
 
     server.reset();
-    EXPECT_TRUE(run_until([&] { return client.outage(); }));
+    EXPECT_TRUE(run_until([&] { return session.outage(); }));
     const Time last = value("inputs.a").stamp;
     start();
     EXPECT_TRUE(run_until([&] { return value("inputs.a").stamp > last; }));
-    EXPECT_EQ(client.counters().outages_survived, client.counters().outages);
+    EXPECT_EQ(session.counters().outages_survived, session.counters().outages);
     EXPECT_TRUE(run_until([&] { return value("echo.both").value == -123456; }))
         << "repeated to a device that forgot it";
 }

@@ -2,7 +2,7 @@
 // wrongly.
 #include "drivers/modbus/libmodbus_transport.hpp"
 
-#include "drivers/modbus/client.hpp"
+#include "drivers/modbus/session.hpp"
 #include "tests/drivers/modbus/raw_server.hpp"
 
 #include <gtest/gtest.h>
@@ -208,13 +208,13 @@ TEST(ModbusSettings, refuse_units_lines_and_time_outs_that_cannot_be) {
     EXPECT_NE(refusal({.line = Tcp{"10.0.0.3", 502}, .answer_within = 0ns}), "");
 }
 
-TEST(ModbusClientOnTheWire, survives_an_outage_in_real_time) {
+TEST(ModbusSessionOnTheWire, survives_an_outage_in_real_time) {
     static constexpr auto map =
         register_map(read("r", holding_registers(5, 2), every(20ms), word("a", 0), word("b", 1)));
     RawServer server{RawServer::Line::tcp};
     LibmodbusTransport transport;
     ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = 60ms}));
-    Client<1, 2> client{map, transport, {.first = 20ms, .most = 100ms}};
+    Session<1, 2> session{map, transport, {.first = 20ms, .most = 100ms}};
     const auto clock = [] {
         timespec t{};
         ::clock_gettime(CLOCK_MONOTONIC, &t);
@@ -223,21 +223,21 @@ TEST(ModbusClientOnTheWire, survives_an_outage_in_real_time) {
     const auto run_for = [&](Duration how_long) {
         const Time end = clock() + how_long;
         while (clock() < end) {
-            const Duration rest = client.step(clock()) - clock();
+            const Duration rest = session.step(clock()) - clock();
             if (rest > 0ns) std::this_thread::sleep_for(std::min<Duration>(rest, 10ms));
         }
     };
     run_for(200ms);
-    EXPECT_EQ(client.value(1).value, 1006);
-    EXPECT_EQ(client.value(1).quality, Quality::good);
+    EXPECT_EQ(session.value(1).value, 1006);
+    EXPECT_EQ(session.value(1).quality, Quality::good);
     server.manner = Manner::silent;
     run_for(600ms);
-    const Time last = client.value(1).stamp;
+    const Time last = session.value(1).stamp;
     EXPECT_GT(clock() - last, 200ms);
     server.manner = Manner::right;
     run_for(500ms);
-    EXPECT_GT(client.value(1).stamp, last);
-    EXPECT_EQ(client.counters().outages_survived, 1u);
+    EXPECT_GT(session.value(1).stamp, last);
+    EXPECT_EQ(session.counters().outages_survived, 1u);
 }
 
 } // namespace

@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
          event_forms<Steady>()},
         {"behaviour.step", "a step: run program, and a condition that does not hold", "thesis 5.2.2", 64,
          step_forms<HandSwing, swing_table, swing_script, 1>()},
-        {"behaviour.condition", "a step with a transition by condition, and the handle program behind it",
+        {"behaviour.condition", "a step with a transition by condition, and the handle program after it",
          "thesis 5.2.2", 64, step_forms<HandRelay, relay_table, relay_script, 1>()},
         {"behaviour.timeout", "a step with a transition by time-out", "thesis 5.2.2", 64,
          step_forms<HandClock, clock_table, clock_script, millisecond>()},

@@ -111,17 +111,17 @@ int run(int count, char** words) {
     on_bus.bit_rate = board.devices[0].bit_rate.bits_per_second;
     on_bus.receive = signals.receives();
     on_bus.transmit = signals.transmits();
-    if (const auto opened = can.open(on_bus); !opened) return fail(opened.error().letters);
+    if (const auto opened = can.open(on_bus); !opened) return fail(opened.error().characters);
     static const auto placed = gpio::placed(
         lines, [](std::string_view name) { return name == "in" ? int{wire::in} : int{wire::out}; });
-    if (!placed) return fail(placed.error().letters);
-    if (const auto opened = io.open({"/dev/panel", *placed}); !opened) return fail(opened.error().letters);
+    if (!placed) return fail(placed.error().characters);
+    if (const auto opened = io.open({"/dev/panel", *placed}); !opened) return fail(opened.error().characters);
     const std::array<ProvidedDevice, 2> devices{
         {{type_id<can::Device>, "can", static_cast<can::Device*>(&can)},
          {type_id<gpio::Device>, "io", static_cast<gpio::Device*>(&io)}}};
     static MachineInstance instance{Firmware<table, board>::machine(), machine_clock};
     if (const auto configured = instance.configure(devices); !configured)
-        return fail(configured.error().letters);
+        return fail(configured.error().characters);
 
     const auto priority = [](std::size_t activity) {
         return instance.machine().plan.activities[activity].priority;
@@ -138,8 +138,9 @@ int run(int count, char** words) {
 
     static RealWorld world{instance};
     static os::ArmingReport report{{board.only_warned.begin(), board.only_warned.end()}};
-    if (!world.arm(report, 2)) return fail("the machine could not be armed");
-    if (!world.start()) return fail(world.refusal().letters);
+    const auto armed = world.arm(report, 2);
+    if (!armed) return fail("the machine could not be armed");
+    if (!world.start(*armed)) return fail(world.refusal().characters);
     sched_param parameters{};
     parameters.sched_priority = 1; // above everything else, below whoever answers
     sched_setscheduler(0, SCHED_FIFO, &parameters);

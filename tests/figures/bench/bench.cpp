@@ -19,20 +19,20 @@ namespace fs = std::filesystem;
 
 constexpr double margin = 0.05;
 
-struct Told {
+struct Report {
     std::vector<PairOfBlocks> pairs{};
     std::size_t unanswered = 0;
 };
 
 /// What the guest wrote, by "can" and "gpio"; empty when it did not come to its end.
-std::map<std::string, Told> boot(std::size_t pairs, const fs::path& folder) {
+std::map<std::string, Report> boot(std::size_t pairs, const fs::path& folder) {
     const std::string file = (folder / "pairs").string(), log = (folder / "log").string();
     const std::string command = "'" TAPPET_BENCH "' --verbose --timeout 150 --can can0 --gpio-chip panel:8 "
                                 "--set /proc/sys/kernel/sched_rt_runtime_us=-1 --file '" TAPPET_ANSWERING
                                 "'=/bin/answering --collect '/tmp/pairs=" +
                                 file + "' --run 'answering " + std::to_string(pairs) + " /tmp/pairs' >'" +
                                 log + "' 2>&1";
-    std::map<std::string, Told> told;
+    std::map<std::string, Report> told;
     if (std::system(command.c_str()) != 0) { // NOLINT: the words are the build's own
         std::cerr << "the bench did not come to its end:\n" << std::ifstream{log}.rdbuf() << '\n';
         return told;
@@ -48,7 +48,7 @@ std::map<std::string, Told> boot(std::size_t pairs, const fs::path& folder) {
     return told;
 }
 
-void judge(const std::string& id, const std::string& title, const Told& told, Result& result) {
+void judge(const std::string& id, const std::string& title, const Report& told, Result& result) {
     Samples ours, bare;
     for (const PairOfBlocks& pair : told.pairs) {
         ours.add(pair.ours.front());

@@ -11,19 +11,19 @@ namespace tappet::figures {
 
 namespace {
 
-/// Numbered names, each with a facet's name behind it or without.
+/// Numbered names, each with a facet's name after it or without.
 struct Name {
-    std::array<char, 16> letters{};
+    std::array<char, 16> characters{};
     std::size_t size = 0;
     constexpr Name() = default;
     constexpr Name(char kind, std::size_t number, std::string_view facet) {
-        for (const char letter :
+        for (const char character :
              {kind, static_cast<char>('0' + number / 10), static_cast<char>('0' + number % 10)})
-            letters[size++] = letter;
-        if (!facet.empty()) letters[size++] = '.';
-        for (const char letter : facet) letters[size++] = letter;
+            characters[size++] = character;
+        if (!facet.empty()) characters[size++] = '.';
+        for (const char character : facet) characters[size++] = character;
     }
-    [[nodiscard]] constexpr std::string_view view() const { return {letters.data(), size}; }
+    [[nodiscard]] constexpr std::string_view view() const { return {characters.data(), size}; }
 };
 template <std::size_t n>
 constexpr std::array<Name, n> numbered(char kind, std::string_view facet = {}) {

@@ -15,7 +15,7 @@ namespace tappet::figures {
 
 namespace {
 
-enum class Way : std::uint8_t { paced, alone, contended, stream };
+enum class Mode : std::uint8_t { paced, alone, contended, stream };
 using Meet = Meeting (*)(const MeetingPlan&, double ahead);
 
 /// How one subject is measured in one way, and what was found in each round.
@@ -23,7 +23,7 @@ struct Entry {
     const char* name = nullptr;
     Standing role = Standing::ours;
     bool queue = false;
-    Way way = Way::paced;
+    Mode mode = Mode::paced;
     Meet run = nullptr;
     std::vector<Meeting> rounds = {};
 };
@@ -31,15 +31,15 @@ struct Entry {
 template <class Subject, bool queue>
 void add(std::vector<Entry>& entries, bool streams = queue) {
     entries.push_back(
-        {Subject::name, Subject::role, queue, Way::paced,
+        {Subject::name, Subject::role, queue, Mode::paced,
          [](const MeetingPlan& plan, double ahead) { return meet_paced<Subject>(plan, ahead); }});
-    entries.push_back({Subject::name, Subject::role, queue, Way::alone,
+    entries.push_back({Subject::name, Subject::role, queue, Mode::alone,
                        [](const MeetingPlan& plan, double) { return write_alone<Subject, queue>(plan); }});
-    entries.push_back({Subject::name, Subject::role, queue, Way::contended,
+    entries.push_back({Subject::name, Subject::role, queue, Mode::contended,
                        [](const MeetingPlan& plan, double) { return meet_contended<Subject>(plan); }});
     if (!streams) return;
     if constexpr (queue)
-        entries.push_back({Subject::name, Subject::role, queue, Way::stream,
+        entries.push_back({Subject::name, Subject::role, queue, Mode::stream,
                            [](const MeetingPlan& plan, double) { return meet_in_a_stream<Subject>(plan); }});
 }
 
@@ -75,16 +75,16 @@ class Findings {
 public:
     explicit Findings(const std::vector<Entry>& entries) : entries_{entries} {}
 
-    [[nodiscard]] const Entry& of(const char* name, bool queue, Way way) const {
+    [[nodiscard]] const Entry& of(const char* name, bool queue, Mode mode) const {
         return *std::ranges::find_if(entries_, [&](const Entry& entry) {
-            return std::string_view{entry.name} == name && entry.queue == queue && entry.way == way;
+            return std::string_view{entry.name} == name && entry.queue == queue && entry.mode == mode;
         });
     }
-    [[nodiscard]] Figure figure(std::string id, std::string title, bool queue, Way way, Part part,
+    [[nodiscard]] Figure figure(std::string id, std::string title, bool queue, Mode mode, Part part,
                                 std::string how) const {
         Figure figure{std::move(id), std::move(title), "ns", "thesis 4.4", std::move(how), {}};
         for (const Entry& entry : entries_) {
-            if (entry.queue != queue || entry.way != way) continue;
+            if (entry.queue != queue || entry.mode != mode) continue;
             Samples all;
             for (const Meeting& round : entry.rounds) all.add(round.*part);
             figure.rows.push_back({entry.name, entry.role, all.summary()});
@@ -99,7 +99,7 @@ public:
                       "one sample: the mean of a stream of some thousand packets",
                       {}};
         for (const Entry& entry : entries_) {
-            if (entry.way != Way::stream) continue;
+            if (entry.mode != Mode::stream) continue;
             Samples all;
             for (const Meeting& round : entry.rounds) all.add(round.stream);
             figure.rows.push_back({entry.name, entry.role, all.summary()});
@@ -126,11 +126,11 @@ void judge(const Findings& found, std::size_t rounds, Result& result) {
     const auto goal = [&](std::string text, double limit, std::string detail, auto&& value) {
         result.goals.push_back({std::move(text), limit, over_rounds(rounds, value), "x", std::move(detail)});
     };
-    const auto& ours = found.of(Ours::name, false, Way::paced).rounds;
-    const auto& apart = found.of(Apart::name, false, Way::paced).rounds;
-    const auto& beside = found.of(Beside::name, false, Way::paced).rounds;
-    const auto& mutex = found.of(PlainLock::name, false, Way::paced).rounds;
-    const auto& alone = found.of(Ours::name, false, Way::alone).rounds;
+    const auto& ours = found.of(Ours::name, false, Mode::paced).rounds;
+    const auto& apart = found.of(Apart::name, false, Mode::paced).rounds;
+    const auto& beside = found.of(Beside::name, false, Mode::paced).rounds;
+    const auto& mutex = found.of(PlainLock::name, false, Mode::paced).rounds;
+    const auto& alone = found.of(Ours::name, false, Mode::alone).rounds;
     goal("data, 160 bytes, two cores: write to value seen at most 1.3 x the floor", 1.3,
          "exchange.two_cores.data.seen.160: ours / the faster of the two bare loops", [&](std::size_t r) {
              return median_of(ours[r], &Meeting::seen) /
@@ -157,22 +157,22 @@ void judge(const Findings& found, std::size_t rounds, Result& result) {
                                   {"buffer, push", "buffer.push_contended", true, &Meeting::give},
                                   {"buffer, pop", "buffer.pop_contended", true, &Meeting::take}}) {
         const auto& our =
-            found.of(each.queue ? OurQueue::name : Ours::name, each.queue, Way::contended).rounds;
-        const auto& floor = found.of(Beside::name, each.queue, Way::contended).rounds;
+            found.of(each.queue ? OurQueue::name : Ours::name, each.queue, Mode::contended).rounds;
+        const auto& floor = found.of(Beside::name, each.queue, Mode::contended).rounds;
         goal(std::string{"two-core contention, p99.9 of every exchange within 2 x the floor's: "} + each.what,
              2, std::string{"exchange.two_cores."} + each.figure + ".160: p99.9 of ours / of the bare loop",
              [&](std::size_t r) { return p999_of(our[r], each.part) / p999_of(floor[r], each.part); });
     }
-    const auto& queue = found.of(OurQueue::name, true, Way::contended).rounds;
-    const auto& boost = found.of(BoostSpsc<160>::name, true, Way::contended).rounds;
+    const auto& queue = found.of(OurQueue::name, true, Mode::contended).rounds;
+    const auto& boost = found.of(BoostSpsc<160>::name, true, Mode::contended).rounds;
     const auto push_and_pop = [](const Meeting& round) {
         return median_of(round, &Meeting::give) + median_of(round, &Meeting::take);
     };
     goal("buffer push + pop, 160 bytes: at most 0.8 x boost spsc_queue on two cores (each operation)", 0.8,
          "exchange.two_cores.buffer: push_contended + pop_contended, ours / boost::lockfree::spsc_queue",
          [&](std::size_t r) { return push_and_pop(queue[r]) / push_and_pop(boost[r]); });
-    const auto& stream = found.of(OurQueue::name, true, Way::stream).rounds;
-    const auto& boosts = found.of(BoostSpsc<160>::name, true, Way::stream).rounds;
+    const auto& stream = found.of(OurQueue::name, true, Mode::stream).rounds;
+    const auto& boosts = found.of(BoostSpsc<160>::name, true, Mode::stream).rounds;
     goal("buffer push + pop, 160 bytes: at most 0.8 x boost spsc_queue on two cores (a stream, for each "
          "packet)",
          0.8, "exchange.two_cores.buffer.stream.160: ours / boost::lockfree::spsc_queue",
@@ -182,24 +182,26 @@ void judge(const Findings& found, std::size_t rounds, Result& result) {
 void show(const Findings& found, const Clocks& clocks, Result& result) {
     constexpr const char* paced = "one packet at a time, the other side polls without a pause";
     constexpr const char* busy = "both sides without a pause, each operation timed that did its work";
-    const auto add = [&](const char* id, const char* title, bool queue, Way way, Part part, const char* how) {
+    const auto add = [&](const char* id, const char* title, bool queue, Mode mode, Part part,
+                         const char* how) {
         result.figures.push_back(found.figure(std::string{"exchange.two_cores."} + id + ".160",
-                                              std::string{title} + ", 160 bytes, two cores", queue, way, part,
-                                              how));
+                                              std::string{title} + ", 160 bytes, two cores", queue, mode,
+                                              part, how));
     };
-    add("data.seen", "data: write to value seen", false, Way::paced, &Meeting::seen, paced);
+    add("data.seen", "data: write to value seen", false, Mode::paced, &Meeting::seen, paced);
     result.figures.back().rows.push_back(
         {"a line written in turns, one way", Standing::floor, clocks.one_way_ns.summary()});
-    add("data.write_alone", "data: write, undisturbed", false, Way::alone, &Meeting::give,
+    add("data.write_alone", "data: write, undisturbed", false, Mode::alone, &Meeting::give,
         "one write each microsecond");
-    add("data.write_polled", "data: write while a reader polls", false, Way::paced, &Meeting::give, paced);
-    add("data.write_contended", "data: write under contention", false, Way::contended, &Meeting::give, busy);
-    add("data.read_contended", "data: read of a new value under contention", false, Way::contended,
+    add("data.write_polled", "data: write while a reader polls", false, Mode::paced, &Meeting::give, paced);
+    add("data.write_contended", "data: write under contention", false, Mode::contended, &Meeting::give, busy);
+    add("data.read_contended", "data: read of a new value under contention", false, Mode::contended,
         &Meeting::take, busy);
-    add("buffer.seen", "buffer: push to packet popped", true, Way::paced, &Meeting::seen, paced);
-    add("buffer.push_polled", "buffer: push while a reader polls", true, Way::paced, &Meeting::give, paced);
-    add("buffer.push_contended", "buffer: push under contention", true, Way::contended, &Meeting::give, busy);
-    add("buffer.pop_contended", "buffer: pop under contention", true, Way::contended, &Meeting::take, busy);
+    add("buffer.seen", "buffer: push to packet popped", true, Mode::paced, &Meeting::seen, paced);
+    add("buffer.push_polled", "buffer: push while a reader polls", true, Mode::paced, &Meeting::give, paced);
+    add("buffer.push_contended", "buffer: push under contention", true, Mode::contended, &Meeting::give,
+        busy);
+    add("buffer.pop_contended", "buffer: pop under contention", true, Mode::contended, &Meeting::take, busy);
     result.figures.push_back(found.streams());
 }
 

@@ -135,7 +135,7 @@ void add_messages(std::vector<Figure>& figures, const Findings& findings, const 
     const std::string source = commands ? "thesis 4.5.4" : "thesis 4.6.4";
     Figure sent{id + ".send", what + (commands ? "sending one" : "emitting one to two subscribers"), "ns",
                 source, "of one, preemptions included"};
-    Figure served{id + ".serve", what + "serving them behind the execution", "us", source,
+    Figure served{id + ".serve", what + "serving them after the execution", "us", source,
                   "from the end of the execution, taking them out of their queue included"};
     const Experiment* const none = findings.find(experiment.application, Setting::none);
     for (const TaskResult& task : experiment.tasks) {

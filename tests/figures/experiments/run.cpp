@@ -25,7 +25,7 @@ std::int64_t voluntary_switches(int thread) {
     return -1;
 }
 
-/// Sleeps of a thread beyond the one behind each cycle: somebody else had what it wanted.
+/// Sleeps of a thread beyond the one after each cycle: somebody else had what it wanted.
 class Blocking {
 public:
     Blocking(const Task& task, const Engine& engine) : task_{task}, engine_{engine} {}
@@ -116,7 +116,7 @@ std::string run_experiment(const Application& application, const Circumstances& 
     const auto arming = std::make_unique<os::ArmingReport>(
         std::span{one_processor.only_warned.begin(), one_processor.only_warned.end()});
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    const bool armed = world->arm(*arming, nowhere);
+    const auto armed = world->arm(*arming, nowhere);
     close(nowhere);
     if (!armed) {
         print(*arming, STDERR_FILENO);
@@ -124,7 +124,7 @@ std::string run_experiment(const Application& application, const Circumstances& 
     }
     const Duration whole{static_cast<std::int64_t>(seconds * 1e9)};
     const Duration warming = warming_of(whole);
-    if (!world->start()) return std::string{world->refusal().view()};
+    if (!world->start(*armed)) return std::string{world->refusal().view()};
     static_cast<void>(world->supervise(warming));
     for (Blocking& each : blocking) each.begin();
     static_cast<void>(world->supervise(whole));

@@ -25,7 +25,7 @@ struct TaskResult {
     figures::Samples two_messages{}; ///< in two places
     figures::Samples sends{};        ///< of one command, or of one event
     figures::Samples one_served{};
-    figures::Samples two_served{}; ///< behind one execution
+    figures::Samples two_served{}; ///< after one execution
     figures::Samples served{};     ///< any number but none
     std::uint64_t executions = 0;
     std::uint64_t waited_for_locks = 0;

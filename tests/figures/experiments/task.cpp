@@ -25,7 +25,7 @@ std::uint32_t Task::since(std::uint64_t first) const noexcept TAPPET_REALTIME {
         passed > assignment_.ticks_of_stamps ? passed - assignment_.ticks_of_stamps : 0);
 }
 
-// The engine served commands and messages behind the last step.
+// The engine served commands and messages after the last step.
 void Task::account_for_serving() noexcept TAPPET_REALTIME {
     const FunctionTiming& timing = *assignment_.reactions;
     if (executed_ > 0) {

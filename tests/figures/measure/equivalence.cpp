@@ -1,5 +1,5 @@
 // The bootstrap: pairs are drawn with replacement, which gives each sample a weight; a quantile is a walk
-// over sorted samples until the weights behind it suffice.
+// over sorted samples until the weights after it suffice.
 #include "tests/figures/measure/equivalence.hpp"
 
 #include "kernel/base/random.hpp"

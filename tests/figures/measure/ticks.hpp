@@ -7,7 +7,7 @@
 
 namespace tappet::figures {
 
-/// A time stamp; what stands before it in the program has been done, what stands behind it has not begun.
+/// A time stamp; what stands before it in the program has been done, what stands after it has not begun.
 inline std::uint64_t ticks() noexcept {
     _mm_lfence();
     const std::uint64_t now = __rdtsc();

@@ -40,7 +40,7 @@ struct Receiver {
 /// order drawn by chance.
 struct Sender {
     static constexpr std::size_t pairs_in_cycle = 8;
-    enum class Way : std::uint8_t { none, near, far };
+    enum class Reach : std::uint8_t { none, near, far };
 
     Event<std::uint64_t> near;
     Event<std::uint64_t> far;
@@ -49,14 +49,14 @@ struct Sender {
         Arrival* ours = nullptr;
         BareReceiver* bare = nullptr;
     };
-    Route to_near, to_far;           ///< before the machine is armed
-    std::atomic<Way> way{Way::none}; ///< asked for by the measuring thread; none again when done
+    Route to_near, to_far;                 ///< before the machine is armed
+    std::atomic<Reach> reach{Reach::none}; ///< asked for by the measuring thread; none again when done
     std::array<std::uint64_t, pairs_in_cycle> took_ours{}, took_bare{}; ///< in ticks; 0: it never came
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
-        const Way asked = way.load(std::memory_order_acquire);
-        if (asked == Way::none) return;
-        const bool is_far = asked == Way::far;
+        const Reach asked = reach.load(std::memory_order_acquire);
+        if (asked == Reach::none) return;
+        const bool is_far = asked == Reach::far;
         const Route route = is_far ? to_far : to_near;
         for (std::size_t i = 0; i < pairs_in_cycle; ++i) {
             const bool bare_first = random_.below(2) == 0;
@@ -64,7 +64,7 @@ struct Sender {
             took_ours[i] = send_ours(route, is_far);
             if (!bare_first) took_bare[i] = send_bare(route, is_far);
         }
-        way.store(Way::none, std::memory_order_release);
+        reach.store(Reach::none, std::memory_order_release);
     }
 
     static constexpr auto interface() {

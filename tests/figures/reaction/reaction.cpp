@@ -37,20 +37,21 @@ struct Rig {
             return std::string{configured.error().view()};
         sender().to_near = {&instance.find<Receiver>("near")->arrival, &bare_near};
         sender().to_far = {&instance.find<Receiver>("far")->arrival, &bare_far};
-        if (!world.arm(report, 2)) return "the machine could not be armed: the reason stands above";
+        const auto armed = world.arm(report, 2);
+        if (!armed) return "the machine could not be armed: the reason stands above";
         std::string refused;
         refused += bare_ticker.start(there, priority(reaction::ticker), period.count());
         refused += bare_near.start(here, priority(reaction::near));
         refused += bare_far.start(there, priority(reaction::far));
         if (!refused.empty()) return "a bare thread was refused: " + refused;
-        if (!world.start()) return std::string{world.refusal().view()};
+        if (!world.start(*armed)) return std::string{world.refusal().view()};
         for (const std::size_t activity : {reaction::ticker, reaction::sender})
             turn(activity, LifeChange::stop);
         return {};
     }
     void turn(std::size_t activity, LifeChange change) {
         if (const Sentence refused = world.change_activity(activity, change); !refused.empty())
-            std::fprintf(stderr, "%.*s\n", static_cast<int>(refused.size()), refused.letters);
+            std::fprintf(stderr, "%.*s\n", static_cast<int>(refused.size()), refused.characters);
     }
     ~Rig() {
         static_cast<void>(world.stop());
@@ -146,16 +147,16 @@ void measure_periodic(Rig& rig, const Options& options, Result& result) {
 
 // ---- from one activity to another
 
-void measure_handover(Rig& rig, const Options& options, Sender::Way way, Result& result) {
-    const bool is_far = way == Sender::Way::far;
+void measure_handover(Rig& rig, const Options& options, Sender::Reach reach, Result& result) {
+    const bool is_far = reach == Sender::Reach::far;
     Sender& sender = rig.sender();
     std::vector<PairOfBlocks> pairs(
         static_cast<std::size_t>(options.setting == "smoke" ? 20 : 1500 * options.scale()));
     std::size_t lost = 0;
     rig.turn(reaction::sender, LifeChange::start);
     for (PairOfBlocks& pair : pairs) {
-        sender.way.store(way, std::memory_order_release);
-        while (sender.way.load(std::memory_order_acquire) != Sender::Way::none) os::sleep_for(500us);
+        sender.reach.store(reach, std::memory_order_release);
+        while (sender.reach.load(std::memory_order_acquire) != Sender::Reach::none) os::sleep_for(500us);
         for (std::size_t i = 0; i < Sender::pairs_in_cycle; ++i) {
             const double ours = static_cast<double>(sender.took_ours[i]),
                          bare = static_cast<double>(sender.took_bare[i]);
@@ -209,8 +210,10 @@ int run(int argc, char** argv) {
         if (const std::string refused = rig->start(); !refused.empty())
             result.notes.push_back("the reaction path was not measured: " + refused);
         else {
-            if (wants("reaction.event.one_core")) measure_handover(*rig, options, Sender::Way::near, result);
-            if (wants("reaction.event.two_cores")) measure_handover(*rig, options, Sender::Way::far, result);
+            if (wants("reaction.event.one_core"))
+                measure_handover(*rig, options, Sender::Reach::near, result);
+            if (wants("reaction.event.two_cores"))
+                measure_handover(*rig, options, Sender::Reach::far, result);
             if (wants("reaction.periodic")) measure_periodic(*rig, options, result);
         }
     }

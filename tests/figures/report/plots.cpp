@@ -28,11 +28,11 @@ const char* colour(Standing role, std::size_t nth) {
 
 std::string quoted(const std::string& text) {
     std::string quoted = "'";
-    for (const char letter : text)
-        if (letter == '\'')
+    for (const char character : text)
+        if (character == '\'')
             quoted += "''";
         else
-            quoted += letter == '\n' ? ' ' : letter;
+            quoted += character == '\n' ? ' ' : character;
     return quoted + "'";
 }
 

@@ -15,7 +15,7 @@ html { scroll-behavior: smooth; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 16px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 main, header, nav { max-width: 68rem; margin: 0 auto; padding: 0 1.25rem; }
 header { padding-top: 2.5rem; }
-h1 { font-size: 2rem; line-height: 1.2; margin: 0 0 .25rem; letter-spacing: -.01em; }
+h1 { font-size: 2rem; line-height: 1.2; margin: 0 0 .25rem; character-spacing: -.01em; }
 h2 { font-size: 1.4rem; margin: 3.5rem 0 .5rem; padding-top: .5rem; border-top: 2px solid var(--ink); }
 h3 { font-size: 1.02rem; margin: 2rem 0 .1rem; }
 p { margin: .4rem 0; max-width: 46rem; }

@@ -9,13 +9,13 @@ namespace tappet::figures {
 
 std::string escaped(const std::string& text) {
     std::string safe;
-    for (const char letter : text) switch (letter) {
+    for (const char character : text) switch (character) {
         case '&': safe += "&amp;"; break;
         case '<': safe += "&lt;"; break;
         case '>': safe += "&gt;"; break;
         case '"': safe += "&quot;"; break;
         case '\'': safe += "&#39;"; break;
-        default: safe += letter;
+        default: safe += character;
         }
     return safe;
 }

@@ -65,11 +65,11 @@ constexpr std::size_t period_ms = 50;
 
 void write_type(std::ostream& out, std::size_t number) {
     const std::string digits = std::to_string(number);
-    for (const char letter : type_text)
-        if (letter == '$')
+    for (const char character : type_text)
+        if (character == '$')
             out << digits;
         else
-            out << letter;
+            out << character;
 }
 
 class Rows {

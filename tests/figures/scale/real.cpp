@@ -32,16 +32,17 @@ int main() {
     }
     static RealWorld world{instance};
     static os::ArmingReport report{only_warned};
-    if (!world.arm(report, 2)) return 3;
-    const Time armed = os::Clock::monotonic();
-    if (!world.start()) {
+    const auto armed = world.arm(report, 2);
+    if (!armed) return 3;
+    const Time armed_at = os::Clock::monotonic();
+    if (!world.start(*armed)) {
         static_cast<void>(os::write_all(2, world.refusal().view()));
         return 4;
     }
     const Time started = os::Clock::monotonic();
     static_cast<void>(world.supervise(100ms));
     static_cast<void>(world.stop());
-    tell("armed", armed);
+    tell("armed", armed_at);
     tell("started", started);
     return 0;
 }

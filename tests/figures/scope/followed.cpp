@@ -55,8 +55,8 @@ private:
             const std::uint64_t head = tape_.head();
             TapeCycle cycle;
             std::array<std::uint64_t, 16> marks{};
-            for (std::uint64_t behind = head; behind > seen_ && tape_.cycle_before(behind, cycle);
-                 behind = cycle.at)
+            for (std::uint64_t after = head; after > seen_ && tape_.cycle_before(after, cycle);
+                 after = cycle.at)
                 if (cycle.marks <= marks.size() && tape_.copy(cycle.at, std::span{marks}.first(cycle.marks)))
                     cycles_.fetch_add(1, std::memory_order_relaxed);
             seen_ = head;

@@ -92,9 +92,9 @@ void look(std::size_t) {
 void walk_words(std::size_t times) {
     const CycleTape& tape = scope::tape(watched().directory(), 0);
     TapeCycle cycle;
-    std::uint64_t behind = tape.head();
-    for (std::size_t i = 0; i < times && tape.cycle_before(behind, cycle); ++i) behind = cycle.at;
-    keep(behind);
+    std::uint64_t after = tape.head();
+    for (std::size_t i = 0; i < times && tape.cycle_before(after, cycle); ++i) after = cycle.at;
+    keep(after);
 }
 
 std::vector<Group> groups() {

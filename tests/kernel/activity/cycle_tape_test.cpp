@@ -107,7 +107,7 @@ std::size_t check_all(const CycleTape& tape) {
     std::size_t read = 0;
     TapeCycle cycle;
     std::uint64_t last = UINT64_MAX;
-    for (std::uint64_t behind = tape.head(); tape.cycle_before(behind, cycle); behind = cycle.at) {
+    for (std::uint64_t after = tape.head(); tape.cycle_before(after, cycle); after = cycle.at) {
         const auto number = static_cast<std::uint64_t>(cycle.begin / 1000);
         std::array<std::uint64_t, 16> words{};
         const std::span<std::uint64_t> marks{words.data(), cycle.marks};

@@ -29,7 +29,7 @@ static_assert(nearest("shfat", {"encoder", "shaft", "panel"}) == "shaft", "in a 
 TEST(EditDistance, counts_a_swap_of_neighbours_once) {
     EXPECT_EQ(edit_distance("shfat", "shaft"), 1u);
     EXPECT_EQ(edit_distance("ab", "ba"), 1u);
-    EXPECT_EQ(edit_distance("ca", "abc"), 3u) << "no letter is edited twice";
+    EXPECT_EQ(edit_distance("ca", "abc"), 3u) << "no character is edited twice";
 }
 
 TEST(EditDistance, counts_a_letter_more_less_or_other_once) {
@@ -50,7 +50,7 @@ TEST(EditDistance, reports_more_than_the_limit_as_one_more) {
     EXPECT_EQ(edit_distance("a", "abcdef", 2), 3u);
 }
 
-TEST(EditDistance, compares_64_letters_and_not_65) {
+TEST(EditDistance, compares_64_characters_and_not_65) {
     const std::string longest(64, 'x');
     EXPECT_EQ(edit_distance(longest, longest), 0u);
     EXPECT_EQ(edit_distance(longest + "x", longest + "x", 5), 6u);
@@ -79,7 +79,7 @@ TEST(EditDistance, agrees_with_the_textbook_under_every_limit) {
     Random random{11};
     const auto word = [&random] {
         std::string text(random.below(9), ' ');
-        for (char& letter : text) letter = static_cast<char>('a' + random.below(3));
+        for (char& character : text) character = static_cast<char>('a' + random.below(3));
         return text;
     };
     for (int round = 0; round < 3000; ++round) {
@@ -116,7 +116,7 @@ TEST(Nearest, prefers_fewer_edits_whatever_the_order) {
     EXPECT_EQ(nearest("weftx", {"wefty1", "weft"}), "weft");
 }
 
-TEST(Nearest, breaks_a_tie_by_letters_that_differ_in_case_only) {
+TEST(Nearest, breaks_a_tie_by_characters_that_differ_in_case_only) {
     EXPECT_EQ(nearest("shaft", {"shift", "Shaft"}), "Shaft");
     EXPECT_EQ(nearest("shaft", {"Shaft", "shift"}), "Shaft");
 }
@@ -128,7 +128,7 @@ TEST(Nearest, recognises_the_same_name_in_other_case_however_long) {
     EXPECT_EQ(nearest("AB", {"ab"}), "ab");
 }
 
-TEST(Nearest, compares_names_of_more_than_64_letters_with_nothing) {
+TEST(Nearest, compares_names_of_more_than_64_characters_with_nothing) {
     const std::string long_name(65, 'x');
     Nearest search{long_name};
     search.consider(long_name);

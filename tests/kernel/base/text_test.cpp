@@ -47,7 +47,7 @@ TEST(Sentence, cuts_what_does_not_fit_visibly) {
     EXPECT_EQ(sentence.data()[Sentence::capacity], '\0');
 }
 
-TEST(Text, holds_its_letters_without_the_closing_zero) {
+TEST(Text, holds_its_characters_without_the_closing_zero) {
     constexpr text name{"shaft"};
     EXPECT_EQ(name.view(), "shaft");
     EXPECT_EQ(name.view().size(), 5u);

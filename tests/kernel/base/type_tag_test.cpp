@@ -42,7 +42,7 @@ inline constexpr auto tappet::fields_of<Plan> =
 
 namespace {
 
-static_assert(type_id<bool>->kind == ValueKind::truth && type_id<std::int8_t>->kind == ValueKind::whole &&
+static_assert(type_id<bool>->kind == ValueKind::boolean && type_id<std::int8_t>->kind == ValueKind::integer &&
               type_id<std::uint64_t>->kind == ValueKind::natural && type_id<float>->kind == ValueKind::real &&
               type_id<Duration>->kind == ValueKind::duration && type_id<Time>->kind == ValueKind::duration);
 static_assert(type_id<long double>->kind == ValueKind::opaque && type_id<Secret>->kind == ValueKind::opaque &&
@@ -85,7 +85,7 @@ TEST(TypeTag, knows_the_names_of_an_enumeration_and_the_integer_beneath) {
     EXPECT_EQ(type_id<Cause>->kind, ValueKind::enumeration);
     EXPECT_EQ(type_id<Cause>->names[2], "warp");
     EXPECT_EQ(type_id<Cause>->element, type_id<std::uint8_t>);
-    EXPECT_EQ(type_id<Nameless>->kind, ValueKind::whole) << "without names a number";
+    EXPECT_EQ(type_id<Nameless>->kind, ValueKind::integer) << "without names a number";
 }
 
 template <class T>
@@ -113,7 +113,7 @@ TEST(Text, refuses_what_is_longer_than_its_room_and_keeps_what_it_has) {
     EXPECT_FALSE(text.assign("shaft"));
     EXPECT_EQ(text.view(), "warp");
     EXPECT_TRUE(text.assign("io"));
-    EXPECT_EQ(text, Text<4>{"io"}) << "no letter of the longer text stays behind";
+    EXPECT_EQ(text, Text<4>{"io"}) << "no character of the longer text stays behind";
 }
 
 } // namespace

@@ -179,12 +179,12 @@ TEST_F(AnyValue, of_a_number_or_a_time_comes_back_as_the_same_bits) {
     EXPECT_TRUE(std::isnan(parsed<double>(text_of(std::nan("")))));
 }
 
-TEST_F(AnyValue, of_a_text_comes_back_letter_by_letter_whatever_its_letters_are) {
+TEST_F(AnyValue, of_a_text_comes_back_letter_by_letter_whatever_its_characters_are) {
     for (int i = 0; i < 5'000; ++i) {
         Text<12> text;
-        std::string letters;
-        for (std::uint64_t n = random.next() % 13; n > 0; --n) letters += static_cast<char>(random.next());
-        ASSERT_TRUE(text.assign(letters));
+        std::string characters;
+        for (std::uint64_t n = random.next() % 13; n > 0; --n) characters += static_cast<char>(random.next());
+        ASSERT_TRUE(text.assign(characters));
         EXPECT_EQ(parsed<Text<12>>(text_of(text)), text) << text_of(text);
     }
 }
@@ -211,11 +211,11 @@ TEST_F(AnyValue, of_lists_and_records_comes_back_with_all_that_is_inside) {
 }
 
 TEST_F(AnyValue, of_no_type_is_harmed_by_any_text) {
-    constexpr std::string_view letters = "[]{}(),:\"\\ux0189.-+eEinfams valdtruplcenowgz\t";
+    constexpr std::string_view characters = "[]{}(),:\"\\ux0189.-+eEinfams valdtruplcenowgz\t";
     for (int i = 0; i < 40'000; ++i) {
         std::string text;
         for (std::uint64_t n = random.next() % 24; n > 0; --n)
-            text += letters[random.next() % letters.size()];
+            text += characters[random.next() % characters.size()];
         struct {
             Pose value{true, 7, {8, 9}, "before"};
         } const before;
@@ -236,7 +236,7 @@ TEST(ParseValue, takes_times_with_parts_and_larger_units_when_they_are_whole_nan
     EXPECT_EQ(parsed<Duration>(" 2h "), 2h);
     EXPECT_EQ(parsed<Duration>("0.000000000025h"), 90ns);
     EXPECT_EQ(fault_in<Duration>("1.5ns"), "\"1.5ns\" is finer than 1ns; write whole nanoseconds");
-    EXPECT_EQ(fault_in<Duration>("4"), "\"4\" has no unit; write ns, us, ms, s, min or h behind it");
+    EXPECT_EQ(fault_in<Duration>("4"), "\"4\" has no unit; write ns, us, ms, s, min or h after it");
     EXPECT_EQ(fault_in<Duration>("9223372037s"),
               "\"9223372037s\" is too long; the longest time is 9223372036s");
     for (const char* none : {"", "ms", "-", ".5s", "1.s", "4 ms", "4msx", "--4ms"})
@@ -249,11 +249,11 @@ TEST(ParseValue, refuses_what_does_not_fit_the_type_and_says_what_does) {
     EXPECT_EQ(fault_in<std::uint64_t>("18446744073709551616"),
               "18446744073709551616 is out of range; write a number from 0 to 18446744073709551615");
     EXPECT_EQ(fault_in<int>("12x"), "\"12x\" is not a whole number; write one such as -12");
-    EXPECT_EQ(fault_in<int>("1 2"), "\"2\" is left over behind the value; remove it");
+    EXPECT_EQ(fault_in<int>("1 2"), "\"2\" is left over after the value; remove it");
     EXPECT_EQ(fault_in<double>("1e400"), "1e400 is out of range; a number of 8 bytes is too small for it");
     EXPECT_EQ(fault_in<double>("one"), "\"one\" is not a number; write one such as 0.5 or 2e-3");
     EXPECT_EQ(fault_in<bool>("yes"), "\"yes\" is neither true nor false; write one of them");
-    EXPECT_EQ(fault_in<Text<4>>("shaft"), "the text has 5 letters, but there is room for 4; shorten it");
+    EXPECT_EQ(fault_in<Text<4>>("shaft"), "the text has 5 characters, but there is room for 4; shorten it");
 }
 
 TEST(ParseValue, suggests_the_name_that_was_probably_meant) {
@@ -275,7 +275,7 @@ TEST(ParseValue, says_where_in_a_composed_value_the_fault_is) {
     EXPECT_EQ(fault_in<Eigen::Matrix2d>("[[1, 2], [3, q]]"),
               "row 2: element 2: \"q\" is not a number; write one such as 0.5 or 2e-3");
     EXPECT_EQ(fault_in<Pose>("{valid: true, turn: 1, place: [1, 2], name: \"far too long\"}"),
-              "field \"name\": the text has 12 letters, but there is room for 8; shorten it");
+              "field \"name\": the text has 12 characters, but there is room for 8; shorten it");
     EXPECT_NE(fault_in<Pose>("{valid: true, turn: 1}").find("field \"place\" is missing"), std::string::npos);
     EXPECT_NE(fault_in<Pose>("{valid: true, valid: true}").find("is given twice; remove one"),
               std::string::npos);
@@ -310,11 +310,11 @@ TEST(ParseValue, takes_the_arguments_of_a_call_with_or_without_parentheses) {
     const auto fault = [&](std::string_view text) {
         return std::string{parse_value(tag, text, into.data()).view()};
     };
-    EXPECT_EQ(fault("1.5 4 weft"), "argument 2: \"4\" has no unit; write ns, us, ms, s, min or h behind it");
+    EXPECT_EQ(fault("1.5 4 weft"), "argument 2: \"4\" has no unit; write ns, us, ms, s, min or h after it");
     EXPECT_EQ(fault("1.5"), "argument 2 is missing; write 3: " + std::string{tag.name});
     EXPECT_EQ(fault("(1.5, 4ms, weft, 2)"),
               "there are more than 3 arguments; write (" + std::string{tag.name} + ")");
-    EXPECT_EQ(fault("1.5 4ms weft 2"), "\"2\" is left over behind the value; remove it");
+    EXPECT_EQ(fault("1.5 4ms weft 2"), "\"2\" is left over after the value; remove it");
     EXPECT_EQ(into, Packed{}) << "and nothing was stored";
     for (const char* none : {"", "()", " ( ) "})
         EXPECT_EQ(parse_value(*type_id<Arguments<>>, none, nullptr).view(), "") << none;

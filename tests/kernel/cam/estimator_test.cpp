@@ -20,7 +20,7 @@ ShaftProperties properties_for(const Sampling& sampling) {
     return p;
 }
 
-// Follows the shaft and collects the angle's error between the samples (up to 0.9 ms behind one) from
+// Follows the shaft and collects the angle's error between the samples (up to 0.9 ms after one) from
 // `from_s` on.
 void follow(const TrueShaft& shaft, const Sampling& sampling, double from_s, std::uint64_t seed,
             Errors& errors) {

@@ -110,7 +110,7 @@ struct Storm : testing::Test {
     void serve() {
         Random random{seed * 11};
         for (bool last = false; !last;) {
-            last = emitting.load() == 0; // and once more behind the last emission
+            last = emitting.load() == 0; // and once more after the last emission
             serving = phase.load();
             receiver.inbox.run_all();
             dither(random);

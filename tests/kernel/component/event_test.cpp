@@ -174,7 +174,7 @@ TEST_F(AnEvent, may_be_disconnected_by_the_reaction_that_it_runs) {
     emitter.event(1.0);
     emitter.event(2.0);
     EXPECT_EQ(first.heard, (std::vector{1.0}));
-    EXPECT_EQ(second.heard, (std::vector{1.0, 2.0})) << "what stands behind it is not skipped";
+    EXPECT_EQ(second.heard, (std::vector{1.0, 2.0})) << "what stands after it is not skipped";
 }
 
 TEST_F(AnEvent, does_not_run_in_the_same_emission_what_an_earlier_reaction_disconnects) {

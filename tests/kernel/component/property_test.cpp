@@ -138,15 +138,15 @@ TEST_F(Proposed, values_of_every_type_arrive_together) {
         3,
         [](std::size_t i) { return PropertySetting{.kind = PropertySetting::Kind::real, .real = three[i]}; }};
     real("gains.roll.p", 4.25);
-    set("gains.pitch.p", {.kind = Kind::whole, .whole = 7}); // a whole number is a number
+    set("gains.pitch.p", {.kind = Kind::integer, .integer = 7}); // a whole number is a number
     real("scale", 0.25);
-    set("steps", {.kind = Kind::whole, .whole = -12});
-    set("small", {.kind = Kind::whole, .whole = -128});
-    set("word", {.kind = Kind::whole, .whole = 65535});
-    set("reversed", {.kind = Kind::truth, .whole = 0});
-    set("filter", {.kind = Kind::duration, .whole = 5'000'000});
+    set("steps", {.kind = Kind::integer, .integer = -12});
+    set("small", {.kind = Kind::integer, .integer = -128});
+    set("word", {.kind = Kind::integer, .integer = 65535});
+    set("reversed", {.kind = Kind::boolean, .integer = 0});
+    set("filter", {.kind = Kind::duration, .integer = 5'000'000});
     set("label", {.kind = Kind::text, .text = "right"});
-    set("mode", {.kind = Kind::enumeration, .whole = 2});
+    set("mode", {.kind = Kind::enumeration, .integer = 2});
     set("offsets", {.kind = Kind::list, .list = &list});
     set("axis", {.kind = Kind::list, .list = &list});
     EXPECT_EQ(arm.roll.p.get(), 1.0) << "nothing takes effect before it is committed";
@@ -208,7 +208,7 @@ TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
     EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("is no number"));
     real("limits.low", std::numeric_limits<double>::quiet_NaN());
     EXPECT_NE(range_fault("limits.low"), "") << "also where every number is allowed";
-    set("filter", {.kind = PropertySetting::Kind::duration, .whole = 500'000'001});
+    set("filter", {.kind = PropertySetting::Kind::duration, .integer = 500'000'001});
     EXPECT_THAT(range_fault("filter"), testing::HasSubstr("over its greatest value 0.5 s"));
     static constexpr ListSetting list{2, [](std::size_t i) {
                                           return PropertySetting{.kind = PropertySetting::Kind::real,

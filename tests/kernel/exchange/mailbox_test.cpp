@@ -201,7 +201,7 @@ TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
     for (auto& thread : threads) thread.join();
     EXPECT_TRUE(ordered);
     for (const std::uint32_t number : seen) EXPECT_EQ(number, last);
-    // The bit of a message that was served already may have come behind it.
+    // The bit of a message that was served already may have come after it.
     EXPECT_EQ(post.inbox.serve(visit), 0u);
     EXPECT_FALSE(post.inbox.pending());
 }

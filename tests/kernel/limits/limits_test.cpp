@@ -78,7 +78,9 @@ struct Rig {
         sink = instance.template find<Sink>("sink");
     }
     bool run(Duration time) { return world.run_until(clock.now() + time); }
-    [[nodiscard]] std::uint64_t breaches(std::size_t row) const { return instance.counted(0, row).times; }
+    [[nodiscard]] std::uint64_t breaches(std::size_t row) const {
+        return instance.observation().counted(0, row).times;
+    }
 };
 
 // ---- what goes out
@@ -151,7 +153,8 @@ TEST(Limits, do_not_hold_back_the_safe_value_of_a_stop) {
     EXPECT_TRUE(rig.world.start().empty());
     EXPECT_TRUE(rig.run(10ms));
     EXPECT_EQ(rig.sink->speed_seen, 40.0);
-    rig.instance.ask_component(find_component(rig.instance.machine().table, "source"), LifeChange::stop);
+    rig.instance.life().ask_component(find_component(rig.instance.machine().table, "source"),
+                                      LifeChange::stop);
     EXPECT_TRUE(rig.run(10ms));
     EXPECT_EQ(rig.sink->speed_seen, 0.0);
     EXPECT_EQ(rig.breaches(0) + rig.breaches(1), 0u);
@@ -181,10 +184,10 @@ TEST(Limits, that_only_count_change_nothing) {
     EXPECT_TRUE(rig.world.start().empty());
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_EQ(rig.sink->speed_seen, 90.0);
-    EXPECT_EQ(rig.instance.counted(0, 0).what, "source.speed");
+    EXPECT_EQ(rig.instance.observation().counted(0, 0).what, "source.speed");
     EXPECT_EQ(rig.breaches(0), 5u);
-    EXPECT_EQ(rig.instance.counted(0, 1).what, "") << "there is no second row";
-    EXPECT_EQ(rig.instance.counted(1, 0).what, "") << "nor a second section";
+    EXPECT_EQ(rig.instance.observation().counted(0, 1).what, "") << "there is no second row";
+    EXPECT_EQ(rig.instance.observation().counted(1, 0).what, "") << "nor a second section";
 }
 
 constexpr auto stopping = machine_with(

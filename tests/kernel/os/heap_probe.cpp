@@ -28,7 +28,7 @@ namespace heap = tappet::os::heap;
 std::atomic<int> broken{0};
 std::atomic<int> last_id{0};
 
-void stop_safely(const tappet::Breach& breach) noexcept TAPPET_REALTIME {
+void stop_safely(const tappet::ContractViolation& breach) noexcept TAPPET_REALTIME {
     broken.fetch_add(1);
     last_id.store(static_cast<int>(breach.id));
 }
@@ -45,7 +45,7 @@ struct Action {
 };
 
 struct alignas(64) Line {
-    char letters[64];
+    char characters[64];
 };
 
 void expects_refusal(const void* mapped) {
@@ -156,11 +156,12 @@ int main(int count, char** arguments) {
         return 3;
     }
     if (wanted == "exhaust_new") { // in a thread of its own, as an activity's would be
-        tappet::install_contract_handler([](const tappet::Breach& breach) noexcept TAPPET_REALTIME {
-            stop_safely(breach);
-            TAPPET_ESCAPE("what the machine's handler does with a thread that must not go on",
-                          if (breach.id == tappet::Contract::memory_not_there) pause());
-        });
+        tappet::install_contract_handler(
+            [](const tappet::ContractViolation& breach) noexcept TAPPET_REALTIME {
+                stop_safely(breach);
+                TAPPET_ESCAPE("what the machine's handler does with a thread that must not go on",
+                              if (breach.id == tappet::Contract::memory_not_there) pause());
+            });
         std::thread{[] {
             while (kept(new char[10'000]) != nullptr) {
             }

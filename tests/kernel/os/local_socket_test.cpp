@@ -206,7 +206,7 @@ TEST_F(LocalSocket, does_not_take_the_place_of_a_running_machine_nor_of_another_
 TEST_F(LocalSocket, refuses_a_path_that_is_too_long_or_cannot_be_made) {
     const auto too_long = listener.listen(std::string(200, 'x'), 0600);
     ASSERT_FALSE(too_long);
-    EXPECT_NE(too_long.error().view().find("107 letters"), std::string_view::npos);
+    EXPECT_NE(too_long.error().view().find("107 characters"), std::string_view::npos);
     EXPECT_FALSE(listener.listen("/proc/nowhere/x.socket", 0600));
 }
 

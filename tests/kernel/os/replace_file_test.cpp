@@ -1,4 +1,4 @@
-// A file is replaced at once, and stays replaced when the power fails behind it.
+// A file is replaced at once, and stays replaced when the power fails after it.
 #include "kernel/os/terminal.hpp"
 
 #include <gtest/gtest.h>

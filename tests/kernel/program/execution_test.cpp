@@ -142,19 +142,19 @@ TEST(A_time_out, opens_its_arc_also_while_the_action_cannot_act_yet_and_a_condit
 TEST(An_action_that_fails, puts_the_program_in_error_at_its_node) {
     TableBuilder table;
     const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset behind = table.value(ScriptInt{0});
+    const DataOffset after = table.value(ScriptInt{0});
     table.node({});
     table.arc(1);
-    table.node({fail_instruction(), increment(behind, one)});
+    table.node({fail_instruction(), increment(after, one)});
     table.arc(2);
-    table.node({increment(behind, one)});
+    table.node({increment(after, one)});
     table.arc(end_node);
     Running running{table};
     EXPECT_EQ(running.run(), ProgramStatus::error);
     EXPECT_EQ(running.execution.line(), 2);
     EXPECT_EQ(running.execution.failures(), 1u);
     EXPECT_EQ(running.step(at_ms(1)), ProgramStatus::error);
-    EXPECT_EQ(running.get<ScriptInt>(behind), 0);
+    EXPECT_EQ(running.get<ScriptInt>(after), 0);
     EXPECT_FALSE(running.execution.start()) << "an error is left by stop or reset";
     EXPECT_TRUE(running.execution.stop());
     EXPECT_EQ(running.execution.status(), ProgramStatus::stopped);
@@ -193,15 +193,15 @@ TEST(A_condition_that_fails, is_a_failure_of_its_node) {
 TEST(A_program_that_continues_on_error, passes_over_what_fails) {
     TableBuilder table;
     const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset behind = table.value(ScriptInt{0});
+    const DataOffset after = table.value(ScriptInt{0});
     table.node({fail_instruction()});
     table.arc(1);
-    table.node({increment(behind, one)});
+    table.node({increment(after, one)});
     table.arc(0);
     Running running{table, {.statements = 10, .continue_on_error = true}};
     EXPECT_EQ(running.run(), ProgramStatus::running);
     EXPECT_TRUE(running.execution.left_over());
-    EXPECT_EQ(running.get<ScriptInt>(behind), 5) << "ten statements: each second one fails";
+    EXPECT_EQ(running.get<ScriptInt>(after), 5) << "ten statements: each second one fails";
     EXPECT_EQ(running.execution.failures(), 5u);
 }
 
@@ -263,14 +263,14 @@ TEST(An_instruction_that_skips, leaves_out_what_follows_it) {
         const DataOffset one = table.value(ScriptInt{1});
         const DataOffset left = table.value(is);
         const DataOffset skipped = table.value(ScriptInt{0});
-        const DataOffset behind = table.value(ScriptInt{0});
+        const DataOffset after = table.value(ScriptInt{0});
         table.node({TableBuilder::with(skip_instruction(true, 2), no_data, left), increment(skipped, one),
-                    increment(skipped, one), increment(behind, one)});
+                    increment(skipped, one), increment(after, one)});
         table.arc(end_node);
         Running running{table};
         EXPECT_EQ(running.run(), ProgramStatus::stopped);
         EXPECT_EQ(running.get<ScriptInt>(skipped), is ? 2 : 0);
-        EXPECT_EQ(running.get<ScriptInt>(behind), 1);
+        EXPECT_EQ(running.get<ScriptInt>(after), 1);
     }
 }
 

@@ -75,7 +75,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t scratch_from = 1024; // behind all values
+    static constexpr std::size_t scratch_from = 1024; // after all values
     std::size_t constants_;
     std::size_t scratch_ = scratch_from;
     std::vector<Instruction> instructions_;

@@ -201,7 +201,7 @@ TEST(Truths, are_combined_and_inverted) {
         }
         EXPECT_EQ(compute<bool>(find_unary(Operator::invert, script_bool), a, 0), !a);
     }
-    EXPECT_FALSE(find_binary(Operator::both, script_int, script_bool)) << "an int is no truth";
+    EXPECT_FALSE(find_binary(Operator::both, script_int, script_bool)) << "an int is no boolean";
     EXPECT_FALSE(find_unary(Operator::invert, script_int));
     EXPECT_FALSE(find_unary(Operator::negate, script_bool));
 }

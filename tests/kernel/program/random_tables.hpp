@@ -33,13 +33,13 @@ inline ActionResult hesitate(ProgramContext& context, const Instruction& in, std
 }
 
 inline constexpr Primitive add = &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                                                    &primitive::add_whole<ScriptInt, ScriptInt, ScriptInt>>;
+                                                    &primitive::add_integer<ScriptInt, ScriptInt, ScriptInt>>;
 inline constexpr Primitive multiply =
     &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                       &primitive::multiply_whole<ScriptInt, ScriptInt, ScriptInt>>;
+                       &primitive::multiply_integer<ScriptInt, ScriptInt, ScriptInt>>;
 inline constexpr Primitive remainder =
     &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                       &primitive::remainder_whole<ScriptInt, ScriptInt, ScriptInt>>;
+                       &primitive::remainder_integer<ScriptInt, ScriptInt, ScriptInt>>;
 inline constexpr Primitive less = &primitive::binary<ScriptInt, ScriptInt, bool, &primitive::less<ScriptInt>>;
 
 inline constexpr std::size_t node_count = 24;

@@ -27,7 +27,7 @@ StateMachine Axis {
     var int number = 0
 }
 )"};
-// "number" stands behind the states that use it.
+// "number" stands after the states that use it.
 inline constexpr ScriptSource good{"cycle.osd", R"(
 StateMachine Axis {
     param double limit = 2.5

@@ -119,7 +119,7 @@ TEST(StateMachineCheck, refuses_an_else_branch_of_a_condition) {
     m.transitions[2].on_event = false;
     EXPECT_EQ(m.fault(),
               "state machine \"m\": transition 3 (\"stands\" to \"turns\") has an else branch and no event; "
-              "write a second transition behind it");
+              "write a second transition after it");
 }
 
 TEST(StateMachineCheck, names_the_nearest_state_for_a_misspelt_else_target) {

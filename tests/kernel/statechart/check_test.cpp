@@ -340,7 +340,7 @@ TEST(StateMachineCheck, finds_every_dropped_and_doubled_row_that_matters) {
     for (std::size_t t = 0; t < Good{}.transitions.size(); ++t) {
         Good doubled;
         doubled.transitions.push_back(doubled.transitions[t]);
-        // Behind a row with a guard its double may still be taken.
+        // After a row with a guard its double may still be taken.
         EXPECT_EQ(doubled.fault().empty(), !doubled.transitions[t].guard.empty()) << "transition " << t + 1;
     }
 }

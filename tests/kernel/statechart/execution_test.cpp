@@ -435,7 +435,7 @@ TEST(StateMachine, bounds_a_ring_of_raised_events_and_goes_on_in_the_next_call) 
     EXPECT_EQ(taken, 1 + 2 + 1 + StateMachineExecution::max_raised_events);
     m.step();
     EXPECT_EQ(m.execution.status().transitions, taken + StateMachineExecution::max_raised_events);
-    // Behind the waiting one: in order, and nothing is lost while there is room.
+    // After the waiting one: in order, and nothing is lost while there is room.
     EXPECT_EQ(m.send("two"), Outcome::queued);
 }
 

@@ -88,7 +88,7 @@ TEST(StateMachineOrder, line_33_asks_no_condition_while_a_program_is_in_hand_in_
     reactive.yes = {"g"};
     reactive.execution.activate(reactive.now);
     reactive.send("go");
-    EXPECT_EQ(reactive.request("c"), "") << "it waits behind the program";
+    EXPECT_EQ(reactive.request("c"), "") << "it waits after the program";
     EXPECT_EQ(reactive.step(), "");
     EXPECT_EQ(reactive.step(), ":+b ?g");
     EXPECT_EQ(reactive.active(), "c");
@@ -164,13 +164,13 @@ TEST(StateMachineOrder, line_42_serves_requests_of_programs_behind_the_call_and_
         from b to c if g)"};
     m.start();
     m.yes = {"g"};
-    m.deed = [&](std::string_view what) {
+    m.act = [&](std::string_view what) {
         if (what != "+b") return;
         EXPECT_EQ(m.execution.request_state(find_state(m.table(), "c"), m.now), StateOutcome::queued);
         EXPECT_EQ(m.execution.request_state(find_state(m.table(), "a"), m.now), StateOutcome::lost);
     };
     EXPECT_EQ(m.send("go"), "-a +b ?g -b +c");
-    m.deed = [&](std::string_view what) {
+    m.act = [&](std::string_view what) {
         if (what != "-a") return;
         m.dispatch("next");
         EXPECT_EQ(m.execution.request_final(m.now), StateOutcome::queued);

@@ -315,7 +315,7 @@ TEST(StateMachineOrder, line_26_handles_events_that_waited_behind_the_round) {
         from a to b on go
         from b to a on back)"};
     m.start();
-    m.deed = [&](std::string_view what) {
+    m.act = [&](std::string_view what) {
         if (what == "!a") m.outcome = m.dispatch("go");
     };
     EXPECT_EQ(m.step(), "!a ~a -a +b");

@@ -126,7 +126,7 @@ public:
         log_.append(what);
     }
     /// Called by each program with its text.
-    std::function<void(std::string_view)> deed;
+    std::function<void(std::string_view)> act;
     StateOutcome outcome = StateOutcome::ignored;
 
 private:
@@ -200,7 +200,7 @@ private:
         const std::string word{text.substr(0, text.size() - waits)};
         if (stage == 0 || stage == waits) --statements;
         if (stage == 0) say(waits == 0 ? word : word + ":");
-        if (stage == 0 && deed) deed(word);
+        if (stage == 0 && act) act(word);
         if (stage < waits) {
             ++context.position.node;
             return ProgramReturn::waits;

@@ -59,10 +59,10 @@ inline ActionResult hesitates(ProgramContext& context, const Instruction&, std::
 }
 
 inline constexpr Primitive add = &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                                                    &primitive::add_whole<ScriptInt, ScriptInt, ScriptInt>>;
+                                                    &primitive::add_integer<ScriptInt, ScriptInt, ScriptInt>>;
 inline constexpr Primitive remainder =
     &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                       &primitive::remainder_whole<ScriptInt, ScriptInt, ScriptInt>>;
+                       &primitive::remainder_integer<ScriptInt, ScriptInt, ScriptInt>>;
 inline constexpr Primitive less = &primitive::binary<ScriptInt, ScriptInt, bool, &primitive::less<ScriptInt>>;
 
 inline constexpr std::size_t program_count = 10;

@@ -13,7 +13,7 @@
 namespace tappet {
 
 struct Recorder {
-    Bounded<char, 4096> letters;
+    Bounded<char, 4096> characters;
     StateMachineExecution* machine = nullptr;
     StateOutcome last_outcome = StateOutcome::ignored;
     Time now{};
@@ -21,8 +21,8 @@ struct Recorder {
     int asked = 0;
 
     template <text what> void say() noexcept TAPPET_REALTIME {
-        if (!letters.empty()) static_cast<void>(letters.push(' '));
-        for (char letter : what.view()) static_cast<void>(letters.push(letter));
+        if (!characters.empty()) static_cast<void>(characters.push(' '));
+        for (char character : what.view()) static_cast<void>(characters.push(character));
     }
     template <text what, std::size_t trigger> void raise() noexcept TAPPET_REALTIME {
         say<what>();
@@ -40,8 +40,8 @@ struct Recorder {
 
     /// What was written since the last call.
     std::string heard() {
-        const std::string text{letters.begin(), letters.end()};
-        letters.clear();
+        const std::string text{characters.begin(), characters.end()};
+        characters.clear();
         return text;
     }
 };

@@ -21,7 +21,7 @@ namespace tappet {
 
 class ReferenceMachine : ReferenceTree {
 public:
-    using Told = ReferenceTold;
+    using Answer = ReferenceAnswer;
     using Code = ReferenceCode;
 
     ReferenceMachine(StateMachineTable table, void* component, Code code = {})
@@ -152,32 +152,32 @@ private:
         std::erase_if(pending_, [name](const Trip& trip) { return trip.row->from == name; });
     }
 
-    Told perform(const ProgramRef& program, int& stage) {
+    Answer perform(const ProgramRef& program, int& stage) {
         if (program.call != nullptr) program.call(component_);
-        if (program.program == no_program) return Told::yes;
-        const Told told = code_.run(program.program, stage);
-        if (told == Told::failed) error_ = true;
-        return told;
+        if (program.program == no_program) return Answer::yes;
+        const Answer answer = code_.run(program.program, stage);
+        if (answer == Answer::failed) error_ = true;
+        return answer;
     }
-    Told ask(const ConditionRef& condition) {
-        if (condition.call != nullptr) return condition.call(component_) ? Told::yes : Told::no;
-        return condition.condition == no_condition ? Told::yes : code_.test(condition.condition);
+    Answer ask(const ConditionRef& condition) {
+        if (condition.call != nullptr) return condition.call(component_) ? Answer::yes : Answer::no;
+        return condition.condition == no_condition ? Answer::yes : code_.test(condition.condition);
     }
-    Told may_enter(Name from, Name to, EntryKind enters) {
-        if (to.empty()) return Told::yes;
+    Answer may_enter(Name from, Name to, EntryKind enters) {
+        if (to.empty()) return Answer::yes;
         for (Name name : entries(to, shared(from, to), enters))
-            if (const Told told = ask(state(name).precondition); told != Told::yes) return told;
-        return Told::yes;
+            if (const Answer answer = ask(state(name).precondition); answer != Answer::yes) return answer;
+        return Answer::yes;
     }
     /// Whether the transition is taken; `otherwise`: by its else branch.
-    Told ask(const TransitionRow& row, int argument, bool& otherwise) {
+    Answer ask(const TransitionRow& row, int argument, bool& otherwise) {
         if (row.captures != 0) std::memcpy(code_.data, &argument, sizeof argument);
-        Told told = ask(row.guard);
-        if (told == Told::yes) told = may_enter(row.from, row.to, row.enters);
-        otherwise = told == Told::no && row.has_otherwise;
-        if (otherwise) told = may_enter(row.from, row.otherwise_to, EntryKind::initial);
-        if (told == Told::failed) error_ = true;
-        return told;
+        Answer answer = ask(row.guard);
+        if (answer == Answer::yes) answer = may_enter(row.from, row.to, row.enters);
+        otherwise = answer == Answer::no && row.has_otherwise;
+        if (otherwise) answer = may_enter(row.from, row.otherwise_to, EntryKind::initial);
+        if (answer == Answer::failed) error_ = true;
+        return answer;
     }
     [[nodiscard]] Time due(const TransitionRow& row) const {
         return active_.at(row.from).entered + row.after;
@@ -191,7 +191,7 @@ private:
             if (!trip.otherwise && !row->because.empty()) reason = row->because;
             for (auto& [name, each] : active_)
                 if (each.phase == Phase::asked) each.phase = Phase::ran;
-            while (perform(trip.otherwise ? row->otherwise : row->then, stage) != Told::yes || error_)
+            while (perform(trip.otherwise ? row->otherwise : row->then, stage) != Answer::yes || error_)
                 co_await std::suspend_always{};
         }
         const std::size_t kept = row == nullptr || trip.target.empty() ? 0 : shared(row->from, trip.target);
@@ -205,7 +205,7 @@ private:
             if (last.empty()) break;
             if (exit_in_hand_.empty()) exit_stage_ = 0;
             exit_in_hand_ = last;
-            while (perform(state(last).exit, exit_stage_) != Told::yes || error_)
+            while (perform(state(last).exit, exit_stage_) != Answer::yes || error_)
                 co_await std::suspend_always{};
             exit_in_hand_ = {};
             leave(last);
@@ -222,13 +222,13 @@ private:
         for (Name name : entering) {
             active_[name] = {Phase::fresh, 0, now_};
             stage = 0;
-            while (perform(state(name).entry, stage) != Told::yes || error_) co_await std::suspend_always{};
+            while (perform(state(name).entry, stage) != Answer::yes || error_) co_await std::suspend_always{};
         }
         ++transitions;
     }
     ReferenceWork handle(Name name) {
         int stage = 0;
-        while (perform(state(name).handle, stage) != Told::yes || error_) co_await std::suspend_always{};
+        while (perform(state(name).handle, stage) != Answer::yes || error_) co_await std::suspend_always{};
     }
     bool go_on() {
         for (;;) {
@@ -278,9 +278,9 @@ private:
         for (const TransitionRow& row : table_.transitions) {
             if (taken || error_ || row.from != name || !row.on_event || row.event != event) continue;
             bool otherwise = false;
-            const Told told = ask(row, argument, otherwise);
-            if (told == Told::no && !refused) refused = name;
-            if (told != Told::yes) continue;
+            const Answer answer = ask(row, argument, otherwise);
+            if (answer == Answer::no && !refused) refused = name;
+            if (answer != Answer::yes) continue;
             pending_.push_back({&row, otherwise, false, otherwise ? row.otherwise_to : row.to});
             taken = true;
         }
@@ -346,9 +346,9 @@ private:
             at.phase = Phase::ran;
             if (program.empty()) continue;
             ran_.insert(name);
-            const Told told = perform(program, at.stage);
-            if (told == Told::waits) at.phase = Phase::waits;
-            if (told == Told::failed) at.phase = Phase::under_way;
+            const Answer answer = perform(program, at.stage);
+            if (answer == Answer::waits) at.phase = Phase::waits;
+            if (answer == Answer::failed) at.phase = Phase::under_way;
         }
     }
     const TransitionRow* condition(Name name) {
@@ -361,7 +361,7 @@ private:
             if (phase != Phase::ran && !(phase == Phase::waits && row.timed)) continue;
             if (row.timed && now_ < due(row)) continue;
             bool otherwise = false;
-            if (ask(row, 0, otherwise) == Told::yes) return &row;
+            if (ask(row, 0, otherwise) == Answer::yes) return &row;
         }
         return nullptr;
     }
@@ -394,9 +394,9 @@ private:
                     if (there || row.from != source || row.on_event || row.to != target) continue;
                     if (row.timed && now_ < due(row)) continue;
                     bool otherwise = false;
-                    const Told told = ask(row, 0, otherwise);
-                    if (told == Told::failed) return;
-                    there = told == Told::yes;
+                    const Answer answer = ask(row, 0, otherwise);
+                    if (answer == Answer::failed) return;
+                    there = answer == Answer::yes;
                     if (there) work_ = travel({.row = &row, .target = row.to});
                 }
         }

@@ -33,14 +33,14 @@ static_assert(std::size(state_names) * 3 + 48 <= program_count,
               "each program of a machine has its own number");
 
 /// What a program does besides being written down.
-enum class Deed : std::uint8_t { nothing, raise, give_up, request };
+enum class Act : std::uint8_t { nothing, raise, give_up, request };
 
 /// The component of either side: what ran, and how its programs reach their machine.
 struct Log {
     std::vector<int> calls;
     std::uint32_t yes = 0;    // answers of the guards
     std::uint32_t broken = 0; // guards and programs that fail
-    const std::array<Deed, program_count>* deeds = nullptr;
+    const std::array<Act, program_count>* acts = nullptr;
     void* machine = nullptr;
     void (*raise)(void* machine, std::string_view event, Time now) = nullptr;
     void (*give_up)(void* machine, Time now) = nullptr;
@@ -50,10 +50,10 @@ struct Log {
 
     void run(std::size_t program) {
         calls.push_back(static_cast<int>(program));
-        if ((*deeds)[program] == Deed::raise)
+        if ((*acts)[program] == Act::raise)
             raise(machine, event_names[program % std::size(event_names)], now);
-        if ((*deeds)[program] == Deed::give_up) give_up(machine, now);
-        if ((*deeds)[program] == Deed::request) request(machine, state_names[program % 7], now);
+        if ((*acts)[program] == Act::give_up) give_up(machine, now);
+        if ((*acts)[program] == Act::request) request(machine, state_names[program % 7], now);
     }
     bool ask(std::size_t guard) {
         int argument = 0;
@@ -62,22 +62,22 @@ struct Log {
         return (yes >> guard & 1u) != 0;
     }
     /// A program of the table, one statement at a time: how long it waits is in its number.
-    ReferenceMachine::Told advance(std::size_t program, int& stage) {
-        using Told = ReferenceMachine::Told;
+    ReferenceMachine::Answer advance(std::size_t program, int& stage) {
+        using Answer = ReferenceMachine::Answer;
         const int waits = program % 3 == 0 ? static_cast<int>(program % 4) : 0;
         if (stage == 0) run(program);
         if (stage < waits) {
             ++stage;
-            return Told::waits;
+            return Answer::waits;
         }
-        if (program % 11 == 0 && (broken >> program % 32 & 1u) != 0) return Told::failed;
+        if (program % 11 == 0 && (broken >> program % 32 & 1u) != 0) return Answer::failed;
         calls.push_back(1000 + static_cast<int>(program));
-        return Told::yes;
+        return Answer::yes;
     }
-    ReferenceMachine::Told test(std::size_t guard) {
+    ReferenceMachine::Answer test(std::size_t guard) {
         const bool holds = ask(guard);
-        if (guard % 5 == 0 && (broken >> guard & 1u) != 0) return ReferenceMachine::Told::failed;
-        return holds ? ReferenceMachine::Told::yes : ReferenceMachine::Told::no;
+        if (guard % 5 == 0 && (broken >> guard & 1u) != 0) return ReferenceMachine::Answer::failed;
+        return holds ? ReferenceMachine::Answer::yes : ReferenceMachine::Answer::no;
     }
 };
 
@@ -106,7 +106,7 @@ struct RandomMachine {
     bool rich; // everything, and programs of the table; otherwise C++ functions and what they can do
     std::vector<StateRow> states;
     std::vector<TransitionRow> transitions;
-    std::array<Deed, program_count> deeds{};
+    std::array<Act, program_count> acts{};
     std::array<ProgramRow, program_count> program_rows{};
     std::array<CaptureRow, 1> captures{{{0, sizeof(int), 0, 0, 0}}};
     ProgramTables tables{};
@@ -148,10 +148,10 @@ struct RandomMachine {
         for (std::size_t i = 0; i < count; ++i)
             add(random, states[i].name); // each has a way out, most of the time
         while (transitions.size() < 48 && !random.one_in(20)) add(random, states[random.below(count)].name);
-        for (Deed& deed : deeds) {
-            if (random.one_in(12)) deed = Deed::raise;
-            if (random.one_in(60)) deed = Deed::give_up;
-            if (rich && random.one_in(40)) deed = Deed::request;
+        for (Act& act : acts) {
+            if (random.one_in(12)) act = Act::raise;
+            if (random.one_in(60)) act = Act::give_up;
+            if (rich && random.one_in(40)) act = Act::request;
         }
     }
 
@@ -204,18 +204,19 @@ ProgramReturn run_program(const ProgramTables&, ProgramContext& context, std::ui
     --statements;
     const auto program = static_cast<std::size_t>(context.position.node / stages);
     int stage = context.position.node % stages;
-    auto told = ReferenceMachine::Told::failed;
-    TAPPET_ESCAPE("a test's log grows", told = static_cast<Log*>(context.component)->advance(program, stage));
+    auto answer = ReferenceMachine::Answer::failed;
+    TAPPET_ESCAPE("a test's log grows",
+                  answer = static_cast<Log*>(context.component)->advance(program, stage));
     context.position.node = static_cast<NodeIndex>(program * stages + static_cast<std::size_t>(stage));
-    if (told == ReferenceMachine::Told::failed) return ProgramReturn::failed;
-    return told == ReferenceMachine::Told::yes ? ProgramReturn::ended : ProgramReturn::waits;
+    if (answer == ReferenceMachine::Answer::failed) return ProgramReturn::failed;
+    return answer == ReferenceMachine::Answer::yes ? ProgramReturn::ended : ProgramReturn::waits;
 }
 ConditionResult test_condition(const ProgramTables&, ProgramContext& context,
                                ConditionIndex condition) noexcept TAPPET_REALTIME {
-    auto told = ReferenceMachine::Told::failed;
-    TAPPET_ESCAPE("a test's log grows", told = static_cast<Log*>(context.component)->test(condition));
-    if (told == ReferenceMachine::Told::failed) return ConditionResult::failed;
-    return told == ReferenceMachine::Told::yes ? ConditionResult::yes : ConditionResult::no;
+    auto answer = ReferenceMachine::Answer::failed;
+    TAPPET_ESCAPE("a test's log grows", answer = static_cast<Log*>(context.component)->test(condition));
+    if (answer == ReferenceMachine::Answer::failed) return ConditionResult::failed;
+    return answer == ReferenceMachine::Answer::yes ? ConditionResult::yes : ConditionResult::no;
 }
 
 struct Pair {
@@ -242,7 +243,7 @@ struct Pair {
         binding.history = history;
         binding.deferred = deferred;
         EXPECT_TRUE(real.bind(binding));
-        real_log.deeds = reference_log.deeds = &machine.deeds;
+        real_log.acts = reference_log.acts = &machine.acts;
         real_log.machine = &real;
         reference_log.machine = &reference;
         real_log.raise = [](void* m, std::string_view event, Time now) {

@@ -11,12 +11,12 @@
 
 namespace tappet {
 
-enum class ReferenceTold : std::uint8_t { no, yes, waits, failed };
+enum class ReferenceAnswer : std::uint8_t { no, yes, waits, failed };
 
 /// Programs and conditions of the table; a program's stage is 0 at its beginning.
 struct ReferenceCode {
-    std::function<ReferenceTold(ProgramIndex, int& stage)> run{};
-    std::function<ReferenceTold(ConditionIndex)> test{};
+    std::function<ReferenceAnswer(ProgramIndex, int& stage)> run{};
+    std::function<ReferenceAnswer(ConditionIndex)> test{};
     std::byte* data = nullptr;
 };
 

@@ -170,7 +170,7 @@ std::string usage() {
         "  --timeout TIME     how long an answer may take (3s)\n\n"
         "Values are written as they are shown: 4ms, 0.25, true, \"text\", [1, 2, 3]. Negative numbers need "
         "no\n"
-        "care; behind -- everything is a word.\n\n"
+        "care; after -- everything is a word.\n\n"
         "Exit codes: 0 done; 1 refused by the machine; 2 a wrong command line or a name that it does not "
         "have;\n"
         "3 no machine; 4 the command was rejected or failed; 5 no answer in time, or a value always busy.\n";

@@ -34,7 +34,7 @@ struct Work {
     /// Asked between two pictures and while waiting.
     [[nodiscard]] bool stopped() const { return signal != nullptr && *signal != 0; }
 
-    /// Behind the command's name.
+    /// After the command's name.
     [[nodiscard]] std::span<const std::string> arguments() const { return std::span{line.words}.subspan(1); }
 };
 

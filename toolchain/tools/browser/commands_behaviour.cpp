@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A piece of a script, quoted, must fit one packet: each letter may need an escape.
-constexpr std::size_t piece_letters = (browsing::max_packet_bytes - 256) / 2;
+// A piece of a script, quoted, must fit one packet: each character may need an escape.
+constexpr std::size_t piece_characters = (browsing::max_packet_bytes - 256) / 2;
 
 std::unexpected<Failure> wrong(std::string sentence) {
     return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
@@ -26,9 +26,9 @@ std::unexpected<Failure> wrong(std::string sentence) {
 
 std::string quoted(std::string_view text) {
     std::string word{"\""};
-    for (const char letter : text) {
-        if (letter == '"' || letter == '\\') word += '\\';
-        word += letter;
+    for (const char character : text) {
+        if (character == '"' || character == '\\') word += '\\';
+        word += character;
     }
     return word + "\"";
 }
@@ -98,10 +98,10 @@ Result<void> load(Work& work, const std::string& file, const std::string& slot) 
     if (!in || !(read << in.rdbuf()))
         return wrong("'" + file + "' cannot be read, or is empty; name a script");
     const std::string text = read.str();
-    for (std::size_t at = 0; at < text.size(); at += piece_letters) {
+    for (std::size_t at = 0; at < text.size(); at += piece_characters) {
         const auto sent =
             work.session.link().request("script " + as_word(slot) + " " + std::to_string(at) + " " +
-                                        quoted(std::string_view{text}.substr(at, piece_letters)));
+                                        quoted(std::string_view{text}.substr(at, piece_characters)));
         if (!sent) return std::unexpected(sent.error());
     }
     const std::string name = std::filesystem::path{file}.filename().string();

@@ -1,6 +1,9 @@
-// What is only looked at: no request leaves the browser, and the machine does not notice.
+// What is only looked at: no request leaves the browser, but for the counters that the machine adds up when
+// it is asked.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/reading_text.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <ostream>
@@ -15,9 +18,10 @@ std::unexpected<Failure> wrong(std::string sentence) {
     return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
 }
 
-std::string padded(std::string text, std::size_t width) {
-    if (text.size() < width) text.resize(width, ' ');
-    return text;
+std::string padded(std::string_view text, std::size_t width) {
+    std::string wide(std::max(text.size(), width), ' ');
+    text.copy(wide.data(), text.size());
+    return wide;
 }
 
 std::string activity_name(const MapReader& map, std::uint32_t activity) {
@@ -202,6 +206,30 @@ void tell_machine(Work& work) {
     for (std::uint32_t i = 0; i < map.activities().size(); ++i) tell_activity(work, i);
 }
 
+/// What the machine counts for whoever asks, instead of showing it always.
+Result<void> tell_counters(Work& work) {
+    const auto counters = work.session.link().request("counters");
+    if (!counters) return std::unexpected(counters.error());
+    for (const auto& stack : (*counters)["stacks"]) {
+        if (work.line.json) {
+            work.out << "{\"stack_of\": " << stack["activity"] << ", \"bytes\": " << stack["bytes"]
+                     << ", \"used_bytes\": " << stack["used_bytes"] << "}\n";
+            continue;
+        }
+        // Of a world whose activities have no threads nothing is known.
+        if (stack["used_bytes"] == 0) continue;
+        work.out << "stack of " << stack["activity"].get<std::string>() << ": " << stack["used_bytes"]
+                 << " of " << stack["bytes"] << " bytes used at most\n";
+    }
+    for (const auto& row : (*counters)["held_back"])
+        if (work.line.json)
+            work.out << "{\"limits\": " << row["row"] << ", \"held_back\": " << row["times"] << "}\n";
+        else
+            work.out << "limits held back " << row["row"].get<std::string>() << " " << row["times"]
+                     << (row["times"] == 1 ? " time\n" : " times\n");
+    return {};
+}
+
 std::string range_of(const map::Facet& facet) {
     if ((facet.flags & map::facet_has_range) == 0) return {};
     std::string low = std::to_string(facet.low);
@@ -297,7 +325,7 @@ Result<void> run_info(Work& work) {
     const MapReader& map = work.session.map();
     if (work.arguments().empty()) {
         tell_machine(work);
-        return {};
+        return tell_counters(work);
     }
     const std::string& name = work.arguments()[0];
     bool told = false;

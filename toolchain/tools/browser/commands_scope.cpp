@@ -124,7 +124,7 @@ void tell_worst(std::ostream& out, const ScopeReader& scope, const Kept& kept) {
         if (each.end < kept.of.release || each.begin > kept.of.end) continue;
         const std::int64_t at = each.begin - kept.of.release;
         out << "  meanwhile " << waves.activities[each.activity].name << ", " << us(at < 0 ? -at : at)
-            << (at < 0 ? " before its release" : " behind its release") << ", for "
+            << (at < 0 ? " before its release" : " after its release") << ", for "
             << us(each.end - each.begin) << "\n";
         tell_blocks(out, waves.activities[each.activity], each);
     }
@@ -132,7 +132,7 @@ void tell_worst(std::ostream& out, const ScopeReader& scope, const Kept& kept) {
         out << "  while it waited to begin, " << us(kept.of.begin - kept.of.release)
             << ", this machine's other cycles ran for " << us(others_ran) << "\n";
     out << "  and " << beside << " cycles from " << us(kept.of.release - waves.from) << " before to "
-        << us(waves.to - kept.of.end) << " behind it: --to FILE.json or FILE.vcd shows them\n";
+        << us(waves.to - kept.of.end) << " after it: --to FILE.json or FILE.vcd shows them\n";
 }
 
 void tell_worst_json(std::ostream& out, const ScopeReader& scope, const Kept& kept) {

@@ -92,8 +92,8 @@ Result<Link> Link::connect(const std::string& path) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     if (path.empty() || path.size() >= sizeof address.sun_path)
-        return failure(Fault::bad_request, "the path of a socket has 1 to 107 letters; '" + path + "' has " +
-                                               std::to_string(path.size()));
+        return failure(Fault::bad_request, "the path of a socket has 1 to 107 characters; '" + path +
+                                               "' has " + std::to_string(path.size()));
     std::ranges::copy(path, address.sun_path);
     Link link;
     link.path_ = path;

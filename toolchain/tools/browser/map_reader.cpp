@@ -97,7 +97,7 @@ std::string MapReader::check_types() const {
                 return "a type's items lie outside of it";
         }
         if (each.shape == map::Shape::text && !within(each.items_at, each.columns))
-            return "a text's letters lie outside of it";
+            return "a text's characters lie outside of it";
         if ((each.shape == map::Shape::text || each.shape == map::Shape::sequence) &&
             (each.length_bytes > 8 || !within(each.length_at, each.length_bytes)))
             return "a type's length lies outside of it";

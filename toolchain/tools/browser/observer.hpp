@@ -16,7 +16,7 @@ struct Reading {
     bool has_writes = false;    ///< the machine counts this facet's values
     std::uint64_t writes = 0;   ///< 0: never written, and the value is the row's initial one
     std::int64_t stamp_ns = -1; ///< the time at which the value was true; -1: the machine keeps none
-    std::int64_t now_ns = -1;   ///< the time of the cycle behind which it was read; -1: no activity
+    std::int64_t now_ns = -1;   ///< the time of the cycle after which it was read; -1: no activity
     std::vector<std::byte> value{};
 
     [[nodiscard]] bool never_written() const { return has_writes && writes == 0; }

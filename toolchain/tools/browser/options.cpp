@@ -66,7 +66,7 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
         for (const std::string_view name : names) known = known || name == word;
         if (!known) return std::unexpected(unknown(word));
         if (i + 1 == words.size())
-            return std::unexpected(word + " needs a value behind it; --help shows which");
+            return std::unexpected(word + " needs a value after it; --help shows which");
         const std::string& value = words[++i];
         if (word == "--at") {
             line.at = value;

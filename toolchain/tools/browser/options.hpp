@@ -27,7 +27,7 @@ struct Line {
     std::string directory{browsing::default_directory};
 };
 
-/// Options may stand anywhere; behind "--" everything is a word. The error says what is wrong and the cure.
+/// Options may stand anywhere; after "--" everything is a word. The error says what is wrong and the cure.
 [[nodiscard]] std::expected<Line, std::string> parse_line(std::span<const std::string> words);
 /// A typed line into words as a request has them: quotes and brackets keep blanks.
 [[nodiscard]] std::expected<std::vector<std::string>, std::string> split_line(std::string_view text);

@@ -64,10 +64,10 @@ void Screen::show(const std::vector<std::string>& lines) const {
 std::optional<Key> Screen::key(std::chrono::milliseconds patience) const {
     pollfd look{STDIN_FILENO, POLLIN, 0};
     if (::poll(&look, 1, static_cast<int>(patience.count())) <= 0) return std::nullopt;
-    std::array<char, 16> letters{};
-    const ssize_t count = ::read(STDIN_FILENO, letters.data(), letters.size());
+    std::array<char, 16> characters{};
+    const ssize_t count = ::read(STDIN_FILENO, characters.data(), characters.size());
     if (count <= 0) return Key::quit;
-    const std::string_view typed{letters.data(), static_cast<std::size_t>(count)};
+    const std::string_view typed{characters.data(), static_cast<std::size_t>(count)};
     if (typed == "q" || typed == "Q" || typed == "\x1b" || typed == "\x04") return Key::quit;
     if (typed == "\x1b[A" || typed == "\x1bOA" || typed == "k") return Key::up;
     if (typed == "\x1b[B" || typed == "\x1bOB" || typed == "j") return Key::down;

@@ -51,7 +51,7 @@ unsigned char on_tab(EditLine* editor, int) {
     const Completion completion = complete(client_of(editor).map, before);
     if (completion.candidates.empty()) return CC_REFRESH_BEEP;
     std::string more = completion.common().substr(before.size() - completion.begin);
-    // A component's name goes on with a dot: no blank behind it while others begin with it.
+    // A component's name goes on with a dot: no blank after it while others begin with it.
     if (completion.candidates.size() == 1) more += ' ';
     if (more.empty()) {
         print_candidates(completion);
@@ -60,8 +60,8 @@ unsigned char on_tab(EditLine* editor, int) {
     return ::el_insertstr(editor, more.c_str()) == 0 ? CC_REFRESH : CC_REFRESH_BEEP;
 }
 
-/// While a line is typed a signal is let in only where it ends the wait for the next letter: one that came a
-/// moment before would be lost until then.
+/// While a line is typed a signal is let in only where it ends the wait for the next character: one that came
+/// a moment before would be lost until then.
 class SignalsHeld {
 public:
     SignalsHeld() {
@@ -81,14 +81,14 @@ private:
     sigset_t before_{};
 };
 
-int read_letter(EditLine*, wchar_t* letter) {
+int read_character(EditLine*, wchar_t* character) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     if (::ppoll(&input, 1, nullptr, &SignalsHeld::open) < 0) return -1;
     char byte = 0;
     const ssize_t count = ::read(STDIN_FILENO, &byte, 1);
     // An end of input that was typed before the terminal was given to the prompt comes as a zero.
     constexpr wchar_t end_of_input = 4;
-    *letter = byte == 0 ? end_of_input : static_cast<unsigned char>(byte);
+    *character = byte == 0 ? end_of_input : static_cast<unsigned char>(byte);
     return static_cast<int>(count);
 }
 
@@ -115,7 +115,7 @@ void Shell::run() {
     ::el_set(editor, EL_EDITOR, "emacs");
     ::el_set(editor, EL_HIST, ::history, history);
     ::el_set(editor, EL_SIGNAL, 0);
-    ::el_set(editor, EL_GETCFN, &read_letter);
+    ::el_set(editor, EL_GETCFN, &read_character);
     ::el_set(editor, EL_ADDFN, "tappet-complete", "completes a command or a name", &on_tab);
     ::el_set(editor, EL_BIND, "^I", "tappet-complete", nullptr);
     ::el_set(editor, EL_BIND, "^R", "em-inc-search-prev", nullptr);

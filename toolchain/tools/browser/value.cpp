@@ -58,8 +58,8 @@ public:
     std::string write(std::uint32_t type_index, Bytes bytes) const {
         const map::Type& type = map_.types()[type_index];
         switch (type.shape) {
-        case Shape::truth: return std::to_integer<int>(bytes[0]) != 0 ? "true" : "false";
-        case Shape::whole: return std::to_string(whole(bytes, type.size));
+        case Shape::boolean: return std::to_integer<int>(bytes[0]) != 0 ? "true" : "false";
+        case Shape::integer: return std::to_string(whole(bytes, type.size));
         case Shape::natural: return std::to_string(natural(bytes, type.size));
         case Shape::real:
             return type.size == sizeof(float) ? real_text(load<float>(bytes), style_)
@@ -84,10 +84,11 @@ private:
     [[nodiscard]] std::string text(const map::Type& type, Bytes bytes) const {
         const std::uint64_t length =
             std::min<std::uint64_t>(natural(bytes.subspan(type.length_at), type.length_bytes), type.columns);
-        const std::string_view letters{reinterpret_cast<const char*>(bytes.data()) + type.items_at, length};
-        if (style_ != Style::json) return in_quotes(letters);
-        // Letters that are no UTF-8 become U+FFFD.
-        return nlohmann::json(letters).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        const std::string_view characters{reinterpret_cast<const char*>(bytes.data()) + type.items_at,
+                                          length};
+        if (style_ != Style::json) return in_quotes(characters);
+        // Characters that are no UTF-8 become U+FFFD.
+        return nlohmann::json(characters).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     }
 
     [[nodiscard]] std::string enumerator(const map::Type& type, Bytes bytes) const {
@@ -199,16 +200,16 @@ std::string signature(const MapReader& map, std::uint32_t type) {
 
 std::string in_quotes(std::string_view text) {
     std::string all = "\"";
-    for (const char letter : text) {
-        if (letter == '"' || letter == '\\') {
+    for (const char character : text) {
+        if (character == '"' || character == '\\') {
             all += '\\';
-            all += letter;
-        } else if (static_cast<unsigned char>(letter) < 0x20) {
+            all += character;
+        } else if (static_cast<unsigned char>(character) < 0x20) {
             std::array<char, 8> escape{};
-            std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(letter));
+            std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(character));
             all += escape.data();
         } else {
-            all += letter;
+            all += character;
         }
     }
     return all + "\"";

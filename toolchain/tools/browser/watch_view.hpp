@@ -33,8 +33,8 @@ struct Size {
 
 /// How many of the rows have a place.
 [[nodiscard]] std::size_t visible_rows(const WatchPicture& picture, Size size);
-/// At most `size.rows` lines of at most `size.columns` visible letters; `colour` adds sequences that take no
-/// place.
+/// At most `size.rows` lines of at most `size.columns` visible characters; `colour` adds sequences that take
+/// no place.
 [[nodiscard]] std::vector<std::string> draw(const WatchPicture& picture, Size size, bool colour);
 
 } // namespace tappet::browser

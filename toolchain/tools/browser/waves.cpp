@@ -32,12 +32,12 @@ WaveCycle cycle_from(std::uint32_t activity, const TapeCycle& read, const std::u
 /// The cycles of one activity out of words that end with one of them; false: they contradict themselves.
 bool add_cycles(std::uint32_t activity, std::span<const std::uint64_t> words, Waves& into) {
     const std::size_t first = into.cycles.size();
-    for (std::size_t behind = words.size(); behind > 0;) {
-        if (behind < TapeCycle::words_beside_marks) return false;
-        const TapeCycle cycle = cycle_of(words[behind - 3], words[behind - 2], words[behind - 1], behind);
-        if (cycle.words() > behind) return false;
+    for (std::size_t after = words.size(); after > 0;) {
+        if (after < TapeCycle::words_beside_marks) return false;
+        const TapeCycle cycle = cycle_of(words[after - 3], words[after - 2], words[after - 1], after);
+        if (cycle.words() > after) return false;
         into.cycles.push_back(cycle_from(activity, cycle, words.data() + cycle.at, into.stamp_ns));
-        behind = cycle.at;
+        after = cycle.at;
     }
     std::reverse(into.cycles.begin() + static_cast<std::ptrdiff_t>(first), into.cycles.end());
     return true;
@@ -181,16 +181,16 @@ bool ScopeReader::follow(std::uint32_t activity, std::uint64_t& position, Waves&
     const std::uint64_t head = tape.head();
     const std::size_t first = into.cycles.size();
     bool all = true;
-    std::uint64_t behind = head;
-    while (behind > position) {
+    std::uint64_t after = head;
+    while (after > position) {
         TapeCycle cycle;
-        all = tape.cycle_before(behind, cycle);
+        all = tape.cycle_before(after, cycle);
         if (!all) break;
         std::vector<std::uint64_t> marks(cycle.marks);
         all = tape.copy(cycle.at, marks);
         if (!all) break;
         into.cycles.push_back(cycle_from(activity, cycle, marks.data(), into.stamp_ns));
-        behind = cycle.at;
+        after = cycle.at;
     }
     std::reverse(into.cycles.begin() + static_cast<std::ptrdiff_t>(first), into.cycles.end());
     position = head;

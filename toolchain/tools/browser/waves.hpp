@@ -69,7 +69,7 @@ public:
     /// Without cycles: what else a Waves holds.
     [[nodiscard]] Waves empty() const;
     [[nodiscard]] const CycleTape& tape(std::uint32_t activity) const;
-    /// Adds the cycles that followed `position` on the activity's tape, and moves it behind them. False: some
+    /// Adds the cycles that followed `position` on the activity's tape, and moves it after them. False: some
     /// of them were overwritten before they were read.
     bool follow(std::uint32_t activity, std::uint64_t& position, Waves& into) const;
     [[nodiscard]] bool is_ranked(std::uint32_t activity) const { return ranked_[activity]; }

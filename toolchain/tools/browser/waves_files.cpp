@@ -10,19 +10,19 @@ namespace tappet::browser {
 
 namespace {
 
-/// A simple identifier of IEEE 1364: letters, digits and underscores.
+/// A simple identifier of IEEE 1364: characters, digits and underscores.
 std::string identifier(std::string_view name) {
     std::string text;
-    for (const char letter : name) {
-        const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                           (letter >= '0' && letter <= '9') || letter == '_';
-        text += plain ? letter : '_';
+    for (const char character : name) {
+        const bool plain = (character >= 'a' && character <= 'z') || (character >= 'A' && character <= 'Z') ||
+                           (character >= '0' && character <= '9') || character == '_';
+        text += plain ? character : '_';
     }
     if (text.empty() || (text[0] >= '0' && text[0] <= '9')) text.insert(0, "_");
     return text;
 }
 
-/// An identifier code: printable letters from '!' to '~', the shortest first.
+/// An identifier code: printable characters from '!' to '~', the shortest first.
 std::string code_of(std::size_t number) {
     std::string code;
     for (++number; number > 0; number = (number - 1) / 94) code += static_cast<char>('!' + (number - 1) % 94);

@@ -48,10 +48,10 @@ std::string function_name(const void* function) {
 
 std::string identifier(std::string_view name) {
     std::string plain;
-    for (const char letter : name) {
-        const bool keeps = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                           (letter >= '0' && letter <= '9');
-        plain += keeps ? letter : '_';
+    for (const char character : name) {
+        const bool keeps = (character >= 'a' && character <= 'z') || (character >= 'A' && character <= 'Z') ||
+                           (character >= '0' && character <= '9');
+        plain += keeps ? character : '_';
     }
     return plain;
 }
@@ -69,12 +69,12 @@ std::string time_text(Duration time) {
 
 std::string xml_text(std::string_view text) {
     std::string plain;
-    for (const char letter : text) switch (letter) {
+    for (const char character : text) switch (character) {
         case '&': plain += "&amp;"; break;
         case '<': plain += "&lt;"; break;
         case '>': plain += "&gt;"; break;
         case '"': plain += "&quot;"; break;
-        default: plain += letter;
+        default: plain += character;
         }
     return plain;
 }

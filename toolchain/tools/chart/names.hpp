@@ -20,7 +20,7 @@ inline std::string function_name(StateGuard guard) {
     return function_name(reinterpret_cast<const void*>(guard)); // NOLINT: an address to look up
 }
 
-/// Letters, digits and underscores only; every other letter becomes an underscore.
+/// Characters, digits and underscores only; every other character becomes an underscore.
 std::string identifier(std::string_view name);
 
 /// "3 s", "20 ms", "1500 us": the largest unit in which the time is whole.

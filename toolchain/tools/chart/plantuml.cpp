@@ -7,16 +7,16 @@ namespace tappet::chart {
 
 namespace {
 
-/// Letters that PlantUML takes for markup or a line's end are spelled as numbers.
+/// Characters that PlantUML takes for markup or a line's end are spelled as numbers.
 std::string plain(std::string_view text) {
     std::string escaped;
-    for (const char letter : text) switch (letter) {
+    for (const char character : text) switch (character) {
         case '<': escaped += "&#60;"; break;
         case '~': escaped += "&#126;"; break;
         case '\\': escaped += "&#92;"; break;
         case '"': escaped += "&#34;"; break;
         case '\n': escaped += "\\n"; break;
-        default: escaped += letter;
+        default: escaped += character;
         }
     return escaped;
 }

@@ -103,9 +103,9 @@ Expression ProgramText::constant(DataOffset at, TypeId type) const {
         std::memcpy(&time, image().data() + at, sizeof time);
         return unknown(time_text(time));
     }
-    std::array<char, 120> letters{};
-    const std::string text{letters.data(),
-                           std::min(letters.size(), format_value(*type, image().data() + at, letters))};
+    std::array<char, 120> characters{};
+    const std::string text{characters.data(),
+                           std::min(characters.size(), format_value(*type, image().data() + at, characters))};
     if (type == type_id<bool> || !type->names.empty())
         return {text, std::to_string(std::to_integer<unsigned>(image()[at]))};
     return unknown(text);

@@ -1,4 +1,4 @@
-// Spin, the C compiler and the search, one behind the other.
+// Spin, the C compiler and the search, one after the other.
 #include "toolchain/tools/chart/spin.hpp"
 
 #include <algorithm>

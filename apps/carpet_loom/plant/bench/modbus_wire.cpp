@@ -1,4 +1,4 @@
-// The slave's thread: sockets, requests, and the answers libmodbus cannot know.
+// The server's thread: sockets, requests, and the answers libmodbus cannot know.
 #include "apps/carpet_loom/plant/bench/modbus_wire.hpp"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ std::expected<std::unique_ptr<ModbusWire>, std::string> ModbusWire::open(const s
         return std::unexpected("Modbus on " + address + ":" + std::to_string(port) + ": " +
                                modbus_strerror(errno) + "; free the port or name another by --modbus-port");
     wire->exchange(climate); // no master may read zeros that are no set points
-    wire->thread_ = std::thread([slave = wire.get()] { slave->serve(); });
+    wire->thread_ = std::thread([server = wire.get()] { server->serve(); });
     return wire;
 }
 

@@ -1,4 +1,4 @@
-// The plant's Modbus TCP slave on libmodbus, in a thread of its own: a slow master never delays the loom.
+// The plant's Modbus TCP server on libmodbus, in a thread of its own: a slow master never delays the loom.
 #pragma once
 
 #include "apps/carpet_loom/plant/climate.hpp"
@@ -24,7 +24,7 @@ public:
 
     /// Swaps registers with the unit; skipped when a request is just being answered.
     void exchange(Climate& climate);
-    /// While it is off the slave's sockets are closed: a master sees connections reset and refused.
+    /// While it is off the server's sockets are closed: a master sees connections reset and refused.
     void set_power(bool on) { powered_.store(on); }
 
 private:

@@ -165,7 +165,7 @@ const char* usage() {
            "  --can NAME               CAN interface (can0)\n"
            "  --gpio-chip FOLDER       gpio-sim chip: sim_gpio<n>/pull and sim_gpio<n>/value lie in it "
            "(none)\n"
-           "  --modbus-address A       numeric address the Modbus TCP slave listens on (127.0.0.1)\n"
+           "  --modbus-address A       numeric address the Modbus TCP server listens on (127.0.0.1)\n"
            "  --modbus-port N          its port; 0 = no Modbus (1502)\n"
            "  --seed N                 which loom (1)\n"
            "  --picks N                end when N picks are woven and the loom stands (at SIGTERM)\n"

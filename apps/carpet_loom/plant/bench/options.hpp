@@ -27,7 +27,7 @@ struct Options {
     std::string report;                       // file; empty: standard output
     Duration period = 200us;                  // polling of the lines
     int fifo_priority = 0;                    // 0: not real-time
-    Outage modbus_stop{};                     // the slave is gone
+    Outage modbus_stop{};                     // the server is gone
     Duration bus_off_at = Duration::max();    // an error frame tells every listener of a bus-off
     Duration edge_burst_at = Duration::max(); // the weft detector's line flutters
     Duration die_at = Duration::max();        // killed, without a report

@@ -102,8 +102,9 @@ TEST(Plain, line_says_state_picks_tension_wires_and_the_activity_nearest_to_its_
     EXPECT_THAT(text,
                 AllOf(HasSubstr("2.0 s"), HasSubstr("weave"), HasSubstr("599 rpm"), HasSubstr("picks 12/30"),
                       HasSubstr("301 N"), HasSubstr("CAN active"), HasSubstr("io 90/300 us")));
-    EXPECT_TRUE(std::ranges::all_of(text, [](char letter) { return letter >= ' ' && letter <= '~'; }))
-        << "neither colours nor line ends";
+    EXPECT_TRUE(std::ranges::all_of(text, [](char character) {
+        return character >= ' ' && character <= '~';
+    })) << "neither colours nor line ends";
 }
 
 TEST(Plain, stop_names_cause_angle_and_error_where_there_is_one) {

@@ -14,9 +14,9 @@ namespace {
 /// The demo's plant at the host's loom.
 loom::Report report_of(std::int64_t picks, std::uint64_t seed) {
     const std::vector<std::string> words = troubles(picks);
-    std::vector<const char*> letters{"carpet-loom-plant"};
-    for (const std::string& word : words) letters.push_back(word.c_str());
-    const auto options = loom::parse_options(static_cast<int>(letters.size()), letters.data());
+    std::vector<const char*> characters{"carpet-loom-plant"};
+    for (const std::string& word : words) characters.push_back(word.c_str());
+    const auto options = loom::parse_options(static_cast<int>(characters.size()), characters.data());
     EXPECT_TRUE(options) << (options ? "" : options.error());
     loom::Settings settings = options->settings;
     settings.last_pick = static_cast<std::uint64_t>(picks);

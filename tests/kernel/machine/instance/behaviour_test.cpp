@@ -1,5 +1,5 @@
 // A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script or a program table, in the
-// component's activity, behind its commands and events; what it may touch the table checks.
+// component's activity, after its commands and events; what it may touch the table checks.
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -80,12 +80,12 @@ TEST(Behaviour, the_stop_of_its_component_leads_to_the_final_state_and_its_start
     Bakery rig;
     rig.run(10ms);
     rig.oven().told.clear();
-    static_cast<void>(rig.instance.ask_component(0, LifeChange::stop));
+    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::stop));
     rig.run(5ms);
     const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
     EXPECT_EQ(rig.state(unit), "Off");
     EXPECT_THAT(rig.oven().told, ElementsAre(99));
-    static_cast<void>(rig.instance.ask_component(0, LifeChange::start));
+    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::start));
     rig.run(5ms);
     EXPECT_EQ(rig.state(unit), "Cold");
 }
@@ -110,9 +110,9 @@ TEST(Behaviour, that_takes_its_time_to_end_comes_to_its_end_before_its_component
         const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
         EXPECT_EQ(rig.state(unit), "Cold");
         rig.oven().told.clear();
-        static_cast<void>(rig.instance.ask_component(0, LifeChange::stop));
+        static_cast<void>(rig.instance.life().ask_component(0, LifeChange::stop));
         rig.run(1ms + stopped_for);
-        static_cast<void>(rig.instance.ask_component(0, LifeChange::start));
+        static_cast<void>(rig.instance.life().ask_component(0, LifeChange::start));
         rig.run(50ms);
         EXPECT_EQ(rig.state(unit), "Cold");
         EXPECT_THAT(rig.oven().told, ElementsAre(99, 1));
@@ -139,7 +139,7 @@ TEST(Behaviour, that_fails_on_its_way_to_the_end_does_not_begin_anew_by_itself) 
     rig.run(10ms);
     const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
     rig.oven().told.clear();
-    static_cast<void>(rig.instance.ask_component(0, LifeChange::restart)); // the feeder rejects eleven
+    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::restart)); // the feeder rejects eleven
     rig.run(50ms);
     StateMachineExecution& machine = *unit.parts()[0].machine;
     EXPECT_TRUE(machine.in_error());

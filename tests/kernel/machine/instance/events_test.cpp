@@ -91,7 +91,7 @@ struct Watcher {
     std::vector<Seen> seen;
     Sentence configure(Setup& setup) {
         machine = setup.machine;
-        machine->show_events_to({&Watcher::observe, this});
+        machine->observation().show_events_to({&Watcher::observe, this});
         return {};
     }
     static void observe(void* self, std::size_t event, const std::byte* packed, Time now) noexcept
@@ -150,7 +150,7 @@ struct Rig {
             if (plan.subscriptions[s].kind != SubscriberKind::observer &&
                 !plan.subscriptions[s].synchronous &&
                 facet_at(instance.machine().table, plan.subscriptions[s].target).name == operation)
-                return instance.counts_of(s);
+                return instance.observation().counts_of(s);
         ADD_FAILURE() << "no row tells " << operation;
         return {};
     }
@@ -262,7 +262,7 @@ TEST(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
     const auto& table_of = rig.instance.machine().table;
     const std::size_t shaft = find_component(table_of, "shaft");
     const std::size_t beat_up = find_facet(table_of.components[shaft], "beat_up");
-    const EventHandle handle = rig.instance.observe_event(shaft, beat_up);
+    const EventHandle handle = rig.instance.observation().observe_event(shaft, beat_up);
     ASSERT_TRUE(handle.valid());
     EXPECT_FALSE(handle.connected());
     rig.shaft.to_emit = {1.0};
@@ -272,7 +272,7 @@ TEST(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
     rig.shaft.to_emit = {2.0};
     rig.pass(20ms);
     ASSERT_EQ(rig.watcher.seen.size(), 1u);
-    EXPECT_EQ(rig.watcher.seen[0].event, rig.instance.observed_index({shaft, beat_up}));
+    EXPECT_EQ(rig.watcher.seen[0].event, rig.instance.observation().observed_index({shaft, beat_up}));
     EXPECT_EQ(rig.watcher.seen[0].angle, 2.0);
     EXPECT_GT(rig.watcher.seen[0].when, Time{} + 20ms);
     handle.disconnect();
@@ -285,10 +285,11 @@ TEST(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_any)
     Rig rig;
     rig.console.beat.connect();
     const End beat_up{find_component(rig.instance.machine().table, "shaft"), 0};
-    rig.instance.observe_event(beat_up.component, beat_up.facet).connect();
+    rig.instance.observation().observe_event(beat_up.component, beat_up.facet).connect();
     rig.shaft.to_emit.assign(3 * observer_quota, 1.0);
     rig.pass(1ms);
-    EXPECT_EQ(rig.instance.counts_of(rig.instance.observed_index(beat_up)).lost, 2 * observer_quota);
+    EXPECT_EQ(rig.instance.observation().counts_of(rig.instance.observation().observed_index(beat_up)).lost,
+              2 * observer_quota);
     rig.pass(20ms);
     EXPECT_EQ(rig.console.beats.size(), 4u) << "its own queue";
 }
@@ -298,10 +299,11 @@ TEST(TheObserver, cannot_be_connected_to_what_exceeds_a_message_or_is_no_event) 
     const auto& table_of = rig.instance.machine().table;
     const std::size_t shaft = find_component(table_of, "shaft");
     for (const std::string_view facet : {"profile", "announce"})
-        EXPECT_FALSE(
-            rig.instance.observe_event(shaft, find_facet(table_of.components[shaft], facet)).valid());
+        EXPECT_FALSE(rig.instance.observation()
+                         .observe_event(shaft, find_facet(table_of.components[shaft], facet))
+                         .valid());
     const EventHandle standing =
-        rig.instance.observe_event(shaft, find_facet(table_of.components[shaft], "standing"));
+        rig.instance.observation().observe_event(shaft, find_facet(table_of.components[shaft], "standing"));
     EXPECT_TRUE(standing.valid()) << "although no row names it";
     standing.connect();
     rig.shaft.standing();

@@ -107,7 +107,7 @@ struct Panel {
     void work(const Cycle&) {
         for (; presses_left != 0; --presses_left) pressed();
         if (restart_activity == nowhere) return;
-        ticket = machine->ask_activity(restart_activity, LifeChange::restart);
+        ticket = machine->life().ask_activity(restart_activity, LifeChange::restart);
         restart_activity = nowhere;
     }
     static constexpr auto interface() {
@@ -161,15 +161,16 @@ struct Machine : testing::Test {
     void start() { ASSERT_EQ(world.start().view(), ""); }
     void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
     template <class T> T& the(std::string_view name) { return *instance.find<T>(name); }
-    ComponentState state(std::size_t component) { return instance.state_of(component); }
+    ComponentState state(std::size_t component) { return instance.life().state_of(component); }
     /// Asks and lets the engine serve it.
     LifeAnswer change(std::size_t component, LifeChange change) {
-        const LifeTicket ticket = instance.ask_component(component, change);
+        const LifeTicket ticket = instance.life().ask_component(component, change);
         EXPECT_TRUE(world.run_until(clock.now() + 20ms));
-        return instance.answer_of_component(component, ticket);
+        return instance.life().answer_of_component(component, ticket);
     }
     std::string words(std::size_t component, LifeAnswer answer) {
-        return std::string{instance.describe(instance.machine().index.activity[component], answer).view()};
+        return std::string{
+            instance.life().describe(instance.machine().index.activity[component], answer).view()};
     }
 };
 
@@ -274,13 +275,13 @@ TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_n
     the<Panel>("panel").presses_left = 3;
     run(20ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 0u);
-    EXPECT_EQ(instance.dropped_messages(), 3u);
+    EXPECT_EQ(instance.observation().dropped_messages(), 3u);
     static_cast<void>(change(axis, LifeChange::start));
     EXPECT_EQ(the<Axis>("axis").kicks, 0u) << "what was dropped does not come later";
     the<Panel>("panel").presses_left = 2;
     run(20ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 2u);
-    EXPECT_EQ(instance.lost_emissions(), 0u);
+    EXPECT_EQ(instance.observation().lost_emissions(), 0u);
 }
 
 TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_and_that_is_counted_too) {
@@ -293,7 +294,7 @@ TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_
     the_axis.turned();
     the_axis.turned();
     EXPECT_EQ(the<Gate>("gate").turns, 1);
-    EXPECT_EQ(instance.dropped_messages(), 2u);
+    EXPECT_EQ(instance.observation().dropped_messages(), 2u);
     static_cast<void>(change(gate, LifeChange::start));
     the_axis.turned();
     EXPECT_EQ(the<Gate>("gate").turns, 2);
@@ -325,11 +326,11 @@ TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to
 TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_others) {
     start();
     run(5ms);
-    const LifeTicket first = instance.ask_component(axis, LifeChange::restart);
-    const LifeTicket second = instance.ask_component(axis, LifeChange::stop);
+    const LifeTicket first = instance.life().ask_component(axis, LifeChange::restart);
+    const LifeTicket second = instance.life().ask_component(axis, LifeChange::stop);
     run(5ms);
-    EXPECT_EQ(instance.answer_of_component(axis, first).outcome, LifeOutcome::superseded);
-    EXPECT_EQ(instance.answer_of_component(axis, second).outcome, LifeOutcome::done);
+    EXPECT_EQ(instance.life().answer_of_component(axis, first).outcome, LifeOutcome::superseded);
+    EXPECT_EQ(instance.life().answer_of_component(axis, second).outcome, LifeOutcome::done);
     EXPECT_EQ(state(axis), ComponentState::stopped);
     EXPECT_EQ(the<Axis>("axis").starts, 1u);
 }
@@ -347,22 +348,23 @@ std::uint64_t under_random_wishes(std::uint64_t seed) {
         const auto component = static_cast<std::size_t>(random.between(sensor, careful));
         const auto change = static_cast<LifeChange>(random.between(0, 2));
         instance.find<Panel>("panel")->presses_left += static_cast<std::uint64_t>(random.between(0, 2));
-        const LifeTicket ticket = instance.ask_component(component, change);
+        const LifeTicket ticket = instance.life().ask_component(component, change);
         EXPECT_TRUE(world.run_until(clock.now() + 10ms));
-        const LifeAnswer answer = instance.answer_of_component(component, ticket);
+        const LifeAnswer answer = instance.life().answer_of_component(component, ticket);
         EXPECT_NE(answer.outcome, LifeOutcome::pending);
         const bool runs = answer.outcome == LifeOutcome::done && change != LifeChange::stop;
         if (answer.outcome == LifeOutcome::done || change == LifeChange::restart) {
-            EXPECT_EQ(instance.state_of(component), runs ? ComponentState::running : ComponentState::stopped)
+            EXPECT_EQ(instance.life().state_of(component),
+                      runs ? ComponentState::running : ComponentState::stopped)
                 << "seed " << seed << ", wish " << n;
         }
-        if (instance.state_of(axis) != ComponentState::running) {
+        if (instance.life().state_of(axis) != ComponentState::running) {
             EXPECT_EQ(the_axis.drive.last(), 0.0);
         }
     }
     EXPECT_EQ(the_axis.steps_outside, 0u) << "seed " << seed;
     world.stop();
-    return instance.event_log_digest();
+    return instance.observation().event_log_digest();
 }
 
 TEST(LifeUnderRandomWishes, no_component_is_stepped_or_told_outside_of_its_life_and_every_run_is_the_same) {
@@ -399,7 +401,9 @@ TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activi
     EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(),
               "component \"sensor\" could not be initialised: the probe is not plugged in; plug it in");
     EXPECT_EQ(state(sensor), ComponentState::failed);
-    EXPECT_EQ(instance.answer_of_component(sensor, instance.ask_component(sensor, LifeChange::start)).outcome,
+    EXPECT_EQ(instance.life()
+                  .answer_of_component(sensor, instance.life().ask_component(sensor, LifeChange::start))
+                  .outcome,
               LifeOutcome::refused);
     run(10ms); // the others go on
     the<Sensor>("sensor").refuses = {};
@@ -441,8 +445,8 @@ TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stoppe
     EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
     run(10ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 0u);
-    EXPECT_EQ(instance.dropped_messages(), 5u);
-    EXPECT_EQ(instance.lost_emissions(), 0u);
+    EXPECT_EQ(instance.observation().dropped_messages(), 5u);
+    EXPECT_EQ(instance.observation().lost_emissions(), 0u);
 }
 
 TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stopped) {
@@ -460,11 +464,13 @@ TEST_F(LifeOfAnActivity, is_restarted_by_the_supervisor_when_a_component_of_anot
     run(10ms);
     the<Panel>("panel").restart_activity = motion;
     run(10ms);
-    EXPECT_EQ(instance.answer_of_activity(motion, the<Panel>("panel").ticket).outcome, LifeOutcome::done);
+    EXPECT_EQ(instance.life().answer_of_activity(motion, the<Panel>("panel").ticket).outcome,
+              LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
     the<Panel>("panel").restart_activity = office; // and its own
     run(10ms);
-    EXPECT_EQ(instance.answer_of_activity(office, the<Panel>("panel").ticket).outcome, LifeOutcome::done);
+    EXPECT_EQ(instance.life().answer_of_activity(office, the<Panel>("panel").ticket).outcome,
+              LifeOutcome::done);
     EXPECT_EQ(state(panel), ComponentState::running);
     EXPECT_EQ(instance.engines()[slow].is_active(), true);
 }

@@ -227,9 +227,9 @@ TEST(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_mac
     const End zero{0, find_facet(seen.components[0], "zero")};
     const End distance{0, find_facet(seen.components[0], "distance")};
     MethodRequest request;
-    ASSERT_TRUE(rig.instance.request_method(zero, request, {}));
+    ASSERT_TRUE(rig.instance.requests().request_method(zero, request, {}));
     EXPECT_FALSE(request.done());
-    EXPECT_FALSE(rig.instance.request_method(zero, request, {}));
+    EXPECT_FALSE(rig.instance.requests().request_method(zero, request, {}));
     EXPECT_EQ(rig.axis.position, 40.0); // never in the caller
     rig.pass(1ms);
     EXPECT_TRUE(request.done());
@@ -237,12 +237,12 @@ TEST(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_mac
     std::array<std::byte, 17> values{};
     detail::store_packed(values.data(), -3.0);
     detail::store_packed(values.data() + 8, true);
-    EXPECT_FALSE(rig.instance.request_method(distance, request, std::span{values}.first(16)));
-    ASSERT_TRUE(rig.instance.request_method(distance, request, values));
+    EXPECT_FALSE(rig.instance.requests().request_method(distance, request, std::span{values}.first(16)));
+    ASSERT_TRUE(rig.instance.requests().request_method(distance, request, values));
     rig.pass(1ms);
     EXPECT_EQ(detail::load_packed<double>(values.data() + 9), 3.0);
-    EXPECT_FALSE(
-        rig.instance.request_method({0, find_facet(seen.components[0], "move_to")}, request, values));
+    EXPECT_FALSE(rig.instance.requests().request_method({0, find_facet(seen.components[0], "move_to")},
+                                                        request, values));
 }
 
 // ---- the life of a command
@@ -426,10 +426,10 @@ TEST(Commands, one_that_knows_no_types_sends_from_packed_bytes_and_follows_to_th
     ASSERT_EQ(operations.arguments, type_id<Arguments<double>>);
     ASSERT_EQ(operations.results, type_id<Arguments<int>>);
     AnySlot any;
-    ASSERT_TRUE(rig.instance.bind_command(move_to, any.slot, any.values));
+    ASSERT_TRUE(rig.instance.requests().bind_command(move_to, any.slot, any.values));
     detail::store_packed(any.values.data(), 2.0);
     ASSERT_TRUE(any.slot.send());
-    EXPECT_FALSE(rig.instance.bind_command(move_to, any.slot, any.values)); // it is on its way
+    EXPECT_FALSE(rig.instance.requests().bind_command(move_to, any.slot, any.values)); // it is on its way
     rig.pass(3ms);
     ASSERT_EQ(any.slot.state(), CommandState::done);
     EXPECT_EQ(detail::load_packed<int>(any.values.data() + operations.argument_bytes), 2);
@@ -439,10 +439,10 @@ TEST(Commands, what_is_no_command_or_has_no_room_is_not_bound) {
     Rig rig;
     const MachineView& seen = rig.instance.machine().table;
     AnySlot any;
-    EXPECT_FALSE(
-        rig.instance.bind_command({0, find_facet(seen.components[0], "distance")}, any.slot, any.values));
-    EXPECT_FALSE(rig.instance.bind_command({0, find_facet(seen.components[0], "move_to")}, any.slot,
-                                           std::span{any.values}.first(11)));
+    EXPECT_FALSE(rig.instance.requests().bind_command({0, find_facet(seen.components[0], "distance")},
+                                                      any.slot, any.values));
+    EXPECT_FALSE(rig.instance.requests().bind_command({0, find_facet(seen.components[0], "move_to")},
+                                                      any.slot, std::span{any.values}.first(11)));
 }
 
 TEST(Commands, a_flood_of_requested_ones_takes_no_place_from_those_of_the_table) {
@@ -452,7 +452,7 @@ TEST(Commands, a_flood_of_requested_ones_takes_no_place_from_those_of_the_table)
     std::vector<AnySlot> many(64);
     std::size_t rejected = 0;
     for (AnySlot& any : many) {
-        ASSERT_TRUE(rig.instance.bind_command(mark, any.slot, any.values));
+        ASSERT_TRUE(rig.instance.requests().bind_command(mark, any.slot, any.values));
         ASSERT_TRUE(any.slot.send());
         rejected += any.slot.state() == CommandState::rejected ? 1u : 0u;
     }

@@ -104,9 +104,9 @@ protected:
         pass(10ms);
     }
     void pass(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
-    const ReactionTimes& logic_told() { return *instance.times_of_reaction(tells_logic); }
-    const ReactionTimes& brake_told() { return *instance.times_of_reaction(tells_brake); }
-    const ReactionTimes& logic_woken() { return *instance.times_of_connection(wakes_logic); }
+    const ReactionTimes& logic_told() { return *instance.observation().times_of_reaction(tells_logic); }
+    const ReactionTimes& brake_told() { return *instance.observation().times_of_reaction(tells_brake); }
+    const ReactionTimes& logic_woken() { return *instance.observation().times_of_connection(wakes_logic); }
 };
 
 TEST_F(Reactions, are_timed_from_the_edge_over_all_activities_to_the_end_of_what_it_caused) {
@@ -146,8 +146,9 @@ TEST_F(Reactions, are_not_counted_when_no_edge_caused_them) {
 }
 
 TEST_F(Reactions, are_kept_for_each_row_by_itself) {
-    EXPECT_NE(instance.times_of_connection(wakes_logic), nullptr);
-    EXPECT_NE(instance.times_of_reaction(tells_logic), instance.times_of_reaction(tells_brake));
+    EXPECT_NE(instance.observation().times_of_connection(wakes_logic), nullptr);
+    EXPECT_NE(instance.observation().times_of_reaction(tells_logic),
+              instance.observation().times_of_reaction(tells_brake));
 }
 
 TEST(ReactionTimes, have_bins_of_powers_of_two_of_a_microsecond) {

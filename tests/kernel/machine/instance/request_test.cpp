@@ -84,7 +84,7 @@ struct Rig {
         message.run = &Machinist::ask;
         message.object = &machinist(name);
         std::memcpy(message.arguments.data(), &value, sizeof value);
-        return instance.post_request(activity, message);
+        return instance.requests().post(activity, message);
     }
 };
 

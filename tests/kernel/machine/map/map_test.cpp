@@ -117,7 +117,7 @@ protected:
     void SetUp() override {
         ASSERT_TRUE(instance.configure({}));
         world.start();
-        seen = os::map_to_read(instance.shared_descriptor());
+        seen = os::map_to_read(instance.observation().shared_descriptor());
         const auto opened = map::View::open(seen);
         ASSERT_TRUE(opened) << opened.error().view();
         view = *opened;
@@ -272,8 +272,8 @@ TEST_F(Map, lies_in_memory_that_holds_no_stack) {
 TEST_F(Map, is_absent_where_nothing_sees_the_machine) {
     MachineInstance alone{Firmware<blind, board>::machine(), clock};
     ASSERT_TRUE(alone.configure({}));
-    EXPECT_TRUE(alone.shared_memory().empty());
-    EXPECT_EQ(alone.shared_descriptor(), -1);
+    EXPECT_TRUE(alone.observation().shared_memory().empty());
+    EXPECT_EQ(alone.observation().shared_descriptor(), -1);
 }
 
 TEST_F(Map, is_refused_by_a_reader_when_it_is_damaged_cut_or_of_another_layout) {

@@ -53,18 +53,18 @@ protected:
         std::ranges::copy(text, slot.text().begin());
         return std::string{slot.compile(text.size(), name).view()};
     }
-    std::string wish(BehaviourSlot::Wish wish, std::string_view moment = "now") {
+    std::string wish(BehaviourSlot::Change wish, std::string_view moment = "now") {
         SlotMoment at;
         if (const Sentence fault = slot.parse_moment(moment, at); !fault.empty())
             return std::string{fault.view()};
         if (const Sentence fault = slot.may(wish); !fault.empty()) return std::string{fault.view()};
-        EXPECT_TRUE(slot.wish(wish, at));
-        EXPECT_TRUE(instance.post_wish(slot));
+        EXPECT_TRUE(slot.ask(wish, at));
+        EXPECT_TRUE(instance.requests().post_change(slot));
         return {};
     }
     std::string load(std::string_view text, std::string_view moment = "now") {
         const std::string fault = compile(text);
-        return fault.empty() ? wish(BehaviourSlot::Wish::take_over, moment) : fault;
+        return fault.empty() ? wish(BehaviourSlot::Change::take_over, moment) : fault;
     }
     void load_and_settle(std::string_view text) {
         EXPECT_EQ(load(text), "");
@@ -79,7 +79,7 @@ protected:
         for (std::size_t s = 0; s < machine.plan.subscriptions.size(); ++s)
             if (machine.plan.subscriptions[s].kind == SubscriberKind::trigger &&
                 facet_at(machine.table, machine.plan.subscriptions[s].event).name == event)
-                count += instance.counts_of(s).posted;
+                count += instance.observation().counts_of(s).posted;
         return count;
     }
 };
@@ -108,7 +108,7 @@ TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears
     run(2ms);
     EXPECT_EQ(posted("tick"), 1u);
     EXPECT_EQ(posted("moved"), 0u);
-    EXPECT_EQ(wish(BehaviourSlot::Wish::unload), "");
+    EXPECT_EQ(wish(BehaviourSlot::Change::unload), "");
     run(3ms);
     oven().tick.emit();
     run(2ms);
@@ -258,23 +258,23 @@ TEST_F(BehaviourSlotTest, while_one_is_on_trial_no_other_is_loaded) {
 TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for) {
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
-    EXPECT_EQ(wish(BehaviourSlot::Wish::roll_back), "");
+    EXPECT_EQ(wish(BehaviourSlot::Change::roll_back), "");
     run(3ms);
     EXPECT_THAT(oven().told, ElementsAre(21, 1));
     EXPECT_EQ(slot.last_roll_back(), RollBack::asked);
-    EXPECT_EQ(wish(BehaviourSlot::Wish::unload), "");
+    EXPECT_EQ(wish(BehaviourSlot::Change::unload), "");
     run(3ms);
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
     EXPECT_THAT(oven().told, ElementsAre(21, 1, 11));
-    EXPECT_THAT(wish(BehaviourSlot::Wish::unload), HasSubstr("nothing is loaded"));
+    EXPECT_THAT(wish(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
 }
 
 TEST_F(BehaviourSlotTest, there_is_no_way_back_behind_a_bank_that_was_written_over) {
-    EXPECT_THAT(wish(BehaviourSlot::Wish::roll_back), HasSubstr("no earlier behaviour"));
+    EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
     EXPECT_THAT(compile("nonsense"), HasSubstr("test.osd:1:1"));
-    EXPECT_THAT(wish(BehaviourSlot::Wish::roll_back), HasSubstr("no earlier behaviour"));
+    EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     run(3ms);
     EXPECT_EQ(state_now(), "Begin");
 }
@@ -311,7 +311,7 @@ constexpr std::string_view slow_to_end =
 
 TEST_F(BehaviourSlotTest, what_needs_time_to_end_comes_to_its_end_before_it_begins_again) {
     load_and_settle(slow_to_end);
-    static_cast<void>(instance.ask_component(0, LifeChange::restart));
+    static_cast<void>(instance.life().ask_component(0, LifeChange::restart));
     run(10ms);
     EXPECT_THAT(oven().told, IsEmpty());
     run(50ms);
@@ -320,7 +320,7 @@ TEST_F(BehaviourSlotTest, what_needs_time_to_end_comes_to_its_end_before_it_begi
 
 TEST_F(BehaviourSlotTest, what_is_to_begin_again_does_not_when_another_takes_over_meanwhile) {
     load_and_settle(slow_to_end);
-    static_cast<void>(instance.ask_component(0, LifeChange::restart));
+    static_cast<void>(instance.life().ask_component(0, LifeChange::restart));
     run(10ms);
     EXPECT_EQ(load(numbered(3)), "");
     run(50ms);
@@ -332,17 +332,17 @@ TEST_F(BehaviourSlotTest, what_another_takes_over_from_does_not_begin_again_with
     EXPECT_EQ(load(numbered(3)), "");
     run(10ms);
     EXPECT_EQ(slot.phase(), SlotPhase::handing_over);
-    static_cast<void>(instance.ask_component(0, LifeChange::restart));
+    static_cast<void>(instance.life().ask_component(0, LifeChange::restart));
     run(50ms);
     EXPECT_THAT(oven().told, ElementsAre(2, 3));
 }
 
 TEST_F(BehaviourSlotTest, the_stop_of_its_component_ends_it_safely_and_its_start_begins_again) {
     load_and_settle(numbered(1));
-    static_cast<void>(instance.ask_component(0, LifeChange::stop));
+    static_cast<void>(instance.life().ask_component(0, LifeChange::stop));
     run(3ms);
     EXPECT_THAT(oven().told, ElementsAre(11));
-    static_cast<void>(instance.ask_component(0, LifeChange::start));
+    static_cast<void>(instance.life().ask_component(0, LifeChange::start));
     run(3ms);
     EXPECT_THAT(oven().told, ElementsAre(11, 1));
 }

@@ -176,9 +176,9 @@ TEST_F(ALoopInVirtualTime, that_returned_by_itself_runs_again_upon_the_next_wake
 TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
     ASSERT_EQ(world.start().view(), "");
     run(5ms);
-    const LifeTicket ticket = instance.ask_component(0, LifeChange::restart);
+    const LifeTicket ticket = instance.life().ask_component(0, LifeChange::restart);
     run(5ms);
-    EXPECT_EQ(instance.answer_of_component(0, ticket).outcome, LifeOutcome::done);
+    EXPECT_EQ(instance.life().answer_of_component(0, ticket).outcome, LifeOutcome::done);
     EXPECT_EQ(reader.starts, 2);
     EXPECT_TRUE(reader.in_loop);
 }
@@ -194,7 +194,7 @@ TEST_F(ALoopInVirtualTime, is_the_same_in_every_run) {
         again.find<Talker>("talker")->to_say = words;
         EXPECT_TRUE(its_world.run_until(at_ns(0) + 200ms));
         its_world.stop();
-        return again.event_log_digest();
+        return again.observation().event_log_digest();
     };
     EXPECT_EQ(digest(100), digest(100));
     EXPECT_NE(digest(100), digest(99));
@@ -218,9 +218,10 @@ struct ALoopInRealTime : testing::Test {
         talker = instance.find<Talker>("talker");
         reader->from = input[0];
         const int nowhere_to_print = open("/dev/null", O_WRONLY);
-        ASSERT_TRUE(world.arm(report, nowhere_to_print));
+        const auto armed = world.arm(report, nowhere_to_print);
+        ASSERT_TRUE(armed);
         close(nowhere_to_print);
-        ASSERT_TRUE(world.start());
+        ASSERT_TRUE(world.start(*armed));
     }
     void say(char byte) { ASSERT_EQ(write(input[1], &byte, 1), 1); }
     template <class Condition> bool comes_true(Condition&& condition) {

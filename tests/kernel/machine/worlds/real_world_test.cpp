@@ -35,9 +35,10 @@ public:
     bool runs() {
         watched::stops().clear();
         const int nowhere_to_print = open("/dev/null", O_WRONLY);
-        const bool armed = instance.configure({}).has_value() && world->arm(*report, nowhere_to_print);
+        if (!instance.configure({})) return false;
+        const auto armed = world->arm(*report, nowhere_to_print);
         close(nowhere_to_print);
-        return armed && world->start();
+        return armed && world->start(*armed);
     }
     Worker& worker(std::string_view name) { return *instance.template find<Worker>(name); }
 };

@@ -52,6 +52,21 @@ TEST(VirtualWorld, stops_the_last_row_first) {
     EXPECT_EQ(rig.worker("driver").level.last(), 0);
 }
 
+TEST(VirtualWorldDeathTest, does_nothing_to_an_engine_that_runs_that_is_for_one_that_stands) {
+    Rig<watched::table> rig;
+    Engine& engine = rig.instance.engines()[0];
+    EXPECT_FALSE(rig.instance.standing());
+    constexpr auto* sentence =
+        "contract 107 engine-runs: What is for an engine that stands was asked of activity 0 while it ran";
+    EXPECT_DEATH(engine.place(engine.plan(), rig.clock), sentence);
+    EXPECT_DEATH(static_cast<void>(engine.initialise()), sentence);
+    EXPECT_DEATH(engine.finalise(), sentence);
+    EXPECT_DEATH(static_cast<void>(engine.readiness(rig.clock.now())), sentence);
+    EXPECT_DEATH(static_cast<void>(rig.instance.configure({})), "contract 107");
+    rig.world.stop();
+    EXPECT_TRUE(rig.instance.standing());
+}
+
 TEST(VirtualWorld, runs_processes_before_the_engines_of_the_same_instant) {
     struct Feeder {
         Time due = at_ns(0) + 3ms;

@@ -41,7 +41,7 @@ TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
     for (const browsing::VerbRow& row : browsing::verbs) {
         const bool looks = row.name == "hello" || row.name == "map" || row.name == "get" ||
                            row.name == "forced" || row.name == "subscribe" || row.name == "unsubscribe" ||
-                           row.name == "behaviours";
+                           row.name == "behaviours" || row.name == "counters";
         const bool acts = row.name == "call" || row.name == "send";
         EXPECT_EQ(row.role, looks  ? Role::observer
                             : acts ? Role::machine_operator
@@ -99,7 +99,7 @@ TEST_F(Press, a_client_that_floods_is_served_its_share_and_no_more) {
     const std::int64_t before = service.requests.last();
     run(100ms);
     EXPECT_LE(service.requests.last() - before,
-              static_cast<std::int64_t>(6 * browsing::Door::packets_each_cycle));
+              static_cast<std::int64_t>(6 * browsing::Connections::packets_each_cycle));
     EXPECT_TRUE(has(ask(quiet, "2 hello", 40ms), R"("ok": true)")) << "the other one does not wait for it";
 }
 

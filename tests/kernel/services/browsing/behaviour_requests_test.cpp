@@ -41,8 +41,8 @@ constexpr std::string_view script = "StateMachine Pressing {\n"
 
 std::string in_quotes(std::string_view text) {
     std::string word{"\""};
-    for (const char letter : text)
-        word += letter == '"' || letter == '\\' ? std::string{'\\', letter} : std::string{letter};
+    for (const char character : text)
+        word += character == '"' || character == '\\' ? std::string{'\\', character} : std::string{character};
     return word + "\"";
 }
 

@@ -17,7 +17,7 @@ TEST_F(Press, nothing_is_forced_over_what_a_stopped_component_left_behind_while_
     EXPECT_TRUE(has(ask(talker, "1 stop table"), R"("ok": true)"));
     EXPECT_TRUE(has(ask(talker, "2 force table.height 7"), left_safe));
     EXPECT_TRUE(has(ask(talker, "3 get table.height"), R"("value": 50, "flow": "fresh", "forced": false)"));
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
     EXPECT_TRUE(has(ask(talker, "4 force shelf.height 7"), R"("ok": true)")) << "that one runs";
     EXPECT_TRUE(has(ask(talker, "5 start table"), R"("ok": true)"));
     EXPECT_TRUE(has(ask(talker, "6 force table.height 7"), R"("ok": true)"));
@@ -37,7 +37,7 @@ TEST_F(Press, nothing_is_forced_that_was_asked_for_in_the_moment_of_the_stop) {
     EXPECT_EQ(ram().place.last(), 0.0);
     EXPECT_TRUE(has(ask(talker, "4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
     EXPECT_TRUE(has(ask(talker, "5 get ram.limit"), R"("forced": false)"));
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
 TEST_F(Press, a_request_that_its_client_was_told_is_not_done_is_not_done_later_either) {

@@ -67,15 +67,15 @@ TEST_F(Press, a_forced_output_shows_everywhere_and_is_released_again) {
     EXPECT_TRUE(has(ask(talker, "1 force table.height 30"), R"("ok": true)"));
     run(50ms);
     EXPECT_EQ(ram().limit.get(), 30.0);
-    EXPECT_EQ(instance.observed().forced.load(), 1u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 1u);
     EXPECT_TRUE(has(ask(talker, "2 get table.height"), R"("value": 30, "flow": "fresh", "forced": true)"));
     EXPECT_TRUE(has(ask(talker, "3 forced"), R"("forced": ["table.height"])"));
     EXPECT_TRUE(has(ask(talker, "4 force table.height 31"), R"("ok": true)"));
-    EXPECT_EQ(instance.observed().forced.load(), 1u) << "forced twice is forced";
+    EXPECT_EQ(instance.observation().forced_ports().load(), 1u) << "forced twice is forced";
     EXPECT_TRUE(has(ask(talker, "5 release table.height"), R"("ok": true)"));
     run(50ms);
     EXPECT_EQ(ram().limit.get(), 50.0);
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
     EXPECT_TRUE(has(ask(talker, "6 forced"), R"("forced": [])"));
 }
 
@@ -96,7 +96,7 @@ TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_it_and_its_safe_valu
     EXPECT_TRUE(has(ask(talker, "3 stop ram"), R"("ok": true)"));
     EXPECT_TRUE(has(ask(talker, "4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
     EXPECT_EQ(ram().limit_at_stop, 50.0) << "the forced 5 would hide the last word of whoever writes it";
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
     EXPECT_TRUE(has(ask(talker, "5 forced"), R"("forced": [])"));
 }
 
@@ -106,7 +106,7 @@ TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_those_that_read_it) 
     EXPECT_TRUE(has(ask(talker, "2 stop table"), R"("ok": true)"));
     run(20ms);
     EXPECT_EQ(ram().limit.get(), 50.0) << "what the table left behind";
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
     EXPECT_TRUE(has(ask(talker, "3 force ram.limit 6"), R"("ok": true)")) << "who wants it again, says so";
     EXPECT_TRUE(has(ask(talker, "4 stop activity:slow"), R"("ok": true)"));
     run(20ms);
@@ -119,14 +119,14 @@ TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had
     EXPECT_TRUE(has(ask(talker, "2 force ram.limit 5"), R"("ok": true)"));
     EXPECT_TRUE(has(ask(talker, "3 force table.height 7"), R"("ok": true)"));
     run(20ms);
-    EXPECT_EQ(instance.observed().forced.load(), 3u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 3u);
     world.stop();
     EXPECT_EQ(ram().place.last(), 0.0);
     EXPECT_EQ(ram().limit_at_stop, 50.0) << "the table, which stops first, ended its force too";
     double seen = -1;
     PortAccess::data<double>.read(&ram().limit, true, reinterpret_cast<std::byte*>(&seen));
     EXPECT_EQ(seen, 50.0);
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
 TEST_F(Press, what_cannot_be_forced_is_refused_with_the_reason) {
@@ -134,7 +134,7 @@ TEST_F(Press, what_cannot_be_forced_is_refused_with_the_reason) {
     EXPECT_TRUE(has(ask(talker, "1 force table.parts 3"), "is a buffered port"));
     EXPECT_TRUE(has(ask(talker, "2 force ram.speed 3"), "is a property, not an input or an output"));
     EXPECT_TRUE(has(ask(talker, "3 force ram.limit far"), R"("code": "bad_value")"));
-    EXPECT_EQ(instance.observed().forced.load(), 0u);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
 TEST_F(Press, a_method_is_called_in_its_components_engine_and_gives_its_result) {
@@ -175,11 +175,11 @@ TEST_F(Press, a_command_that_is_rejected_says_so) {
 TEST_F(Press, a_component_is_stopped_and_started_while_the_rest_runs) {
     Talker talker{path()};
     EXPECT_TRUE(has(ask(talker, "1 stop ram"), R"("ok": true)"));
-    EXPECT_EQ(instance.state_of(0), ComponentState::stopped);
-    EXPECT_EQ(instance.state_of(1), ComponentState::running);
+    EXPECT_EQ(instance.life().state_of(0), ComponentState::stopped);
+    EXPECT_EQ(instance.life().state_of(1), ComponentState::running);
     EXPECT_TRUE(has(ask(talker, "2 call ram.distance 8"), "does not run; start it first"));
     EXPECT_TRUE(has(ask(talker, "3 start ram"), R"("ok": true)"));
-    EXPECT_EQ(instance.state_of(0), ComponentState::running);
+    EXPECT_EQ(instance.life().state_of(0), ComponentState::running);
     EXPECT_TRUE(has(ask(talker, "4 restart ram"), R"("ok": true)"));
 }
 
@@ -214,7 +214,7 @@ TEST_F(Press, an_event_stays_subscribed_while_anybody_wants_it) {
     EXPECT_TRUE(has(stays.receive(), R"("event": "ram.arrived")"));
     stays.close();
     run(50ms);
-    EXPECT_FALSE(instance.observe_event(0, 2).connected()) << "nobody is left";
+    EXPECT_FALSE(instance.observation().observe_event(0, 2).connected()) << "nobody is left";
 }
 
 TEST_F(Press, the_browser_does_not_stop_itself) {

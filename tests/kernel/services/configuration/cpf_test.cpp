@@ -145,7 +145,7 @@ TEST_F(Cpf, what_is_written_is_read_to_the_same_values) {
         Text<12> label;
         label.length = static_cast<std::uint32_t>(random.below(13));
         for (std::size_t i = 0; i < label.length; ++i)
-            label.letters[i] = static_cast<char>(random.between(1, 127));
+            label.characters[i] = static_cast<char>(random.between(1, 127));
         from.label.set(label);
         Sequence<double, 4> offsets;
         for (std::uint64_t i = random.below(5); i != 0; --i) ASSERT_TRUE(offsets.push(within(-5, 5)));
@@ -179,7 +179,7 @@ TEST_F(Cpf, what_does_not_fit_its_buffer_is_not_written_in_part) {
 
 TEST_F(Cpf, text_that_no_file_keeps_is_not_written) {
     Text<12> zero{"ab"};
-    zero.letters[1] = '\0';
+    zero.characters[1] = '\0';
     arm.label.set(zero);
     PropertyTransaction all;
     all.begin("arm", component_type<Arm>, &arm);
@@ -188,7 +188,7 @@ TEST_F(Cpf, text_that_no_file_keeps_is_not_written) {
     std::array<char, max_cpf_bytes> text{};
     Sentence fault;
     EXPECT_EQ(write_cpf(all, text, fault), 0u);
-    EXPECT_THAT(std::string{fault.view()}, HasSubstr("\"label\" holds a zero letter"));
+    EXPECT_THAT(std::string{fault.view()}, HasSubstr("\"label\" holds a zero character"));
 }
 
 struct Wrong {
@@ -245,7 +245,7 @@ const Wrong wrongs[]{
     {"enumeration", R"(<simple name="side" type="string"><value>lefft</value></simple>)", "2",
      "property \"side\": "},
     {"too long", R"(<simple name="label" type="string"><value>thirteen char</value></simple>)", "2",
-     "more than its 12 letters"},
+     "more than its 12 characters"},
     {"over range",
      "<struct name=\"gains\" type=\"\"><struct name=\"roll\" type=\"\">\n\n<simple name=\"p\" "
      "type=\"double\"><value>10.5</value></simple></struct></struct>",
@@ -291,8 +291,8 @@ const Wrong wrongs[]{
 
 INSTANTIATE_TEST_SUITE_P(Cpf, CpfRefusal, testing::ValuesIn(wrongs), [](const auto& each) {
     std::string name = each.param.what;
-    for (char& letter : name)
-        if (letter == ' ') letter = '_';
+    for (char& character : name)
+        if (character == ' ') character = '_';
     return name;
 });
 

@@ -217,7 +217,7 @@ TEST_F(PropertyFilesOfAMachine, are_replaced_when_the_machine_stands_still_again
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     tension("warp").gain.set(4.5);
-    ASSERT_TRUE(instance.save_properties().empty());
+    ASSERT_TRUE(instance.save_properties(*instance.standing()).empty());
     EXPECT_THAT(get("warp.cpf"), HasSubstr("<value>4.5</value>"));
     EXPECT_TRUE(there("weft.cpf")) << "also the one that was missing";
     EXPECT_FALSE(there("warp.cpf.new")) << "nothing is left beside it";
@@ -229,7 +229,7 @@ TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced)
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     std::filesystem::create_directory(directory / "warp.cpf.new"); // where the new one would be written
-    const std::string said{instance.save_properties().view()};
+    const std::string said{instance.save_properties(*instance.standing()).view()};
     EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
                             HasSubstr("the old file stands")));
     EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
@@ -239,7 +239,7 @@ TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced)
 TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_reading_would_refuse) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
-    const auto saved = [this] { return std::string{instance.save_properties().view()}; };
+    const auto saved = [this] { return std::string{instance.save_properties(*instance.standing()).view()}; };
     tension("warp").gain.set(10.5); // nobody looks at what a component gives itself
     EXPECT_THAT(saved(),
                 AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\": property \"gain\""),
@@ -257,6 +257,15 @@ TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_rea
     EXPECT_EQ(tension("warp").gain_when_configured, 3.5);
 }
 
+using PropertyFilesOfAMachineDeathTest = PropertyFilesOfAMachine;
+
+TEST_F(PropertyFilesOfAMachineDeathTest, are_not_given_to_a_machine_that_is_configured) {
+    put("warp.cpf", cpf(real("gain", "3.5")));
+    ASSERT_EQ(configure(), "");
+    EXPECT_DEATH(instance.read_properties_from(files->store()), "contract 108 wrong-phase");
+    EXPECT_DEATH(instance.browse_in(directory_name), "contract 108 wrong-phase");
+}
+
 struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
     VirtualWorld world{instance};
     PropertiesOfARunningMachine() {
@@ -266,13 +275,19 @@ struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
     }
 };
 
+TEST_F(PropertiesOfARunningMachine, are_not_saved_as_those_of_one_that_stands) {
+    EXPECT_FALSE(instance.standing());
+    world.stop();
+    EXPECT_TRUE(instance.standing());
+}
+
 TEST_F(PropertiesOfARunningMachine, change_together_between_two_steps) {
     static PropertyTransaction transaction;
     EXPECT_TRUE(world.run_until(at_ns(0) + 10ms));
     transaction.begin("warp", component_type<Tension>, &tension("warp"));
     change(transaction, "band.low", 500.0);
     change(transaction, "band.high", 600.0);
-    ASSERT_TRUE(instance.post_request(motion, transaction.commit_message(0)));
+    ASSERT_TRUE(instance.requests().post(motion, transaction.commit_message(0)));
     EXPECT_EQ(tension("warp").band.low.get(), 10.0);
     EXPECT_TRUE(world.run_until(at_ns(0) + 20ms));
     EXPECT_EQ(transaction.state(), PropertyTransaction::State::done);
@@ -287,7 +302,7 @@ TEST_F(PropertiesOfARunningMachine, stay_as_they_are_when_the_component_refuses)
     transaction.begin("edge", component_type<Tension>, &tension("edge"));
     change(transaction, "gain", 9.0);
     change(transaction, "band.low", 21.0);
-    ASSERT_TRUE(instance.post_request(logic, transaction.commit_message(1)));
+    ASSERT_TRUE(instance.requests().post(logic, transaction.commit_message(1)));
     EXPECT_TRUE(world.run_until(at_ns(0) + 20ms));
     EXPECT_EQ(transaction.state(), PropertyTransaction::State::refused);
     EXPECT_THAT(std::string{transaction.refusal().view()}, HasSubstr("spread them"));

@@ -132,13 +132,13 @@ TEST_F(Scope, the_worst_cycle_is_kept_with_what_ran_around_it) {
         const auto count = static_cast<std::uint32_t>(words[at] & 0xffffffff);
         ASSERT_LT(activity, cycles.size());
         ASSERT_LE(at + 1 + count, worst[0]->words);
-        for (std::uint32_t behind = count; behind > 0; ++cycles[activity]) {
-            const std::uint64_t* end = words + at + 1 + behind;
-            const TapeCycle cycle = cycle_of(end[-3], end[-2], end[-1], behind);
+        for (std::uint32_t after = count; after > 0; ++cycles[activity]) {
+            const std::uint64_t* end = words + at + 1 + after;
+            const TapeCycle cycle = cycle_of(end[-3], end[-2], end[-1], after);
             EXPECT_GE(cycle.end, worst[0]->from);
             EXPECT_LE(cycle.begin, worst[0]->to);
-            ASSERT_LE(cycle.words(), behind);
-            behind -= static_cast<std::uint32_t>(cycle.words());
+            ASSERT_LE(cycle.words(), after);
+            after -= static_cast<std::uint32_t>(cycle.words());
         }
         at += 1 + count;
     }

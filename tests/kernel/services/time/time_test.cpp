@@ -207,7 +207,7 @@ TEST_F(ATimedEvent, may_be_armed_anew_by_what_hears_it) {
 
 TEST_F(ATimedEvent, is_forgotten_when_its_component_stops) {
     emit(office.after, Duration{10ms});
-    static_cast<void>(instance.ask_component(2, LifeChange::restart));
+    static_cast<void>(instance.life().ask_component(2, LifeChange::restart));
     run(100ms);
     EXPECT_THAT(office.dues, IsEmpty());
 }
@@ -248,11 +248,11 @@ TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew
     EXPECT_THAT(office.silences, IsEmpty());
     EXPECT_THAT(office.level_silences, IsEmpty());
     EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
-    static_cast<void>(instance.ask_component(worker, LifeChange::stop)); // its activity goes on
+    static_cast<void>(instance.life().ask_component(worker, LifeChange::stop)); // its activity goes on
     run(200ms);
     EXPECT_THAT(office.silences, IsEmpty());
     EXPECT_THAT(office.level_silences, IsEmpty());
-    static_cast<void>(instance.ask_component(worker, LifeChange::start));
+    static_cast<void>(instance.life().ask_component(worker, LifeChange::start));
     the_worker.silent = true;
     run(29ms);
     EXPECT_THAT(office.level_silences, IsEmpty());
@@ -344,7 +344,9 @@ TEST(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) 
     RealWorld world{instance};
     os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
     const int nowhere_to_print = open("/dev/null", O_WRONLY);
-    ASSERT_TRUE(instance.configure({}).has_value() && world.arm(report, nowhere_to_print) && world.start());
+    ASSERT_TRUE(instance.configure({}));
+    const auto armed = world.arm(report, nowhere_to_print);
+    ASSERT_TRUE(armed && world.start(*armed));
     close(nowhere_to_print);
     Rouser& rouser = *instance.find<Rouser>("rouser");
     EXPECT_TRUE(world.supervise(300ms)); // fifteen times the limit
@@ -370,7 +372,7 @@ TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
             again.find<Worker>("worker")->silent = random.below(2) == 0;
             EXPECT_TRUE(its_world.run_until(its_clock.now() + random.between(1, 60) * 1ms));
         }
-        return again.event_log_digest();
+        return again.observation().event_log_digest();
     };
     for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(digest(seed), digest(seed));
     EXPECT_NE(digest(1), digest(2));
@@ -383,7 +385,9 @@ TEST(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle
     RealWorld world{instance};
     os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
     const int nowhere_to_print = open("/dev/null", O_WRONLY);
-    ASSERT_TRUE(instance.configure({}).has_value() && world.arm(report, nowhere_to_print) && world.start());
+    ASSERT_TRUE(instance.configure({}));
+    const auto armed = world.arm(report, nowhere_to_print);
+    ASSERT_TRUE(armed && world.start(*armed));
     close(nowhere_to_print);
     EXPECT_TRUE(world.supervise(100ms));
     instance.find<Worker>("worker")->hang_for = 200ms; // ten times the limit

@@ -92,7 +92,7 @@ public:
                                    }});
         const auto started = run.start();
         EXPECT_TRUE(started.has_value()) << started.error().view();
-        control_.memory = run.instance().shared_descriptor();
+        control_.memory = run.instance().observation().shared_descriptor();
         EXPECT_GE(control_.memory, 0) << "the loom carries no map: is there a browser in its table?";
         for (Duration lived{}; took.size() < cycles && lived < 2 * cycles * 1ms && run.run_for(100ms);)
             lived += 100ms;

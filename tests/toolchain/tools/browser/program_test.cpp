@@ -32,7 +32,7 @@ protected:
         const int code = run_program(words, surroundings);
         return {code, out.str(), errors.str()};
     }
-    /// Behind the requests that open a session.
+    /// After the requests that open a session.
     std::vector<std::string> asked() {
         std::vector<std::string> all;
         for (const std::string& each : machine.requests())

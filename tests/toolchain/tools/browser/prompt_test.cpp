@@ -57,10 +57,10 @@ public:
             }
             pollfd look{terminal_, POLLIN, 0};
             if (::poll(&look, 1, 100) <= 0) continue;
-            char letters[4096];
-            const ssize_t count = ::read(terminal_, letters, sizeof letters);
+            char characters[4096];
+            const ssize_t count = ::read(terminal_, characters, sizeof characters);
             if (count <= 0) break;
-            seen_.append(letters, static_cast<std::size_t>(count));
+            seen_.append(characters, static_cast<std::size_t>(count));
         }
         return false;
     }
@@ -131,7 +131,7 @@ TEST(Prompt, keeps_its_history_for_the_next_session) {
     }
     Typed typed{machine};
     ASSERT_TRUE(typed.shows("sample> "));
-    typed.type("\x10\x10\n"); // ^P twice: behind "quit"
+    typed.type("\x10\x10\n"); // ^P twice: after "quit"
     EXPECT_TRUE(typed.shows("loom.state = stopped")) << typed.seen();
 }
 

@@ -16,7 +16,7 @@ namespace tappet::browser {
 
 namespace {
 
-constexpr std::uint64_t values_at = 64 * 1024; ///< behind every map that a test builds
+constexpr std::uint64_t values_at = 64 * 1024; ///< after every map that a test builds
 
 } // namespace
 
@@ -31,9 +31,9 @@ SampleMap::SampleMap() : end_{values_at} {
     header_.world = text("host");
     header_.forced_at = take(8);
     f64 = type("double", map::Shape::real, 8);
-    i32 = type("int32", map::Shape::whole, 4);
+    i32 = type("int32", map::Shape::integer, 4);
     u8 = type("uint8", map::Shape::natural, 1);
-    truth = type("bool", map::Shape::truth, 1);
+    boolean = type("bool", map::Shape::boolean, 1);
     duration = type("Duration", map::Shape::duration, 8);
 }
 
@@ -240,7 +240,7 @@ SampleMachine::SampleMachine() {
     map_.component("loom", "Loom", logic);
     const auto seen =
         add("loom", "angle", "input", map_.f64, logic, "deg", "as the logic sees it", map::facet_can_force);
-    add("loom", "lamp", "output", map_.truth, logic, "", "the green one", map::facet_can_force);
+    add("loom", "lamp", "output", map_.boolean, logic, "", "the green one", map::facet_can_force);
     add("loom", "state", "output", states, logic, "", "what it does", 0);
     map_.connect(angle, seen, 4'000'000);
     map_.react("tell", names_.at("shaft.beat_up"), names_.at("shaft.reset"));

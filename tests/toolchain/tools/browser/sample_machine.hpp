@@ -18,7 +18,7 @@
 
 namespace tappet::browser {
 
-/// Builds a block: texts and sections first, values behind them.
+/// Builds a block: texts and sections first, values after them.
 class SampleMap {
 public:
     SampleMap();
@@ -55,7 +55,7 @@ public:
     [[nodiscard]] const std::vector<map::Facet>& facets() const { return facets_; }
     [[nodiscard]] const std::vector<map::Activity>& activities() const { return activities_; }
     [[nodiscard]] const map::Header& header() const { return header_; }
-    std::uint32_t f64 = 0, i32 = 0, u8 = 0, truth = 0, duration = 0; ///< types that are there
+    std::uint32_t f64 = 0, i32 = 0, u8 = 0, boolean = 0, duration = 0; ///< types that are there
 
 private:
     map::Text text(std::string_view text);
@@ -96,7 +96,7 @@ public:
     /// The activity of a facet is caught in a cycle until it is let go.
     void hold(std::string_view facet, bool in_cycle);
     void set_now(std::string_view facet, std::int64_t now_ns);
-    /// What is answered, one packet each, to requests that begin so (behind the number); "%" stands for the
+    /// What is answered, one packet each, to requests that begin so (after the number); "%" stands for the
     /// number. Anything else gets an "ok".
     void answer(std::string_view request, std::vector<std::string> packets);
     [[nodiscard]] std::vector<std::string> requests() const;

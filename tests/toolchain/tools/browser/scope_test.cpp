@@ -27,7 +27,7 @@ struct Scope : testing::Test {
     void SetUp() override {
         const auto started = run->start();
         ASSERT_TRUE(started.has_value()) << started.error().view();
-        auto opened = MapReader::open(run->instance().shared_memory());
+        auto opened = MapReader::open(run->instance().observation().shared_memory());
         ASSERT_TRUE(opened.has_value()) << opened.error();
         map = *opened;
         auto read = ScopeReader::open(*map);
@@ -102,7 +102,7 @@ TEST_F(Scope, keeps_worst_cycles_of_every_real_time_activity_with_what_ran_aroun
 /// Under an address sanitizer a step outside would be seen.
 TEST_F(Scope, no_damage_in_the_machines_memory_leads_outside_of_it) {
     run->run_for(200ms);
-    const auto memory = run->instance().shared_memory();
+    const auto memory = run->instance().observation().shared_memory();
     const std::size_t bytes = memory.size();
     constexpr std::align_val_t page{4096};
     const auto free = [](std::byte* at) { ::operator delete[](at, page); };

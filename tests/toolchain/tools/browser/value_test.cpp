@@ -33,7 +33,7 @@ TEST_F(Values, numbers_are_shown_as_they_can_be_read_back) {
     EXPECT_EQ(shown(sample.f64, bytes_of(1.0 / 3.0), Style::brief), "0.333333");
     EXPECT_EQ(shown(sample.i32, bytes_of(std::int32_t{-7})), "-7");
     EXPECT_EQ(shown(sample.u8, bytes_of(std::uint8_t{200})), "200");
-    EXPECT_EQ(shown(sample.truth, bytes_of(true)), "true");
+    EXPECT_EQ(shown(sample.boolean, bytes_of(true)), "true");
 }
 
 TEST_F(Values, what_is_no_number_is_a_string_in_json) {
@@ -80,7 +80,7 @@ TEST_F(Values, a_length_that_cannot_be_is_cut_at_the_capacity) {
 
 TEST_F(Values, arguments_are_a_list_and_have_a_signature) {
     const auto list =
-        sample.record("arguments", {{"", sample.f64}, {"", sample.truth}}, map::Shape::arguments);
+        sample.record("arguments", {{"", sample.f64}, {"", sample.boolean}}, map::Shape::arguments);
     std::vector<std::byte> bytes = bytes_of(2.5);
     bytes.push_back(std::byte{1});
     EXPECT_EQ(shown(list, bytes), "(2.5, true)");

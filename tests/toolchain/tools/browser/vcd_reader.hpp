@@ -52,13 +52,15 @@ private:
         } else if (keyword == "$var") {
             if (body.size() != 4 || body[0] != "wire" || body[1] != "1")
                 return fail("a variable that is no wire of one bit");
-            for (const char letter : body[2])
-                if (letter < '!' || letter > '~') return fail("an identifier code that cannot be printed");
+            for (const char character : body[2])
+                if (character < '!' || character > '~')
+                    return fail("an identifier code that cannot be printed");
             std::string name;
             for (const std::string& each : scopes_) name += each + ".";
             name += body[3];
-            for (const char letter : name)
-                if (!std::isalnum(static_cast<unsigned char>(letter)) && letter != '_' && letter != '.')
+            for (const char character : name)
+                if (!std::isalnum(static_cast<unsigned char>(character)) && character != '_' &&
+                    character != '.')
                     return fail("'" + name + "' is no identifier");
             if (!wires_.emplace(body[2], Wire{name}).second) return fail("a code that is given twice");
             if (!pulses_.emplace(name, std::vector<Pulse>{}).second)
@@ -93,7 +95,7 @@ private:
             } else if (word == "$dumpvars" || word == "$end") {
                 if (!has_time) fail("values before the first time");
             } else if (word[0] == '$') {
-                if (defined_) return fail("a declaration behind the definitions");
+                if (defined_) return fail("a declaration after the definitions");
                 declare(word);
             } else if (word[0] == '0' || word[0] == '1') {
                 change(word);

@@ -61,8 +61,8 @@ TEST(Can, names_an_interface_that_does_not_exist) {
     EXPECT_NE(can.error().find("no-such-can"), std::string::npos);
 }
 
-struct Slave : testing::Test {
-    Slave() {
+struct ModbusServer : testing::Test {
+    ModbusServer() {
         for (port = 15'020; port < 15'060 && !wire; ++port) {
             auto opened = ModbusWire::open("127.0.0.1", port, climate);
             if (opened) wire = std::move(*opened);
@@ -72,7 +72,7 @@ struct Slave : testing::Test {
         modbus_set_slave(master, wires::modbus::unit);
         modbus_set_response_timeout(master, 2, 0);
     }
-    ~Slave() override {
+    ~ModbusServer() override {
         modbus_close(master);
         modbus_free(master);
     }
@@ -83,7 +83,7 @@ struct Slave : testing::Test {
     int port = 0;
 };
 
-TEST_F(Slave, carries_registers_and_refuses_what_the_unit_refuses) {
+TEST_F(ModbusServer, carries_registers_and_refuses_what_the_unit_refuses) {
     ASSERT_NE(wire, nullptr);
     ASSERT_EQ(modbus_connect(master), 0);
     std::uint16_t words[4] = {};
@@ -109,7 +109,7 @@ TEST_F(Slave, carries_registers_and_refuses_what_the_unit_refuses) {
     EXPECT_EQ(errno, EMBXILADD);
 }
 
-TEST_F(Slave, without_power_is_gone_and_comes_back) {
+TEST_F(ModbusServer, without_power_is_gone_and_comes_back) {
     ASSERT_NE(wire, nullptr);
     ASSERT_EQ(modbus_connect(master), 0);
     wire->set_power(false);

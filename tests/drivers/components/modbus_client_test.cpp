@@ -1,5 +1,5 @@
 // A Modbus server as a component: values with their age, outages, back-off, and who is held up by it.
-#include "drivers/modbus/slave.hpp"
+#include "drivers/modbus/client.hpp"
 #include "drivers/modbus/twin.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
@@ -47,12 +47,12 @@ struct Reader {
                       operation<&Reader::on_lost>("on_lost", ""), operation<&Reader::on_back>("on_back", ""));
     }
 };
-using Slave = modbus::Slave<registers>;
+using Client = modbus::Client<registers>;
 
 // clang-format off
 inline constexpr auto utility_machine = machine("utility-machine",
     components(
-        component<Slave>("server", device("server")),
+        component<Client>("server", device("server")),
         component<Reader>("reader")),
     activities( // the reader stops first, so that what it writes last reaches the server
         activity("server", every(50ms), runs("server"), not_real_time),
@@ -77,7 +77,7 @@ struct Utility : testing::Test {
         const auto configured = instance.configure({&provided, 1});
         EXPECT_TRUE(configured);
         reader = instance.find<Reader>("reader");
-        server = instance.find<Slave>("server");
+        server = instance.find<Client>("server");
         world.start();
     }
     void run_until(Duration end) { EXPECT_TRUE(world.run_until(Time{end})); }
@@ -92,7 +92,7 @@ struct Utility : testing::Test {
     MachineInstance instance{Firmware<utility_machine, board>::machine(), clock};
     VirtualWorld world{instance};
     Reader* reader = nullptr;
-    Slave* server = nullptr;
+    Client* server = nullptr;
 };
 
 TEST_F(Utility, gives_values_the_time_of_their_answer) {

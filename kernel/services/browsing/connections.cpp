@@ -1,23 +1,23 @@
 // Lets clients in, hears them, and loses nothing of the machine's time on one that does not listen.
-#include "kernel/services/browsing/door.hpp"
+#include "kernel/services/browsing/connections.hpp"
 
 #include "kernel/services/browsing/reply.hpp"
 
 namespace tappet::browsing {
 
-std::expected<void, Sentence> Door::open(std::string_view directory, std::string_view machine,
-                                         const BoardBrowsing& board) noexcept {
+std::expected<void, Sentence> Connections::open(std::string_view directory, std::string_view machine,
+                                                const BoardBrowsing& board) noexcept {
     board_ = board;
     const Sentence path{directory, "/", machine, socket_suffix};
     return listener_.listen(path.view(), board.mode, board.group);
 }
 
-void Door::close() noexcept {
+void Connections::close() noexcept {
     for (Client& each : clients_) dismiss(each);
     listener_.close();
 }
 
-Client* Door::welcome() noexcept {
+Client* Connections::welcome() noexcept {
     for (std::size_t i = 0; i < most_each_cycle; ++i) {
         os::LocalConnection connection = listener_.accept();
         if (!connection.open()) return nullptr;
@@ -47,7 +47,7 @@ Client* Door::welcome() noexcept {
 }
 
 /// A free one, or that of a lower role.
-Client* Door::place_for(Role role) noexcept {
+Client* Connections::place_for(Role role) noexcept {
     Client* best = nullptr;
     for (Client& each : clients_) {
         if (each.serial == 0) return &each;
@@ -59,19 +59,20 @@ Client* Door::place_for(Role role) noexcept {
     return best;
 }
 
-void Door::turn_away(const os::LocalConnection& connection, const Sentence& why) noexcept {
+void Connections::turn_away(const os::LocalConnection& connection, const Sentence& why) noexcept {
     ++turned_away_;
     Reply reply{0, Refusal::not_now, why};
     static_cast<void>(connection.send(reply.finish())); // who does not read it is let go all the same
 }
 
-Client* Door::find(std::uint64_t serial) noexcept {
+Client* Connections::find(std::uint64_t serial) noexcept {
     for (Client& each : clients_)
         if (each.serial == serial && serial != 0) return &each;
     return nullptr;
 }
 
-std::optional<std::string_view> Door::receive(Client& client, std::span<char> into, bool& cut) noexcept {
+std::optional<std::string_view> Connections::receive(Client& client, std::span<char> into,
+                                                     bool& cut) noexcept {
     using What = os::LocalConnection::Received::What;
     if (client.serial == 0) return std::nullopt;
     const auto received = client.connection.receive(into);
@@ -82,7 +83,7 @@ std::optional<std::string_view> Door::receive(Client& client, std::span<char> in
     return std::string_view{into.data(), received.bytes};
 }
 
-bool Door::send(Client& client, std::string_view packet, int descriptor) noexcept {
+bool Connections::send(Client& client, std::string_view packet, int descriptor) noexcept {
     std::array<char, max_packet_bytes + 64> noted;
     if (client.dropped != client.told_dropped && packet.ends_with("}\n")) {
         JsonText text{noted};
@@ -98,7 +99,7 @@ bool Door::send(Client& client, std::string_view packet, int descriptor) noexcep
     return false;
 }
 
-void Door::dismiss(Client& client) noexcept {
+void Connections::dismiss(Client& client) noexcept {
     client.connection.close();
     client.serial = 0;
 }

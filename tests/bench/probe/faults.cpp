@@ -23,28 +23,28 @@ void spin_ms(long milliseconds) {
 
 } // namespace
 
-void commit(Deed deed) noexcept {
-    switch (deed) {
-    case Deed::nothing:
-    case Deed::break_contract: return; // the component itself breaks it
-    case Deed::allocate: {
+void commit(Fault fault) noexcept {
+    switch (fault) {
+    case Fault::nothing:
+    case Fault::break_contract: return; // the component itself breaks it
+    case Fault::allocate: {
         void* volatile piece =
             std::malloc(1000); // volatile: a pair of malloc and free may be left out otherwise
         std::free(piece);
         return;
     }
-    case Deed::map: {
+    case Fault::map: {
         void* const piece =
             ::mmap(nullptr, page_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (piece != MAP_FAILED) ::munmap(piece, page_bytes);
         return;
     }
-    case Deed::touch: // a locked page cannot be given back
+    case Fault::touch: // a locked page cannot be given back
         ::munlock(page.data(), page.size());
         ::madvise(page.data(), page.size(), MADV_DONTNEED);
         *static_cast<volatile char*>(page.data()) = 1;
         return;
-    case Deed::overrun: spin_ms(3); return;
+    case Fault::overrun: spin_ms(3); return;
     }
 }
 

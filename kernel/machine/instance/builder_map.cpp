@@ -1,6 +1,6 @@
 // Gives a machine its map: laid at the beginning of memory that others may map, with the places of all live
 // values.
-#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/map/layout.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/local_socket.hpp"
@@ -28,24 +28,25 @@ static_assert(sizeof(map::Times) == sizeof(ReactionTimes) &&
 
 } // namespace
 
-std::expected<void, Sentence> MachineInstance::share_memory() {
+std::expected<void, Sentence> MachineBuilder::share_memory() {
     if (machine_.map.empty()) return {};
-    return shared_.lay_under(machine_.memory.first(machine_.plan.shared_bytes), "tappet-machine");
+    return instance_.observation().shared_.lay_under(machine_.memory.first(machine_.plan.shared_bytes),
+                                                     "tappet-machine");
 }
 
-std::uint64_t MachineInstance::offset_of(const void* place) const noexcept {
+std::uint64_t MachineBuilder::offset_of(const void* place) const noexcept {
     const auto* byte = static_cast<const std::byte*>(place);
     const std::byte* begin = machine_.memory.data();
     const bool shared = place != nullptr && byte >= begin && byte < begin + machine_.plan.shared_bytes;
     return shared ? static_cast<std::uint64_t>(byte - begin) : 0;
 }
 
-void MachineInstance::place_map() {
+void MachineBuilder::place_map() {
     if (machine_.map.empty()) return;
     const auto memory = machine_.memory;
     std::memcpy(memory.data(), machine_.map.data(), machine_.map.size());
-    new (at<Observed>(machine_.plan.observed_at)) Observed;
-    auto& header = *at<map::Header>(0);
+    new (instance_.at<Observed>(machine_.plan.observed_at)) Observed;
+    auto& header = *instance_.at<map::Header>(0);
     header.block_bytes = machine_.plan.shared_bytes;
     header.process = os::own_process();
     header.forced_at = machine_.plan.observed_at;
@@ -62,48 +63,48 @@ void MachineInstance::place_map() {
     }
     const auto activities = records<map::Activity>(memory, header.activities);
     for (std::size_t a = 0; a < activities.size(); ++a) {
-        activities[a].generation_at = offset_of(engines()[a].generation_address());
-        activities[a].now_at = offset_of(engines()[a].now_address());
+        activities[a].generation_at = offset_of(instance_.engines()[a].generation_address());
+        activities[a].now_at = offset_of(instance_.engines()[a].now_address());
     }
     for (map::Figure& figure : records<map::Figure>(memory, header.figures)) place_figure(figure);
     const auto connections = records<map::Connection>(memory, header.connections);
     for (std::size_t x = 0; x < connections.size(); ++x)
-        connections[x].times_at = offset_of(times_of_connection(x));
+        connections[x].times_at = offset_of(instance_.observation().times_of_connection(x));
     const auto reactions = records<map::Reaction>(memory, header.reactions); // rows first, then triggers
     for (std::size_t i = 0; i < machine_.table.reactions.size(); ++i)
-        reactions[i].times_at = offset_of(times_of_reaction(i));
+        reactions[i].times_at = offset_of(instance_.observation().times_of_reaction(i));
     place_fields(header);
     std::atomic_ref{header.ready}.store(1, std::memory_order_release);
 }
 
-void MachineInstance::place_facet(End end, map::Facet& record) {
+void MachineBuilder::place_facet(End end, map::Facet& record) {
     const Facet& row = facet_at(machine_.table, end);
     if (row.port != nullptr) {
-        const PortPlaces places = row.port->places(facet(end), row.kind == FacetKind::input);
+        const PortPlaces places = row.port->places(instance_.facet(end), row.kind == FacetKind::input);
         record.value_at = offset_of(places.value);
         record.stamp_at = offset_of(places.stamp);
         record.writes_at = offset_of(places.writes);
         record.forced_at = offset_of(places.forced);
         record.forced_value_at = offset_of(places.forced_value);
     } else if (row.property != nullptr) {
-        record.value_at = offset_of(facet(end));
+        record.value_at = offset_of(instance_.facet(end));
     }
 }
 
-void MachineInstance::place_figure(map::Figure& figure) {
+void MachineBuilder::place_figure(map::Figure& figure) {
     switch (figure.owner) {
     case map::Owner::machine: figure.value_at = machine_.plan.observed_at; break;
     case map::Owner::component: {
         const std::size_t activity = machine_.index.activity[figure.index];
-        const auto* parts = at<EnginePart>(machine_.plan.activities[activity].parts_at);
+        const auto* parts = instance_.at<EnginePart>(machine_.plan.activities[activity].parts_at);
         figure.value_at = offset_of(&parts[machine_.plan.part_of[figure.index]].state);
         break;
     }
     case map::Owner::activity: {
-        const std::string_view wanted{at<const char>(figure.name.at), figure.name.length};
+        const std::string_view wanted{instance_.at<const char>(figure.name.at), figure.name.length};
         for (const map::EngineFigure& each : map::engine_figures)
             if (each.name == wanted)
-                figure.value_at = offset_of(&engines()[figure.index].statistics()) + each.at;
+                figure.value_at = offset_of(&instance_.engines()[figure.index].statistics()) + each.at;
         break;
     }
     case map::Owner::connection:
@@ -111,7 +112,7 @@ void MachineInstance::place_figure(map::Figure& figure) {
     }
 }
 
-void MachineInstance::place_fields(const map::Header& header) {
+void MachineBuilder::place_fields(const map::Header& header) {
     const auto types = records<map::Type>(machine_.memory, header.types);
     const auto fields = records<map::Field>(machine_.memory, header.fields);
     for (std::size_t t = 0; t < types.size(); ++t) {

@@ -1,5 +1,5 @@
 // Places the behaviours that drive components, and the slots for more, and hands them to their engines.
-#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/instance/builder.hpp"
 
 #include <new>
 
@@ -18,7 +18,7 @@ BehaviourSlot& slot_at(void* self) noexcept TAPPET_REALTIME { return *static_cas
 
 } // namespace
 
-Sentence MachineInstance::place_behaviours() {
+Sentence MachineBuilder::place_behaviours() {
     std::size_t placed[checks::max_activities] = {};
     for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b) {
         const BehaviourRow& row = machine_.table.behaviours[b];
@@ -30,27 +30,27 @@ Sentence MachineInstance::place_behaviours() {
         else if (const Sentence fault = place_unit(b, behaviour); !fault.empty())
             return Sentence{"behaviour of \"", row.component, "\": ", fault};
         behaviour.part = machine_.plan.part_of[c];
-        new (at<Behaviour>(machine_.plan.activities[activity].behaviours_at) + placed[activity]++)
+        new (instance_.at<Behaviour>(machine_.plan.activities[activity].behaviours_at) + placed[activity]++)
             Behaviour{behaviour};
     }
     return {};
 }
 
-Sentence MachineInstance::place_unit(std::size_t b, Behaviour& behaviour) {
+Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {
     const BehaviourRow& row = machine_.table.behaviours[b];
     const BehaviourPlan& plan = machine_.plan.behaviours[b];
     const ScriptUnit script = row.unit();
-    const std::span events{at<std::string_view>(plan.events_at), plan.event_count};
+    const std::span events{instance_.at<std::string_view>(plan.events_at), plan.event_count};
     std::size_t event = 0;
     for (const std::string_view name : events_of(script).all()) new (&events[event++]) std::string_view{name};
     const std::size_t c = find_component(machine_.table, row.component);
-    auto* unit = new (at<void>(plan.unit_at)) BehaviourUnit;
+    auto* unit = new (instance_.at<void>(plan.unit_at)) BehaviourUnit;
     if (Sentence fault =
             unit->place(script, row.code, row.options,
-                        machine_.memory.subspan(plan.memory_at, plan.memory_bytes), events, *this, c);
+                        machine_.memory.subspan(plan.memory_at, plan.memory_bytes), events, instance_, c);
         !fault.empty())
         return fault;
-    unit->trace(&note_transition, &engines()[machine_.index.activity[c]]);
+    unit->trace(&note_transition, &instance_.engines()[machine_.index.activity[c]]);
     behaviour.self = unit;
     behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { unit_at(self).start(now); };
     if (unit->has_programs())
@@ -67,11 +67,11 @@ Sentence MachineInstance::place_unit(std::size_t b, Behaviour& behaviour) {
     return {};
 }
 
-void MachineInstance::place_slot(std::size_t b, Behaviour& behaviour) {
+void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
     const BehaviourRow& row = machine_.table.behaviours[b];
     const BehaviourPlan& plan = machine_.plan.behaviours[b];
     const std::size_t c = find_component(machine_.table, row.component);
-    const std::span events{at<std::string_view>(plan.events_at), plan.event_count};
+    const std::span events{instance_.at<std::string_view>(plan.events_at), plan.event_count};
     std::size_t event = 0;
     const auto name = [&](End end) {
         const std::string_view facet = facet_at(machine_.table, end).name;
@@ -85,19 +85,19 @@ void MachineInstance::place_slot(std::size_t b, Behaviour& behaviour) {
     const auto memory = machine_.memory.subspan(plan.memory_at, plan.memory_bytes);
     BehaviourSlot::Place place;
     place.row = &row;
-    place.machine = this;
+    place.machine = &instance_;
     place.component = c;
     place.banks[0] = memory.first(plan.memory_bytes / 2);
     place.banks[1] = memory.last(plan.memory_bytes / 2);
-    place.text = {at<char>(plan.text_at), plan.text_bytes};
+    place.text = {instance_.at<char>(plan.text_at), plan.text_bytes};
     place.events = events;
-    place.handles = {at<EventHandle>(plan.handles_at), plan.event_count};
+    place.handles = {instance_.at<EventHandle>(plan.handles_at), plan.event_count};
     place.trace = &note_transition;
-    place.trace_context = &engines()[machine_.index.activity[c]];
+    place.trace_context = &instance_.engines()[machine_.index.activity[c]];
     End angle;
     if (!row.slot.angle.empty() && resolve(machine_.table, row.slot.angle, FacetKind::output, angle).empty())
-        place.angle = static_cast<const Output<double>*>(facet(angle));
-    auto* slot = new (at<void>(plan.slot_at)) BehaviourSlot;
+        place.angle = static_cast<const Output<double>*>(instance_.facet(angle));
+    auto* slot = new (instance_.at<void>(plan.slot_at)) BehaviourSlot;
     slot->place(place);
     behaviour.self = slot;
     behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).start(now); };
@@ -107,14 +107,6 @@ void MachineInstance::place_slot(std::size_t b, Behaviour& behaviour) {
     behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).stop(now); };
     behaviour.next = [](const void* self) noexcept
         TAPPET_REALTIME { return static_cast<const BehaviourSlot*>(self)->next(); };
-}
-
-bool MachineInstance::post_wish(BehaviourSlot& slot) noexcept TAPPET_REALTIME {
-    Message message;
-    message.run = &BehaviourSlot::obey;
-    message.object = &slot;
-    message.id = machine_.plan.part_of[slot.component()];
-    return post_request(machine_.index.activity[slot.component()], message);
 }
 
 } // namespace tappet

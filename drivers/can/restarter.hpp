@@ -11,9 +11,9 @@ namespace tappet::can {
 
 /// Stands beside the Bus on the same device, in a background activity that is not_real_time: a restart
 /// blocks. Connect its input to the bus' `faulted`. Attempts count from its start and are never given back: a
-/// bus that fails again and again needs hands, not restarts, and whoever starts the keeper again had a look.
+/// bus that fails again and again needs hands, not restarts, and whoever starts it again had a look.
 /// The device's own bound holds as well, from the machine's start.
-struct Keeper {
+struct Restarter {
     static constexpr std::string_view device_kind = "can";
     static constexpr bool shares_device = true;
 
@@ -62,13 +62,13 @@ struct Keeper {
 
     static constexpr auto interface() {
         return facets(
-            input<&Keeper::faulted>("faulted", "", "the bus' state, of its component"),
-            output<&Keeper::restarts>("restarts", "", "restarts that the controller took, since start"),
-            event<&Keeper::gave_up>("gave_up", "the bus stays faulted: nobody restarts it any more"),
-            property<&Keeper::attempts>("attempts", "", "restarts tried at most, since start",
-                                        range(0, 1000)),
-            property<&Keeper::pause>("pause", "s", "from a fault to a restart, and from one to the next",
-                                     range(0.01, 3600)));
+            input<&Restarter::faulted>("faulted", "", "the bus' state, of its component"),
+            output<&Restarter::restarts>("restarts", "", "restarts that the controller took, since start"),
+            event<&Restarter::gave_up>("gave_up", "the bus stays faulted: nobody restarts it any more"),
+            property<&Restarter::attempts>("attempts", "", "restarts tried at most, since start",
+                                           range(0, 1000)),
+            property<&Restarter::pause>("pause", "s", "from a fault to a restart, and from one to the next",
+                                        range(0.01, 3600)));
     }
 
 private:

@@ -1,5 +1,5 @@
 // Texts compared in one step of a constant expression: a table of a thousand components compares ten thousand
-// names, which the library does letter by letter and call by call.
+// names, which the library does character by character and call by call.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace tappet {
 
 /// As a.compare(b).
-constexpr int compare_letters(std::string_view a, std::string_view b) noexcept {
+constexpr int compare_text(std::string_view a, std::string_view b) noexcept {
     const std::size_t common = std::min(a.size(), b.size());
     // g++ folds it for constants of static storage, such as literals; for others it says so, and they are
     // few.
@@ -22,16 +22,16 @@ constexpr int compare_letters(std::string_view a, std::string_view b) noexcept {
 }
 
 /// As a == b.
-constexpr bool same_letters(std::string_view a, std::string_view b) noexcept {
-    return a.size() == b.size() && compare_letters(a, b) == 0;
+constexpr bool same_text(std::string_view a, std::string_view b) noexcept {
+    return a.size() == b.size() && compare_text(a, b) == 0;
 }
 
-/// As text.find(letter).
-constexpr std::size_t find_letter(std::string_view text, char letter) noexcept {
-    const char* const letters = text.data();
+/// As text.find(character).
+constexpr std::size_t find_character(std::string_view text, char character) noexcept {
+    const char* const characters = text.data();
     const std::size_t size = text.size();
     for (std::size_t i = 0; i < size; ++i)
-        if (letters[i] == letter) return i;
+        if (characters[i] == character) return i;
     return std::string_view::npos;
 }
 

@@ -1,4 +1,4 @@
-// The letters between the quotes of a text value, escapes undone.
+// The characters between the quotes of a text value, escapes undone.
 #pragma once
 
 #include "kernel/base/utf8.hpp"
@@ -11,43 +11,43 @@
 
 namespace tappet {
 
-/// Reads behind an opening quote, one character at a time, up to the closing one. Escapes are those of JSON,
+/// Reads after an opening quote, one character at a time, up to the closing one. Escapes are those of JSON,
 /// and
 /// \\xHH for a byte.
-class Letters {
+class QuotedText {
 public:
-    explicit Letters(std::string_view text) noexcept : text_{text} {}
+    explicit QuotedText(std::string_view text) noexcept : text_{text} {}
 
-    enum class Next : std::uint8_t { letters, end, broken };
+    enum class Next : std::uint8_t { characters, end, broken };
     /// The next character, of at most 4 bytes.
     Next take(char (&into)[4], std::size_t& bytes) noexcept {
         bytes = 1;
         if (at_ == text_.size()) return Next::broken;
-        const char letter = text_[at_++];
-        if (letter == '"') return Next::end;
-        into[0] = letter;
-        if (letter != '\\') return Next::letters;
+        const char character = text_[at_++];
+        if (character == '"') return Next::end;
+        into[0] = character;
+        if (character != '\\') return Next::characters;
         if (at_ == text_.size()) return Next::broken;
         switch (const char escape = text_[at_++]) {
-        case 'n': into[0] = '\n'; return Next::letters;
-        case 't': into[0] = '\t'; return Next::letters;
-        case 'r': into[0] = '\r'; return Next::letters;
-        case 'b': into[0] = '\b'; return Next::letters;
-        case 'f': into[0] = '\f'; return Next::letters;
+        case 'n': into[0] = '\n'; return Next::characters;
+        case 't': into[0] = '\t'; return Next::characters;
+        case 'r': into[0] = '\r'; return Next::characters;
+        case 'b': into[0] = '\b'; return Next::characters;
+        case 'f': into[0] = '\f'; return Next::characters;
         case '"':
         case '\\':
-        case '/': into[0] = escape; return Next::letters;
+        case '/': into[0] = escape; return Next::characters;
         case 'x': {
             std::uint32_t code = 0;
             if (!hexadecimal(2, code)) return Next::broken;
             into[0] = static_cast<char>(code);
-            return Next::letters;
+            return Next::characters;
         }
         case 'u': return take_code_point(into, bytes);
         default: return Next::broken;
         }
     }
-    /// Letters of the text so far, the closing quote included.
+    /// Characters of the text so far, the closing quote included.
     [[nodiscard]] std::size_t taken() const noexcept { return at_; }
 
 private:
@@ -69,7 +69,7 @@ private:
             code = 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00);
         }
         bytes = put_utf8(code, into);
-        return Next::letters;
+        return Next::characters;
     }
 
     std::string_view text_;

@@ -1,5 +1,5 @@
 // The Modbus client under virtual time: polling, values with an age, and every fault of a server survived.
-#include "drivers/modbus/client.hpp"
+#include "drivers/modbus/session.hpp"
 #include "drivers/modbus/twin.hpp"
 
 #include "kernel/base/random.hpp"
@@ -20,51 +20,51 @@ constexpr std::size_t running = map.value("pump.running");
 constexpr std::size_t wanted_temperature = map.value("setpoints.temperature");
 constexpr std::size_t wanted_humidity = map.value("setpoints.humidity");
 
-struct ModbusClient : testing::Test {
-    ModbusClient() {
+struct ModbusSession : testing::Test {
+    ModbusSession() {
         server.set(Table::input_registers, 0, 215);
         server.set(Table::discrete_inputs, 4, 1);
     }
     /// Runs the client's activity up to `end`; each step takes as long as the server lets it.
     void run_until(Time end) {
         for (int guard = 0; now < end && guard < 1'000'000; ++guard) {
-            const Time next = client.step(now);
+            const Time next = session.step(now);
             EXPECT_GE(next, now);
             now = next;
         }
         now = end;
     }
     Twin server{300ms};
-    Client<3, 5> client{map, server};
+    Session<3, 5> session{map, server};
     Time now{};
 };
 
-TEST_F(ModbusClient, polls_its_rows_at_their_periods) {
-    EXPECT_EQ(client.value(temperature).quality, Quality::never);
+TEST_F(ModbusSession, polls_its_rows_at_their_periods) {
+    EXPECT_EQ(session.value(temperature).quality, Quality::never);
     run_until(Time{10s});
-    EXPECT_EQ(client.value(temperature).value, 21.5);
-    EXPECT_EQ(client.value(temperature).quality, Quality::good);
-    EXPECT_LT(now - client.value(temperature).stamp, 110ms);
-    EXPECT_EQ(client.value(running).value, 1.0);
-    EXPECT_NEAR(static_cast<double>(client.counters().requests), 100 + 50, 3);
-    EXPECT_EQ(client.counters().outages, 0u);
+    EXPECT_EQ(session.value(temperature).value, 21.5);
+    EXPECT_EQ(session.value(temperature).quality, Quality::good);
+    EXPECT_LT(now - session.value(temperature).stamp, 110ms);
+    EXPECT_EQ(session.value(running).value, 1.0);
+    EXPECT_NEAR(static_cast<double>(session.counters().requests), 100 + 50, 3);
+    EXPECT_EQ(session.counters().outages, 0u);
 }
 
-TEST_F(ModbusClient, writes_nothing_before_all_values_of_a_row_were_set) {
+TEST_F(ModbusSession, writes_nothing_before_all_values_of_a_row_were_set) {
     run_until(Time{1s});
-    EXPECT_TRUE(client.set(wanted_temperature, 22, now));
+    EXPECT_TRUE(session.set(wanted_temperature, 22, now));
     run_until(Time{3s});
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
-    EXPECT_TRUE(client.set(wanted_temperature, 22, now));
-    EXPECT_TRUE(client.set(wanted_humidity, 60, now));
+    EXPECT_TRUE(session.set(wanted_temperature, 22, now));
+    EXPECT_TRUE(session.set(wanted_humidity, 60, now));
     run_until(now + 10ms);
     EXPECT_EQ(server.get(Table::holding_registers, 8), 22) << "a change goes out at once";
     EXPECT_EQ(server.get(Table::holding_registers, 9), 60);
 }
 
-TEST_F(ModbusClient, repeats_what_it_wrote_and_stops_when_it_is_stale) {
-    client.set(wanted_temperature, 22, now);
-    client.set(wanted_humidity, 60, now);
+TEST_F(ModbusSession, repeats_what_it_wrote_and_stops_when_it_is_stale) {
+    session.set(wanted_temperature, 22, now);
+    session.set(wanted_humidity, 60, now);
     run_until(Time{100ms});
     server.set(Table::holding_registers, 8, 0); // the server restarted and forgot
     run_until(Time{2s});
@@ -75,123 +75,123 @@ TEST_F(ModbusClient, repeats_what_it_wrote_and_stops_when_it_is_stale) {
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0) << "nobody set it for more than 3 s";
 }
 
-TEST_F(ModbusClient, sends_nothing_stale_after_an_outage) {
+TEST_F(ModbusSession, sends_nothing_stale_after_an_outage) {
     run_until(Time{1s});
     server.inject(Fault::down);
     run_until(Time{2s});
-    client.set(wanted_temperature, 22, now);
-    client.set(wanted_humidity, 60, now);
+    session.set(wanted_temperature, 22, now);
+    session.set(wanted_humidity, 60, now);
     run_until(Time{12s});
     server.inject(Fault::none);
     run_until(Time{40s});
-    EXPECT_FALSE(client.outage());
+    EXPECT_FALSE(session.outage());
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
-    EXPECT_EQ(client.counters().dropped_stale, 1u);
+    EXPECT_EQ(session.counters().dropped_stale, 1u);
 }
 
-TEST_F(ModbusClient, refuses_to_set_a_value_that_is_only_read_or_is_no_number) {
-    EXPECT_FALSE(client.set(temperature, 1, now));
-    EXPECT_FALSE(client.set(wanted_temperature, 0.0 / 0.0 * 1.0, now));
+TEST_F(ModbusSession, refuses_to_set_a_value_that_is_only_read_or_is_no_number) {
+    EXPECT_FALSE(session.set(temperature, 1, now));
+    EXPECT_FALSE(session.set(wanted_temperature, 0.0 / 0.0 * 1.0, now));
 }
 
-TEST_F(ModbusClient, lets_values_grow_old_when_the_server_is_silent_and_survives) {
+TEST_F(ModbusSession, lets_values_grow_old_when_the_server_is_silent_and_survives) {
     run_until(Time{1s});
     server.inject(Fault::silent);
     run_until(Time{11s});
-    EXPECT_TRUE(client.outage());
-    EXPECT_GT(now - client.value(temperature).stamp, 9s);
-    EXPECT_EQ(client.value(temperature).value, 21.5) << "the last good value stays readable";
-    EXPECT_GT(client.counters().timeouts, 3u);
-    EXPECT_LT(client.counters().timeouts, 10u) << "the back-off doubles";
+    EXPECT_TRUE(session.outage());
+    EXPECT_GT(now - session.value(temperature).stamp, 9s);
+    EXPECT_EQ(session.value(temperature).value, 21.5) << "the last good value stays readable";
+    EXPECT_GT(session.counters().timeouts, 3u);
+    EXPECT_LT(session.counters().timeouts, 10u) << "the back-off doubles";
     server.inject(Fault::none);
     server.set(Table::input_registers, 0, 100);
     run_until(Time{25s});
-    EXPECT_EQ(client.value(temperature).value, 10.0);
-    EXPECT_EQ(client.value(temperature).quality, Quality::good);
-    EXPECT_EQ(client.counters().outages, 1u);
-    EXPECT_EQ(client.counters().outages_survived, 1u);
+    EXPECT_EQ(session.value(temperature).value, 10.0);
+    EXPECT_EQ(session.value(temperature).quality, Quality::good);
+    EXPECT_EQ(session.counters().outages, 1u);
+    EXPECT_EQ(session.counters().outages_survived, 1u);
 }
 
-TEST_F(ModbusClient, backs_off_when_refused_and_no_further_than_told) {
+TEST_F(ModbusSession, backs_off_when_refused_and_no_further_than_told) {
     server.inject(Fault::down);
     run_until(Time{100s});
     // 0.1 0.2 0.4 0.8 1.6 s are five waits of 3.1 s together, then one each 2 s.
-    EXPECT_GE(client.counters().refused, 52u);
-    EXPECT_LE(client.counters().refused, 56u);
-    EXPECT_EQ(client.counters().requests, 0u);
+    EXPECT_GE(session.counters().refused, 52u);
+    EXPECT_LE(session.counters().refused, 56u);
+    EXPECT_EQ(session.counters().requests, 0u);
     server.inject(Fault::none);
     run_until(Time{103s});
-    EXPECT_TRUE(client.connected());
+    EXPECT_TRUE(session.connected());
 }
 
-TEST_F(ModbusClient, never_takes_a_late_answer_for_the_next_one) {
+TEST_F(ModbusSession, never_takes_a_late_answer_for_the_next_one) {
     run_until(Time{1s});
     server.set_slow_by(400ms);
     server.inject(Fault::slow, 1);
     run_until(Time{3s});
-    EXPECT_EQ(client.counters().timeouts, 1u);
-    EXPECT_EQ(client.counters().garbled, 0u) << "the connection was made anew";
-    EXPECT_EQ(client.value(temperature).value, 21.5);
-    EXPECT_EQ(client.counters().outages_survived, 1u);
+    EXPECT_EQ(session.counters().timeouts, 1u);
+    EXPECT_EQ(session.counters().garbled, 0u) << "the connection was made anew";
+    EXPECT_EQ(session.value(temperature).value, 21.5);
+    EXPECT_EQ(session.counters().outages_survived, 1u);
 }
 
-TEST_F(ModbusClient, waits_for_a_slow_answer_that_is_in_time) {
+TEST_F(ModbusSession, waits_for_a_slow_answer_that_is_in_time) {
     server.set_slow_by(50ms);
     server.inject(Fault::slow);
     run_until(Time{2s});
-    EXPECT_EQ(client.counters().timeouts, 0u);
-    EXPECT_EQ(client.value(temperature).quality, Quality::good);
+    EXPECT_EQ(session.counters().timeouts, 0u);
+    EXPECT_EQ(session.value(temperature).quality, Quality::good);
 }
 
-TEST_F(ModbusClient, makes_an_exception_a_quality_and_stays_connected) {
+TEST_F(ModbusSession, makes_an_exception_a_quality_and_stays_connected) {
     run_until(Time{1s});
     server.set_exception(6);
     server.inject(Fault::exception);
     run_until(Time{2s});
-    EXPECT_EQ(client.value(temperature).quality, Quality::exception);
-    EXPECT_EQ(client.value(temperature).exception, 6);
-    EXPECT_EQ(client.value(temperature).value, 21.5);
-    EXPECT_TRUE(client.connected());
-    EXPECT_FALSE(client.outage());
+    EXPECT_EQ(session.value(temperature).quality, Quality::exception);
+    EXPECT_EQ(session.value(temperature).exception, 6);
+    EXPECT_EQ(session.value(temperature).value, 21.5);
+    EXPECT_TRUE(session.connected());
+    EXPECT_FALSE(session.outage());
     server.inject(Fault::none);
     run_until(Time{3s});
-    EXPECT_EQ(client.value(temperature).quality, Quality::good);
+    EXPECT_EQ(session.value(temperature).quality, Quality::good);
 }
 
-TEST_F(ModbusClient, reports_an_address_that_the_server_does_not_have) {
+TEST_F(ModbusSession, reports_an_address_that_the_server_does_not_have) {
     static constexpr auto far =
         register_map(read("far", holding_registers(Twin::size, 1), every(100ms), word("w", 0)));
     Twin other;
-    Client<1, 1> far_client{far, other};
+    Session<1, 1> far_client{far, other};
     Time t{};
     for (int i = 0; i < 10; ++i) t = far_client.step(t);
     EXPECT_EQ(far_client.value(0).quality, Quality::exception);
     EXPECT_EQ(far_client.value(0).exception, 2);
 }
 
-TEST_F(ModbusClient, reconnects_after_garbage_and_foreign_answers) {
+TEST_F(ModbusSession, reconnects_after_garbage_and_foreign_answers) {
     for (const Fault fault : {Fault::garbage_length, Fault::wrong_transaction}) {
-        const auto before = client.counters();
+        const auto before = session.counters();
         server.inject(fault, 1);
         run_until(now + 2s);
-        EXPECT_EQ(client.counters().garbled, before.garbled + 1);
-        EXPECT_EQ(client.counters().outages_survived, before.outages_survived + 1);
-        EXPECT_EQ(client.value(temperature).quality, Quality::good);
+        EXPECT_EQ(session.counters().garbled, before.garbled + 1);
+        EXPECT_EQ(session.counters().outages_survived, before.outages_survived + 1);
+        EXPECT_EQ(session.value(temperature).quality, Quality::good);
     }
 }
 
-TEST_F(ModbusClient, keeps_reading_while_values_to_write_change_all_the_time) {
+TEST_F(ModbusSession, keeps_reading_while_values_to_write_change_all_the_time) {
     run_until(Time{1s});
     for (int i = 0; i < 500; ++i) {
-        client.set(wanted_temperature, i, now);
-        client.set(wanted_humidity, i, now);
+        session.set(wanted_temperature, i, now);
+        session.set(wanted_humidity, i, now);
         run_until(now + 10ms);
     }
-    EXPECT_LT(now - client.value(temperature).stamp, 150ms);
-    EXPECT_EQ(client.value(temperature).quality, Quality::good);
+    EXPECT_LT(now - session.value(temperature).stamp, 150ms);
+    EXPECT_EQ(session.value(temperature).quality, Quality::good);
 }
 
-TEST_F(ModbusClient, survives_random_faults) {
+TEST_F(ModbusSession, survives_random_faults) {
     Random random{11};
     constexpr Fault faults[] = {Fault::silent,         Fault::slow,
                                 Fault::exception,      Fault::wrong_transaction,
@@ -205,9 +205,9 @@ TEST_F(ModbusClient, survives_random_faults) {
     }
     server.inject(Fault::none);
     run_until(now + 30s);
-    EXPECT_FALSE(client.outage());
-    EXPECT_EQ(client.value(temperature).quality, Quality::good);
-    EXPECT_EQ(client.counters().outages, client.counters().outages_survived);
+    EXPECT_FALSE(session.outage());
+    EXPECT_EQ(session.value(temperature).quality, Quality::good);
+    EXPECT_EQ(session.counters().outages, session.counters().outages_survived);
 }
 
 } // namespace

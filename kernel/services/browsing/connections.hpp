@@ -23,7 +23,7 @@ struct Client {
 };
 
 /// Nothing of it blocks; not real-time.
-class Door {
+class Connections {
 public:
     /// What a client gets of a cycle's time; the rest waits in its own socket.
     static constexpr std::size_t packets_each_cycle = 4;

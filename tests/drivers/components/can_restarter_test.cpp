@@ -1,29 +1,29 @@
-// The keeper of a CAN bus: restarts are deliberate, a pause apart, and end.
+// Restarts of a CAN bus are deliberate, a pause apart, and end.
 #include "tests/drivers/components/can_machine.hpp"
 
 namespace tappet::test {
 namespace {
 
-using CanKeeper = CanMachine; // two attempts, 100 ms apart
+using CanRestarter = CanMachine; // two attempts, 100 ms apart
 
-TEST_F(CanKeeper, restarts_a_faulted_bus_after_its_pause) {
+TEST_F(CanRestarter, restarts_a_faulted_bus_after_its_pause) {
     run_until(20ms);
     wire.bus_off(twin);
     run_until(115ms);
     EXPECT_EQ(twin.counters().restarts, 0u) << "not before the pause is over";
-    EXPECT_EQ(keeper->restarts.last(), 0);
+    EXPECT_EQ(restarter->restarts.last(), 0);
     run_until(160ms);
-    EXPECT_EQ(keeper->restarts.last(), 1);
+    EXPECT_EQ(restarter->restarts.last(), 1);
     EXPECT_EQ(twin.counters().restarts, 1u);
     EXPECT_EQ(master->recoveries, 1);
     EXPECT_EQ(master->surrenders, 0);
 }
 
-TEST_F(CanKeeper, gives_up_when_the_bus_faults_again_and_again) {
+TEST_F(CanRestarter, gives_up_when_the_bus_faults_again_and_again) {
     run_until(20ms);
     wire.set_acknowledged(false); // each restart ends in the same fault
     run_until(5s);
-    EXPECT_EQ(keeper->restarts.last(), 2);
+    EXPECT_EQ(restarter->restarts.last(), 2);
     EXPECT_EQ(master->faults, 3);
     EXPECT_EQ(master->recoveries, 2);
     EXPECT_EQ(master->surrenders, 1) << "told once";
@@ -35,25 +35,25 @@ TEST_F(CanKeeper, gives_up_when_the_bus_faults_again_and_again) {
     EXPECT_TRUE(master->was_faulted) << "it stays so";
 }
 
-TEST_F(CanKeeper, gives_up_when_restarts_fail) {
+TEST_F(CanRestarter, gives_up_when_restarts_fail) {
     twin.make_restarts_fail(true);
     run_until(20ms);
     wire.bus_off(twin);
     run_until(2s);
-    EXPECT_EQ(keeper->restarts.last(), 0);
+    EXPECT_EQ(restarter->restarts.last(), 0);
     EXPECT_EQ(master->surrenders, 1);
 }
 
-TEST_F(CanKeeper, gives_up_when_its_device_allows_no_more_restarts) {
-    keeper->attempts.set(100);
+TEST_F(CanRestarter, gives_up_when_its_device_allows_no_more_restarts) {
+    restarter->attempts.set(100);
     run_until(20ms);
     wire.set_acknowledged(false);
     run_until(5s);
-    EXPECT_EQ(keeper->restarts.last(), 3);
+    EXPECT_EQ(restarter->restarts.last(), 3);
     EXPECT_EQ(master->surrenders, 1);
 }
 
-TEST_F(CanKeeper, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_up) {
+TEST_F(CanRestarter, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_up) {
     run_until(20ms);
     for (int i = 0; i < 2; ++i) {
         wire.bus_off(twin);
@@ -63,10 +63,10 @@ TEST_F(CanKeeper, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_u
     wire.bus_off(twin);
     run_until(clock.now().time_since_epoch() + 50ms);
     EXPECT_EQ(master->surrenders, 1);
-    EXPECT_EQ(keeper->restarts.last(), 2);
+    EXPECT_EQ(restarter->restarts.last(), 2);
 }
 
-TEST_F(CanKeeper, tries_anew_when_it_is_stopped_and_started_again) {
+TEST_F(CanRestarter, tries_anew_when_it_is_stopped_and_started_again) {
     run_until(20ms);
     for (int i = 0; i < 2; ++i) {
         wire.bus_off(twin);
@@ -78,16 +78,16 @@ TEST_F(CanKeeper, tries_anew_when_it_is_stopped_and_started_again) {
     change(2, LifeChange::stop); // somebody had a look
     run_until(clock.now().time_since_epoch() + 100ms);
     change(2, LifeChange::start);
-    EXPECT_EQ(keeper->restarts.last(), 0);
+    EXPECT_EQ(restarter->restarts.last(), 0);
     run_until(clock.now().time_since_epoch() + 90ms);
     EXPECT_EQ(master->recoveries, 2) << "not before its pause";
     run_until(clock.now().time_since_epoch() + 300ms);
     EXPECT_EQ(master->recoveries, 3);
-    EXPECT_EQ(keeper->restarts.last(), 1);
+    EXPECT_EQ(restarter->restarts.last(), 1);
     EXPECT_EQ(master->surrenders, 1);
 }
 
-TEST_F(CanKeeper, leaves_a_healthy_bus_alone) {
+TEST_F(CanRestarter, leaves_a_healthy_bus_alone) {
     run_until(3s);
     EXPECT_EQ(twin.counters().restarts, 0u);
     EXPECT_EQ(master->surrenders, 0);

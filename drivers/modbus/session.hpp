@@ -1,0 +1,209 @@
+// A Modbus client as a state machine: connects, polls its table, reconnects with back-off; its values carry
+// an age.
+#pragma once
+
+#include "drivers/modbus/register_map.hpp"
+#include "drivers/modbus/transport.hpp"
+
+#include <algorithm>
+
+namespace tappet::modbus {
+
+enum class Quality : std::uint8_t {
+    never, ///< nothing was read yet
+    good,
+    exception, ///< the server refuses this row; the value is the last good one
+};
+
+struct Value {
+    double value = 0;
+    Time stamp = Time::min(); ///< when the answer was complete
+    Quality quality = Quality::never;
+    std::uint8_t exception = 0;
+};
+
+struct Counters {
+    std::uint64_t requests = 0;
+    std::uint64_t answers = 0;
+    std::uint64_t exceptions = 0;
+    std::uint64_t timeouts = 0;
+    std::uint64_t garbled = 0;
+    std::uint64_t connects = 0;
+    std::uint64_t refused = 0;
+    std::uint64_t outages = 0;          ///< times the server was lost
+    std::uint64_t outages_survived = 0; ///< and answered again
+    std::uint64_t dropped_stale = 0;    ///< values to write that grew too old before they could be sent
+    std::uint64_t saturated = 0;
+    bool operator==(const Counters&) const = default;
+};
+
+struct Backoff {
+    Duration first = 100ms;
+    /// Each failure doubles the wait, up to this. Its users wait as much longer for a server that is back.
+    Duration most = 2s;
+};
+
+/// Belongs to one activity of its own, not a real-time one: a step holds its caller for one request at most.
+/// `map` and `transport` outlive the client.
+template <std::size_t R, std::size_t V> class Session {
+public:
+    Session(const RegisterMap<R, V>& map, Transport& transport, Backoff backoff = {}) noexcept
+        : map_{&map}, transport_{&transport}, backoff_{backoff}, wait_{backoff.first} {}
+    ~Session() { transport_->disconnect(); }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// Does what is due, one request at most, and says when to call again.
+    Time step(Time now) noexcept {
+        if (now < busy_until_) return busy_until_;
+        if (!connected_) return connect(now);
+        const std::size_t r = most_urgent();
+        if (due(r) > now) return due(r);
+        const Duration every = map_->rows[r].every;
+        if (due_at_[r] <= now)
+            due_at_[r] = std::max(due_at_[r] + every, now + 1ns); // keeps its grid, misses no turn twice
+        return request(r, now);
+    }
+
+    /// The value by its index in the map; its stamp tells its age.
+    [[nodiscard]] const Value& value(std::size_t v) const noexcept {
+        TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);
+        return values_[v];
+    }
+    /// Sets a value of a written row, which is sent once all its values were set; false when it is no number,
+    /// or the row is only read.
+    bool set(std::size_t v, double physical, Time now) noexcept {
+        TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);
+        const std::size_t r = map_->row_of[v];
+        const Encoded encoded = to_words(map_->registers[v], physical);
+        if (encoded.refused || !map_->rows[r].write) return false;
+        if (encoded.saturated) ++count_.saturated;
+        if (values_[v].stamp == Time::min() || words_[v] != encoded.words)
+            changed_at_[r] = std::min(changed_at_[r], now);
+        words_[v] = encoded.words;
+        values_[v] = {to_physical(map_->registers[v], encoded.words), now, Quality::good, 0};
+        return true;
+    }
+    [[nodiscard]] bool connected() const noexcept { return connected_; }
+    /// Whether the server is lost: it answered once, or was tried, and does not answer now.
+    [[nodiscard]] bool outage() const noexcept { return outage_; }
+    [[nodiscard]] Counters counters() const noexcept { return count_; }
+    /// Rises with every answer: what stands for "something arrived".
+    [[nodiscard]] std::uint64_t generation() const noexcept { return count_.answers; }
+
+private:
+    Time connect(Time now) noexcept {
+        const Answer answer = transport_->connect();
+        busy_until_ = now + answer.took;
+        if (answer.outcome != Outcome::ok) {
+            ++count_.refused;
+            return lose(now + answer.took);
+        }
+        ++count_.connects;
+        connected_ = true;
+        // Rows that fell due meanwhile are read once each, not as often as they were missed.
+        for (Time& due : due_at_) due = std::max(due, now);
+        return busy_until_;
+    }
+    /// A changed row is due when it was changed: soon, but not before rows that were due earlier still.
+    [[nodiscard]] Time due(std::size_t r) const noexcept { return std::min(due_at_[r], changed_at_[r]); }
+    [[nodiscard]] std::size_t most_urgent() const noexcept {
+        std::size_t best = 0;
+        for (std::size_t r = 1; r < R; ++r)
+            if (due(r) < due(best)) best = r;
+        return best;
+    }
+    Time request(std::size_t r, Time now) noexcept {
+        const Row& row = map_->rows[r];
+        if (row.write && !fresh(r, now)) return now;
+        const auto address = static_cast<std::uint16_t>(row.run.address);
+        const auto words = std::span{buffer_}.first(row.run.count);
+        if (row.write) fill(row);
+        ++count_.requests;
+        const Answer answer = row.write ? transport_->write(row.run.table, address, words)
+                                        : transport_->read(row.run.table, address, words);
+        const Time done = now + answer.took;
+        busy_until_ = done;
+        switch (answer.outcome) {
+        case Outcome::ok:
+            if (!row.write) take(row, done);
+            changed_at_[r] = never;
+            answered();
+            return done;
+        case Outcome::exception:
+            for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+                values_[v].quality = Quality::exception;
+                values_[v].exception = answer.exception;
+            }
+            ++count_.exceptions;
+            changed_at_[r] = never; // it would refuse again; the period is soon enough
+            answered();
+            return done;
+        case Outcome::timeout: ++count_.timeouts; break;
+        case Outcome::garbled: ++count_.garbled; break;
+        case Outcome::refused:
+        case Outcome::disconnected: break;
+        }
+        connected_ = transport_->recover();
+        return lose(done);
+    }
+    /// False, and the change forgotten, when the row's values were never set or are too old to be sent.
+    bool fresh(std::size_t r, Time now) noexcept {
+        const Row& row = map_->rows[r];
+        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+            const bool old = row.stale_after > 0ns && values_[v].stamp != Time::min() &&
+                             now - values_[v].stamp > row.stale_after;
+            if (values_[v].stamp != Time::min() && !old) continue;
+            if (old && changed_at_[r] != never) ++count_.dropped_stale;
+            changed_at_[r] = never;
+            return false;
+        }
+        return true;
+    }
+    void fill(const Row& row) noexcept {
+        for (std::size_t v = row.first; v < row.first + row.registers; ++v)
+            for (unsigned i = 0; i < map_->registers[v].width(); ++i)
+                buffer_[map_->registers[v].at + i] = words_[v][i];
+    }
+    void take(const Row& row, Time stamp) noexcept {
+        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+            const Register& one = map_->registers[v];
+            for (unsigned i = 0; i < one.width(); ++i) words_[v][i] = buffer_[one.at + i];
+            values_[v] = {to_physical(one, words_[v]), stamp, Quality::good, 0};
+        }
+    }
+    void answered() noexcept {
+        ++count_.answers;
+        wait_ = backoff_.first;
+        if (outage_) ++count_.outages_survived;
+        outage_ = false;
+    }
+    Time lose(Time now) noexcept {
+        if (!outage_) ++count_.outages;
+        outage_ = true;
+        busy_until_ = now + wait_;
+        wait_ = std::min(wait_ * 2, backoff_.most);
+        return busy_until_;
+    }
+
+    const RegisterMap<R, V>* map_;
+    Transport* transport_;
+    Backoff backoff_;
+    Duration wait_;
+    Time busy_until_ = Time::min();
+    bool connected_ = false;
+    bool outage_ = false;
+    std::array<Time, R> due_at_{};
+    std::array<Time, R> changed_at_ = [] {
+        std::array<Time, R> none{};
+        none.fill(never);
+        return none;
+    }();
+    std::array<Value, V> values_{};
+    std::array<Words, V> words_{};
+    std::array<std::uint16_t, most_words> buffer_{};
+    Counters count_{};
+    static_assert(R > 0, "a client without rows has nothing to do");
+};
+
+} // namespace tappet::modbus

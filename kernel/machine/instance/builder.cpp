@@ -1,0 +1,218 @@
+// Makes a machine out of its plan: constructs, places engines, wires every row and configures.
+#include "kernel/machine/instance/builder.hpp"
+
+#include <new>
+
+namespace tappet {
+
+namespace {
+
+std::uint64_t cycles_of(const void* engine) noexcept TAPPET_REALTIME {
+    return static_cast<const Engine*>(engine)->generation();
+}
+
+bool is_part_expected(const void* part) noexcept TAPPET_REALTIME {
+    const ComponentState state = static_cast<const EnginePart*>(part)->state.load(std::memory_order_acquire);
+    return state != ComponentState::stopped && state != ComponentState::inactive;
+}
+
+// One whose thread was given up is not active, but nobody wanted that.
+bool is_engine_expected(const void* self) noexcept TAPPET_REALTIME {
+    const auto& engine = *static_cast<const Engine*>(self);
+    return engine.is_active() ||
+           engine.plan().parts.front().state.load(std::memory_order_acquire) == ComponentState::failed;
+}
+
+bool rests(const void* self) noexcept TAPPET_REALTIME {
+    const auto& engine = *static_cast<const Engine*>(self);
+    return engine.generation() % 2 == 0 && !engine.is_woken();
+}
+
+} // namespace
+
+std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevice> devices) {
+    if (auto shared = share_memory(); !shared) return shared;
+    construct();
+    place_engines();
+    place_scope();
+    connect_clocks();
+    connect_data();
+    connect_extras();
+    place_needed_inputs();
+    if (const Sentence fault = place_behaviours(); !fault.empty()) return std::unexpected(fault);
+    connect_events();
+    place_mailboxes();
+    connect_operations();
+    place_map();
+    const MachineView& table = machine_.table;
+    for (std::size_t c = 0; c < table.components.size(); ++c) {
+        const ComponentRow& row = table.components[c];
+        if (const Sentence refusal = configure_properties(c); !refusal.empty())
+            return std::unexpected(refusal);
+        if (row.type->configure == nullptr) continue;
+        Setup setup{row.name,
+                    row.device,
+                    devices,
+                    &instance_.clock(),
+                    &instance_.engines()[machine_.index.activity[c]].waiter(),
+                    life_sign_of(row.watched),
+                    row.type->sees_machine ? &instance_ : nullptr,
+                    row.type->records_cycles ? instance_.at<scope::Directory>(machine_.plan.scope_at)
+                                             : nullptr};
+        if (const Sentence refusal = row.type->configure(instance_.component(c), setup); !refusal.empty())
+            return std::unexpected(refusal);
+    }
+    return {};
+}
+
+void MachineBuilder::construct() {
+    for (std::size_t c = 0; c < machine_.table.components.size(); ++c)
+        machine_.table.components[c].type->construct(instance_.component(c));
+}
+
+Sentence MachineBuilder::configure_properties(std::size_t c) {
+    const ComponentRow& row = machine_.table.components[c];
+    PropertyTransaction transaction;
+    transaction.begin(row.name, *row.type, instance_.component(c));
+    for (const PropertyRow& setting : row.settings) {
+        const std::size_t index = find_facet(row, setting.name);
+        row.type->facets[index].property->set(transaction.change(index), setting.setting);
+    }
+    if (row.has_properties_file) {
+        if (store_.load == nullptr)
+            return Sentence{"component \"", row.name, "\" has the properties file \"", row.properties.name,
+                            "\" but this start-up reads none; give it read_properties_from(...)"};
+        if (Sentence fault = store_.load(store_.self, row, transaction); !fault.empty()) return fault;
+    }
+    transaction.commit();
+    if (transaction.refusal().empty()) return {};
+    Sentence text{"component \"", row.name, "\" refuses its properties"};
+    if (row.has_properties_file) text.add(" (see \"").add(row.properties.name).add("\")");
+    return text.add(": ").add(transaction.refusal());
+}
+
+void MachineBuilder::place_engines() {
+    const MachineView& table = machine_.table;
+    for (std::size_t a = 0; a < table.activities.size(); ++a) {
+        const ActivityRow& row = table.activities[a];
+        const ActivityPlan& plan = machine_.plan.activities[a];
+        auto* parts = instance_.at<EnginePart>(plan.parts_at);
+        auto* functions = instance_.at<FunctionTiming>(plan.functions_at);
+        auto* timers = instance_.at<EngineTimer>(plan.timers_at);
+        for (std::size_t f = 0; f < plan.part_count * functions_per_part; ++f)
+            new (functions + f) FunctionTiming{};
+        std::size_t timer_count = 0;
+        for (std::size_t c = 0; c < table.components.size(); ++c) {
+            if (machine_.index.activity[c] != a) continue;
+            const ComponentRow& component_row = table.components[c];
+            const std::uint32_t part = machine_.plan.part_of[c];
+            auto* placed = new (parts + part) EnginePart;
+            placed->component = instance_.component(c);
+            placed->type = component_row.type;
+            placed->name = component_row.name;
+            for (std::size_t f = 0; f < component_row.type->facets.size(); ++f) {
+                const Facet& each = component_row.type->facets[f];
+                if (each.kind == FacetKind::timer)
+                    new (timers + timer_count++)
+                        EngineTimer{static_cast<Timer*>(instance_.facet({c, f})), each.timer->fire, part};
+            }
+        }
+        EnginePlan engine;
+        engine.name = row.name;
+        engine.activity = static_cast<std::uint32_t>(a);
+        engine.periodic = row.periodic();
+        engine.real_time = row.real_time;
+        engine.period = row.period;
+        engine.deadline = row.real_time ? row.deadline() : Duration::zero();
+        engine.budget = row.budget_each;
+        engine.at_most_n = row.at_most_n;
+        engine.at_most_per = row.at_most_per;
+        engine.stop_when_late = row.when_late == WhenLate::stop;
+        engine.parts = {parts, plan.part_count};
+        engine.functions = {functions, plan.part_count * functions_per_part};
+        engine.timers = {timers, timer_count};
+        engine.behaviours = {instance_.at<Behaviour>(plan.behaviours_at), plan.behaviour_count};
+        engine.inputs = {instance_.at<NeededInput>(plan.inputs_at), plan.input_count};
+        engine.forced = &instance_.observation().forced_ports();
+        engine.guarded = {instance_.at<GuardedInput>(plan.guarded_at), plan.guarded_count};
+        auto* placed = new (&instance_.engines()[a]) Engine;
+        placed->place(engine, instance_.clock());
+        placed->on_stop(
+            [](void* self, StopReason reason, std::uint64_t detail, const Engine& from) noexcept
+            TAPPET_REALTIME { static_cast<MachineInstance*>(self)->ask_stop(reason, detail, &from); },
+            &instance_);
+    }
+}
+
+void MachineBuilder::place_scope() {
+    if (machine_.plan.scope_at == 0) return;
+    const MachineView& table = machine_.table;
+    const auto after = [this](std::size_t place) { return place - machine_.plan.scope_at; };
+    auto* directory = new (instance_.at<scope::Directory>(machine_.plan.scope_at)) scope::Directory;
+    directory->tapes_at = sizeof(scope::Directory);
+    directory->tapes = static_cast<std::uint32_t>(table.activities.size());
+    directory->recordings_at = after(machine_.plan.recordings_at);
+    directory->recordings = static_cast<std::uint32_t>(machine_.plan.recordings);
+    directory->recording_stride = scope::recording_bytes;
+    directory->bytes = directory->recordings_at + directory->recordings * directory->recording_stride;
+    for (std::size_t a = 0; a < table.activities.size(); ++a) {
+        const ActivityPlan& plan = machine_.plan.activities[a];
+        new (&scope::tapes(*directory)[a]) scope::Tape{after(plan.tape_at), table.activities[a].real_time};
+        instance_.engines()[a].record_to(new (instance_.at<CycleTape>(plan.tape_at))
+                                             CycleTape{plan.tape_words});
+    }
+    for (std::size_t i = 0; i < directory->recordings; ++i)
+        new (&scope::recording(*directory, i)) scope::Recording;
+    for (std::size_t c = 0; c < table.components.size(); ++c)
+        if (table.components[c].type->records_cycles)
+            directory->owner = static_cast<std::uint32_t>(machine_.index.activity[c]);
+}
+
+void MachineBuilder::connect_clocks() {
+    for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
+        const Time* now = instance_.engines()[machine_.index.activity[c]].now_address();
+        const auto facets = machine_.table.components[c].type->facets;
+        for (std::size_t f = 0; f < facets.size(); ++f)
+            if (facets[f].kind == FacetKind::input || facets[f].kind == FacetKind::output)
+                facets[f].port->set_clock(instance_.facet({c, f}), facets[f].kind == FacetKind::input, now);
+    }
+}
+
+void MachineBuilder::place_needed_inputs() {
+    const MachineView& table = machine_.table;
+    std::size_t placed[checks::max_activities] = {};
+    for (std::size_t x = 0; x < table.connections.size(); ++x) {
+        const Link& link = machine_.index.connections[x];
+        if (!is_needed_input(table, table.connections[x], link)) continue;
+        const Facet& input = facet_at(table, link.to);
+        const std::size_t reader = machine_.index.activity[link.to.component];
+        new (instance_.at<NeededInput>(machine_.plan.activities[reader].inputs_at) + placed[reader]++)
+            NeededInput{.input = instance_.facet(link.to),
+                        .flow = input.port->flow,
+                        .part = machine_.plan.part_of[link.to.component],
+                        .facet = static_cast<std::uint16_t>(link.to.facet),
+                        .has_initial =
+                            table.connections[x].substitute.given || table.connections[x].before_first.given,
+                        .same_activity = machine_.index.activity[link.from.component] == reader,
+                        .valid_to_start = input.valid_to_start};
+    }
+}
+
+LifeSign MachineBuilder::life_sign_of(std::string_view watched) noexcept {
+    if (watched.empty()) return {};
+    if (const std::size_t a = find_activity(machine_.table, watched); a != nowhere)
+        return {&instance_.engines()[a], &instance_.engines()[a], &cycles_of, &is_engine_expected,
+                instance_.engines()[a].plan().periodic ? nullptr : &rests};
+    End output;
+    static_cast<void>(resolve(machine_.table, machine_.index.by_name, watched, FacetKind::output, output));
+    for (std::size_t x = 0; x < machine_.table.connections.size(); ++x)
+        if (machine_.index.connections[x].from == output && machine_.plan.connections[x].shared) {
+            const std::size_t a = machine_.index.activity[output.component];
+            return {instance_.at<void>(machine_.plan.connections[x].memory_at),
+                    &instance_.engines()[a].plan().parts[machine_.plan.part_of[output.component]],
+                    facet_at(machine_.table, output).port->written, &is_part_expected};
+        }
+    return {};
+}
+
+} // namespace tappet

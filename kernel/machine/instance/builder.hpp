@@ -1,0 +1,55 @@
+// Makes a machine come to life: components constructed at their planned places, wired as the rows say,
+// configured. Used by MachineInstance::configure() and gone afterwards.
+#pragma once
+
+#include "kernel/machine/instance/instance.hpp"
+
+namespace tappet {
+
+/// Before arming, on one thread; not real-time.
+class MachineBuilder {
+public:
+    MachineBuilder(MachineInstance& instance, const PropertyStore& store) noexcept
+        : instance_{instance}, machine_{instance.machine()}, store_{store} {}
+
+    /// An error is the first component's refusal.
+    std::expected<void, Sentence> build(std::span<const ProvidedDevice> devices);
+
+private:
+    [[nodiscard]] std::expected<void, Sentence> share_memory();
+    void construct();
+    [[nodiscard]] Sentence configure_properties(std::size_t component);
+    void place_engines();
+    void place_scope();
+    void connect_clocks();
+
+    void connect_data();
+    void connect_row(std::size_t row);
+    void add_waker(std::size_t row);
+    void connect_extras();
+    void place_needed_inputs();
+    [[nodiscard]] LifeSign life_sign_of(std::string_view watched) noexcept;
+
+    void connect_events();
+    void place_lanes(std::size_t subscription, AsyncReaction& reaction);
+    void bind_receiver(std::size_t subscription, AsyncReaction& reaction);
+    void place_mailboxes();
+    void connect_operations();
+    void place_command_processors();
+
+    [[nodiscard]] Sentence place_behaviours();
+    [[nodiscard]] Sentence place_unit(std::size_t row, Behaviour& behaviour);
+    void place_slot(std::size_t row, Behaviour& behaviour);
+
+    void place_map();
+    void place_facet(End end, map::Facet& record);
+    void place_figure(map::Figure& figure);
+    void place_fields(const map::Header& header);
+    [[nodiscard]] std::uint64_t offset_of(const void* place) const noexcept;
+
+    MachineInstance& instance_;
+    const AcceptedMachine& machine_;
+    const PropertyStore& store_;
+};
+
+} // namespace tappet
