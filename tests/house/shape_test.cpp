@@ -93,6 +93,7 @@ constexpr std::array own_folders{
     std::string_view{"tests/house"},        // holds for the whole tree
     std::string_view{"tests/diagnostics"},  // machines that must not compile
     std::string_view{"tests/bench"},        // what needs a booted kernel
+    std::string_view{"tests/stack"},        // how deep a firmware may use its stacks
     std::string_view{"tests/waitfree"},     // the object code of what crosses between activities
     std::string_view{"tests/fuzz"},         // any bytes against what reads them, and the corpus of it
     std::string_view{"tests/models"},       // the algorithms as Promela, and their labels in the source

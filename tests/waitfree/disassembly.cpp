@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <set>
+#include <utility>
 
 namespace tappet::waitfree {
 
@@ -33,7 +35,12 @@ Instruction instruction(std::uint64_t address, std::string_view text) {
     Instruction one;
     one.address = address;
     // What follows a mark of comment is objdump's own reckoning.
-    text = trimmed(text.substr(0, text.find('#')));
+    const std::size_t mark = std::min(text.find('#'), text.size());
+    if (mark != text.size()) {
+        const std::string_view note = trimmed(text.substr(mark + 1));
+        static_cast<void>(hexadecimal(note.substr(0, note.find(' ')), one.reckoned));
+    }
+    text = trimmed(text.substr(0, mark));
     for (bool more = true; more;) {
         const std::size_t end = std::min(text.find(' '), text.size());
         const std::string_view word = text.substr(0, end);
@@ -46,6 +53,8 @@ Instruction instruction(std::uint64_t address, std::string_view text) {
         one.operands.emplace_back(trimmed(text.substr(0, comma)));
         text = comma == text.size() ? "" : text.substr(comma + 1);
     }
+    if (one.is("mov") && one.operands.size() == 2 && one.operands[1].starts_with("0x"))
+        static_cast<void>(hexadecimal(std::string_view{one.operands[1]}.substr(2), one.reckoned));
     return one;
 }
 
@@ -57,6 +66,11 @@ void relocate(Instruction& call, std::string_view symbol) {
 
 /// "30 <f+0x30>": the address, and the function's name for one that lies outside.
 void resolve(std::vector<Open>& open) {
+    std::map<std::pair<std::string_view, std::uint64_t>, std::string_view> begins;
+    // The sections of an object all begin at 0; those of a program follow one another.
+    const bool is_linked = std::ranges::none_of(open, [](const Open& each) { return each.begin == 0; });
+    for (const Open& each : open)
+        begins.try_emplace({is_linked ? std::string_view{} : each.section, each.begin}, each.function.name);
     for (Open& each : open) {
         const std::uint64_t end = each.function.code.empty() ? each.begin : each.function.code.back().address;
         for (Instruction& one : each.function.code) {
@@ -74,8 +88,11 @@ void resolve(std::vector<Open>& open) {
                 }
             }
             one.symbol = "(the middle of a function)";
-            for (const Open& other : open)
-                if (other.section == each.section && other.begin == to) one.symbol = other.function.name;
+            const auto other = begins.find({is_linked ? std::string_view{} : each.section, to});
+            if (other != begins.end())
+                one.symbol = other->second;
+            else
+                one.reckoned = to;
         }
     }
 }
@@ -92,6 +109,7 @@ std::vector<std::size_t> Function::successors(std::size_t at) const {
 
 void add_disassembly(Program& into, std::string_view text) {
     std::vector<Open> open;
+    std::set<std::string> known;
     std::string section;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
@@ -105,6 +123,8 @@ void add_disassembly(Program& into, std::string_view text) {
             Open next{{}, section, 0};
             if (!hexadecimal(line.substr(0, line.find(' ')), next.begin)) continue;
             next.function.name = line.substr(name + 1, line.size() - name - 3);
+            if (!known.insert(next.function.name).second)
+                next.function.name += "@" + std::string{line.substr(0, line.find(' '))};
             open.push_back(next);
         } else if (const std::size_t colon = line.find(':'); colon != line.npos && !open.empty()) {
             std::uint64_t address = 0;

@@ -19,6 +19,8 @@ struct Instruction {
     std::vector<std::string> operands;
     std::string symbol; ///< of a call or a jump out of the function: where to; empty: to an address computed
 
+    std::uint64_t reckoned = 0; ///< an address that it makes, reads or calls, as objdump reckons it; 0: none
+
     /// Within the function: index of the jump's target. none: no jump, or one that leaves.
     std::size_t target = none;
 
@@ -44,7 +46,8 @@ struct Function {
 
 using Program = std::map<std::string, Function>;
 
-/// From what objdump printed for one object; what is met in several objects is taken once.
+/// From what objdump printed for one object; what is met in several objects is taken once. Of several
+/// functions of one name in one object, each but the first has its address after an @.
 void add_disassembly(Program& into, std::string_view text);
 
 /// Runs objdump over the objects. Empty when it cannot be run.

@@ -1,0 +1,287 @@
+// Follows the stack pointer through each function, and the calls through the program.
+#include "tests/stack/bounds.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cxxabi.h>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace tappet::stack_bound {
+
+namespace {
+
+using waitfree::Function;
+using waitfree::Instruction;
+
+constexpr std::int64_t word = 8;
+
+bool names(const Names& list, const std::string& text) {
+    return std::ranges::any_of(list,
+                               [&](std::string_view each) { return text.find(each) != std::string::npos; });
+}
+
+std::optional<std::int64_t> number(std::string_view text) {
+    const bool is_negative = text.starts_with('-');
+    if (is_negative || text.starts_with('+')) text.remove_prefix(1);
+    if (!text.starts_with("0x")) return {};
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), value, 16);
+    if (error != std::errc{} || end != text.data() + text.size()) return {};
+    const auto whole = static_cast<std::int64_t>(value);
+    return is_negative ? -whole : whole;
+}
+
+/// The stack below where the function was entered, and the registers that keep an earlier stack pointer.
+struct Height {
+    std::int64_t used = 0;
+    std::map<std::string, std::int64_t, std::less<>> kept{};
+};
+
+/// "[rsp+0x10]": the register and the distance.
+std::optional<std::pair<std::string_view, std::int64_t>> address(std::string_view text) {
+    if (!text.starts_with('[') || !text.ends_with(']')) return {};
+    text = text.substr(1, text.size() - 2);
+    const std::size_t sign = text.find_first_of("+-");
+    if (sign == text.npos) return std::pair{text, std::int64_t{0}};
+    const auto by = number(text.substr(sign));
+    if (!by) return {};
+    return std::pair{text.substr(0, sign), *by};
+}
+
+/// False: the stack pointer is no longer known.
+bool execute(const Instruction& one, Height& height) {
+    const auto operand = [&](std::size_t i) {
+        return i < one.operands.size() ? std::string_view{one.operands[i]} : std::string_view{};
+    };
+    const std::string_view to = operand(0), from = operand(1);
+    const auto restore = [&](std::string_view kept, std::int64_t by) {
+        const auto found = height.kept.find(kept);
+        if (found == height.kept.end()) return false;
+        height.used = found->second - by;
+        return true;
+    };
+    if (one.is("push") || one.is("pushf")) {
+        height.used += word;
+        return true;
+    }
+    if (one.is("pop") || one.is("popf")) height.used -= word;
+    if (one.is("leave")) return restore("rbp", 0) && (height.used -= word, true);
+    if (one.is("mov") && from == "rsp") {
+        height.kept[std::string{to}] = height.used;
+        return true;
+    }
+    if (to != "rsp") {
+        if (!one.is("cmp") && !one.is("test")) height.kept.erase(std::string{to});
+        return true;
+    }
+    if (one.is("cmp") || one.is("test")) return true;
+    if (one.is("mov")) return restore(from, 0);
+    if (one.is("lea")) {
+        const auto place = address(from);
+        if (!place) return false;
+        if (place->first == "rsp") {
+            height.used -= place->second;
+            return true;
+        }
+        // The end of a frame that was aligned: g++ keeps the pointer at entry in r10, and then in the frame.
+        if (place->first == "r10") height.used = 0;
+        return place->first == "r10" || restore(place->first, place->second);
+    }
+    const auto by = number(from);
+    if (!by) return false;
+    if (one.is("sub"))
+        height.used += *by;
+    else if (one.is("add"))
+        height.used -= *by;
+    else if (one.is("and")) // aligns: what the mask takes away at most
+        height.used += -*by - 1;
+    else
+        return false;
+    return true;
+}
+
+} // namespace
+
+std::string demangled(const std::string& name) {
+    int status = 0;
+    const std::string plain = name.substr(0, std::min(name.find('@'), name.find(".cold")));
+    const std::unique_ptr<char, void (*)(void*)> text{
+        abi::__cxa_demangle(plain.c_str(), nullptr, nullptr, &status), std::free};
+    return status == 0 ? text.get() : name;
+}
+
+Bounds::Bounds(const Image& image, const Rules& rules) : image_{image}, rules_{rules} {
+    of_layer_.resize(rules.layers.size());
+    for (const std::string& name : image.taken) {
+        const std::size_t layer = layer_of(name);
+        const std::string text = demangled(name);
+        if (layer != no_layer)
+            of_layer_[layer].push_back(name);
+        else if (text.find("tappet::") != text.npos && !names(rules.outside, text))
+            faults_.insert(text + ": its address is taken, and no layer says by whom it is called");
+    }
+}
+
+std::size_t Bounds::layer_of(const std::string& name) const {
+    const std::string text = demangled(name);
+    for (std::size_t i = 0; i < rules_.layers.size(); ++i)
+        if (names(rules_.layers[i].of, text)) return i;
+    return no_layer;
+}
+
+void Bounds::fault(const std::string& function, const std::string& what) {
+    std::string chain;
+    for (std::size_t i = path_.size() > 14 ? path_.size() - 14 : 0; i < path_.size(); ++i)
+        chain += demangled(path_[i]) + " -> ";
+    faults_.insert(chain + demangled(function) + ": " + what);
+}
+
+Bounds::Frame Bounds::frame_of(const Function& function) const {
+    Frame frame;
+    const auto& code = function.code;
+    std::map<std::size_t, Height> seen;
+    std::vector<std::pair<std::size_t, Height>> next{{0, {}}};
+    const auto follow = [&] {
+        while (!next.empty()) {
+            auto [at, height] = next.back();
+            next.pop_back();
+            const auto [found, is_new] = seen.try_emplace(at, height);
+            if (!is_new && found->second.used >= height.used) continue;
+            found->second = height;
+            if (height.used > (1 << 24)) {
+                frame.fault = "its frame grows in a loop";
+                frame.deepest = 0;
+                frame.calls.clear();
+                return;
+            }
+            const Instruction& one = code[at];
+            if (!execute(one, height)) {
+                frame.fault = "its frame has no constant size: " + one.mnemonic;
+                return;
+            }
+            const auto depth = static_cast<std::size_t>(std::max<std::int64_t>(height.used, 0));
+            frame.deepest = std::max(frame.deepest, depth);
+            const bool ends = !one.symbol.empty() && names(rules_.ends, demangled(one.symbol));
+            if (one.is_call() && !ends)
+                frame.calls.push_back({depth + std::size_t{word}, one.symbol});
+            else if (!ends && !one.symbol.empty() && one.symbol != "(the middle of a function)")
+                frame.calls.push_back({depth, one.symbol}); // it goes on there
+            else if (one.is_jump() && one.target == waitfree::none && one.symbol.empty() && depth == 0)
+                frame.calls.push_back({0, {}});
+            if (one.is_call() && ends) continue;
+            for (const std::size_t each : function.successors(at)) next.emplace_back(each, height);
+        }
+    };
+    follow();
+    // What only a table of jumps reaches is reached with a frame that is complete.
+    const bool has_table = std::ranges::any_of(code, [](const Instruction& one) {
+        return one.is_jump() && one.target == waitfree::none && one.symbol.empty();
+    });
+    for (std::size_t at = 0; has_table && at < code.size() && frame.fault.empty(); ++at) {
+        if (seen.contains(at)) continue;
+        const auto deepest = static_cast<std::int64_t>(frame.deepest);
+        next.push_back({at, {deepest, {{"rbp", deepest}}}});
+        follow();
+    }
+    for (const Call& call : frame.calls) frame.deepest = std::max(frame.deepest, call.depth);
+    return frame;
+}
+
+const Bounds::Frame& Bounds::frame(const std::string& name) {
+    const auto [found, is_new] = frames_.try_emplace(name);
+    if (is_new) found->second = frame_of(image_.functions.at(name));
+    return found->second;
+}
+
+std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
+    if (const auto known = needs_.find({name, layer}); known != needs_.end()) return known->second.bytes;
+    const std::string text = demangled(name);
+    for (const Statement& each : rules_.stated)
+        if (text.starts_with(each.name)) return each.bytes;
+    if (!image_.functions.contains(name)) {
+        fault(name, "its code is not seen");
+        return 0;
+    }
+    if (std::ranges::find(path_, name) != path_.end()) {
+        if (std::ranges::none_of(rules_.recurring,
+                                 [&](const Statement& each) { return text.starts_with(each.name); }))
+            fault(name, "a recursion");
+        return 0;
+    }
+    const Frame& own = frame(name);
+    if (!own.fault.empty()) fault(name, own.fault);
+    path_.push_back(name);
+    Need most{own.deepest, {}};
+    const auto weigh = [&most](std::size_t bytes, const std::pair<std::string, std::size_t>& next) {
+        if (bytes > most.bytes) most = {bytes, next};
+    };
+    for (const Call& call : own.calls) {
+        if (!call.to.empty()) {
+            // What a layer names calls through pointers what lies below it, also when it is called directly.
+            const std::size_t own_layer = layer == no_layer ? layer : std::min(layer, layer_of(call.to));
+            weigh(call.depth + need_of(call.to, own_layer), {call.to, own_layer});
+        } else if (layer == no_layer) {
+            fault(name, "it calls through a pointer, outside of all layers");
+        } else {
+            const Need& below = need_below(layer);
+            weigh(call.depth + below.bytes, below.next);
+        }
+    }
+    path_.pop_back();
+    for (const Statement& each : rules_.recurring)
+        if (text.starts_with(each.name)) most.bytes *= each.bytes;
+    return (needs_[{name, layer}] = most).bytes;
+}
+
+/// What a call through a pointer out of this layer needs: each lower layer comes as often as it says.
+const Bounds::Need& Bounds::need_below(std::size_t layer) {
+    if (const auto known = below_.find(layer); known != below_.end()) return known->second;
+    Need most;
+    const auto path = std::exchange(path_, {});
+    for (std::size_t lower = 0; lower < layer; ++lower) {
+        const auto& [what, of, times, only] = rules_.layers[lower];
+        if (!only.empty() && std::ranges::find(allowed_, only) == allowed_.end()) continue;
+        // The last of several entries needs what it needs; each one before it adds its own frames, at most
+        // the same.
+        for (const std::string& name : of_layer_[lower])
+            if (const std::size_t bytes = need_of(name, lower) * times; bytes > most.bytes)
+                most = {bytes, {name, lower}};
+    }
+    path_ = path;
+    return below_[layer] = most;
+}
+
+std::size_t Bounds::of(std::string_view root, Names allowed) {
+    needs_.clear();
+    below_.clear();
+    allowed_ = std::move(allowed);
+    const std::size_t top = rules_.layers.size() - 1;
+    Need most = need_below(top);
+    for (const std::string& name : of_layer_[top])
+        if (names(allowed_, demangled(name)) && need_of(name, top) > most.bytes)
+            most = {need_of(name, top), {name, top}};
+    below_[top + 1] = most;
+    for (const auto& [name, function] : image_.functions)
+        if (demangled(name) == root) {
+            root_ = {name, top + 1};
+            return image_.thread_local_bytes + need_of(name, top + 1);
+        }
+    faults_.insert(std::string{root} + ": it is not in the program");
+    return 0;
+}
+
+std::string Bounds::path() const {
+    std::string text;
+    for (auto at = root_; !at.first.empty();) {
+        const auto need = needs_.find(at);
+        text += "    " + (need == needs_.end() ? std::string{"?"} : std::to_string(need->second.bytes)) +
+                " " + demangled(at.first) + "\n";
+        at = need == needs_.end() ? decltype(at){} : need->second.next;
+    }
+    return text;
+}
+
+} // namespace tappet::stack_bound

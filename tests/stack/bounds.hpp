@@ -1,0 +1,113 @@
+// How deep a thread may use its stack, from the object code of a whole program.
+//
+// A function's frame is followed through its instructions, path by path; a call adds what the callee needs. A
+// call through a pointer is resolved by layers: whatever is called through a pointer lies in a lower layer
+// than its caller, or in one that may be entered several times, as often as stated.
+//
+// A fault is: a frame whose size is no constant, a recursion, code that is not there, a call through a
+// pointer outside of all layers, and a function whose address is taken but whose layer nobody stated.
+//
+// Not seen: whether the layers are true (they are the framework's design, and the high-water mark of a run
+// tells otherwise); what runs once a contract is broken or the program ends, which `ends` cuts off; signal
+// handlers, which the threads of a machine block; the kernel's vdso.
+#pragma once
+
+#include "tests/waitfree/disassembly.hpp"
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::stack_bound {
+
+/// Functions whose demangled name contains one of these.
+using Names = std::vector<std::string_view>;
+
+struct Layer {
+    std::string_view what;
+    Names of;
+    std::size_t times = 1;   ///< how often one path enters it through pointers
+    std::string_view only{}; ///< the one of the topmost layer that calls it; empty: any
+};
+
+/// Of a call that is not followed, as its code is not seen, recurs so often at most, or is never reached.
+struct Statement {
+    std::string_view name; ///< how the demangled name begins
+    std::size_t bytes;     ///< at most
+    std::string_view why;
+};
+
+struct Rules {
+    std::vector<Layer> layers; ///< the lowest first
+    Names ends;                ///< do not come back, and are not followed
+    Names outside;             ///< called through a pointer before or beside the threads; not followed
+    std::vector<Statement> stated;
+    std::vector<Statement> recurring; ///< `bytes` are times here: it is entered so often at most
+};
+
+/// Where calls of functions lead that libc picks for the processor when the program starts.
+inline constexpr std::string_view picked_at_start = "(picked at start)";
+
+/// A program as it is linked: its code, and which functions' addresses stand in its data or code.
+struct Image {
+    waitfree::Program functions;
+    std::set<std::string> taken;
+    std::size_t thread_local_bytes = 0; ///< laid at the top of each thread's stack
+};
+/// Empty when the file or objdump is not there.
+[[nodiscard]] Image read_image(const std::string& path);
+
+[[nodiscard]] std::string demangled(const std::string& name);
+
+class Bounds {
+public:
+    Bounds(const Image& image, const Rules& rules);
+
+    /// Of a thread that begins in the function and calls through pointers only what `allowed` of the topmost
+    /// layer names. Bytes, without those of faults(), which were met on the way.
+    [[nodiscard]] std::size_t of(std::string_view root, Names allowed);
+    /// The deepest path of the last of(): a function on each line, with what it and those below it need.
+    [[nodiscard]] std::string path() const;
+    [[nodiscard]] const std::set<std::string>& faults() const { return faults_; }
+
+private:
+    struct Call {
+        std::size_t depth = 0; ///< bytes used when it is made, its return address included
+        std::string to;        ///< empty: through a pointer
+    };
+    struct Frame {
+        std::size_t deepest = 0;
+        std::vector<Call> calls;
+        std::string fault;
+    };
+    static constexpr std::size_t no_layer = ~std::size_t{0};
+
+    [[nodiscard]] Frame frame_of(const waitfree::Function& function) const;
+    void fault(const std::string& function, const std::string& what);
+    struct Need {
+        std::size_t bytes = 0;
+        std::pair<std::string, std::size_t>
+            next{}; ///< the call that needs most, and its layer; none: no name
+    };
+    [[nodiscard]] std::size_t need_of(const std::string& name, std::size_t layer);
+    [[nodiscard]] const Need& need_below(std::size_t layer);
+    [[nodiscard]] std::size_t layer_of(const std::string& name) const;
+    [[nodiscard]] const Frame& frame(const std::string& name);
+
+    const Image& image_;
+    const Rules& rules_;
+    std::map<std::string, Frame> frames_;
+    std::map<std::pair<std::string, std::size_t>, Need> needs_;
+    std::map<std::size_t, Need> below_;
+    std::pair<std::string, std::size_t> root_{};
+    std::vector<std::string> path_;
+    std::set<std::string> faults_;
+    std::vector<std::vector<std::string>> of_layer_;
+    Names allowed_{};
+};
+
+} // namespace tappet::stack_bound
