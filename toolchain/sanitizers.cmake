@@ -25,7 +25,6 @@ if(TAPPET_SANITIZE MATCHES "realtime|fuzz" AND NOT CMAKE_CXX_COMPILER_ID STREQUA
 endif()
 
 if(tappet_sanitizer_flags)
-    add_compile_options(${tappet_sanitizer_flags} -fno-omit-frame-pointer)
-    add_compile_definitions(TAPPET_ASSERTS_THREADS)
+    add_compile_options(${tappet_sanitizer_flags} -fno-omit-frame-pointer -DTAPPET_ASSERTS_THREADS)
     add_link_options(${tappet_sanitizer_flags})
 endif()
