@@ -387,14 +387,13 @@ Time StateMachineExecution::next_timeout() const noexcept TAPPET_REALTIME {
     return earliest;
 }
 
-auto StateMachineExecution::path() const noexcept TAPPET_REALTIME
--> Bounded<std::string_view, max_state_depth> {
+Bounded<std::string_view, max_state_depth> path_of(const ResolvedView& machine, StateIndex state) noexcept
+    TAPPET_REALTIME {
     Bounded<std::string_view, max_state_depth> names;
-    StateIndex state = status_.active;
     if (state == no_state) return names;
-    names.used = machine_.plans[state].depth;
-    for (std::size_t level = names.used; level-- > 0; state = machine_.plans[state].parent)
-        names[level] = row(state).name;
+    names.used = machine.plans[state].depth;
+    for (std::size_t level = names.used; level-- > 0; state = machine.plans[state].parent)
+        names[level] = machine.table.states[state].name;
     return names;
 }
 

@@ -57,6 +57,10 @@ struct StateMachineBinding {
     StateMachineFast fast{};
 };
 
+/// Names of a state and of those around it, from the outside; none: empty. Real-time.
+[[nodiscard]] Bounded<std::string_view, max_state_depth> path_of(const ResolvedView& machine,
+                                                                 StateIndex state) noexcept TAPPET_REALTIME;
+
 class StateMachineExecution {
 public:
     static constexpr std::size_t max_transitions_per_step = 8;
@@ -152,7 +156,9 @@ public:
         return status_.active != no_state && status_.active == machine_.final_state;
     }
     /// Names of the active leaf and of the states around it, from the outside.
-    [[nodiscard]] Bounded<std::string_view, max_state_depth> path() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Bounded<std::string_view, max_state_depth> path() const noexcept TAPPET_REALTIME {
+        return path_of(machine_, status_.active);
+    }
     /// All active states, each before those inside it.
     [[nodiscard]] const Bounded<ActiveState, max_active_states>& states() const noexcept TAPPET_REALTIME {
         return status_.states;

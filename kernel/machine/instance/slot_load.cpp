@@ -48,6 +48,8 @@ Sentence BehaviourSlot::compile(std::size_t characters, std::string_view name) {
     Bank& bank = banks_[number];
     const BehaviourRow& row = *place_.row;
     bank.filled = false;
+    if (previous_.load(std::memory_order_relaxed) == spare())
+        previous_.store(none, std::memory_order_relaxed);
     if (!bank.name.assign(name.substr(0, 48))) return Sentence{"the script's name is too long"};
     Reach reach;
     reach.components = {reachable_.data(), reachable_count_};
@@ -103,8 +105,8 @@ Sentence BehaviourSlot::may(Change change) const noexcept {
         return Sentence{"another change of behaviour of \"", name, "\" is under way; wait until it is done"};
     if (change == Change::unload && active() == nullptr && phase() != SlotPhase::waiting)
         return Sentence{"nothing is loaded in the slot of \"", name, "\"; load a script first"};
-    if (change == Change::roll_back &&
-        (previous_ == none || !banks_[static_cast<std::size_t>(previous_)].filled))
+    if (change == Change::roll_back && phase() != SlotPhase::waiting &&
+        previous_.load(std::memory_order_relaxed) == none)
         return Sentence{"the slot of \"", name, "\" has no earlier behaviour; load one"};
     if (change == Change::take_over && !banks_[static_cast<std::size_t>(spare())].filled)
         return Sentence{"no script was compiled for the slot of \"", name, "\"; load one"};
@@ -113,8 +115,8 @@ Sentence BehaviourSlot::may(Change change) const noexcept {
 
 bool BehaviourSlot::ask(Change change, const SlotMoment& moment) noexcept {
     if (asked_.load(std::memory_order_acquire)) return false;
-    change_ = change;
-    moment_ = moment;
+    asked_change_ = change;
+    asked_moment_ = moment;
     asked_.store(true, std::memory_order_relaxed);
     return true;
 }

@@ -17,19 +17,22 @@ constexpr double full_turn_deg = 360;
 
 void BehaviourSlot::obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME {
     auto& self = *static_cast<BehaviourSlot*>(slot);
+    const bool lets_go = self.asked_change_ == Change::roll_back && self.phase() == SlotPhase::waiting;
     self.why_ = RollBack::none;
-    self.is_roll_back_ = self.change_ == Change::roll_back;
+    self.is_roll_back_ = self.asked_change_ == Change::roll_back;
     self.last_angle_ = -1;
-    switch (self.change_) {
+    switch (self.asked_change_) {
     case Change::take_over: self.target_ = self.spare(); break;
     case Change::unload: self.target_ = none; break;
     case Change::roll_back:
-        self.target_ = self.previous_;
+        self.target_ = self.previous_.load(std::memory_order_relaxed);
         self.why_ = RollBack::asked;
         ++self.roll_backs_;
         break;
     }
-    self.set(SlotPhase::waiting);
+    self.moment_ = self.asked_moment_;
+    self.set(!lets_go ? SlotPhase::waiting : self.active() == nullptr ? SlotPhase::empty : SlotPhase::steady);
+    if (lets_go) self.connect(self.runs_);
     self.asked_.store(false, std::memory_order_release);
 }
 
@@ -107,7 +110,7 @@ void BehaviourSlot::hand_over(Time now) noexcept TAPPET_REALTIME {
 
 void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     const int before = active_.load(std::memory_order_relaxed);
-    previous_ = before == target_ ? none : before;
+    previous_.store(before == target_ ? none : before, std::memory_order_relaxed);
     active_.store(target_, std::memory_order_relaxed);
     ++loads_;
     set(target_ == none ? SlotPhase::empty : is_roll_back_ ? SlotPhase::steady : SlotPhase::trial);
@@ -138,10 +141,10 @@ void BehaviourSlot::take_back(RollBack why, Time now) noexcept TAPPET_REALTIME {
     failed.deactivate(now);
     if (failed.is_active()) failed.deactivate(now);
     failed.drop();
-    target_ = previous_;
+    target_ = previous_.load(std::memory_order_relaxed);
     is_roll_back_ = true;
     switch_to_target(now);
-    previous_ = none;
+    previous_.store(none, std::memory_order_relaxed);
 }
 
 Time BehaviourSlot::next() const noexcept TAPPET_REALTIME {

@@ -153,6 +153,7 @@ public:
     /// A moment as it is written: "now", "component.event" of the reach, or an angle in degrees.
     [[nodiscard]] Sentence parse_moment(std::string_view text, SlotMoment& moment) const;
 
+    /// A roll-back of a load that still waits lets that one go, and what is at work stays.
     enum class Change : std::uint8_t { take_over, unload, roll_back };
     /// What obey() is to do; false: it has not obeyed the last one yet.
     [[nodiscard]] bool ask(Change change, const SlotMoment& moment = {}) noexcept;
@@ -223,14 +224,17 @@ private:
     std::span<std::byte> unit_memory_[2]{};
     std::array<Reachable, Slot::max_names + 1> reachable_{};
     std::size_t reachable_count_ = 0;
-    // Written by the background while no change is on its way, read by the engine.
-    Change change_ = Change::take_over;
-    SlotMoment moment_{};
+    // Written by the background while no change is on its way, read by obey().
+    Change asked_change_ = Change::take_over;
+    SlotMoment asked_moment_{};
     std::atomic<bool> asked_{false};
+    /// The bank that was at work before and is still whole. The engine sets it when one takes over, the
+    /// background takes it away when it compiles into it, which it does while no change is on its way.
+    std::atomic<int> previous_{none};
     // Written by the engine.
+    SlotMoment moment_{}; ///< that a change waits for
     std::atomic<SlotPhase> phase_{SlotPhase::empty};
     std::atomic<int> active_{none};
-    int previous_ = none; ///< that was at work before, and is still whole
     int target_ = none;
     bool runs_ = false; ///< its component does
     bool is_roll_back_ = false;

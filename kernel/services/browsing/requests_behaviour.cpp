@@ -122,7 +122,7 @@ void BrowserService::put_behaviour(Reply& reply, std::size_t row, const Behaviou
     const std::size_t activity = machine.index.activity[find_component(machine.table, behaviour.component)];
     struct {
         std::string_view status{};
-        Bounded<std::string_view, max_state_depth> path{};
+        StateIndex state = no_state;
         std::string_view reason{};
         NodeIndex node = no_node;
         std::uint64_t transitions = 0;
@@ -130,7 +130,7 @@ void BrowserService::put_behaviour(Reply& reply, std::size_t row, const Behaviou
     const bool whole = read_between_steps(activity, [&] {
         if (part.machine != nullptr) {
             seen.status = to_text(part.machine->machine_status());
-            seen.path = part.machine->path();
+            seen.state = part.machine->status().active;
             seen.reason = part.machine->reason();
             seen.transitions = part.machine->status().transitions;
             seen.node = part.machine->in_error() ? part.machine->fault().node : part.machine->node_in_hand();
@@ -151,7 +151,10 @@ void BrowserService::put_behaviour(Reply& reply, std::size_t row, const Behaviou
     json.field("status", seen.status);
     if (part.machine != nullptr) {
         Sentence path;
-        for (const std::string_view state : seen.path) path.add(path.empty() ? "" : "/").add(state);
+        // By what the unit is bound to, which stays: the machine itself may be dropped and bound anew
+        // meanwhile.
+        for (const std::string_view state : path_of(part.binding.machine, seen.state))
+            path.add(path.empty() ? "" : "/").add(state);
         json.field("state", path.view());
     }
     const auto nodes = part.type->tables.nodes;

@@ -269,6 +269,40 @@ TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for)
     EXPECT_THAT(wish(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
 }
 
+TEST_F(BehaviourSlotTest, one_that_waits_does_not_take_over_because_another_change_is_on_its_way) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(numbered(2), "door.moved"), "");
+    run(3ms);
+    ASSERT_EQ(slot.phase(), SlotPhase::waiting);
+    ASSERT_TRUE(slot.ask(BehaviourSlot::Change::unload)); // now; its engine has not heard of it yet
+    run(5ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::waiting);
+    EXPECT_THAT(oven().told, IsEmpty()) << "the first is at work";
+    ASSERT_TRUE(instance.requests().post_change(slot));
+    run(3ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::empty);
+    EXPECT_THAT(oven().told, ElementsAre(11)) << "the first came to its end, and the second was never there";
+}
+
+TEST_F(BehaviourSlotTest, one_that_waits_is_let_go_by_a_roll_back_and_what_is_at_work_stays) {
+    load_and_settle(numbered(1));
+    load_and_settle(numbered(2));
+    EXPECT_EQ(load(numbered(3), "door.moved"), "");
+    run(2ms);
+    ASSERT_EQ(slot.phase(), SlotPhase::waiting);
+    EXPECT_EQ(wish(BehaviourSlot::Change::roll_back), "");
+    run(2ms);
+    door().moved.emit();
+    run(2ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+    EXPECT_THAT(oven().told, IsEmpty());
+    oven().tick.emit();
+    run(2ms);
+    EXPECT_THAT(oven().told, ElementsAre(20)) << "the second";
+    EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"))
+        << "the third was compiled over the first";
+}
+
 TEST_F(BehaviourSlotTest, there_is_no_way_back_behind_a_bank_that_was_written_over) {
     EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     load_and_settle(numbered(1));
