@@ -210,7 +210,8 @@ void tell_machine(Work& work) {
 Result<void> tell_counters(Work& work) {
     const auto counters = work.session.link().request("counters");
     if (!counters) return std::unexpected(counters.error());
-    for (const auto& stack : (*counters)["stacks"]) {
+    const auto rows = [&](const char* key) { return counters->value(key, nlohmann::ordered_json::array()); };
+    for (const auto& stack : rows("stacks")) {
         if (work.line.json) {
             work.out << "{\"stack_of\": " << stack["activity"] << ", \"bytes\": " << stack["bytes"]
                      << ", \"used_bytes\": " << stack["used_bytes"] << "}\n";
@@ -221,7 +222,7 @@ Result<void> tell_counters(Work& work) {
         work.out << "stack of " << stack["activity"].get<std::string>() << ": " << stack["used_bytes"]
                  << " of " << stack["bytes"] << " bytes used at most\n";
     }
-    for (const auto& row : (*counters)["held_back"])
+    for (const auto& row : rows("held_back"))
         if (work.line.json)
             work.out << "{\"limits\": " << row["row"] << ", \"held_back\": " << row["times"] << "}\n";
         else

@@ -217,10 +217,17 @@ TEST_F(Program, an_answer_that_is_none_is_told_and_ends_nothing_else) {
 }
 
 TEST_F(Program, tells_about_the_machine_and_about_one_name) {
+    machine.answer("counters", {R"({"id": %, "ok": true,
+        "stacks": [{"activity": "fast", "bytes": 65536, "used_bytes": 4096}, {"activity": "slow", "bytes": 65536, "used_bytes": 0}],
+        "held_back": [{"row": "loom.speed", "times": 3}]})"});
     const Outcome machine_info = run({"info"});
     EXPECT_THAT(machine_info.out, HasSubstr("machine sample on board test"));
     EXPECT_THAT(machine_info.out, HasSubstr("you are its engineer"));
     EXPECT_THAT(machine_info.out, HasSubstr("cycles = 0"));
+    EXPECT_THAT(machine_info.out, HasSubstr("stack of fast: 4096 of 65536 bytes used at most\n"));
+    EXPECT_THAT(machine_info.out, Not(HasSubstr("stack of slow"))) << "in virtual time it has none";
+    EXPECT_THAT(machine_info.out, HasSubstr("limits held back loom.speed 3 times\n"));
+    machine.answer("counters", {R"({"id": %, "ok": true})"});
     EXPECT_THAT(run({"info", "--json"}).out, HasSubstr("\"role\": \"engineer\""));
     const Outcome facet = run({"info", "loom.angle"});
     EXPECT_THAT(facet.out, HasSubstr("<- shaft.angle (stale after 4ms: hold)"));
