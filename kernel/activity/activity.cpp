@@ -87,6 +87,7 @@ void Activity::run_once() noexcept {
     const os::PageFaults before = os::page_faults_of_this_thread();
     state_.store(State::waiting, std::memory_order_release);
     cycles();
+    end();
     const os::PageFaults here = os::page_faults_of_this_thread() - before;
     faults_.minor += here.minor;
     faults_.major += here.major;
@@ -114,6 +115,15 @@ void Activity::cycles() noexcept TAPPET_REALTIME {
         state_.store(State::running, std::memory_order_relaxed);
         engine_->run(woken);
         state_.store(State::waiting, std::memory_order_relaxed);
+    }
+}
+
+// Before the stop is claimed: who hangs here is stopped by the supervisor.
+void Activity::end() noexcept TAPPET_REALTIME {
+    engine_->begin_end(clock_->now());
+    while (!engine_->has_ended(clock_->now())) {
+        const bool woken = sleep_until(std::min(engine_->next_wake(), engine_->ends_at()));
+        engine_->run(woken);
     }
 }
 

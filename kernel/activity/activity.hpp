@@ -69,6 +69,7 @@ public:
 private:
     static void enter(void* self) noexcept;
     void live() noexcept;
+    void end() noexcept TAPPET_REALTIME;
     void cycles() noexcept TAPPET_REALTIME;
     void run_once() noexcept;
     void loop(const EnginePart& part);

@@ -38,6 +38,8 @@ Time Engine::earliest_wake() const noexcept TAPPET_REALTIME {
         if (is_running(plan_.parts[each.part].state)) next = std::min(next, each.next(each.self));
     for (const GuardedInput& each : plan_.guarded) next = std::min(next, each.expires);
     if (awaiting_ != 0) next = std::min(next, cycle_.now + awaiting_period);
+    if (ending_ != 0)
+        for (const EnginePart& part : plan_.parts) next = std::min(next, part.ends_at);
     return next;
 }
 
@@ -102,6 +104,7 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if constexpr (!steps_only) {
         set_running_cause(cause_);
         run_behaviours(due || acted); // what ran may have changed a condition
+        if (ending_ != 0) end_parts();
         if (waking != nullptr) waking->times.add(lap_ - cause_);
         set_running_cause(no_cause);
         watch_inputs();

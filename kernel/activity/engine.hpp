@@ -29,7 +29,8 @@ struct Behaviour {
     void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     void (*programs)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< null: it has none
     void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< after all programs
-    void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
+    void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< asks for its end
+    bool (*has_ended)(const void* self) noexcept TAPPET_REALTIME = nullptr;
     Time (*next)(const void* self) noexcept
         TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened
 };
@@ -44,6 +45,10 @@ struct EnginePart : GatedComponent {
     const ComponentType* type = nullptr;
     std::string_view name{};
     LifeRequests requests{};
+    // Of one that is asked to stop while its behaviours come to their ends; never: none is.
+    Time ends_at = never;
+    LifeTicket ending{};
+    LifeChange wanted{};
 };
 
 struct EngineTimer {
@@ -162,8 +167,16 @@ public:
         const RunsActivity here{plan_.activity, &cycle_.now};
         cycle(woken);
     }
-    /// In its own thread, or after that thread is no more: behaviours end, then components leave safe values,
-    /// in data-flow order, so that what a source writes last reaches the driver after it.
+    /// How long behaviours may take to come to their final states when their component or activity stops.
+    static constexpr Duration end_limit = 100ms;
+    /// In its own thread, before stop(): behaviours are asked for their ends. Cycles go on until has_ended(),
+    /// at ends_at() at the latest: a final state may wait, or send commands that take their time.
+    void begin_end(Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool has_ended(Time now) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Time ends_at() const noexcept TAPPET_REALTIME { return ends_at_; }
+    /// In its own thread, or after that thread is no more: components leave safe values, in data-flow order,
+    /// so that what a source writes last reaches the driver after it. Behaviours that were not asked to end
+    /// are asked now, and get what one step does.
     void stop(Time now) noexcept TAPPET_REALTIME;
     /// In the thread that stopped it, when it is woken before the next start: the sender of a command that
     /// looked before the stop and posted after it gets its answer.
@@ -277,6 +290,11 @@ private:
     [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
     void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;
     void stop_part(std::uint32_t part) noexcept TAPPET_REALTIME;
+    /// Asks those of a running component for their ends. Of them all: whether they have come there.
+    void stop_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool have_ended(std::uint32_t part) const noexcept TAPPET_REALTIME;
+    void carry_out(std::uint32_t part, LifeTicket ticket, LifeChange wanted) noexcept TAPPET_REALTIME;
+    void end_parts() noexcept TAPPET_REALTIME;
     void end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;
@@ -322,7 +340,9 @@ private:
     std::atomic<bool> active_{false};
     std::atomic<bool> asked_{false}; ///< one of the parts has a request
     bool was_stopped_ = false;
+    Time ends_at_ = never;       ///< of behaviours that were asked to end; never: they were not
     std::uint32_t awaiting_ = 0; ///< parts that wait for an input
+    std::uint32_t ending_ = 0;   ///< parts whose stop waits for the end of their behaviours
     Time next_release_ = never;
     Time lap_{};
     Time ended_{};

@@ -65,6 +65,37 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     end_change(generation);
 }
 
+void Engine::stop_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME {
+    if (!is_running(plan_.parts[part].state) || plan_.parts[part].ends_at != never) return;
+    for (const Behaviour& each : plan_.behaviours)
+        if (each.part == part) each.stop(each.self, cycle_.now);
+}
+
+bool Engine::have_ended(std::uint32_t part) const noexcept TAPPET_REALTIME {
+    if (!is_running(plan_.parts[part].state)) return true;
+    for (const Behaviour& each : plan_.behaviours)
+        if (each.part == part && !each.has_ended(each.self)) return false;
+    return true;
+}
+
+// What others asked before the stop is done first.
+void Engine::begin_end(Time now) noexcept TAPPET_REALTIME {
+    const std::uint64_t generation = begin_change();
+    const RunsActivity here{plan_.activity, &cycle_.now};
+    cycle_.now = cycle_.release = lap_ = now;
+    static_cast<void>(run_messages());
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_behaviours(i);
+    ends_at_ = now + end_limit;
+    end_change(generation);
+}
+
+bool Engine::has_ended(Time now) const noexcept TAPPET_REALTIME {
+    if (now >= ends_at_) return true;
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i)
+        if (!have_ended(i)) return false;
+    return true;
+}
+
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity, &cycle_.now};
@@ -74,8 +105,12 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     // alone.
     const bool hangs = generation == is_changing;
     if (!hangs) static_cast<void>(run_messages());
-    for (const Behaviour& each : plan_.behaviours)
-        if (is_running(plan_.parts[each.part].state)) each.stop(each.self, now);
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        if (ends_at_ == never) stop_behaviours(i);
+        plan_.parts[i].ends_at = never; // who asked for it hears that the activity stopped
+    }
+    ends_at_ = never;
+    ending_ = 0;
     if (!hangs) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
     commands_.reject_sent();
@@ -183,10 +218,38 @@ void Engine::serve_requests() noexcept TAPPET_REALTIME {
                                                     static_cast<std::uint8_t>(i), 0});
             continue;
         }
-        LifeAnswer answer;
-        timed(i, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { answer = change(i, wanted); });
-        note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(wanted), cycle_.now);
-        plan_.parts[i].requests.answer(ticket, answer);
+        EnginePart& part = plan_.parts[i];
+        if (part.ends_at != never) { // the last wish counts, but its behaviours are on the way to their ends
+            part.ending = ticket;
+            part.wanted = wanted == LifeChange::start ? LifeChange::restart : wanted;
+            continue;
+        }
+        if (wanted != LifeChange::start) stop_behaviours(i);
+        if (wanted == LifeChange::start || have_ended(i)) {
+            carry_out(i, ticket, wanted);
+            continue;
+        }
+        part.ends_at = cycle_.now + end_limit;
+        part.ending = ticket;
+        part.wanted = wanted;
+        ++ending_;
+    }
+}
+
+void Engine::carry_out(std::uint32_t i, LifeTicket ticket, LifeChange wanted) noexcept TAPPET_REALTIME {
+    LifeAnswer answer;
+    timed(i, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { answer = change(i, wanted); });
+    note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(wanted), cycle_.now);
+    plan_.parts[i].requests.answer(ticket, answer);
+}
+
+void Engine::end_parts() noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        EnginePart& part = plan_.parts[i];
+        if (part.ends_at == never || (cycle_.now < part.ends_at && !have_ended(i))) continue;
+        part.ends_at = never;
+        --ending_;
+        carry_out(i, part.ending, part.wanted);
     }
 }
 
@@ -198,8 +261,6 @@ LifeAnswer Engine::change(std::uint32_t i, LifeChange wanted) noexcept TAPPET_RE
         return {LifeOutcome::refused, LifeRefusal::not_initialised, static_cast<std::uint8_t>(i), 0};
     if (wanted != LifeChange::start) {
         if (state == ComponentState::starting) --awaiting_;
-        for (const Behaviour& each : plan_.behaviours)
-            if (each.part == i && is_running(part.state)) each.stop(each.self, cycle_.now);
         stop_part(i);
     }
     if (wanted == LifeChange::stop || is_running(part.state)) return done;

@@ -125,8 +125,9 @@ void tell_reason(const StateMachineExecution& loom, StateMachineExecution::News&
 
 void list_misses(const MachineInstance& instance) {
     for (std::size_t a = 0; a < instance.engines().size(); ++a)
-        if (const Sentence claim = instance.observation().describe_budget(a); !claim.empty())
-            os::print(Sentence{"carpet-loom: ", claim, "\n"}.view());
+        for (const Sentence& told :
+             {instance.observation().describe_budget(a), instance.observation().describe_end(a)})
+            if (!told.empty()) os::print(Sentence{"carpet-loom: ", told, "\n"}.view());
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
         if (seen.misses == 0) continue;

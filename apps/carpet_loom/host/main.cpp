@@ -83,8 +83,9 @@ int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet:
     if (!outcome.broken_contract.empty())
         os::print(Sentence{"carpet_loom: ", outcome.broken_contract, "\n"}.view());
     for (std::size_t a = 0; a < instance.engines().size(); ++a)
-        if (const Sentence claim = instance.observation().describe_budget(a); !claim.empty())
-            os::print(Sentence{"carpet_loom: ", claim, "\n"}.view());
+        for (const Sentence& told :
+             {instance.observation().describe_budget(a), instance.observation().describe_end(a)})
+            if (!told.empty()) os::print(Sentence{"carpet_loom: ", told, "\n"}.view());
     if (!options.properties.empty())
         if (const Sentence fault = saved(instance); !fault.empty()) return fail(fault);
     if (!options.summary.empty()) {

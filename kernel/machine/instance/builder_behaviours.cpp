@@ -62,6 +62,8 @@ Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {
     };
     behaviour.stop = [](void* self, Time now) noexcept
         TAPPET_REALTIME { unit_at(self).finish(now, "its component stops"); };
+    behaviour.has_ended = [](const void* self) noexcept
+        TAPPET_REALTIME { return static_cast<const BehaviourUnit*>(self)->is_finished(); };
     behaviour.next = [](const void* self) noexcept
         TAPPET_REALTIME { return static_cast<const BehaviourUnit*>(self)->next(); };
     return {};
@@ -105,6 +107,10 @@ void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
         TAPPET_REALTIME { slot_at(self).step_programs(now); };
     behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).step(now); };
     behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).stop(now); };
+    behaviour.has_ended = [](const void* self) noexcept TAPPET_REALTIME {
+        const BehaviourUnit* unit = static_cast<const BehaviourSlot*>(self)->active();
+        return unit == nullptr || unit->is_finished();
+    };
     behaviour.next = [](const void* self) noexcept
         TAPPET_REALTIME { return static_cast<const BehaviourSlot*>(self)->next(); };
 }

@@ -101,4 +101,25 @@ Sentence MachineObservation::describe_budget(std::size_t activity) const {
         .add("us) or more, or shorten what it does");
 }
 
+Sentence MachineObservation::describe_end(std::size_t activity) const {
+    if (placed_.engines()[activity].is_active()) return {};
+    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b) {
+        const std::string_view driven = machine_.table.behaviours[b].component;
+        if (machine_.index.activity[find_component(machine_.table, driven)] != activity) continue;
+        const BehaviourSlot* slot = placed_.slot_of_row(b);
+        const BehaviourUnit* unit = slot != nullptr ? slot->active() : placed_.unit_of_row(b);
+        if (unit == nullptr || unit->is_finished()) continue;
+        Sentence text{"the behaviour of \"", driven, "\" was left in \""};
+        for (const UnitPart& part : unit->parts())
+            if (part.machine != nullptr && part.machine->is_active())
+                for (std::size_t level = 0; level < part.machine->path().size(); ++level)
+                    text.add(level == 0 ? "" : "/").add(part.machine->path()[level]);
+        return text.add("\": ")
+            .add(Engine::end_limit / 1ms)
+            .add(" ms after it was asked to end it had not come to its end, which it does first when it is "
+                 "started again; shorten what leads there");
+    }
+    return {};
+}
+
 } // namespace tappet

@@ -58,6 +58,9 @@ public:
     /// That an activity used more of its processor than its row claims, and the cure; empty: it did not. The
     /// analysis of the table believed the claim.
     [[nodiscard]] Sentence describe_budget(std::size_t activity) const;
+    /// That behaviours of an activity that was stopped had not come to their final states within
+    /// Engine::end_limit, and the cure; empty: all had, or it goes on.
+    [[nodiscard]] Sentence describe_end(std::size_t activity) const;
     /// Of every engine, in order: equal for two runs that did the same.
     [[nodiscard]] std::uint64_t event_log_digest() const noexcept;
     /// Emissions that found their queue full, over the rows that keep each one: keep_latest lets older ones

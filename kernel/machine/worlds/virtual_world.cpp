@@ -27,6 +27,7 @@ ActivityControl VirtualWorld::control() noexcept {
             [](void* self, std::size_t a) {
                 auto& world = *static_cast<VirtualWorld*>(self);
                 if (world.loops_[a]) world.loops_[a]->break_off();
+                world.end(world.instance_.engines()[a]);
                 world.instance_.engines()[a].stop(world.instance_.clock().now());
                 return true;
             }};
@@ -83,7 +84,7 @@ void VirtualWorld::run_engines(Time now) {
             ran = true;
             break; // the most urgent of those that are ready now runs next
         }
-        if (!ran || instance_.stop_asked()) return;
+        if (!ran || (instance_.stop_asked() && !is_ending_)) return;
     }
     TAPPET_CONTRACT(false, Contract::step_limit_exceeded, max_rounds_per_instant, max_rounds_per_instant + 1);
 }
@@ -92,17 +93,30 @@ bool VirtualWorld::run_until(Time end) {
     os::Clock& clock = instance_.clock();
     while (!instance_.stop_asked()) {
         instance_.life().serve_activity_requests(control());
-        const Time next = std::max(next_time(), clock.now());
-        if (next > end) {
+        if (std::max(next_time(), clock.now()) > end) {
             clock.advance_to(end);
             return true;
         }
-        clock.advance_to(next);
-        for (const VirtualProcess& process : processes_)
-            if (process.next(process.self) <= next) process.run(process.self, next);
-        run_engines(clock.now());
+        run_instant(end);
     }
     return false;
+}
+
+void VirtualWorld::run_instant(Time end) {
+    os::Clock& clock = instance_.clock();
+    clock.advance_to(std::min(std::max(next_time(), clock.now()), end));
+    const Time now = clock.now();
+    for (const VirtualProcess& process : processes_)
+        if (process.next(process.self) <= now) process.run(process.self, now);
+    run_engines(now);
+}
+
+void VirtualWorld::end(Engine& engine) {
+    os::Clock& clock = instance_.clock();
+    engine.begin_end(clock.now());
+    is_ending_ = true;
+    while (!engine.has_ended(clock.now())) run_instant(engine.ends_at());
+    is_ending_ = false;
 }
 
 void VirtualWorld::stop() {

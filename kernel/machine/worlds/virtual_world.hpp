@@ -54,6 +54,10 @@ private:
     void run_engine(std::size_t activity, bool woken);
     [[nodiscard]] Time next_time() const;
     void run_engines(Time now);
+    /// Processes and engines of the next instant, `end` at the latest.
+    void run_instant(Time end);
+    /// The others go on while the behaviours of one activity come to their ends.
+    void end(Engine& engine);
 
     MachineInstance& instance_;
     Bounded<VirtualProcess, 8> processes_{};
@@ -64,6 +68,7 @@ private:
     std::array<Time, checks::max_activities> wake_at_{};
     std::array<std::optional<VirtualLoop>, checks::max_activities> loops_{};
     std::uint64_t steps_ = 0;
+    bool is_ending_ = false; ///< engines run although a stop was asked for
 };
 
 } // namespace tappet

@@ -2,6 +2,7 @@
 // after those whom it commands: it switches them on.
 #include "apps/car_tracking/camera.hpp"
 #include "apps/car_tracking/host/virtual_run.hpp"
+#include "apps/car_tracking/image_recognition.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,6 +77,15 @@ TEST_F(Restarted, after_all_were_stopped_every_component_runs_again) {
     for (const char* name : {"camera", "recognition", "tracking", "panel"}) start(name);
     EXPECT_EQ(run.state(), "Waiting");
     expect_follows_the_car_again();
+}
+
+TEST_F(Restarted, who_commands_switches_both_off_before_it_stops) {
+    EXPECT_TRUE(run.run_for(in_between));
+    auto& recognition = *run.instance().find<ImageRecognition>("recognition");
+    stop("tracking");
+    EXPECT_EQ(run.state(), "Shutdown");
+    EXPECT_FALSE(run.scene().expose(10ms)) << "the camera";
+    EXPECT_FALSE(recognition.begin_processing()) << "the second command of the final state";
 }
 
 TEST_F(Restarted, who_commands_comes_to_its_end_before_it_begins_anew) {

@@ -147,6 +147,55 @@ TEST_F(BehaviourSlotTest, an_old_behaviour_that_needs_time_to_end_is_given_it) {
     EXPECT_THAT(oven().told, ElementsAre(2, 3));
 }
 
+std::string ends_after(std::string_view wait) {
+    return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
+           "state B { transition oven.tick() select A }\n"
+           "final state End { entry { wait(" +
+           std::string{wait} + "); do oven.note(2); } } }";
+}
+
+TEST_F(BehaviourSlotTest, a_final_state_that_waits_is_finished_before_its_component_stops) {
+    load_and_settle(ends_after("20ms"));
+    const Time begun = clock.now();
+    world.stop();
+    EXPECT_THAT(oven().told, ElementsAre(2));
+    EXPECT_EQ(clock.now() - begun, 20ms);
+    for (std::size_t a = 0; a < instance.engines().size(); ++a)
+        EXPECT_EQ(instance.observation().describe_end(a).view(), "");
+}
+
+TEST_F(BehaviourSlotTest, a_component_alone_stops_when_its_final_state_has_been_finished) {
+    load_and_settle(ends_after("20ms"));
+    const std::size_t c = find_component(instance.machine().table, "oven");
+    const LifeTicket ticket = instance.life().ask_component(c, LifeChange::restart);
+    run(10ms);
+    EXPECT_EQ(instance.life().answer_of_component(c, ticket).outcome, LifeOutcome::pending);
+    EXPECT_EQ(instance.life().state_of(c), ComponentState::running);
+    EXPECT_THAT(oven().told, IsEmpty());
+    run(15ms);
+    EXPECT_EQ(instance.life().answer_of_component(c, ticket).outcome, LifeOutcome::done);
+    EXPECT_THAT(oven().told, ElementsAre(2));
+    EXPECT_EQ(state_now(), "A") << "and begins anew";
+}
+
+TEST_F(BehaviourSlotTest, a_final_state_that_waits_too_long_is_left_and_told_and_finished_at_the_next_start) {
+    load_and_settle(ends_after("300ms"));
+    const Time begun = clock.now();
+    world.stop();
+    EXPECT_EQ(clock.now() - begun, Engine::end_limit);
+    EXPECT_THAT(oven().told, IsEmpty());
+    std::string told;
+    for (std::size_t a = 0; a < instance.engines().size(); ++a)
+        told += instance.observation().describe_end(a).view();
+    EXPECT_EQ(told,
+              "the behaviour of \"oven\" was left in \"End\": 100 ms after it was asked to end it had not "
+              "come to its end, which it does first when it is started again; shorten what leads there");
+    EXPECT_EQ(world.start().view(), "");
+    run(310ms);
+    EXPECT_THAT(oven().told, ElementsAre(2));
+    EXPECT_EQ(state_now(), "A");
+}
+
 TEST_F(BehaviourSlotTest, it_takes_over_at_an_event_of_its_reach) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2), "door.moved"), "");
