@@ -207,7 +207,7 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
     }
     if (std::ranges::find(path_, name) != path_.end()) {
         if (std::ranges::none_of(rules_.recurring,
-                                 [&](const Statement& each) { return text.starts_with(each.name); }))
+                                 [&](const Recursion& each) { return text.starts_with(each.name); }))
             fault(name, "a recursion");
         return 0;
     }
@@ -231,8 +231,8 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
         }
     }
     path_.pop_back();
-    for (const Statement& each : rules_.recurring)
-        if (text.starts_with(each.name)) most.bytes *= each.bytes;
+    for (const Recursion& each : rules_.recurring)
+        if (text.starts_with(each.name)) most.bytes *= each.times;
     return (needs_[{name, layer}] = most).bytes;
 }
 

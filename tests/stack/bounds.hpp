@@ -31,13 +31,20 @@ struct Layer {
     std::string_view what;
     Names of;
     std::size_t times = 1;   ///< how often one path enters it through pointers
-    std::string_view only{}; ///< the one of the topmost layer that calls it; empty: any
+    std::string_view only{}; ///< entered only where of() allows this of the topmost layer; empty: everywhere
 };
 
-/// Of a call that is not followed, as its code is not seen, recurs so often at most, or is never reached.
+/// A call that is not followed, because its code is not seen or never runs.
 struct Statement {
     std::string_view name; ///< how the demangled name begins
     std::size_t bytes;     ///< at most
+    std::string_view why;
+};
+
+/// A function that calls itself, also by others.
+struct Recursion {
+    std::string_view name; ///< how the demangled name begins
+    std::size_t times;     ///< that it is entered at most
     std::string_view why;
 };
 
@@ -46,7 +53,7 @@ struct Rules {
     Names ends;                ///< do not come back, and are not followed
     Names outside;             ///< called through a pointer before or beside the threads; not followed
     std::vector<Statement> stated;
-    std::vector<Statement> recurring; ///< `bytes` are times here: it is entered so often at most
+    std::vector<Recursion> recurring;
 };
 
 /// Where calls of functions lead that libc picks for the processor when the program starts.

@@ -15,7 +15,7 @@ template <class... Pieces> constexpr Sentence of_activity(std::string_view name,
     return Sentence{"activity \"", name, "\"", fault...};
 }
 
-/// The fault of one value, as the part of a sentence that stands after "sets property ... to ...".
+/// Whether the value is of the property's kind; a whole number is a real one too.
 constexpr bool of_kind(const PropertyOperations& wanted, const PropertySetting& setting,
                        TypeId element) noexcept {
     using Kind = PropertySetting::Kind;
@@ -39,6 +39,7 @@ constexpr double value_of(const PropertySetting& setting) noexcept {
     return setting.kind == PropertySetting::Kind::duration ? integer * 1e-9 : integer;
 }
 
+/// A value as its row spells it.
 constexpr Sentence value_text(const PropertySetting& setting) {
     using Kind = PropertySetting::Kind;
     switch (setting.kind) {

@@ -95,7 +95,8 @@ void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
     place.events = events;
     place.handles = {instance_.at<EventHandle>(plan.handles_at), plan.event_count};
     place.trace = &note_transition;
-    place.trace_context = &instance_.engines()[machine_.index.activity[c]];
+    place.engine = &instance_.engines()[machine_.index.activity[c]];
+    place.part = machine_.plan.part_of[c];
     End angle;
     if (!row.slot.angle.empty() && resolve(machine_.table, row.slot.angle, FacetKind::output, angle).empty())
         place.angle = static_cast<const Output<double>*>(instance_.facet(angle));

@@ -43,12 +43,12 @@ public:
         browsing_directory_ = directory;
     }
 
-    /// Constructs, wires and configures; anew when it was and stands. An error is the first component's
-    /// refusal.
+    /// Constructs, wires and configures. Again while the machine stands: all is built anew. An error is the
+    /// first component's refusal.
     std::expected<Standing, Sentence> configure(std::span<const ProvidedDevice> devices);
 
     [[nodiscard]] const PropertyStore& property_store() const noexcept { return store_; }
-    /// Empty: there is to be none.
+    /// Empty: no socket.
     [[nodiscard]] std::string_view browsing_directory() const noexcept {
         return browsing_directory_.empty() ? machine().board->browsing.directory : browsing_directory_;
     }

@@ -43,12 +43,13 @@ public:
     [[nodiscard]] SubscriptionCounts counts_of(std::size_t subscription) const noexcept TAPPET_REALTIME;
 
     /// How long a reaction row that tells, or a connection row that wakes, took each time an edge or a frame
-    /// set it off; null for other rows. Whole while the receiving activity rests. Rows by their number in the
-    /// table.
+    /// set it off; null for other rows. Consistent between two cycles of the receiver only. Rows by their
+    /// number in the table.
     [[nodiscard]] const ReactionTimes* times_of_reaction(std::size_t row) const noexcept;
     [[nodiscard]] const ReactionTimes* times_of_connection(std::size_t row) const noexcept;
 
-    /// What a row of a section of another folder has counted so far; row by row, section by section.
+    /// What a row of a section outside of kernel/machine, such as limits, has counted so far; row by row,
+    /// section by section.
     [[nodiscard]] SectionCount counted(std::size_t section, std::size_t row) const noexcept;
 
     /// The deepest that an activity's thread has used its stack so far, in bytes; it takes time in proportion

@@ -1,5 +1,5 @@
-// What a component that sees the machine has done by the engines of others: calls between two of their steps,
-// commands, methods, and changes of a slot.
+// What a component that sees the machine (`sees_machine = true`: the browser's service) asks of the engines
+// of others: calls between two of their steps, commands, methods, and changes of a slot.
 #pragma once
 
 #include "kernel/machine/instance/placed.hpp"

@@ -67,7 +67,7 @@ Sentence BehaviourSlot::compile(std::size_t characters, std::string_view name) {
                                          *place_.machine, place_.component);
         !fault.empty())
         return Sentence{bank.name.view(), ": ", fault};
-    bank.unit.trace(place_.trace, place_.trace_context);
+    bank.unit.trace(place_.trace, place_.engine);
     bank.filled = true;
     return {};
 }
@@ -126,13 +126,21 @@ Sentence BehaviourSlot::describe_roll_back() const {
     case RollBack::none: return {};
     case RollBack::asked: return Sentence{"taken back: asked for"};
     case RollBack::error:
-    case RollBack::left_over: break;
+    case RollBack::left_over:
+    case RollBack::late:
+    case RollBack::too_much: break;
     }
     const Bank& failed = banks_[static_cast<std::size_t>(spare())];
     Sentence text{"taken back: "};
     text.add(failed.name.view());
     if (why_ == RollBack::left_over)
         return text.add(": its statements of one step did not come to an end; let it wait, or allow it more");
+    if (why_ == RollBack::late)
+        return text.add(": its activity missed a deadline by it; let it do less in one step");
+    if (why_ == RollBack::too_much)
+        return text.add(
+            ": its activity used more of its processor than its row claims; let it do less in one step, or "
+            "raise budget(...)");
     return text.add(": ").add(failed.unit.describe_fault());
 }
 

@@ -2,6 +2,8 @@
 // is taken back when it fails its trial.
 #include "kernel/machine/slots/behaviour_slot.hpp"
 
+#include "kernel/activity/engine.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -115,8 +117,16 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     ++loads_;
     set(target_ == none ? SlotPhase::empty : is_roll_back_ ? SlotPhase::steady : SlotPhase::trial);
     steps_left_ = place_.row->slot.trial;
+    misses_before_ = misses();
+    over_claim_before_ = place_.engine->statistics().over_claim;
     connect(true);
     if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->start(now);
+}
+
+std::uint64_t BehaviourSlot::misses() const noexcept TAPPET_REALTIME {
+    const auto functions = place_.engine->plan().functions.subspan(place_.part * functions_per_part);
+    return functions[static_cast<std::size_t>(FunctionKind::reactions)].blamed +
+           functions[static_cast<std::size_t>(FunctionKind::behaviour)].blamed;
 }
 
 void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
@@ -127,6 +137,9 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
     }
     if (unit.failed_part() != nullptr) return take_back(RollBack::error, now);
     if (unit.left_over()) return take_back(RollBack::left_over, now);
+    if (misses() != misses_before_) return take_back(RollBack::late, now);
+    if (place_.engine->statistics().over_claim != over_claim_before_)
+        return take_back(RollBack::too_much, now);
     if (steps_left_ == 0 || --steps_left_ == 0) set(SlotPhase::steady);
 }
 

@@ -45,6 +45,8 @@ enum class RollBack : std::uint8_t {
     none,
     error,     ///< a program of it failed
     left_over, ///< it did not come to an end of its statements in one step
+    late,      ///< its activity missed a deadline by it
+    too_much,  ///< its activity used more of its processor than its row claims
     asked      ///< from outside
 };
 
@@ -136,7 +138,8 @@ public:
         std::span<EventHandle> handles{};           ///< of each event
         const Output<double>* angle = nullptr;
         StateMachineExecution::Trace trace = nullptr;
-        void* trace_context = nullptr;
+        Engine* engine = nullptr; ///< that runs it, and is told its transitions
+        std::uint32_t part = 0;   ///< there, of the component that is driven
     };
     /// By start-up.
     void place(const Place& place);
@@ -214,6 +217,8 @@ private:
     void hand_over(Time now) noexcept TAPPET_REALTIME;
     void switch_to_target(Time now) noexcept TAPPET_REALTIME;
     void judge(Time now) noexcept TAPPET_REALTIME;
+    /// Deadlines missed by the component's reactions and its behaviour.
+    [[nodiscard]] std::uint64_t misses() const noexcept TAPPET_REALTIME;
     void take_back(RollBack why, Time now) noexcept TAPPET_REALTIME;
     void connect(bool on) noexcept TAPPET_REALTIME;
     void set(SlotPhase phase) noexcept TAPPET_REALTIME { phase_.store(phase, std::memory_order_release); }
@@ -238,7 +243,9 @@ private:
     int target_ = none;
     bool runs_ = false; ///< its component does
     bool is_roll_back_ = false;
-    std::uint32_t steps_left_ = 0; ///< of the hand-over, then of the trial
+    std::uint32_t steps_left_ = 0;        ///< of the hand-over, then of the trial
+    std::uint64_t misses_before_ = 0;     ///< the trial
+    std::uint64_t over_claim_before_ = 0; ///< of the activity
     double last_angle_ = -1;
     RollBack why_ = RollBack::none;
     std::uint32_t roll_backs_ = 0;

@@ -25,7 +25,12 @@ struct Oven {
     std::vector<std::int64_t> told{};
     std::uint64_t steps = 0;
     double from_deg = 0;
+    os::Clock* clock = nullptr;
 
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         ++steps;
         angle_deg.write(from_deg + static_cast<double>(steps % 36 * 10));
@@ -36,13 +41,16 @@ struct Oven {
         TAPPET_ESCAPE("a test's notes are kept on its heap", told.push_back(what));
         return what >= 0;
     }
+    /// Takes so many microseconds.
+    void bake(std::int64_t us) noexcept TAPPET_REALTIME { clock->consume(us * 1us); }
     static constexpr auto interface() {
         return facets(output<&Oven::angle_deg>("angle_deg", "deg", "of the turntable"),
                       output<&Oven::shown>("shown", "", "on its display"),
                       property<&Oven::target>("target", "degC", "", range(0, 300)),
                       event<&Oven::hot>("hot", "it is as hot as it should be"),
                       event<&Oven::tick>("tick", "of the test"),
-                      method<&Oven::note>("note", "is written down"));
+                      method<&Oven::note>("note", "is written down"),
+                      method<&Oven::bake>("bake", "takes its time"));
     }
 };
 

@@ -318,6 +318,51 @@ TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for)
     EXPECT_THAT(wish(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
 }
 
+/// Takes so many microseconds for a tick.
+std::string takes(int us) {
+    return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
+           "state B { entry { do oven.bake(" +
+           std::to_string(us) + "); } transition oven.tick() select A }\nfinal state End {} }";
+}
+
+TEST_F(BehaviourSlotTest, one_that_makes_its_activity_late_on_trial_is_taken_back) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(takes(2000)), "");
+    run(3ms);
+    ASSERT_EQ(slot.phase(), SlotPhase::trial);
+    oven().tick.emit();
+    run(5ms);
+    EXPECT_EQ(slot.last_roll_back(), RollBack::late);
+    EXPECT_EQ(slot.describe_roll_back().view(),
+              "taken back: test.osd: its activity missed a deadline by it; let it do less in one step");
+    EXPECT_EQ(state_now(), "Begin") << "the first is at work";
+}
+
+TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_is_taken_back) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(takes(200)), "");
+    run(3ms);
+    for (int i = 0; i < 3; ++i) { // an engine measures its processor once it was busy beyond its budget
+        oven().tick.emit();
+        run(2ms);
+    }
+    run(2ms);
+    EXPECT_EQ(slot.last_roll_back(), RollBack::too_much);
+    EXPECT_THAT(std::string{slot.describe_roll_back().view()},
+                HasSubstr("more of its processor than its row claims"));
+    EXPECT_EQ(state_now(), "Begin");
+}
+
+TEST_F(BehaviourSlotTest, one_that_stays_within_its_claim_is_kept) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(takes(40)), "");
+    run(3ms);
+    oven().tick.emit();
+    run(30ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+    EXPECT_EQ(state_now(), "B");
+}
+
 TEST_F(BehaviourSlotTest, one_that_waits_does_not_take_over_because_another_change_is_on_its_way) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2), "door.moved"), "");
