@@ -73,7 +73,7 @@ struct Arena {
 };
 extern const Arena firmware_arena;
 
-// The doors malloc and its family go through.
+// Where malloc and its family come in.
 void* allocate(const Arena& arena, std::size_t bytes, std::size_t align, std::uintptr_t caller) noexcept;
 void* reallocate(const Arena& arena, void* piece, std::size_t bytes, std::uintptr_t caller) noexcept;
 void deallocate(void* piece) noexcept;

@@ -32,7 +32,7 @@ void BrowserService::finalise() {
 void BrowserService::work(const Cycle& cycle) {
     if (!connections_.is_open()) return;
     now_ = cycle.now;
-    welcome();
+    accept();
     for (Client& each : connections_.clients()) hear(each);
     follow_pending();
     tell_events();
@@ -43,9 +43,9 @@ void BrowserService::work(const Cycle& cycle) {
     refused.write(static_cast<std::int64_t>(refused_));
 }
 
-void BrowserService::welcome() {
+void BrowserService::accept() {
     for (std::size_t i = 0; i < browsing::Connections::most_each_cycle; ++i) {
-        const Client* client = connections_.welcome();
+        const Client* client = connections_.accept();
         if (client == nullptr) break;
         note(*client, "connected", {}, {});
     }

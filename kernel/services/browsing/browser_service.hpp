@@ -68,7 +68,7 @@ private:
         alignas(16) std::array<std::byte, sizeof(Message::arguments)> arguments{};
     };
 
-    void welcome();
+    void accept();
     void hear(Client& client);
     void handle(Client& client, std::string_view packet, bool cut);
     Verdict answer(Client& client, const Request& request);

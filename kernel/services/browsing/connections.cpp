@@ -13,11 +13,11 @@ std::expected<void, Sentence> Connections::open(std::string_view directory, std:
 }
 
 void Connections::close() noexcept {
-    for (Client& each : clients_) dismiss(each);
+    for (Client& each : clients_) disconnect(each);
     listener_.close();
 }
 
-Client* Connections::welcome() noexcept {
+Client* Connections::accept() noexcept {
     for (std::size_t i = 0; i < most_each_cycle; ++i) {
         os::LocalConnection connection = listener_.accept();
         if (!connection.open()) return nullptr;
@@ -33,7 +33,7 @@ Client* Connections::welcome() noexcept {
         if (place->serial != 0) {
             turn_away(place->connection,
                       Sentence{"an ", to_text(role), " needs this place; connect again later"});
-            dismiss(*place);
+            disconnect(*place);
         }
         place->connection = std::move(connection);
         place->peer = *peer;
@@ -76,7 +76,7 @@ std::optional<std::string_view> Connections::receive(Client& client, std::span<c
     using What = os::LocalConnection::Received::What;
     if (client.serial == 0) return std::nullopt;
     const auto received = client.connection.receive(into);
-    if (received.what == What::closed) dismiss(client);
+    if (received.what == What::closed) disconnect(client);
     if (received.what != What::packet) return std::nullopt;
     client.heard = ++heard_;
     cut = received.cut;
@@ -94,12 +94,12 @@ bool Connections::send(Client& client, std::string_view packet, int descriptor) 
     switch (client.connection.send(packet, descriptor)) {
     case os::LocalConnection::Sent::sent: client.told_dropped = client.dropped; return true;
     case os::LocalConnection::Sent::full: ++client.dropped; return false;
-    case os::LocalConnection::Sent::closed: dismiss(client); return false;
+    case os::LocalConnection::Sent::closed: disconnect(client); return false;
     }
     return false;
 }
 
-void Connections::dismiss(Client& client) noexcept {
+void Connections::disconnect(Client& client) noexcept {
     client.connection.close();
     client.serial = 0;
 }

@@ -27,7 +27,7 @@ class Connections {
 public:
     /// What a client gets of a cycle's time; the rest waits in its own socket.
     static constexpr std::size_t packets_each_cycle = 4;
-    /// Of those who wait at the door; more than its listener lets wait.
+    /// Of those who wait to be accepted; more than its listener lets wait.
     static constexpr std::size_t most_each_cycle = 16;
 
     std::expected<void, Sentence> open(std::string_view directory, std::string_view machine,
@@ -38,7 +38,7 @@ public:
     /// Someone who wants in and is let in. When all places are taken, one of a higher role gets the place of
     /// the longest idle of the lowest; whoever loses a place, or gets none, is told so and let go:
     /// `turned_away` counts them.
-    [[nodiscard]] Client* welcome() noexcept;
+    [[nodiscard]] Client* accept() noexcept;
     [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
 
     [[nodiscard]] std::array<Client, max_clients>& clients() noexcept { return clients_; }
@@ -48,7 +48,7 @@ public:
                                                           bool& cut) noexcept;
     /// A packet that finds no room at the other end is dropped, and counted. False then.
     bool send(Client& client, std::string_view packet, int descriptor = -1) noexcept;
-    void dismiss(Client& client) noexcept;
+    void disconnect(Client& client) noexcept;
 
 private:
     [[nodiscard]] Client* place_for(Role role) noexcept;
