@@ -42,6 +42,7 @@ bool Activity::start(int milliseconds) noexcept {
 
 void Activity::ask_to_stop() noexcept {
     if (state() == State::inactive || state() == State::stopped) return;
+    ends_by_ns_.store(to_ns(clock_->now()) + end_within.count(), std::memory_order_relaxed);
     stop_asked_.store(true, std::memory_order_release);
     if (const EnginePart* part = engine_->looping(); part != nullptr && part->type->break_loop != nullptr)
         part->type->break_loop(part->component);
@@ -118,9 +119,12 @@ void Activity::cycles() noexcept TAPPET_REALTIME {
     }
 }
 
-// Before the stop is claimed: who hangs here is stopped by the supervisor.
+// Before the stop is claimed: who hangs here is stopped by the supervisor. One that comes so late that the
+// supervisor may lose its patience ends without further cycles.
 void Activity::end() noexcept TAPPET_REALTIME {
-    engine_->begin_end(clock_->now());
+    const Time until = at_ns(ends_by_ns_.load(std::memory_order_relaxed));
+    if (clock_->now() >= until) return;
+    engine_->begin_end(clock_->now(), until);
     while (!engine_->has_ended(clock_->now())) {
         const bool woken = sleep_until(std::min(engine_->next_wake(), engine_->ends_at()));
         engine_->run(woken);

@@ -35,8 +35,11 @@ public:
         ask_to_stop();
         return is_stopped_within(milliseconds);
     }
-    /// The same in two steps.
+    /// From here on its behaviours may come to their ends, not later than `end_within`: the same in two
+    /// steps.
     void ask_to_stop() noexcept;
+    static constexpr Duration end_within = 300ms;
+    static_assert(Engine::end_limit < end_within, "who is asked in time has all of the limit");
     [[nodiscard]] bool is_stopped_within(int milliseconds) const noexcept;
     /// Ends the thread of an activity that is stopped, or never started; false when it does not end.
     [[nodiscard]] bool end(int milliseconds) noexcept;
@@ -86,6 +89,7 @@ private:
     std::atomic<State> state_{State::inactive};
     std::atomic<bool> released_{false};
     std::atomic<bool> stop_asked_{false};
+    std::atomic<std::int64_t> ends_by_ns_{0}; ///< written before stop_asked_
     std::atomic<bool> ended_{false};
     std::atomic<bool> engine_stop_claimed_{false};
     bool stopped_its_engine_ = false; // its own thread's

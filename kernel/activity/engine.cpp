@@ -94,8 +94,10 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
         if (tape_ != nullptr) tape_->begin();
         if (due || expired == Expired::none) watch_wakes(); // a look at what is as good as it was is no wake
     }
-    if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
-    if (awaiting_ != 0) start_awaiting();
+    if (ends_at_ == never) { // who asks for a start while the activity ends is refused when it has stopped
+        if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
+        if (awaiting_ != 0) start_awaiting();
+    }
     bool acted = false;
     if constexpr (!steps_only) acted = run_timers();
     if (due) run_components();

@@ -170,8 +170,9 @@ public:
     /// How long behaviours may take to come to their final states when their component or activity stops.
     static constexpr Duration end_limit = 100ms;
     /// In its own thread, before stop(): behaviours are asked for their ends. Cycles go on until has_ended(),
-    /// at ends_at() at the latest: a final state may wait, or send commands that take their time.
-    void begin_end(Time now) noexcept TAPPET_REALTIME;
+    /// at ends_at() at the latest, which is not after `until`: a final state may wait, or send commands that
+    /// take their time. Nothing is started meanwhile.
+    void begin_end(Time now, Time until = never) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool has_ended(Time now) const noexcept TAPPET_REALTIME;
     [[nodiscard]] Time ends_at() const noexcept TAPPET_REALTIME { return ends_at_; }
     /// In its own thread, or after that thread is no more: components leave safe values, in data-flow order,
@@ -295,6 +296,7 @@ private:
     [[nodiscard]] bool have_ended(std::uint32_t part) const noexcept TAPPET_REALTIME;
     void carry_out(std::uint32_t part, LifeTicket ticket, LifeChange wanted) noexcept TAPPET_REALTIME;
     void end_parts() noexcept TAPPET_REALTIME;
+    void refuse_ending(std::uint32_t part) noexcept TAPPET_REALTIME;
     void end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;

@@ -79,13 +79,16 @@ bool Engine::have_ended(std::uint32_t part) const noexcept TAPPET_REALTIME {
 }
 
 // What others asked before the stop is done first.
-void Engine::begin_end(Time now) noexcept TAPPET_REALTIME {
+void Engine::begin_end(Time now, Time until) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity, &cycle_.now};
     cycle_.now = cycle_.release = lap_ = now;
     static_cast<void>(run_messages());
-    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_behaviours(i);
-    ends_at_ = now + end_limit;
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        stop_behaviours(i);
+        refuse_ending(i);
+    }
+    ends_at_ = std::min(now + end_limit, until);
     end_change(generation);
 }
 
@@ -107,10 +110,9 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     if (!hangs) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if (ends_at_ == never) stop_behaviours(i);
-        plan_.parts[i].ends_at = never; // who asked for it hears that the activity stopped
+        refuse_ending(i);
     }
     ends_at_ = never;
-    ending_ = 0;
     if (!hangs) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
     commands_.reject_sent();
@@ -241,6 +243,16 @@ void Engine::carry_out(std::uint32_t i, LifeTicket ticket, LifeChange wanted) no
     timed(i, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { answer = change(i, wanted); });
     note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(wanted), cycle_.now);
     plan_.parts[i].requests.answer(ticket, answer);
+}
+
+// Its activity stops with it, and does what was asked for no more.
+void Engine::refuse_ending(std::uint32_t i) noexcept TAPPET_REALTIME {
+    EnginePart& part = plan_.parts[i];
+    if (part.ends_at == never) return;
+    part.ends_at = never;
+    --ending_;
+    part.requests.answer(
+        part.ending, {LifeOutcome::refused, LifeRefusal::activity_stopped, static_cast<std::uint8_t>(i), 0});
 }
 
 void Engine::end_parts() noexcept TAPPET_REALTIME {

@@ -28,8 +28,9 @@ void BehaviourSlot::place(const Place& place) {
 }
 
 Sentence BehaviourSlot::may_load() const noexcept {
-    if (phase() == SlotPhase::waiting || phase() == SlotPhase::handing_over ||
-        asked_.load(std::memory_order_acquire))
+    // asked_ first: obey() sets the phase before it takes that back.
+    if (asked_.load(std::memory_order_acquire) || phase() == SlotPhase::waiting ||
+        phase() == SlotPhase::handing_over)
         return Sentence{"another change of behaviour of \"", place_.row->component,
                         "\" is under way; wait until it is done"};
     if (phase() == SlotPhase::trial)

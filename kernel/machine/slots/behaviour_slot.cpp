@@ -117,8 +117,7 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     ++loads_;
     set(target_ == none ? SlotPhase::empty : is_roll_back_ ? SlotPhase::steady : SlotPhase::trial);
     steps_left_ = place_.row->slot.trial;
-    misses_before_ = misses();
-    over_claim_before_ = place_.engine->statistics().over_claim;
+    steps_on_trial_ = 0;
     connect(true);
     if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->start(now);
 }
@@ -137,9 +136,16 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
     }
     if (unit.failed_part() != nullptr) return take_back(RollBack::error, now);
     if (unit.left_over()) return take_back(RollBack::left_over, now);
-    if (misses() != misses_before_) return take_back(RollBack::late, now);
-    if (place_.engine->statistics().over_claim != over_claim_before_)
+    // What the cycle of the hand-over took was the old one's end, too: time is judged from the next one on.
+    if (++steps_on_trial_ <= 2) {
+        misses_before_ = misses();
+        over_claim_before_ = place_.engine->statistics().over_claim;
+    } else if (misses() != misses_before_) {
+        return take_back(RollBack::late, now);
+    } else if (over_claim_before_ == 0 && place_.engine->statistics().over_claim != 0) {
+        // Of an activity that kept its claim until now.
         return take_back(RollBack::too_much, now);
+    }
     if (steps_left_ == 0 || --steps_left_ == 0) set(SlotPhase::steady);
 }
 

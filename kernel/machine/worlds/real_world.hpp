@@ -21,7 +21,7 @@ class RealWorld {
 public:
     /// How long an activity may take to start or to stop before its thread counts as hung.
     static constexpr int patience_ms = 500;
-    static_assert(Engine::end_limit * 2 <= patience_ms * 1ms, "who comes to an end does not hang");
+    static_assert(Activity::end_within < patience_ms * 1ms, "who comes to an end does not hang");
     /// How long all activities that are not real-time, together, may hold up the stop of those that are: they
     /// may block. Who is not stopped by then is waited for when the others stand.
     static constexpr int grace_ms = 20;

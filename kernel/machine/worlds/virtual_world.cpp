@@ -27,7 +27,7 @@ ActivityControl VirtualWorld::control() noexcept {
             [](void* self, std::size_t a) {
                 auto& world = *static_cast<VirtualWorld*>(self);
                 if (world.loops_[a]) world.loops_[a]->break_off();
-                world.end(world.instance_.engines()[a]);
+                world.end(a);
                 world.instance_.engines()[a].stop(world.instance_.clock().now());
                 return true;
             }};
@@ -57,7 +57,8 @@ Time VirtualWorld::next_time() const {
 
 void VirtualWorld::run_engine(std::size_t a, bool woken) {
     Engine& engine = instance_.engines()[a];
-    if (engine.looping() == nullptr) {
+    if (engine.looping() == nullptr ||
+        engine.ends_at() != never) { // a loop that was broken off is not entered
         if (runner_.run != nullptr)
             runner_.run(runner_.self, engine, woken);
         else
@@ -111,9 +112,11 @@ void VirtualWorld::run_instant(Time end) {
     run_engines(now);
 }
 
-void VirtualWorld::end(Engine& engine) {
+void VirtualWorld::end(std::size_t a) {
+    Engine& engine = instance_.engines()[a];
     os::Clock& clock = instance_.clock();
     engine.begin_end(clock.now());
+    wake_at_[a] = engine.next_wake();
     is_ending_ = true;
     while (!engine.has_ended(clock.now())) run_instant(engine.ends_at());
     is_ending_ = false;

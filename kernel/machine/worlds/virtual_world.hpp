@@ -57,7 +57,7 @@ private:
     /// Processes and engines of the next instant, `end` at the latest.
     void run_instant(Time end);
     /// The others go on while the behaviours of one activity come to their ends.
-    void end(Engine& engine);
+    void end(std::size_t activity);
 
     MachineInstance& instance_;
     Bounded<VirtualProcess, 8> processes_{};
