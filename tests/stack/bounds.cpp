@@ -177,9 +177,11 @@ Bounds::Frame Bounds::frame_of(const Function& function) const {
     };
     follow();
     // What only a table of jumps reaches is reached with a frame that is complete.
-    const bool has_table = std::ranges::any_of(code, [](const Instruction& one) {
-        return one.is_jump() && one.target == waitfree::none && one.symbol.empty();
-    });
+    // The cold part of a function is entered in its middle, too.
+    const bool has_table = function.name.find(".cold") != std::string::npos ||
+                           std::ranges::any_of(code, [](const Instruction& one) {
+                               return one.is_jump() && one.target == waitfree::none && one.symbol.empty();
+                           });
     for (std::size_t at = 0; has_table && at < code.size() && frame.fault.empty(); ++at) {
         if (seen.contains(at)) continue;
         const auto deepest = static_cast<std::int64_t>(frame.deepest);
@@ -263,6 +265,10 @@ std::size_t Bounds::of(std::string_view root, Names allowed) {
     for (const std::string& name : of_layer_[top])
         if (names(allowed_, demangled(name)) && need_of(name, top) > most.bytes)
             most = {need_of(name, top), {name, top}};
+    for (const std::string_view each : allowed_)
+        if (std::ranges::none_of(of_layer_[top],
+                                 [&](const std::string& name) { return names({each}, demangled(name)); }))
+            faults_.insert(std::string{each} + ": nothing of the topmost layer has that name");
     below_[top + 1] = most;
     for (const auto& [name, function] : image_.functions)
         if (demangled(name) == root) {

@@ -87,6 +87,8 @@ TEST(Bounds, follow_pointers_into_lower_layers_only) {
     EXPECT_EQ(bounds.of("root", {"step_one"}), 8u + 0x40 + 8 + 8);
     EXPECT_EQ(bounds.of("root", {"step_of_another"}), 8u + 0x4000);
     EXPECT_THAT(bounds.faults(), IsEmpty());
+    static_cast<void>(bounds.of("root", {"step_of_nobody"}));
+    EXPECT_THAT(bounds.faults(), ElementsAre("step_of_nobody: nothing of the topmost layer has that name"));
 }
 
 struct Refused {

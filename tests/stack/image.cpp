@@ -34,6 +34,15 @@ Image read_image(const std::string& path) {
         const auto section = at<Elf64_Shdr>(bytes, header.e_shoff + header.e_shstrndx * sizeof(Elf64_Shdr));
         return std::string_view{bytes}.substr(std::min(section.sh_offset, bytes.size()), section.sh_size);
     }();
+    // A jump into the middle of a cold part is one to it: all of it is looked at as entered anywhere.
+    for (auto& [name, function] : image.functions)
+        for (waitfree::Instruction& one : function.code) {
+            const auto after = at_address.upper_bound(one.reckoned);
+            if (!one.symbol.empty() && one.reckoned != 0 && after != at_address.begin())
+                if (const std::string& holder = std::prev(after)->second;
+                    holder.find(".cold") != std::string::npos && holder != name)
+                    one.symbol = holder;
+        }
     const auto take = [&](std::uint64_t address) {
         if (const auto found = at_address.find(address); found != at_address.end())
             image.taken.insert(found->second);

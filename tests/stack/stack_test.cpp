@@ -15,6 +15,7 @@ namespace {
 // clang-format off
 const Rules rules{
     .layers = {
+        {"libmodbus' own transports", {"_modbus_tcp_"}},
         {"waking", {"os::Waiter::", "wake_chain", "EventWaitState::wake"}},
         {"a restart, which blocks", {"can::SocketCan::restart"}, 1, "describe<tappet::can::Restarter"},
         {"ports, properties, filters, devices and signs of life",
@@ -36,19 +37,22 @@ const Rules rules{
          {"AsyncReaction::serve", "::run_operation(", "::run_method(", "::force_port(", "::release_port(", "::command_behaviour(",
           "PropertyTransaction::", "BehaviourSlot::obey", "EngineCall::run", "MethodRequest::run", "run_trigger",
           "run_observer", "BrowserService::observe", "MachineBuilder::place_unit", "MachineBuilder::place_slot"}},
+        // Of a component that decides itself when it runs; the loom has none, and a layer that nobody enters needs nothing.
+        {"an engine's cycle out of a loop", {"tappet::Activity::loop("}, 1, "nobody"},
         {"requests of browsers", {"BrowserService::look_at_", "PropertyFiles::store"}, 1, "describe<tappet::BrowserService"},
         {"functions of components' lives", {"detail::describe<"}},
     },
     .ends = {"contract_broken", "break_contract", "__assert_fail", "__stack_chk_fail", "abort", "__libc_message", "std::terminate",
              "__throw_", "__cxa_", "_Unwind_", "__libc_fatal", "pthread_exit"},
     // Called by the main thread: arming, opening devices, the end.
-    .outside = {"os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "Limits<", "RealWorld::", "Activity::", "MachineInstance",
+    .outside = {"os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "Limits<", "RealWorld::", "Activity::enter(", "MachineInstance",
                 "carpet::Devices::", "os::build_id()", "cpf::is_blank"},
     .stated = {
         {picked_at_start, 256, "bytes copied or compared: libc picks the function for the processor, none has a frame to speak of"},
         {"tappet::compile_loaded(", script_stack_bytes, "as tests/kernel/script measures it on hostile texts; the table's check asks for it"},
         {"__clock_gettime", 1024, "the kernel's vdso, which has no stack of its own"},
         {"strerror", 2048, "texts of the C locale: nobody sets another, so no catalogue is read"},
+        {"gai_strerror", 0, "a server has a numeric address: toolchain/libmodbus leaves getaddrinfo out"},
         {"_error_print", 0, "libmodbus tells its errors only when its debugging is on"},
         {"_IO_printf", 0, "libmodbus tells what it does only when its debugging is on"},
         {"_IO_puts", 0, "the same"},
