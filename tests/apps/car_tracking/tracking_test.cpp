@@ -177,7 +177,7 @@ struct Golden {
     std::uint64_t seed;
     std::uint64_t digest;
 };
-constexpr Golden golden[] = {{1, 0x7645c79b78c574f9}, {2, 0x06682f34e7184c46}, {3, 0x324f4c34644b94cc}};
+constexpr Golden golden[] = {{1, 0xee6aeec8991c3e0f}, {2, 0x83a368a371067193}, {3, 0x48c7108474f46725}};
 
 TEST(CarTracking, is_the_same_with_both_compilers) {
     for (const Golden& each : golden)
