@@ -128,7 +128,7 @@ inline constexpr unsigned chip_lines = 14;
 
 inline constexpr std::int64_t weft_pulse_us = 3'000;
 
-// --- Modbus slave of the climate and lubrication unit
+// --- Modbus server of the climate and lubrication unit
 
 namespace modbus {
 inline constexpr int unit = 1;

@@ -103,12 +103,12 @@ public:
 
     /// The engine's, in this order. Real-time.
     void begin() noexcept TAPPET_REALTIME { marks_ = left_out_ = 0; }
-    void mark(std::uint32_t function, std::int64_t ns_behind_begin) noexcept TAPPET_REALTIME {
+    void mark(std::uint32_t function, std::int64_t ns_after_begin) noexcept TAPPET_REALTIME {
         if (marks_ == most_marks_) {
             left_out_ += left_out_ < 255 ? 1 : 0;
             return;
         }
-        put(position_ + marks_, TapeMark{function, ns_behind_begin}.word());
+        put(position_ + marks_, TapeMark{function, ns_after_begin}.word());
         ++marks_;
     }
     void end(std::int64_t release, std::int64_t begin, std::int64_t end) noexcept TAPPET_REALTIME {

@@ -34,7 +34,9 @@ std::optional<std::int64_t> number(std::string_view text) {
     return is_negative ? -whole : whole;
 }
 
-/// The stack below where the function was entered, and the registers that keep an earlier stack pointer.
+/// Not values.hpp of waitfree: that keeps what all paths agree on and forgets the frame that an alignment
+/// begins in; here the deepest path counts. The stack below where the function was entered, and the registers
+/// that keep an earlier stack pointer.
 struct Height {
     std::int64_t used = 0;
     std::map<std::string, std::int64_t, std::less<>> kept{};

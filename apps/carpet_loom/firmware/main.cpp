@@ -185,13 +185,9 @@ int main(int count, char** words) {
     for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
         os::print(Sentence{"carpet-loom: then: ", world.describe_breach(i), "\n"}.view());
     list_misses(instance);
-    if (properties.keeps()) {
-        const auto standing = instance.standing();
-        const Sentence fault = standing ? instance.save_properties(*standing)
-                                        : Sentence{"the properties are not saved: a thread that hangs may "
-                                                   "still change them; the files are as they were"};
-        if (!fault.empty()) os::print(Sentence{"carpet-loom: ", fault, "\n"}.view());
-    }
+    if (properties.keeps())
+        if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
+            os::print(Sentence{"carpet-loom: ", fault, "\n"}.view());
     if (options.summary != nullptr)
         if (const int written =
                 write_summary(instance, world, devices, reason, start_to_armed, options.summary);

@@ -72,12 +72,6 @@ std::size_t write_summary(MachineInstance& instance, carpet::InProcessLoom& loom
     return ending.size() == 0 ? 0 : length - 1 + ending.size();
 }
 
-Sentence saved(MachineInstance& instance) {
-    const auto standing = instance.standing();
-    return standing ? instance.save_properties(*standing)
-                    : Sentence{"the properties are not saved: a thread that hangs may still change them"};
-}
-
 int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet::Options& options,
            const Outcome& outcome) {
     if (!outcome.broken_contract.empty())
@@ -87,7 +81,8 @@ int report(MachineInstance& instance, carpet::InProcessLoom& loom, const carpet:
              {instance.observation().describe_budget(a), instance.observation().describe_end(a)})
             if (!told.empty()) os::print(Sentence{"carpet_loom: ", told, "\n"}.view());
     if (!options.properties.empty())
-        if (const Sentence fault = saved(instance); !fault.empty()) return fail(fault);
+        if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
+            return fail(fault);
     if (!options.summary.empty()) {
         const std::size_t length = write_summary(instance, loom, options, outcome);
         if (length == 0) return fail(Sentence{"the summary does not fit its buffer"});

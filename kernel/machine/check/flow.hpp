@@ -187,7 +187,7 @@ public:
             if (next == members_.size()) return cycle();
             r_.position[members_[next]] = placed;
             r_.in_order[begin + placed] = members_[next];
-            release_those_behind(members_[next]);
+            release_those_after(members_[next]);
         }
         return {};
     }
@@ -227,7 +227,7 @@ private:
         return row;
     }
 
-    constexpr void release_those_behind(std::size_t component) const noexcept {
+    constexpr void release_those_after(std::size_t component) const noexcept {
         for (const RowsByComponent* rows : {&r_.connections_into, &r_.connections_from})
             for (std::size_t row = rows->first[component]; row != nowhere; row = rows->next[row])
                 if (orders(row) && before(row) == component) --r_.waits_for[after(row)];

@@ -60,7 +60,10 @@ Sentence MachineInstance::describe_stop() const {
     return {};
 }
 
-Sentence MachineInstance::save_properties(Standing) {
+Sentence MachineInstance::save_properties(std::optional<Standing> standing) {
+    if (!standing)
+        return Sentence{"the properties are not saved: a thread that hangs may still change them; the files "
+                        "are as they were"};
     Sentence first;
     for (std::size_t c = 0; c < machine().table.components.size(); ++c) {
         const ComponentRow& row = machine().table.components[c];

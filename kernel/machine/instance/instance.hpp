@@ -87,8 +87,8 @@ public:
     }
     /// Writes every properties file anew; of a machine that runs see PropertySaving in
     /// kernel/services/configuration. The first file that cannot be written is the error, the others are
-    /// written all the same.
-    [[nodiscard]] Sentence save_properties(Standing);
+    /// written all the same; so it is when nothing stands: then no file is touched.
+    [[nodiscard]] Sentence save_properties(std::optional<Standing> standing);
 
 private:
     void expect_unconfigured() const noexcept { TAPPET_CONTRACT(!is_configured_, Contract::wrong_phase); }

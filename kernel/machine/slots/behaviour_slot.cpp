@@ -117,7 +117,6 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     ++loads_;
     set(target_ == none ? SlotPhase::empty : is_roll_back_ ? SlotPhase::steady : SlotPhase::trial);
     steps_left_ = place_.row->slot.trial;
-    steps_on_trial_ = 0;
     connect(true);
     if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->start(now);
 }
@@ -137,7 +136,7 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
     if (unit.failed_part() != nullptr) return take_back(RollBack::error, now);
     if (unit.left_over()) return take_back(RollBack::left_over, now);
     // What the cycle of the hand-over took was the old one's end, too: time is judged from the next one on.
-    if (++steps_on_trial_ <= 2) {
+    if (place_.row->slot.trial - steps_left_ < 2) {
         misses_before_ = misses();
         over_claim_before_ = place_.engine->statistics().over_claim;
     } else if (misses() != misses_before_) {

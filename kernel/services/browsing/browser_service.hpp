@@ -107,7 +107,7 @@ private:
                                          std::span<std::byte> into);
     Verdict reach(Pending& place, const browsing::Asker& asker, End end, Message::Run act);
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
-    [[nodiscard]] bool release_behind(const browsing::FollowedLife& stopped);
+    [[nodiscard]] bool release_readers_of(const browsing::FollowedLife& stopped);
     bool look_at_facet(Pending& place);
     bool look_at_change(Pending& place);
 

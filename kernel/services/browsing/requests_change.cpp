@@ -112,7 +112,7 @@ BrowserService::Verdict BrowserService::release(Client& client, const Request& r
 
 // Its own forces ended with it; a forced input of another activity would still hide its safe value from
 // there. False: not all could be asked for in this cycle.
-bool BrowserService::release_behind(const browsing::FollowedLife& stopped) {
+bool BrowserService::release_readers_of(const browsing::FollowedLife& stopped) {
     const AcceptedMachine& machine = machine_->machine();
     const auto view = map::View::open(machine_->observation().shared_memory());
     if (!view) return true;

@@ -96,7 +96,7 @@ bool BrowserService::look_at_life(Pending& place) {
     case LifeOutcome::pending: return false;
     case LifeOutcome::done:
         // Places for what is released come back in time, unless every one waits for another's.
-        return (call.change == LifeChange::start || release_behind(call) || place.is_told) &&
+        return (call.change == LifeChange::start || release_readers_of(call) || place.is_told) &&
                answer_good(place);
     case LifeOutcome::superseded:
         return answer_bad(place, Refusal::not_now,

@@ -38,7 +38,7 @@ TEST_F(CanBus, sends_cyclic_frames_at_exact_periods) {
     EXPECT_EQ(target_rpm(sent.back()), 100.0);
 }
 
-TEST_F(CanBus, lets_no_late_cycle_move_the_frames_behind_it) {
+TEST_F(CanBus, lets_no_late_cycle_move_the_frames_after_it) {
     run_until(20ms);
     master->overrun = 5500us;
     run_until(40ms);

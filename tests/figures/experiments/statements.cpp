@@ -264,9 +264,9 @@ void judge_messages(const Findings& findings, Setting setting, std::vector<State
     const std::vector<const TaskResult*> tasks = concurrent_tasks(findings, setting);
     if (tasks.empty()) return;
     const std::string section = commands ? "4.5.4: " : "4.6.4: ";
-    const std::string deed = commands ? "sending a command" : "emitting an event";
+    const std::string act = commands ? "sending a command" : "emitting an event";
 
-    Verdict order{section + deed +
+    Verdict order{section + act +
                   " takes the highest priority least on average, the others more by preemption"};
     double least = 0;
     for (const TaskResult* task : tasks) {
@@ -278,7 +278,7 @@ void judge_messages(const Findings& findings, Setting setting, std::vector<State
 
     if (const Samples& sends = tasks.front()->sends; !sends.empty())
         into.push_back(
-            {section + deed +
+            {section + act +
                  " is very deterministic: of the highest priority p99.9 is at most 3 times the median",
              sends.quantile(0.999) <= 3 * sends.median(),
              "median " + number(sends.median()) + " ns, p99.9 " + number(sends.quantile(0.999)) +

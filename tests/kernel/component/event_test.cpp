@@ -195,7 +195,7 @@ TEST_F(AnEvent, runs_in_the_same_emission_what_an_earlier_reaction_connects_and_
     for (const Listener* each : {&first, &second, &third}) EXPECT_EQ(each->heard, (std::vector{1.0}));
 }
 
-TEST_F(AnEvent, goes_on_behind_a_reaction_that_disconnects_one_that_ran) {
+TEST_F(AnEvent, goes_on_after_a_reaction_that_disconnects_one_that_ran) {
     const EventHandle earlier = emitter.call(hear, &first);
     emitter.call(hear, &second);
     emitter.call(hear, &third);

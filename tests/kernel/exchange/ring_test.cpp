@@ -250,7 +250,7 @@ TEST(Ring, withstands_any_burst_of_pops_at_any_point_of_a_push) {
     }
 }
 
-TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_behind_what_was_lost) {
+TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_after_what_was_lost) {
     Placed<Sealed<16>, Preemptible> placed{2, Overflow::drop_oldest};
     Ledger ledger;
     ledger.push(placed.ring);

@@ -61,7 +61,7 @@ TEST(Words, carry_every_byte_of_a_size_that_is_no_multiple_of_a_word) {
     EXPECT_EQ(Words<Odd>::count, 2u);
 }
 
-TEST(Words, write_no_byte_behind_the_value) {
+TEST(Words, write_no_byte_after_the_value) {
     struct {
         Odd odd{};
         std::array<std::uint8_t, 3> guard{7, 7, 7};

@@ -17,7 +17,7 @@ TEST(KernelList, has_nothing_when_it_is_none) {
         EXPECT_FALSE(list_has(text, 5)) << text;
 }
 
-TEST(KernelNumber, stands_behind_its_key) {
+TEST(KernelNumber, stands_after_its_key) {
     EXPECT_EQ(number_after("Name:\tx\nVmLck:\t    64 kB\n", "VmLck:", 10), 64u);
     EXPECT_EQ(number_after("CapEff:\t000001fffeffffff\n", "CapEff:", 16), 0x1fffeffffffu);
     EXPECT_EQ(number_after("VmLck:\tmany\n", "VmLck:", 10), std::nullopt);

@@ -194,7 +194,7 @@ TEST(Terminal, does_not_wait_for_a_socket) {
     EXPECT_EQ(output.dropped(), before + 1);
 }
 
-TEST(Terminal, writes_behind_what_stands_in_a_file) {
+TEST(Terminal, writes_after_what_stands_in_a_file) {
     const std::string path = testing::TempDir() + "terminal_test." + std::to_string(::getpid());
     const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_TRUNC | O_CLOEXEC, 0600);
     ASSERT_GE(file, 0);

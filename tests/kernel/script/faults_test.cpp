@@ -144,7 +144,7 @@ TEST(A_fault, of_nesting_is_found_before_it_costs_anything) {
     EXPECT_FALSE(fault_of(functions + "program p { do f39(); }").empty());
 }
 
-TEST(A_room_that_is_too_small, is_said_and_nothing_is_written_behind_it) {
+TEST(A_room_that_is_too_small, is_said_and_nothing_is_written_after_it) {
     const auto buffer = std::make_unique<ScriptBuffer<script_sizes_for(4, 256, 3)>>();
     Reach reach;
     reach.components = components();

@@ -130,7 +130,7 @@ TEST(StateMachineCheck, names_the_nearest_state_for_a_misspelt_else_target) {
               "unknown state \"saef\" otherwise; did you mean \"safe\"?");
 }
 
-TEST(StateMachineCheck, refuses_a_transition_behind_one_with_an_else_branch) {
+TEST(StateMachineCheck, refuses_a_transition_after_one_with_an_else_branch) {
     Good m;
     m.transitions.insert(m.transitions.begin() + 4, transition("waits", "flies", on("release")));
     EXPECT_NE(m.fault().find(

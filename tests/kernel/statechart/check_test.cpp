@@ -185,7 +185,7 @@ TEST(StateMachineCheck, refuses_a_state_with_no_way_out) {
               "state machine \"m\": state \"trap\" has no way out; give it a transition, or mark it final");
 }
 
-TEST(StateMachineCheck, refuses_a_transition_behind_one_that_always_comes_first) {
+TEST(StateMachineCheck, refuses_a_transition_after_one_that_always_comes_first) {
     Good m;
     m.transitions.push_back(transition("weave", "safe", on("panel.stop"), guard<&Loom::ready>));
     EXPECT_EQ(m.fault(), "state machine \"m\": transition 6 (\"weave\" to \"safe\" on \"panel.stop\") can "
@@ -195,7 +195,7 @@ TEST(StateMachineCheck, refuses_a_transition_behind_one_that_always_comes_first)
                          "or drop it");
 }
 
-TEST(StateMachineCheck, refuses_a_later_time_out_behind_an_earlier_one) {
+TEST(StateMachineCheck, refuses_a_later_time_out_after_an_earlier_one) {
     Good m;
     m.transitions.push_back(transition("run_up", "idle", after(6s)));
     EXPECT_NE(m.fault().find("transition 6 (\"run_up\" to \"idle\") can never be taken"), std::string::npos)

@@ -306,7 +306,7 @@ constexpr auto timed = state_machine<R>(
                 transition("outer", "safe", on("stop")), transition("late", "idle", after(Duration::max()))));
 static_assert(check(timed.view()).empty());
 
-TEST(StateMachine, asks_the_conditions_in_every_step_behind_the_run_programs) {
+TEST(StateMachine, asks_the_conditions_in_every_step_after_the_run_programs) {
     Running<timed> m;
     EXPECT_EQ(m.step(), "!idle");
     m.component.yes = true;

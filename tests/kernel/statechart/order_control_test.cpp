@@ -52,7 +52,7 @@ TEST(StateMachineOrder, line_31_takes_a_requested_state_by_a_condition_transitio
     EXPECT_EQ(m.active(), "a");
 }
 
-TEST(StateMachineOrder, line_32_runs_the_run_programs_once_behind_a_request) {
+TEST(StateMachineOrder, line_32_runs_the_run_programs_once_after_a_request) {
     Play m{R"(
         state a initial
         state b entry +b run !b.
@@ -152,7 +152,7 @@ TEST(StateMachineOrder, line_41_aborts_a_waiting_run_program_by_a_transition_and
     EXPECT_EQ(m.step(), "!a:") << "from its beginning";
 }
 
-TEST(StateMachineOrder, line_42_serves_requests_of_programs_behind_the_call_and_the_final_state_first) {
+TEST(StateMachineOrder, line_42_serves_requests_of_programs_after_the_call_and_the_final_state_first) {
     Play m{R"(
         state a initial exit -a
         state b entry +b exit -b

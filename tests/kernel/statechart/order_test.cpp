@@ -73,7 +73,7 @@ TEST(StateMachineOrder, line_06_keeps_a_waiting_run_program_through_an_internal_
     EXPECT_EQ(m.step(), ":!a");
 }
 
-TEST(StateMachineOrder, line_07_asks_the_preconditions_of_all_that_would_be_entered_behind_the_guard) {
+TEST(StateMachineOrder, line_07_asks_the_preconditions_of_all_that_would_be_entered_after_the_guard) {
     Play m{R"(
         state idle initial exit -idle
         state x pre px
@@ -307,7 +307,7 @@ TEST(StateMachineOrder, line_25_begins_no_run_program_twice_in_a_step) {
     EXPECT_EQ(m.step(), "!a ?g !b ?g +a");
 }
 
-TEST(StateMachineOrder, line_26_handles_events_that_waited_behind_the_round) {
+TEST(StateMachineOrder, line_26_handles_events_that_waited_after_the_round) {
     Play m{R"(
         state a initial run !a handle ~a exit -a
         state b entry +b

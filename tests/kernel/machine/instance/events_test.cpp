@@ -180,7 +180,7 @@ TEST(AReactionRow, drops_what_was_caught_before_it_was_disconnected) {
     EXPECT_EQ(rig.counts("on_beat").outdated, 1u);
 }
 
-TEST(AReactionRow, may_be_disconnected_by_its_own_operation_with_what_waits_behind_it) {
+TEST(AReactionRow, may_be_disconnected_by_its_own_operation_with_what_waits_after_it) {
     Rig rig;
     rig.console.beat.connect();
     rig.console.disconnects_itself = true;

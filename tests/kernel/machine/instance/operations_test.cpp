@@ -335,7 +335,7 @@ TEST(Commands, the_urgent_activity_is_served_first_and_each_senders_order_is_kep
     EXPECT_THAT(rig.axis.marks, testing::ElementsAre(3, 1, 2));
 }
 
-TEST(Commands, run_behind_the_components_and_before_the_asynchronous_events) {
+TEST(Commands, run_after_the_components_and_before_the_asynchronous_events) {
     Rig rig;
     rig.urgent.knock();
     ASSERT_TRUE(rig.urgent.move.send(1.0));

@@ -397,7 +397,7 @@ TEST_F(BehaviourSlotTest, one_that_waits_is_let_go_by_a_roll_back_and_what_is_at
         << "the third was compiled over the first";
 }
 
-TEST_F(BehaviourSlotTest, there_is_no_way_back_behind_a_bank_that_was_written_over) {
+TEST_F(BehaviourSlotTest, there_is_no_way_back_to_a_bank_that_was_written_over) {
     EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));

@@ -217,7 +217,7 @@ TEST_F(PropertyFilesOfAMachine, are_replaced_when_the_machine_stands_still_again
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     tension("warp").gain.set(4.5);
-    ASSERT_TRUE(instance.save_properties(*instance.standing()).empty());
+    ASSERT_TRUE(instance.save_properties(instance.standing()).empty());
     EXPECT_THAT(get("warp.cpf"), HasSubstr("<value>4.5</value>"));
     EXPECT_TRUE(there("weft.cpf")) << "also the one that was missing";
     EXPECT_FALSE(there("warp.cpf.new")) << "nothing is left beside it";
@@ -229,7 +229,7 @@ TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced)
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     std::filesystem::create_directory(directory / "warp.cpf.new"); // where the new one would be written
-    const std::string said{instance.save_properties(*instance.standing()).view()};
+    const std::string said{instance.save_properties(instance.standing()).view()};
     EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
                             HasSubstr("the old file stands")));
     EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
@@ -239,7 +239,7 @@ TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced)
 TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_reading_would_refuse) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
-    const auto saved = [this] { return std::string{instance.save_properties(*instance.standing()).view()}; };
+    const auto saved = [this] { return std::string{instance.save_properties(instance.standing()).view()}; };
     tension("warp").gain.set(10.5); // nobody looks at what a component gives itself
     EXPECT_THAT(saved(),
                 AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\": property \"gain\""),
@@ -277,6 +277,7 @@ struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
 
 TEST_F(PropertiesOfARunningMachine, are_not_saved_as_those_of_one_that_stands) {
     EXPECT_FALSE(instance.standing());
+    EXPECT_THAT(std::string{instance.save_properties(instance.standing()).view()}, HasSubstr("not saved"));
     world.stop();
     EXPECT_TRUE(instance.standing());
 }

@@ -56,7 +56,7 @@ TEST_F(Completing, goes_as_far_as_all_candidates_agree) {
     EXPECT_EQ(after("nonsense sh").common(), "");
 }
 
-TEST_F(Completing, options_are_offered_behind_a_dash) {
+TEST_F(Completing, options_are_offered_after_a_dash) {
     EXPECT_THAT(after("get --js").candidates, ElementsAre("--json"));
     EXPECT_THAT(after("--json ge").candidates, ElementsAre("get"));
 }

@@ -26,7 +26,7 @@ TEST(Options, negative_numbers_are_values) {
     EXPECT_THAT(parsed({"set", "a.b", "-.5"})->words, ElementsAre("set", "a.b", "-.5"));
 }
 
-TEST(Options, behind_two_dashes_everything_is_a_word) {
+TEST(Options, after_two_dashes_everything_is_a_word) {
     EXPECT_THAT(parsed({"set", "a.b", "--", "--json"})->words, ElementsAre("set", "a.b", "--json"));
 }
 

@@ -93,7 +93,7 @@ TEST_F(ModbusServer, carries_registers_and_refuses_what_the_unit_refuses) {
     EXPECT_EQ(words[0], 650);
     EXPECT_EQ(modbus_write_register(master, 0, 700), 1);
     EXPECT_EQ(modbus_write_bit(master, 0, 1), 1);
-    // An exchange is skipped while the slave still holds its registers for the answer.
+    // An exchange is skipped while the server still holds its registers for the answer.
     for (int tries = 0; !climate.pump() && tries < 500; ++tries) {
         wire->exchange(climate);
         usleep(1'000);
