@@ -1,0 +1,90 @@
+// Proves and measures the processor's counter, and leads stamps back to the clock before they could stray.
+#include "kernel/os/stamps.hpp"
+
+#include "kernel/os/sleep.hpp"
+#include "kernel/os/system_file.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
+namespace tappet::os {
+
+namespace {
+
+/// 0: the counter is not used.
+std::atomic<std::uint64_t> proven_ns_per_tick{0};
+
+// It may be slewed by 500 ppm at most, and the measurement is good for less than 100: a counter that is taken
+// for slower than it is never leads ahead of the clock, so no stamp is taken back.
+constexpr std::uint64_t ppm = 1'000'000, slower_by_ppm = 600;
+// Longer between two readings of the counter, and something else ran in between: the pair tells nothing.
+constexpr Duration most_between = 300ns;
+static_assert(most_between + Stamps::window * slower_by_ppm / ppm < Stamps::most_behind);
+
+bool counter_is_invariant() noexcept {
+#if defined(__x86_64__)
+    constexpr unsigned advanced_power_management = 0x80000007, invariant_bit = 1u << 8;
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    return __get_cpuid(advanced_power_management, &a, &b, &c, &d) != 0 && (d & invariant_bit) != 0;
+#else
+    return false;
+#endif
+}
+
+} // namespace
+
+bool prove_processor_counter(std::string_view root) noexcept {
+    const SystemFile source{root,
+                            Sentence{"/sys/devices/system/clocksource/clocksource0/current_clocksource"}};
+    proven_ns_per_tick.store(0, std::memory_order_relaxed);
+    if (source.text() != "tsc" || !counter_is_invariant()) return false;
+    struct Pair {
+        Time time{};
+        std::uint64_t ticks = 0;
+    };
+    // The quickest of several readings: what interrupts one makes it slow.
+    const auto read = []() noexcept {
+        Pair best;
+        std::uint64_t least = ~std::uint64_t{0};
+        for (int i = 0; i < 32; ++i) {
+            const std::uint64_t before = Stamps::ticks();
+            const Time time = Clock::monotonic();
+            const std::uint64_t after = Stamps::ticks();
+            if (after - before < least) least = after - before, best = {time, before + (after - before) / 2};
+        }
+        return best;
+    };
+    constexpr Duration apart = 5ms;
+    const Pair first = read();
+    sleep_for(apart);
+    const Pair last = read();
+    const auto passed = static_cast<std::uint64_t>((last.time - first.time).count());
+    if (last.ticks <= first.ticks || passed < static_cast<std::uint64_t>(apart.count())) return false;
+    const std::uint64_t rate = (passed << Stamps::fraction_bits) / (last.ticks - first.ticks);
+    proven_ns_per_tick.store(rate - rate * slower_by_ppm / ppm, std::memory_order_relaxed);
+    return true;
+}
+
+Time Stamps::look_at_clock() noexcept TAPPET_REALTIME {
+    ns_per_tick_ = proven_ns_per_tick.load(std::memory_order_relaxed); // no step: nothing else hangs on it
+    const std::uint64_t before = ticks();
+    const Time now = clock_->now();
+    if (ns_per_tick_ == 0) return now;
+    const std::uint64_t after = ticks();
+    const auto in_ns = [this](std::uint64_t count) noexcept TAPPET_REALTIME {
+        return Duration{static_cast<std::int64_t>(count * ns_per_tick_ >> fraction_bits)};
+    };
+    ticks_of_window_ = 0;
+    if (after - before > (std::uint64_t{1} << fraction_bits) || in_ns(after - before) > most_between)
+        return now;
+    anchor_ = now;
+    anchor_ticks_ = after;
+    ticks_of_window_ = (static_cast<std::uint64_t>(window.count()) << fraction_bits) / ns_per_tick_;
+    return now;
+}
+
+} // namespace tappet::os

@@ -1,0 +1,55 @@
+// Time stamps that one thread takes: from the processor's counter where that is proven to be as good as the
+// kernel's clock, else from the clock. A stamp costs a third of a reading of the clock.
+#pragma once
+
+#include "kernel/os/clock.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet::os {
+
+/// Lets all Stamps of the process use the processor's counter, if it is invariant and the same on all
+/// processors: the kernel itself takes its time from it, and watches it. Takes some milliseconds to measure
+/// how fast it counts. `root` stands before the kernel's files. Answers whether they do. Not real-time.
+bool prove_processor_counter(std::string_view root = {}) noexcept;
+
+/// Of one thread. On each line of CLOCK_MONOTONIC or of virtual time: a stamp is never before the one taken
+/// last, none is ahead of the clock, and none so far behind it as most_behind.
+class Stamps {
+public:
+    static constexpr Duration most_behind = 500ns;
+    /// How long the counter is followed from one reading of the clock.
+    static constexpr Duration window = 200us;
+
+    void place(const Clock& clock) noexcept { clock_ = &clock, ticks_of_window_ = 0; }
+
+    [[nodiscard]] Time now() noexcept TAPPET_REALTIME {
+        if (clock_->is_virtual()) return clock_->now();
+        const std::uint64_t passed = ticks() - anchor_ticks_;
+        if (passed >= ticks_of_window_) [[unlikely]]
+            return look_at_clock();
+        return anchor_ + Duration{static_cast<std::int64_t>(passed * ns_per_tick_ >> fraction_bits)};
+    }
+
+private:
+    static constexpr int fraction_bits = 32;
+
+    static std::uint64_t ticks() noexcept TAPPET_REALTIME {
+#if defined(__x86_64__)
+        return __builtin_ia32_rdtsc();
+#else
+        return 0; // the proof fails: the clock is read
+#endif
+    }
+    Time look_at_clock() noexcept TAPPET_REALTIME;
+    friend bool prove_processor_counter(std::string_view root) noexcept;
+
+    const Clock* clock_ = nullptr;
+    Time anchor_{};
+    std::uint64_t anchor_ticks_ = 0;
+    std::uint64_t ticks_of_window_ = 0; ///< 0: the clock is read each time
+    std::uint64_t ns_per_tick_ = 0;     ///< with fraction_bits
+};
+
+} // namespace tappet::os

@@ -1,0 +1,66 @@
+// Stamps from the processor's counter are those of the clock: none is before the one taken last, none is
+// ahead.
+#include "kernel/os/stamps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+namespace tappet::os {
+namespace {
+
+/// A made-up kernel that takes its time from another source.
+bool prove_with_source(std::string_view name) {
+    const auto root = std::filesystem::temp_directory_path() / ("tappet_stamps_" + std::to_string(getpid()));
+    const std::filesystem::path folder = root / "sys/devices/system/clocksource/clocksource0";
+    std::filesystem::create_directories(folder);
+    std::ofstream{folder / "current_clocksource"} << name << '\n';
+    const bool proven = prove_processor_counter(root.string());
+    std::filesystem::remove_all(root);
+    return proven;
+}
+
+void expect_stamps_of_the_clock(int count, Duration late_at_most) {
+    const Clock clock{Clock::Kind::real};
+    Stamps stamps;
+    stamps.place(clock);
+    Time last{};
+    for (int i = 0; i < count; ++i) {
+        const Time before = Clock::monotonic();
+        const Time stamp = stamps.now();
+        const Time after = Clock::monotonic();
+        ASSERT_GE(stamp, last) << i;
+        ASSERT_LE(stamp, after) << i;
+        ASSERT_GE(stamp + late_at_most, before) << i;
+        last = stamp;
+    }
+}
+
+TEST(Stamps, are_never_before_one_another_nor_ahead_of_the_clock_nor_far_behind) {
+    static_cast<void>(prove_processor_counter());
+    expect_stamps_of_the_clock(300'000, Stamps::most_behind);
+}
+
+TEST(Stamps, are_readings_of_the_clock_where_the_counter_is_not_proven) {
+    EXPECT_FALSE(prove_with_source("hpet")) << "the kernel found the counter wanting";
+    EXPECT_FALSE(prove_processor_counter("/nowhere")) << "nobody says what the kernel takes";
+    expect_stamps_of_the_clock(1000, Duration::zero());
+}
+
+TEST(Stamps, stand_still_with_virtual_time) {
+    static_cast<void>(prove_processor_counter());
+    Clock clock{Clock::Kind::virtual_time};
+    Stamps stamps;
+    stamps.place(clock);
+    EXPECT_EQ(stamps.now(), Time{});
+    clock.advance_to(at_ns(5));
+    EXPECT_EQ(stamps.now(), at_ns(5));
+    EXPECT_EQ(stamps.now(), at_ns(5));
+}
+
+} // namespace
+} // namespace tappet::os
