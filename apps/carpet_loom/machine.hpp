@@ -14,6 +14,7 @@
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "drivers/can/restarter.hpp"
 #include "kernel/limits/limits.hpp"
+#include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
@@ -163,7 +164,7 @@ inline constexpr auto carpet_loom = machine("carpet-loom",
         when("last_resort.quick_stop",  tell("main.quick_stop")),
         when("last_resort.quick_stop",  tell("warp.hold"))),
     behaviours(
-        behaviour("loom", loom_cycle),
+        behaviour("loom", compiled<loom_cycle>),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
                                peers("shaft", "loom"), operations("weft.lift", "weft.weave_carpet"),
                                events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(400)))),

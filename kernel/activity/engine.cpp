@@ -22,6 +22,7 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     expect_standing();
     plan_ = plan;
     clock_ = &clock;
+    stamps_.place(clock);
     cycle_.period = plan.period;
     has_deadline_ = plan.real_time && plan.deadline > Duration::zero();
     least_excess_ = has_deadline_ ? Duration::zero() : Duration::max();
@@ -68,7 +69,7 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
 
 template <bool steps_only>
 void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
-    const Time now = clock_->now();
+    const Time now = stamps_.now();
     cycle_.now = lap_ = now;
     Duration used{};
     auto expired = Expired::none;
@@ -149,19 +150,31 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
 bool Engine::run_commands() noexcept TAPPET_REALTIME {
     const auto note_state = [this](std::uint32_t part, CommandState state) noexcept
         TAPPET_REALTIME { note((std::uint64_t{part} << 8) | static_cast<std::uint64_t>(state), cycle_.now); };
+    // Those of one component that come one after the other are timed together.
+    constexpr std::uint32_t nobody = Miss::nobody;
+    std::uint32_t at_work = nobody;
+    std::uint64_t together = 0;
+    const auto turn_to = [&](std::uint32_t part) noexcept TAPPET_REALTIME {
+        if (at_work != part && at_work != nobody) {
+            end_of(function(at_work, FunctionKind::reactions), together);
+            together = 0;
+        }
+        at_work = part;
+        ++together;
+    };
     std::size_t served = 0;
     if (commands_.pending())
         served = commands_.serve([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
-            timed(part, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME {
-                note_state(part, commands_.take_up(slot, is_running(plan_.parts[part].state)));
-            });
+            turn_to(part);
+            note_state(part, commands_.take_up(slot, is_running(plan_.parts[part].state)));
         });
     const bool ended = commands_.follow([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
-        CommandState state{};
-        timed(part, FunctionKind::reactions, [&]() noexcept TAPPET_REALTIME { state = slot.follow(); });
+        turn_to(part);
+        const CommandState state = slot.follow();
         if (!in_flight(state)) note_state(part, state);
         return !in_flight(state);
     });
+    turn_to(nobody);
     return served != 0 || ended;
 }
 
@@ -199,8 +212,7 @@ void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
     for (const Behaviour& each : plan_.behaviours) {
         if (!is_running(plan_.parts[each.part].state)) continue;
         if (!all && each.next(each.self) > cycle_.now) continue;
-        timed(each.part, FunctionKind::behaviour,
-              [&]() noexcept TAPPET_REALTIME { each.step(each.self, cycle_.now); });
+        if (each.step(each.self, cycle_.now)) end_of(function(each.part, FunctionKind::behaviour));
     }
 }
 

@@ -11,7 +11,7 @@
 #include "kernel/component/component.hpp"
 #include "kernel/component/life.hpp"
 #include "kernel/exchange/mailbox.hpp"
-#include "kernel/os/clock.hpp"
+#include "kernel/os/stamps.hpp"
 #include "kernel/os/waiter.hpp"
 
 #include <array>
@@ -28,8 +28,9 @@ struct Behaviour {
     std::uint32_t part = 0; ///< of the component it drives
     void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     void (*programs)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< null: it has none
-    void (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< after all programs
-    void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;     ///< asks for its end
+    /// After all programs. False: nothing was there to run or to ask.
+    bool (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
+    void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< asks for its end
     bool (*has_ended)(const void* self) noexcept TAPPET_REALTIME = nullptr;
     Time (*next)(const void* self) noexcept
         TAPPET_REALTIME = nullptr; ///< when it wants a step although nothing happened
@@ -223,6 +224,8 @@ public:
     [[nodiscard]] bool is_woken() const noexcept TAPPET_REALTIME { return waiter_.is_woken(); }
     [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
     [[nodiscard]] CommandProcessor& commands() noexcept TAPPET_REALTIME { return commands_; }
+    /// Of its thread, for what it runs.
+    [[nodiscard]] os::Stamps& stamps() noexcept TAPPET_REALTIME { return stamps_; }
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
     [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
@@ -251,7 +254,7 @@ private:
     [[nodiscard]] std::uint32_t index_of(const FunctionTiming& timing) const noexcept TAPPET_REALTIME {
         return static_cast<std::uint32_t>(&timing - plan_.functions.data());
     }
-    /// Runs one function and times it. The end of one is the beginning of the next: one clock reading each.
+    /// Runs one function and times it. The end of one is the beginning of the next: one stamp each.
     template <class F>
     void timed(std::uint32_t part, FunctionKind kind, F&& body) noexcept TAPPET_REALTIME {
         timed(function(part, kind), body);
@@ -259,10 +262,13 @@ private:
     template <class F>
     void timed(FunctionTiming& timing, F&& body) noexcept TAPPET_REALTIME {
         body();
-        const Time end = clock_->now();
+        end_of(timing);
+    }
+    void end_of(FunctionTiming& timing, std::uint64_t together = 1) noexcept TAPPET_REALTIME {
+        const Time end = stamps_.now();
         const Duration took = end - lap_;
         if (timing.exceeds_usual(took, worst_excess_)) note_excess(timing, took);
-        timing.add(took);
+        timing.add(took, together);
         lap_ = end;
         if (tape_ != nullptr) tape_->mark(index_of(timing), (end - cycle_.now).count());
     }
@@ -336,6 +342,7 @@ private:
     Time claim_began_ = Time::min(); ///< the time of at_most that is measured
     Duration claim_used_{};
     os::Clock* clock_ = nullptr;
+    os::Stamps stamps_{};
     Cycle cycle_{};
     /// How often it looks whether a component that waits for an input may start.
     static constexpr Duration awaiting_period = 10ms;

@@ -17,13 +17,15 @@ struct FunctionTiming {
     Duration total{};
     std::uint64_t blamed = 0; ///< missed deadlines of which this function was the culprit
 
-    void add(Duration took) noexcept TAPPET_REALTIME {
-        ++passes;
+    /// `together`: so many passes that were timed as one.
+    void add(Duration took, std::uint64_t together = 1) noexcept TAPPET_REALTIME {
+        const bool is_first = passes == 0;
+        passes += together;
         last = took;
         total += took;
         if (took <= longest) return;
-        longest = passes == 1 ? Duration::zero() : took;
-        if (passes == 1) total = Duration::zero();
+        longest = is_first ? Duration::zero() : took;
+        if (is_first) total = Duration::zero();
     }
     /// The mean of all passes but the first.
     [[nodiscard]] Duration usual() const noexcept TAPPET_REALTIME {

@@ -3,6 +3,7 @@
 
 #include "kernel/base/time.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/os/stamps.hpp"
 #include "kernel/program/table.hpp"
 
 namespace tappet {
@@ -23,13 +24,27 @@ struct ProgramPosition {
     Time entered_at{};
 };
 
+/// Until when programs in memory may work in one step: then their activity's budget is used up, and what is
+/// left goes on in the next step.
+struct WorkLimit {
+    /// That are executed between two looks at the time.
+    static constexpr std::uint32_t statements = 32;
+    os::Stamps* stamps = nullptr; ///< of the activity
+    Time until = never;
+
+    [[nodiscard]] bool is_reached() const noexcept TAPPET_REALTIME {
+        return until != never && stamps->now() >= until;
+    }
+};
+
 struct ProgramContext {
     void* component = nullptr;          ///< whose engine runs it
     std::byte* data = nullptr;          ///< see DataLayout; aligned to data_alignment
     const ProgramLink* links = nullptr; ///< by LinkRow
     Time now{};
     ProgramPosition position{};
-    void* machines = nullptr; ///< the state machines and programs that this one may command
+    void* machines = nullptr;         ///< the state machines and programs that this one may command
+    const WorkLimit* limit = nullptr; ///< null: only the number of statements is bounded
 };
 
 } // namespace tappet

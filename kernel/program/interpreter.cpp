@@ -1,7 +1,7 @@
-// Walks a program's tables; each branch of it is a line of the header's list.
+// Programs whose tables lie in memory.
 #include "kernel/program/interpreter.hpp"
 
-#include "kernel/program/value_access.hpp"
+#include "kernel/program/node.hpp"
 
 namespace tappet {
 
@@ -22,141 +22,92 @@ namespace {
     }
     return ActionResult::done;
 }
-
-/// Of a node that has been entered.
-Time due(const ProgramContext& context, const ArcRow& arc) noexcept TAPPET_REALTIME {
-    const Duration after = load_value<Duration>(context.data + arc.after);
-    const Time entered = context.position.entered_at;
-    return after >= never - entered ? never : entered + after;
+[[gnu::always_inline]] inline ConditionResult test(const ProgramTables& tables, ProgramContext& context,
+                                                   ConditionIndex condition) noexcept TAPPET_REALTIME {
+    if (condition == no_condition) return ConditionResult::yes;
+    const ConditionRow& row = tables.conditions[condition];
+    if (execute(context, tables.instructions.data() + row.first, row.count) != ActionResult::done)
+        [[unlikely]]
+        return ConditionResult::failed;
+    return load_value<bool>(context.data + row.result) ? ConditionResult::yes : ConditionResult::no;
 }
 
-ConditionResult is_open(const ProgramTables& tables, ProgramContext& context, const ArcRow& arc) noexcept
-    TAPPET_REALTIME {
-    if (arc.after != no_data && context.now < due(context, arc)) return ConditionResult::no;
-    return arc.condition == no_condition ? ConditionResult::yes
-                                         : test_condition(tables, context, arc.condition);
-}
+struct ArcInMemory {
+    const ProgramTables& tables;
+    const ArcRow& arc;
 
-enum class Next : std::uint8_t { on, waits, failed };
-
-/// Asks the node's arcs from number `first` on; `on`: the position is where the first open one leads. Before
-/// the action is done those without a condition alone: the time-outs.
-Next follow(const ProgramTables& tables, ProgramContext& context, const NodeRow& node,
-            std::size_t first) noexcept TAPPET_REALTIME {
-    const ArcRow* arc = tables.arcs.data() + node.first_arc + first;
-    for (std::size_t i = first; i < node.arcs; ++i, ++arc) {
-        if (!context.position.acted && (arc->condition != no_condition || arc->after == no_data)) continue;
-        const ConditionResult open = is_open(tables, context, *arc);
-        if (open == ConditionResult::no) continue;
-        if (open == ConditionResult::failed || arc->to == no_node) return Next::failed;
-        context.position = {.node = arc->to};
-        return Next::on;
+    [[nodiscard]] const ArcRow& row() const noexcept TAPPET_REALTIME { return arc; }
+    [[nodiscard]] Duration after(const ProgramRun& run) const noexcept TAPPET_REALTIME {
+        return load_value<Duration>(run.data + arc.after);
     }
-    if (node.repeats) context.position.acted = false;
-    return Next::waits;
-}
-
-/// No node: the program stays where it is.
-constexpr NodeIndex stays = end_node - 1;
-
-/// Where a node leads whose action was done just now: its arcs up to the first time-out. no_node: into error;
-/// `stays`: so many were `asked` in vain.
-[[gnu::always_inline]] inline NodeIndex leads_to(const ProgramTables& tables, ProgramContext& context,
-                                                 const NodeRow& node, std::size_t& asked) noexcept
-    TAPPET_REALTIME {
-    if (node.yields) return stays;
-    const ArcRow* arc = tables.arcs.data() + node.first_arc;
-    for (; asked < node.arcs && arc->after == no_data; ++asked, ++arc) {
-        if (arc->condition == no_condition) return arc->to;
-        const ConditionRow& row = tables.conditions[arc->condition];
-        if (execute(context, tables.instructions.data() + row.first, row.count) != ActionResult::done)
-            [[unlikely]]
-            return no_node;
-        if (load_value<bool>(context.data + row.result)) return arc->to;
+    [[gnu::always_inline]] ConditionResult asks(ProgramContext& context, const ProgramRun&) const noexcept
+        TAPPET_REALTIME {
+        return test(tables, context, arc.condition);
     }
-    return stays;
-}
+};
+struct NodeInMemory {
+    const ProgramTables& tables;
+    const NodeRow* node;
+    NodeIndex index;
 
-/// What follows an action; `on`: the node's arcs are to be asked.
-Next after_action(ProgramContext& context, const NodeRow& node, ActionResult result) noexcept
-    TAPPET_REALTIME {
-    ProgramPosition& position = context.position;
-    if (!position.entered) position.entered = true, position.entered_at = context.now;
-    if (result == ActionResult::failed) return Next::failed;
-    if (result == ActionResult::again) return Next::on;
-    position.acted = true;
-    return node.yields ? Next::waits : Next::on;
-}
+    [[nodiscard]] const NodeRow& row() const noexcept TAPPET_REALTIME { return *node; }
+    [[nodiscard]] NodeIndex number() const noexcept TAPPET_REALTIME { return index; }
+    static constexpr bool may_stand() noexcept TAPPET_REALTIME { return true; }
+    [[gnu::always_inline]] ActionResult acts(ProgramContext& context, const ProgramRun&) const noexcept
+        TAPPET_REALTIME {
+        return execute(context, tables.instructions.data() + node->first, node->count);
+    }
+    [[gnu::always_inline]] NextNode asks_arcs(bool has_acted, ProgramContext& context,
+                                              ProgramRun& run) const noexcept TAPPET_REALTIME {
+        NextNode next = leads_nowhere;
+        const ArcRow* arc = tables.arcs.data() + node->first_arc;
+        for (const ArcRow* const end = arc + node->arcs; arc != end && next == leads_nowhere; ++arc)
+            next = node_order::follows(*this, ArcInMemory{tables, *arc}, has_acted, context, run);
+        return next;
+    }
+};
 
 } // namespace
 
 ConditionResult test_condition(const ProgramTables& tables, ProgramContext& context,
                                ConditionIndex condition) noexcept TAPPET_REALTIME {
-    if (condition == no_condition) return ConditionResult::yes;
-    const ConditionRow& row = tables.conditions[condition];
-    if (execute(context, tables.instructions.data() + row.first, row.count) != ActionResult::done)
-        return ConditionResult::failed;
-    return load_value<bool>(context.data + row.result) ? ConditionResult::yes : ConditionResult::no;
+    return test(tables, context, condition);
 }
 
 ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
                           std::uint32_t& statements) noexcept TAPPET_REALTIME {
-    const Instruction* const instructions = tables.instructions.data();
-    const NodeRow* const nodes = tables.nodes.data();
-    ProgramPosition& position = context.position;
-    // In registers, since each statement waits for them; position.node holds where the program returns.
-    NodeIndex at = position.node;
-    std::uint32_t left = statements;
-    bool acted = position.acted;
-    const NodeRow* row = nodes;
-    if (at != end_node) row += at;
+    NodeIndex at = context.position.node;
+    // Statements are counted in pieces of WorkLimit::statements, over all programs of a step.
+    const auto next_piece = [&]() noexcept TAPPET_REALTIME -> std::int64_t {
+        if (statements % WorkLimit::statements == 0 && context.limit->is_reached()) statements = 0;
+        return statements == 0 ? 0 : (statements - 1) % WorkLimit::statements + 1;
+    };
+    const bool is_limited = context.limit != nullptr;
+    std::int64_t piece = is_limited ? next_piece() : std::int64_t{statements};
+    ProgramRun run{context.data, piece, context.position.entered};
+    const auto account = [&]() noexcept
+        TAPPET_REALTIME { statements -= static_cast<std::uint32_t>(piece - run.left); };
+    const NodeRow* row = at == end_node ? nullptr : &tables.nodes[at];
     while (at != end_node) {
-        const NodeRow& node = *row;
-        Next next = Next::on;
-        if (!acted) {
-            if (left == 0) break;
-            --left;
-            const ActionResult result = execute(context, instructions + node.first, node.count);
-            std::size_t asked = 0;
-            NodeIndex to = stays;
-            if (result == ActionResult::done) [[likely]]
-                to = leads_to(tables, context, node, asked);
-            // Most nodes lead on at once: nobody will ask when they were entered.
-            if (to < stays || to == end_node) [[likely]] {
-                position.entered = false;
-                // Mostly to the next row: a branch is predicted, a number that was read is waited for.
-                if (to == at + 1) [[likely]] {
-                    ++at, ++row;
-                    asm("" : "+r"(row)); // so that it stays a branch
-                    continue;
-                }
-                at = to;
-                if (at != end_node) row = nodes + at;
-                continue;
-            }
-            position.node = at;
-            next = after_action(context, node, result);
-            if (to == no_node) next = Next::failed;
-            if (next == Next::on) next = follow(tables, context, node, asked);
-        } else {
-            next = follow(tables, context, node, 0);
+        const NextNode next = node_order::executes(NodeInMemory{tables, row, at}, context, run);
+        // Mostly to the next row: a branch is predicted, a number that was read is waited for.
+        if (next == at + 1u) [[likely]] {
+            ++at, ++row;
+            asm("" : "+r"(row)); // so that it stays a branch
+            continue;
         }
-        if (next == Next::failed && node.on_error != no_node) {
-            position = {.node = node.on_error};
-            next = Next::on;
+        if (next >= halted) {
+            account();
+            const bool is_left_over = run.left == 0 && next == halts_at(at, ProgramReturn::left_over);
+            if (!is_left_over || !is_limited || statements == 0) return returns_at(next, context, run);
+            run.left = piece = next_piece();
+            continue;
         }
-        if (next != Next::on) {
-            statements = left;
-            return next == Next::waits ? ProgramReturn::waits : ProgramReturn::failed;
-        }
-        at = position.node;
-        if (at != end_node) row = nodes + at;
-        acted = false;
+        at = static_cast<NodeIndex>(next);
+        row = tables.nodes.data() + at;
     }
-    statements = left;
-    position.node = at;
-    if (at != end_node) return ProgramReturn::left_over;
-    position = {};
+    account();
+    context.position = {};
     return ProgramReturn::ended;
 }
 
@@ -165,12 +116,10 @@ Time program_wakes(const ProgramTables& tables, const ProgramContext& context) n
     if (position.node >= tables.nodes.size() || !position.entered) return never;
     const NodeRow& node = tables.nodes[position.node];
     Time earliest = never;
-    for (std::size_t i = 0; i < node.arcs; ++i) {
-        const ArcRow& arc = tables.arcs[node.first_arc + i];
-        if (arc.after == no_data) continue;
-        const Time at = due(context, arc);
-        if (at < earliest) earliest = at;
-    }
+    for (const ArcRow& arc : tables.arcs.subspan(node.first_arc, node.arcs))
+        if (arc.after != no_data)
+            earliest = std::min(earliest, node_order::due(load_value<Duration>(context.data + arc.after),
+                                                          position.entered_at));
     return earliest;
 }
 

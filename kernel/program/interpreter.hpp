@@ -1,17 +1,4 @@
-// The loaded form of programs: their tables are walked as they are (thesis 5.1.3). What it does with a node:
-//
-// clang-format off
-//   entered       the time is noted; then the action: its instructions in order, once. That is one statement.
-//   again         an instruction could not act yet: the program waits, the next step executes the action once more;
-//                 of the arcs only time-outs, those without a condition, are asked until then.
-//   arcs          asked in their order after the action, and in each later step without it; the first open one is
-//                 followed. An arc is open when its time has passed and its condition holds.
-//   none open     the program waits. The action of a node that `repeats` is executed again in the next step.
-//   yields        the program waits after the action although an arc is open.
-//   failed        of an instruction or a condition, or the arc leads to no_node: on to the node of on_error, or the
-//                 program has failed there.
-//   left over     the statements are used up: the program stands before the next action.
-// clang-format on
+// The loaded form of programs: their tables are read as they are. What it does with a node is in node.hpp.
 #pragma once
 
 #include "kernel/program/code.hpp"

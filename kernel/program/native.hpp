@@ -1,40 +1,39 @@
-// Native code made of a constant table: its nodes in pages, each page a switch. Only the table is gone.
+// Native code made of a constant table: its nodes in pieces, each a function. Only the table is gone.
 #pragma once
 
+#include "kernel/program/interpreter.hpp"
 #include "kernel/program/native_node.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <cstring>
 #include <utility>
 
 namespace tappet {
 
 namespace native {
 
-/// Nodes in one function at most. A program goes from page to page by its number; within one it falls or
+/// Nodes in one function at most. A program goes from piece to piece by its number; within one it falls or
 /// jumps.
-inline constexpr std::size_t page_nodes = 32;
+inline constexpr std::size_t piece_nodes = 16;
 
 template <const auto& source, std::size_t type> struct Code : NodeCode<source, type> {
-    using Node = NodeCode<source, type>;
-    static constexpr const ProgramTables& tables = Node::tables;
+    using Nodes = NodeCode<source, type>;
+    static constexpr const ProgramTables& tables = Nodes::tables;
 
-    // ---- pieces of code: a short program that only leads on, or a page of a longer one
+    // ---- pieces of code: a short program, or a part of a longer one
 
     struct Piece {
         NodeIndex first = 0;
         NodeIndex end = 0;
     };
-    // Where a piece begins: at the first node of each program, and wherever a page is full.
-    static constexpr std::array<bool, tables.nodes.size() + 1> begins_piece = [] {
+    // One begins at the first node of each program, and wherever one is full.
+    static constexpr auto begins_piece = [] {
         std::array<bool, tables.nodes.size() + 1> begins{};
         begins[0] = true;
         for (const ProgramRow& program : tables.programs)
             if (program.first < tables.nodes.size()) begins[program.first] = true;
         for (std::size_t node = 0, first = 0; node < tables.nodes.size(); ++node) {
-            begins[node] = begins[node] || node - first == page_nodes;
+            begins[node] = begins[node] || node - first == piece_nodes;
             if (begins[node]) first = node;
         }
         return begins;
@@ -54,84 +53,48 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
     }();
     // Its nodes lead on and never back: a node is asked for once.
     static constexpr bool is_straight(const Piece& piece) {
-        constexpr std::size_t most = 8;
-        if (piece.end > piece.first + most) return false;
+        const auto is_back = [&piece](NodeIndex from, NodeIndex to) {
+            return to <= from && to >= piece.first;
+        };
         for (NodeIndex node = piece.first; node < piece.end; ++node) {
             const NodeRow& row = tables.nodes[node];
-            if (row.on_error <= node && row.on_error >= piece.first) return false;
-            for (std::size_t i = 0; i < row.arcs; ++i) {
-                const NodeIndex to = tables.arcs[row.first_arc + i].to;
-                if (to <= node && to >= piece.first) return false;
-            }
+            if (is_back(node, row.on_error)) return false;
+            for (const ArcRow& arc : tables.arcs.subspan(row.first_arc, row.arcs))
+                if (is_back(node, arc.to)) return false;
         }
         return true;
     }
-    static constexpr bool is_whole(const Piece& piece, const ProgramRow& program) {
-        return piece.first == program.first && piece.end == program.last && is_straight(piece);
+    static constexpr bool is_whole(const ProgramRow& program) {
+        return std::size_t{program.last} - program.first <= piece_nodes &&
+               is_straight({program.first, program.last});
     }
 
-    template <std::size_t number, std::size_t end>
-    [[gnu::always_inline]] static void passes([[maybe_unused]] ProgramContext& context,
-                                              [[maybe_unused]] Run& run, [[maybe_unused]] Next& next) noexcept
-        TAPPET_REALTIME {
-        if constexpr (number < end)
-            if (next == number) next = Node::template node<static_cast<NodeIndex>(number)>(context, run);
-    }
-    template <std::size_t first, std::size_t end, std::size_t... i>
-    [[gnu::always_inline]] static Next straight(std::index_sequence<i...>, ProgramContext& context, Run& run,
-                                                Next next) noexcept TAPPET_REALTIME {
-        (passes<first + i, end>(context, run, next), ...);
-        return next;
-    }
-
-    // From the node `next` on until the program leaves the page. Each node asks whether it is meant, which
+    // From the node `next` on until the program leaves the piece. Each node asks whether it is meant, which
     // the compiler knows after the one before it.
-    template <std::size_t first, std::size_t end>
-    [[gnu::always_inline]] static Next page(ProgramContext& context, Run& run, Next next) noexcept
-        TAPPET_REALTIME {
-#define TAPPET_NODE(number)                                                                                  \
-    [[fallthrough]];                                                                                         \
-    case number: passes<first + number, end>(context, run, next)
-#define TAPPET_FOUR_NODES(number)                                                                            \
-    TAPPET_NODE(number);                                                                                     \
-    TAPPET_NODE(number + 1);                                                                                 \
-    TAPPET_NODE(number + 2);                                                                                 \
-    TAPPET_NODE(number + 3)
-        do {
-            switch (next - first) {
-            default:
-                break;
-                TAPPET_FOUR_NODES(0);
-                TAPPET_FOUR_NODES(4);
-                TAPPET_FOUR_NODES(8);
-                TAPPET_FOUR_NODES(12);
-                TAPPET_FOUR_NODES(16);
-                TAPPET_FOUR_NODES(20);
-                TAPPET_FOUR_NODES(24);
-                TAPPET_FOUR_NODES(28);
-            }
-        } while (next >= first && next < end);
-#undef TAPPET_FOUR_NODES
-#undef TAPPET_NODE
+    template <std::size_t first, std::size_t... i>
+    [[gnu::always_inline]] static NextNode passes(std::index_sequence<i...>, ProgramContext& context,
+                                                  ProgramRun& run, NextNode next) noexcept TAPPET_REALTIME {
+        constexpr std::size_t end = first + sizeof...(i);
+        do
+            ((next = next == first + i ? Nodes::template node<static_cast<NodeIndex>(first + i)>(context, run)
+                                       : next),
+             ...);
+        while (!is_straight({first, end}) && next >= first && next < end);
         return next;
     }
-
     template <std::size_t first, std::size_t end>
-    static Next piece(ProgramContext& context, Run& shared, Next next) noexcept TAPPET_REALTIME {
-        Run run{shared.data, shared.statements, shared.fresh}; // in registers
-        if constexpr (is_straight({first, end}))
-            next = straight<first, end>(std::make_index_sequence<end - first>{}, context, run, next);
-        else
-            next = page<first, end>(context, run, next);
-        shared.statements = run.statements;
-        shared.fresh = run.fresh;
+    static NextNode piece(ProgramContext& context, ProgramRun& shared, NextNode next) noexcept
+        TAPPET_REALTIME {
+        ProgramRun run = shared; // in registers
+        next = passes<first>(std::make_index_sequence<end - first>{}, context, run, next);
+        shared = run;
         return next;
     }
 
     // The piece of a node, by halving: no table of functions is left.
     template <std::size_t low, std::size_t high>
-    [[gnu::always_inline]] static Next goes_to(ProgramContext& context, Run& run, Next next) noexcept
-        TAPPET_REALTIME {
+    [[gnu::always_inline]] static NextNode goes_to(ProgramContext& context, ProgramRun& run,
+                                                   NextNode next) noexcept TAPPET_REALTIME {
         if constexpr (high - low <= 1) {
             return piece<pieces[low].first, pieces[low].end>(context, run, next);
         } else {
@@ -140,7 +103,8 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
                                                : goes_to<middle, high>(context, run, next);
         }
     }
-    static Next goes_on_at(ProgramContext& context, Run& run, Next next) noexcept TAPPET_REALTIME {
+    static NextNode goes_on_at(ProgramContext& context, ProgramRun& run, NextNode next) noexcept
+        TAPPET_REALTIME {
         if constexpr (piece_count != 0)
             while (next < tables.nodes.size()) next = goes_to<0, piece_count>(context, run, next);
         return next;
@@ -163,7 +127,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         }
         return false;
     }
-    static constexpr bool is_public(const Instruction& in) { return !Node::is_private(in); }
+    static constexpr bool is_public(const Instruction& in) { return !Nodes::is_private(in); }
     static constexpr bool asks_position(const Instruction& in) { return in.run == &primitive::elapsed; }
 
     static constexpr std::uint32_t unbounded = 0xffffffff;
@@ -177,43 +141,37 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         for (std::size_t i = 0; i < tables.programs.size(); ++i) {
             const ProgramRow& row = tables.programs[i];
             all[i].is_private = !any_instruction(row, is_public);
-            all[i].asks_for_position = row.may_wait || any_instruction(row, asks_position);
+            all[i].asks_for_position = any_instruction(row, asks_position);
             if (row.first == end_node)
                 all[i].statements = 0;
-            else if (is_whole({row.first, row.last}, row))
+            else if (is_whole(row))
                 all[i].statements = row.last - row.first;
         }
         return all;
     }();
-    static constexpr bool is_private_condition(ConditionIndex number) {
-        return number == no_condition ||
-               !any_instruction(tables.conditions[number].first, tables.conditions[number].count, is_public);
-    }
 
     /// A program from its beginning, until it ends or halts. The shortest stand where they are called.
     template <ProgramIndex number>
-    [[gnu::always_inline]] static Next program(ProgramContext& context, Run& run) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static NextNode program(ProgramContext& context, ProgramRun& run) noexcept
+        TAPPET_REALTIME {
         constexpr ProgramRow row = tables.programs[number];
-        run.fresh = true;
-        if constexpr (facts[number].asks_for_position)
-            context.position.acted = context.position.entered = false;
-        if constexpr (row.first == end_node) {
+        if constexpr (facts[number].asks_for_position) context.position.entered = false;
+        if constexpr (row.first == end_node)
             return end_node;
-        } else if constexpr (!is_whole({row.first, row.last}, row)) {
+        else if constexpr (!is_whole(row))
             return goes_on_at(context, run, row.first);
-        } else if constexpr (row.last <= row.first + 2u) {
-            return straight<row.first, row.last>(std::make_index_sequence<row.last - row.first>{}, context,
-                                                 run, row.first);
-        } else {
+        else if constexpr (row.last <= row.first + 2u)
+            return passes<row.first>(std::make_index_sequence<row.last - row.first>{}, context, run,
+                                     row.first);
+        else
             return piece<row.first, row.last>(context, run, row.first);
-        }
     }
 
     template <ConditionIndex first, ConditionIndex end>
     static ConditionResult tests(ProgramContext& context, ConditionIndex number) noexcept TAPPET_REALTIME {
         if constexpr (first + 1 == end) {
-            alignas(data_alignment) std::byte scratch[Node::scratch_bytes];
-            return Node::template condition<first>(context, context.data, scratch);
+            alignas(data_alignment) std::byte scratch[Nodes::scratch_bytes];
+            return Nodes::template condition<first>(context, context.data, scratch);
         } else {
             constexpr auto middle = static_cast<ConditionIndex>((first + end) / 2);
             return number < middle ? tests<first, middle>(context, number)
@@ -221,67 +179,14 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         }
     }
 
-    // The earliest time-out among the arcs of the node at which the program waits.
-    template <std::size_t arc>
-    [[gnu::always_inline]] static void due(const ProgramContext& context, Time& earliest) noexcept
-        TAPPET_REALTIME {
-        constexpr ArcRow row = tables.arcs[arc];
-        if constexpr (row.after != no_data) {
-            Duration after{};
-            std::memcpy(&after, Node::template read<row.after>(context.data, nullptr), sizeof after);
-            const Time entered = context.position.entered_at;
-            const Time at = after >= never - entered ? never : entered + after;
-            if (at < earliest) earliest = at;
-        }
-    }
-
-    static constexpr std::size_t timed_nodes =
-        static_cast<std::size_t>(std::ranges::count_if(tables.nodes, Node::is_timed));
-    static constexpr auto timed = [] {
-        std::array<NodeIndex, timed_nodes> numbers{};
-        for (std::size_t node = 0, used = 0; node < tables.nodes.size(); ++node)
-            if (Node::is_timed(tables.nodes[node])) numbers[used++] = static_cast<NodeIndex>(node);
-        return numbers;
-    }();
-    template <std::size_t first, std::size_t... i>
-    [[gnu::always_inline]] static Time earliest(std::index_sequence<i...>,
-                                                const ProgramContext& context) noexcept TAPPET_REALTIME {
-        Time at = never;
-        (due<first + i>(context, at), ...);
-        return at;
-    }
-    template <std::size_t i>
-    [[gnu::always_inline]] static bool wakes_at(const ProgramContext& context, Time& at) noexcept
-        TAPPET_REALTIME {
-        if (context.position.node != timed[i]) return false;
-        constexpr NodeRow row = tables.nodes[timed[i]];
-        at = earliest<row.first_arc>(std::make_index_sequence<row.arcs>{}, context);
-        return true;
-    }
-    template <std::size_t... i>
-    [[gnu::always_inline]] static Time wakes_at(std::index_sequence<i...>,
-                                                const ProgramContext& context) noexcept TAPPET_REALTIME {
-        Time at = never;
-        static_cast<void>((wakes_at<i>(context, at) || ...));
-        return at;
-    }
-
-    static Time wakes(const ProgramTables&, const ProgramContext& context) noexcept TAPPET_REALTIME {
-        return context.position.entered ? wakes_at(std::make_index_sequence<timed_nodes>{}, context) : never;
-    }
-
     static ProgramReturn run(const ProgramTables&, ProgramContext& context,
                              std::uint32_t& statements) noexcept TAPPET_REALTIME {
-        Run run{context.data, statements, !context.position.entered};
-        Next next = context.position.node;
-        next = goes_on_at(context, run, next);
-        ProgramReturn answer = ProgramReturn::ended;
-        if (next >= halted)
-            answer = Node::halts(context, run, next);
-        else
-            context.position = {};
-        statements = static_cast<std::uint32_t>(run.statements);
-        return answer;
+        ProgramRun run{context.data, statements, context.position.entered};
+        const NextNode next = goes_on_at(context, run, context.position.node);
+        statements = static_cast<std::uint32_t>(run.left);
+        if (next >= halted) return returns_at(next, context, run);
+        context.position = {};
+        return ProgramReturn::ended;
     }
 
     static ConditionResult test(const ProgramTables&, ProgramContext& context, ConditionIndex number) noexcept
@@ -311,7 +216,6 @@ inline constexpr ProgramTables native_tables = without_code(tables_of(source, ty
 /// or a ScriptUnit with the number of a type. Real-time; equal, step for step, to the interpreter.
 template <const auto& source, std::size_t type = 0>
 inline constexpr ProgramCode native_code{&native_tables<source, type>, &native::Code<source, type>::run,
-                                         &native::Code<source, type>::test,
-                                         &native::Code<source, type>::wakes};
+                                         &native::Code<source, type>::test, &program_wakes};
 
 } // namespace tappet

@@ -1,10 +1,16 @@
 // The calls that come from outside: steps, requests, events that wait, and what programs asked for while they
 // ran.
-#include "kernel/statechart/execution.hpp"
+#include "kernel/statechart/in_memory.hpp"
 
 #include <cstring>
 
 namespace tappet {
+
+namespace {
+
+using Order = statechart::Order<statechart::InMemory>;
+
+} // namespace
 
 bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TAPPET_REALTIME {
     const ResolvedSizes& sizes = binding.machine.sizes;
@@ -19,11 +25,13 @@ bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TA
     context_.data = binding.data;
     context_.links = binding.links;
     context_.machines = binding.machines;
-    fast_ = binding.fast;
+    context_.limit = binding.limit;
     policy_ = binding.policy;
-    const bool is_quick = fast_.dispatch != nullptr && policy_.statements >= fast_.statements;
-    dispatch_ = is_quick ? fast_.dispatch : machine_.folded ? &dispatch_folded : &dispatch_walked;
-    step_ = is_quick ? fast_.step : &step_walked;
+    fast_ = binding.fast;
+    if (fast_.dispatch == nullptr || policy_.statements < fast_.statements) {
+        fast_.dispatch = &dispatch_in_memory;
+        fast_.step = &step_in_memory;
+    }
     parent_ = binding.parent;
     history_ = binding.history;
     deferred_ = binding.deferred;
@@ -47,56 +55,44 @@ void StateMachineExecution::drop_waiting() noexcept TAPPET_REALTIME {
     clear(waiting);
 }
 
-void StateMachineExecution::give_reason(TransitionIndex transition, std::string_view text, Time now) noexcept
+void StateMachineExecution::give_reason(TransitionIndex transition, std::string_view text) noexcept
     TAPPET_REALTIME {
     status_.reason = transition;
-    status_.reason_at = now;
+    status_.reason_at = context_.now;
     reason_ = text;
     std::atomic_ref{news_}.store((news().number + 1) << transition_bits | transition,
                                  std::memory_order_relaxed);
 }
 
-void StateMachineExecution::open(Time now) noexcept TAPPET_REALTIME {
-    set(busy);
-    context_.now = now;
-    statements_ = policy_.statements;
-    statements_left_ = false;
-}
-
-// The end of every outer call: what programs asked for while they ran, and what had to wait for them. The
+// The end of a call from outside: what programs asked for while they ran, and what had to wait for them. The
 // last request for the final state is served even when the bound is reached.
-void StateMachineExecution::finish(Time now) noexcept TAPPET_REALTIME {
-    set(busy);
-    if (machine_.folded) statements_ = policy_.statements;
+void StateMachineExecution::finish(Call call) noexcept TAPPET_REALTIME {
     for (std::size_t n = 0; n < max_raised_events; ++n) {
-        serve_final(now);
+        call = serve_final(call);
         if ((mode_ & (inactive | error | in_hand | paused)) != 0) break;
         if (wanted_state_ != no_state)
-            static_cast<void>(serve_request(now));
+            static_cast<void>(serve_request(call));
         else if (raised_count_ != 0)
-            handle_raised(now);
+            handle_raised(call);
         else
             break;
     }
-    serve_final(now);
+    call = serve_final(call);
     clear(busy);
     if (raised_count_ == 0 && wanted_state_ == no_state) clear(waiting);
 }
 
-void StateMachineExecution::serve_final(Time now) noexcept TAPPET_REALTIME {
-    if (!is(final_wanted)) return;
+auto StateMachineExecution::serve_final(Call call) noexcept TAPPET_REALTIME -> Call {
+    if (!is(final_wanted)) return call;
     clear(final_wanted);
-    const bool under_way = is(in_hand) && job_.transition == final_transition && !is(error);
+    const bool under_way = has_in_hand(final_arc) && !is(error);
     const bool is_there = is_final() && !is(in_hand) && !is(error);
-    if (is(inactive) || is_leaving() || under_way || is_there) return;
-    if (!final_reason_.empty()) give_reason(final_transition, final_reason_, now);
-    if (machine_.folded && (mode_ & (in_hand | error)) == 0)
-        take(machine_.arcs[machine_.plans[status_.active].to_final], now);
-    else {
-        supersede(final_transition, machine_.final_state);
-        static_cast<void>(go_on(now));
-    }
+    if (is(inactive) || is_leaving() || under_way || is_there) return call;
+    if (!final_reason_.empty()) give_reason(final_transition, final_reason_);
+    supersede(final_arc);
+    static_cast<void>(Order::goes_on(*this, call));
     if (is_final() && (mode_ & (in_hand | error)) == 0) clear(final_wanted); // asked for on the way there
+    return call;
 }
 
 // ---- events
@@ -117,33 +113,28 @@ StateOutcome StateMachineExecution::queue(std::size_t trigger, Time now, const s
         outcome = StateOutcome::queued;
     }
     if (called_from_outside) {
-        open(now);
-        finish(now);
+        Call call = open(now);
+        finish(call);
     }
     return outcome;
 }
 
-void StateMachineExecution::handle_raised(Time now) noexcept TAPPET_REALTIME {
+void StateMachineExecution::handle_raised(Call& call) noexcept TAPPET_REALTIME {
     const std::size_t place = raised_first_;
-    const TriggerIndex trigger = raised_[place];
     raised_first_ = static_cast<std::uint8_t>((place + 1) % max_raised_events);
     --raised_count_;
-    if (machine_.folded) {
-        static_cast<void>(take_first(machine_.cells[cell_of(trigger)], now));
-        return;
-    }
-    static_cast<void>(react(trigger, deferred_.data() + place * machine_.sizes.captured, now));
-    if (!single_) static_cast<void>(go_on(now));
+    static_cast<void>(Order::reacts(*this, statechart::InMemory::Cell{raised_[place]},
+                                    deferred_.data() + place * machine_.sizes.captured, call));
 }
 
-StateOutcome StateMachineExecution::dispatch_folded(StateMachineExecution& execution, std::size_t trigger,
-                                                    Time now, const std::byte*) noexcept TAPPET_REALTIME {
+StateOutcome StateMachineExecution::dispatch_in_memory(StateMachineExecution& execution, std::size_t trigger,
+                                                       Time now, const std::byte* arguments) noexcept
+    TAPPET_REALTIME {
     if (trigger >= execution.machine_.triggers.size()) return StateOutcome::ignored;
-    execution.mode_ = busy;
-    const bool taken = execution.take_first(execution.machine_.cells[execution.cell_of(trigger)], now);
-    execution.clear(busy);
-    if (execution.mode_ != ready) [[unlikely]]
-        execution.finish(now);
+    if (execution.machine_.captured[trigger] != 0 && arguments == nullptr) return StateOutcome::ignored;
+    Call call = execution.open(now);
+    const bool taken = Order::reacts(execution, statechart::InMemory::Cell{trigger}, arguments, call);
+    execution.close(call);
     return taken ? StateOutcome::taken : StateOutcome::ignored;
 }
 
@@ -154,16 +145,7 @@ StateOutcome StateMachineExecution::dispatch_generally(std::size_t trigger, Time
     if (machine_.captured[trigger] != 0 && arguments == nullptr) return StateOutcome::ignored;
     if ((mode_ & (busy | in_hand | waiting | paused | final_wanted)) != 0)
         return queue(trigger, now, arguments);
-    open(now);
-    bool taken = false;
-    if (machine_.folded)
-        taken = take_first(machine_.cells[cell_of(trigger)], now);
-    else {
-        taken = react(trigger, arguments, now);
-        static_cast<void>(go_on(now));
-    }
-    finish(now);
-    return taken ? StateOutcome::taken : StateOutcome::ignored;
+    return dispatch_in_memory(*this, trigger, now, arguments);
 }
 
 // ---- commands
@@ -175,15 +157,8 @@ StateOutcome StateMachineExecution::activate(Time now) noexcept TAPPET_REALTIME 
     job_ = {};
     selected_.clear();
     drop_waiting();
-    open(now);
-    if (machine_.folded)
-        take(machine_.arcs[start_arc], now);
-    else {
-        begin_request(start_transition, machine_.arcs[start_arc].to);
-        static_cast<void>(go_on(now));
-    }
-    finish(now);
-    return StateOutcome::taken;
+    begin_request(start_arc);
+    return carry_out(now);
 }
 
 StateOutcome StateMachineExecution::start(Time now) noexcept TAPPET_REALTIME {
@@ -211,42 +186,50 @@ StateOutcome StateMachineExecution::pause() noexcept TAPPET_REALTIME {
     return StateOutcome::taken;
 }
 
-void StateMachineExecution::step_slowly(Time now) noexcept TAPPET_REALTIME {
-    if ((mode_ & (inactive | busy | paused | error)) != 0) return;
-    stepped_at_ = now;
-    conditions_left_ = false;
-    if (machine_.folded && automatic_ && (mode_ & (in_hand | mid_round)) == 0)
-        step_folded(now);
-    else
-        step_generally(now);
+// What was begun.
+StateOutcome StateMachineExecution::carry_out(Time now) noexcept TAPPET_REALTIME {
+    Call call = open(now);
+    static_cast<void>(Order::goes_on(*this, call));
+    finish(call);
+    return StateOutcome::taken;
 }
 
-void StateMachineExecution::step_generally(Time now) noexcept TAPPET_REALTIME {
-    open(now);
-    ran_ = {};
-    serve_final(now);
-    round(now);
-    finish(now);
+void StateMachineExecution::step_in_memory(StateMachineExecution& execution, Time now) noexcept
+    TAPPET_REALTIME {
+    Call call = execution.open(now);
+    execution.ran_ = {};
+    call = execution.serve_final(call);
+    execution.go_round(call);
+    execution.close(call);
+}
+
+void StateMachineExecution::go_round(Call& call) noexcept TAPPET_REALTIME {
+    if (!Order::goes_on(*this, call) || is(inactive)) return;
+    if (!automatic_ && !run_once_) return;
+    begin_round();
+    std::size_t taken = 0;
+    while (Order::goes_round(*this, taken, call)) {
+    }
 }
 
 bool StateMachineExecution::step_once(Time now) noexcept TAPPET_REALTIME {
     if (!is(paused) || (mode_ & (inactive | busy | error)) != 0) return false;
-    open(now);
+    Call call = open(now);
     const std::uint64_t transitions = status_.transitions;
-    statements_ = 1;
+    call.left = 1;
     single_ = true;
     if (!is(mid_round)) ran_ = {};
     stepped_at_ = now;
     if (!is(in_hand) && !is(mid_round) && raised_count_ != 0) {
-        statements_ = 0;
-        handle_raised(now);
+        call.left = 0;
+        handle_raised(call);
     } else
-        round(now);
-    serve_final(now);
+        go_round(call);
+    call = serve_final(call);
     single_ = statements_left_ = false;
     clear(busy);
     if (raised_count_ == 0 && wanted_state_ == no_state) clear(waiting);
-    return statements_ == 0 || status_.transitions != transitions;
+    return call.left == 0 || status_.transitions != transitions;
 }
 
 StateOutcome StateMachineExecution::request_state(StateIndex target, Time now, bool run_once) noexcept
@@ -263,39 +246,39 @@ StateOutcome StateMachineExecution::request_state(StateIndex target, Time now, b
         set(waiting);
         return StateOutcome::queued;
     }
-    open(now);
-    const StateOutcome outcome = serve_request(now);
-    finish(now);
+    Call call = open(now);
+    const StateOutcome outcome = serve_request(call);
+    finish(call);
     return outcome;
 }
 
-StateOutcome StateMachineExecution::serve_request(Time now) noexcept TAPPET_REALTIME {
+StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_REALTIME {
+    using Table = statechart::InMemory;
     const StateIndex target = wanted_state_;
     wanted_state_ = no_state;
-    bool there = is_in(target);
+    bool there = is_in(target), has_failed = false;
     if (!there && target == machine_.final_state) {
-        supersede(final_transition, target);
+        supersede(final_arc);
         there = true;
     } else if (!there && is_final() && target == machine_.arcs[start_arc].to) {
-        supersede(reset_transition, target);
+        supersede(reset_arc);
         there = true;
     }
-    for (std::size_t i = 0; !there && i < status_.states.size(); ++i) {
-        const StatePlan& plan = machine_.plans[status_.states[i].state];
-        if (plan.regions != 0 || plan.conditions == no_arc) continue;
-        for (const StateArc* arc = machine_.arcs + plan.conditions; !there; ++arc) {
-            const Answer answer = arc->to == target ? ask(*arc, nullptr, now) : Answer::no;
-            if (answer == Answer::failed) return StateOutcome::ignored;
-            there = answer == Answer::yes;
-            if (there) begin(*arc, false, now);
-            if (arc->last) break;
-        }
-    }
+    if (!there)
+        Table::for_each_asked(
+            *this, Table::conditions(), [&](Table::Leaf, Table::Arc arc) noexcept TAPPET_REALTIME {
+                const Answer answer = arc.row().to == target ? Order::asks(*this, arc, nullptr) : Answer::no;
+                there = answer == Answer::yes;
+                has_failed = answer == Answer::failed;
+                if (there) Order::begins<false>(*this, arc);
+                return there || has_failed ? statechart::Flow::stop : statechart::Flow::on;
+            });
     if (!there) return StateOutcome::ignored;
     run_once_ = wanted_run_ && !automatic_;
-    if (go_on(now) && run_once_) {
+    const bool has_ended = Order::goes_on(*this, call);
+    if (has_ended && run_once_) {
         ran_ = {};
-        round(now);
+        go_round(call);
     }
     return StateOutcome::taken;
 }
@@ -309,23 +292,16 @@ StateOutcome StateMachineExecution::request_final(Time now, std::string_view rea
     set(final_wanted);
     if (is(busy)) return StateOutcome::queued;
     clear(paused);
-    open(now);
-    finish(now);
+    Call call = open(now);
+    finish(call);
     return StateOutcome::taken;
 }
 
 StateOutcome StateMachineExecution::request_initial(Time now) noexcept TAPPET_REALTIME {
     if ((mode_ & (busy | in_hand | error)) != 0 || !is_final()) return StateOutcome::ignored;
     clear(paused);
-    open(now);
-    if (machine_.folded)
-        take(machine_.arcs[reset_arc], now);
-    else {
-        supersede(reset_transition, machine_.arcs[reset_arc].to);
-        static_cast<void>(go_on(now));
-    }
-    finish(now);
-    return StateOutcome::taken;
+    supersede(reset_arc);
+    return carry_out(now);
 }
 
 StateOutcome StateMachineExecution::deactivate(Time now) noexcept TAPPET_REALTIME {
@@ -334,15 +310,15 @@ StateOutcome StateMachineExecution::deactivate(Time now) noexcept TAPPET_REALTIM
     clear(paused);
     clear(final_wanted);
     drop_waiting();
-    open(now);
+    Call call = open(now);
     if (!second)
-        supersede(leaving_transition, no_state);
+        supersede(leaving_arc);
     else {
         clear(error);
         program_begun_ = false;
         if (job_.end > job_.first) remove(--job_.end);
     }
-    static_cast<void>(go_on(now));
+    static_cast<void>(Order::goes_on(*this, call));
     clear(busy);
     return StateOutcome::taken;
 }
@@ -372,16 +348,17 @@ Time StateMachineExecution::next_timeout() const noexcept TAPPET_REALTIME {
     for (const ActiveState& active : status_.states) {
         if (active.run == RunPhase::waits) program(active.position);
         const StatePlan& plan = machine_.plans[active.state];
-        if (plan.regions != 0 || plan.conditions == no_arc || !automatic_) continue;
-        for (const StateArc* arc = machine_.arcs + plan.conditions;; ++arc) {
-            if (arc->after != Duration{}) {
-                const std::size_t source = machine_.plain ? arc->source_level : index_of(arc->source);
+        if (plan.regions != 0 || plan.conditions == none_asked || !automatic_) continue;
+        for (const AskedArc* asked = machine_.asked + plan.conditions;; ++asked) {
+            const StateArc& arc = machine_.arcs[asked->arc()];
+            if (arc.after != Duration{}) {
+                const std::size_t source = machine_.plain ? arc.source_level : index_of(arc.source);
                 if (source < status_.states.size()) {
-                    const Time at = due(*arc, status_.states[source].entered_at);
+                    const Time at = due(arc, status_.states[source].entered_at);
                     if (at > stepped_at_) earliest = std::min(earliest, at);
                 }
             }
-            if (arc->last) break;
+            if (asked->is_last()) break;
         }
     }
     return earliest;

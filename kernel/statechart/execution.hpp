@@ -20,8 +20,9 @@ struct StateMachinePolicy {
     bool escalates = false;
 };
 
-/// Native code for the quick path of a machine, see native.hpp: called when nothing waits and nothing is
-/// under way. It does what the walk does; where a program waits or fails it hands over to the walk.
+/// The compiled form of a machine, see native.hpp: what an outer call does while nothing waits and nothing is
+/// under way. It keeps everything where the loaded form does, which goes on with whatever it could not
+/// finish.
 struct StateMachineFast {
     StateOutcome (*dispatch)(StateMachineExecution&, std::size_t trigger, Time now,
                              const std::byte* arguments) noexcept TAPPET_REALTIME = nullptr;
@@ -29,17 +30,19 @@ struct StateMachineFast {
     /// The arguments of a transition's event into its variables; false: one does not fit.
     bool (*capture)(StateMachineExecution&, TransitionIndex, const std::byte* arguments) noexcept
         TAPPET_REALTIME = nullptr;
-    /// What it runs without counting. An execution with a policy of fewer walks.
+    /// What a call executes at most without looking; 0: it looks. With a policy of fewer the machine stands
+    /// in memory.
     std::uint32_t statements = 0;
 };
 
+namespace statechart {
+template <class Table> struct Order;
+struct InMemory;
+} // namespace statechart
 namespace native {
-template <const auto& source, std::size_t type>
-struct TransitionCode;
-template <const auto& source, std::size_t type>
-struct StepCode;
-template <const auto& source, std::size_t type>
-struct MachineCode;
+template <const auto& source, std::size_t type> struct MachineRows;
+template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf;
+template <const auto& source, std::size_t type> struct MachineCode;
 } // namespace native
 
 /// All that an execution works on; it outlives it.
@@ -50,6 +53,7 @@ struct StateMachineBinding {
     std::byte* data = nullptr; ///< see DataLayout; filled from the instance's image
     const ProgramLink* links = nullptr;
     void* machines = nullptr;        ///< see ProgramContext
+    const WorkLimit* limit = nullptr;
     std::span<StateIndex> history{}; ///< machine.sizes.history
     std::span<std::byte> deferred{}; ///< machine.sizes.captured * StateMachineExecution::max_raised_events
     StateMachineExecution* parent = nullptr;
@@ -104,13 +108,19 @@ public:
     StateOutcome reactive() noexcept TAPPET_REALTIME;
     /// From here on single steps only; programs stand where they are, events wait.
     StateOutcome pause() noexcept TAPPET_REALTIME;
-    /// One step of the engine.
-    void step(Time now) noexcept TAPPET_REALTIME {
-        if (mode_ != ready || !automatic_) [[unlikely]]
-            return step_slowly(now);
+    /// One step of the engine. False: there was nothing to run or to ask.
+    bool step(Time now) noexcept TAPPET_REALTIME {
+        if ((mode_ & (inactive | busy | paused | error)) != 0) [[unlikely]]
+            return false;
         stepped_at_ = now;
         conditions_left_ = false;
-        step_(*this, now);
+        if (mode_ == ready && automatic_) [[likely]] {
+            fast_.step(*this, now);
+            return true;
+        }
+        if (mode_ == ready && !run_once_) return false;
+        step_in_memory(*this, now);
+        return true;
     }
     /// Of a paused machine: one statement of the program in hand, or one transition is asked (5.2.3).
     /// False: there was nothing to do.
@@ -121,7 +131,7 @@ public:
         TAPPET_REALTIME {
         if (mode_ != ready) [[unlikely]]
             return dispatch_generally(trigger, now, arguments);
-        return dispatch_(*this, trigger, now, arguments);
+        return fast_.dispatch(*this, trigger, now, arguments);
     }
     /// Takes the first condition transition to that state whose guard holds; the final state and, from it,
     /// the initial one are always valid; in that state already it does nothing. `run_once`: in reactive mode
@@ -203,12 +213,11 @@ public:
     [[nodiscard]] std::byte* data() const noexcept TAPPET_REALTIME { return context_.data; }
 
 private:
-    template <const auto& source, std::size_t type>
-    friend struct native::TransitionCode;
-    template <const auto& source, std::size_t type>
-    friend struct native::StepCode;
-    template <const auto& source, std::size_t type>
-    friend struct native::MachineCode;
+    template <class Table> friend struct statechart::Order;
+    friend struct statechart::InMemory;
+    template <const auto& source, std::size_t type> friend struct native::MachineRows;
+    template <const auto& source, std::size_t type, StateIndex leaf> friend struct native::AtLeaf;
+    template <const auto& source, std::size_t type> friend struct native::MachineCode;
 
     // What keeps a call from taking the quick path; 0: nothing.
     enum Mode : std::uint8_t {
@@ -222,123 +231,118 @@ private:
         error = 64,
         mid_round = 128, // of run, conditions and handle
     };
-    enum class Job : std::uint8_t { none, acting, exiting, entering, arriving, handling };
+    /// What is in hand.
+    struct Job {
+        StepIndex at = no_step; ///< that it stands at; no_step: nothing
+        ArcIndex arc = no_arc;
+        StateIndex from = no_state;      ///< the leaf, for the trace
+        std::uint8_t first = 0, end = 0; ///< the active states that are still to be left
+        std::uint8_t remembered = 0;     ///< of a history: so many were entered
+        bool otherwise = false;
+        bool placed = false; ///< of a history: the next one is active
+        bool all = false;    ///< once the exit in hand has ended, everything is left
+    };
     struct Selected {
         StateIndex source = no_state;
         ArcIndex arc = no_arc;
         bool otherwise = false;
     };
     enum class Answer : std::uint8_t { no, yes, otherwise, failed };
+    static constexpr Answer answer_of(ConditionResult result) noexcept TAPPET_REALTIME {
+        switch (result) {
+        case ConditionResult::no: return Answer::no;
+        case ConditionResult::yes: return Answer::yes;
+        case ConditionResult::failed: break;
+        }
+        return Answer::failed;
+    }
+    /// A call from outside.
+    struct Call {
+        std::int64_t left = 0; ///< statements
+    };
 
     void set(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<Mode>(mode_ | bit); }
     void clear(Mode bit) noexcept TAPPET_REALTIME { mode_ = static_cast<Mode>(mode_ & ~bit); }
     [[nodiscard]] bool is(Mode bit) const noexcept TAPPET_REALTIME { return (mode_ & bit) != 0; }
 
-    // ---- the quick path: a plain machine of C++ functions
-    void call(ProgramSlice programs) const noexcept TAPPET_REALTIME {
-        const StateProgram* program = machine_.programs + programs.first;
-        for (const StateProgram* end = program + programs.count; program != end; ++program)
-            (*program)(context_.component);
+    // ---- calls from outside
+    [[nodiscard]] Call open_ready(Time now) noexcept TAPPET_REALTIME {
+        mode_ = ready;
+        return open(now);
     }
-    void take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
-    void arrive(const StateArc& arc, Time now) noexcept TAPPET_REALTIME;
-    bool take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME;
-    static StateOutcome dispatch_folded(StateMachineExecution& execution, std::size_t trigger, Time now,
-                                        const std::byte* arguments) noexcept TAPPET_REALTIME;
-    static StateOutcome dispatch_walked(StateMachineExecution& execution, std::size_t trigger, Time now,
-                                        const std::byte* arguments) noexcept TAPPET_REALTIME {
-        return execution.dispatch_generally(trigger, now, arguments);
+    [[nodiscard]] Call open(Time now) noexcept TAPPET_REALTIME {
+        set(busy);
+        context_.now = now;
+        statements_left_ = false;
+        return {policy_.statements};
     }
-    static void step_walked(StateMachineExecution& execution, Time now) noexcept TAPPET_REALTIME {
-        execution.machine_.folded ? execution.step_folded(now) : execution.step_generally(now);
+    /// What programs asked for while they ran is served before it returns.
+    void close(Call call) noexcept TAPPET_REALTIME {
+        if (mode_ == busy) [[likely]]
+            mode_ = ready;
+        else
+            finish(call);
     }
-    [[nodiscard]] std::size_t cell_of(std::size_t trigger) const noexcept TAPPET_REALTIME {
-        return status_.active * machine_.triggers.size() + trigger;
+    static StateOutcome dispatch_in_memory(StateMachineExecution& execution, std::size_t trigger, Time now,
+                                           const std::byte* arguments) noexcept TAPPET_REALTIME;
+    static void step_in_memory(StateMachineExecution& execution, Time now) noexcept TAPPET_REALTIME;
+    StateOutcome carry_out(Time now) noexcept TAPPET_REALTIME;
+    void go_round(Call& call) noexcept TAPPET_REALTIME;
+    void begin_round() noexcept TAPPET_REALTIME {
+        for (ActiveState& active : status_.states)
+            if (active.run == RunPhase::waits)
+                active.run = RunPhase::under_way;
+            else if (!is(mid_round) && active.run != RunPhase::under_way)
+                active.run = RunPhase::fresh;
+        if (!is(mid_round)) asked_ = 0;
+        set(mid_round);
     }
-    void step_slowly(Time now) noexcept TAPPET_REALTIME;
-    void step_folded(Time now) noexcept TAPPET_REALTIME;
-    void step_generally(Time now) noexcept TAPPET_REALTIME;
-    [[nodiscard]] const StateArc* folded_condition(std::uint8_t held, Time now) const noexcept
-        TAPPET_REALTIME;
     StateOutcome dispatch_generally(std::size_t trigger, Time now, const std::byte* arguments) noexcept
         TAPPET_REALTIME;
-
-    // ---- outer calls
-    void open(Time now) noexcept TAPPET_REALTIME;
-    void finish(Time now) noexcept TAPPET_REALTIME;
-    void serve_final(Time now) noexcept TAPPET_REALTIME;
-    StateOutcome serve_request(Time now) noexcept TAPPET_REALTIME;
-    void handle_raised(Time now) noexcept TAPPET_REALTIME;
-    [[nodiscard]] bool is_leaving() const noexcept TAPPET_REALTIME {
-        return is(in_hand) && job_.transition == leaving_transition;
+    void finish(Call call) noexcept TAPPET_REALTIME;
+    Call serve_final(Call call) noexcept TAPPET_REALTIME;
+    StateOutcome serve_request(Call& call) noexcept TAPPET_REALTIME;
+    void handle_raised(Call& call) noexcept TAPPET_REALTIME;
+    // The arc of what is done with is still there.
+    [[nodiscard]] bool has_in_hand(ArcIndex arc) const noexcept TAPPET_REALTIME {
+        return is(in_hand) && job_.at != no_step && job_.arc == arc;
     }
+    [[nodiscard]] bool is_leaving() const noexcept TAPPET_REALTIME { return has_in_hand(leaving_arc); }
     StateOutcome queue(std::size_t trigger, Time now, const std::byte* arguments) noexcept TAPPET_REALTIME;
     void drop_waiting() noexcept TAPPET_REALTIME;
-    void give_reason(TransitionIndex transition, std::string_view text, Time now) noexcept TAPPET_REALTIME;
+    void give_reason(TransitionIndex transition, std::string_view text) noexcept TAPPET_REALTIME;
+    void begin_request(ArcIndex arc) noexcept TAPPET_REALTIME;
+    void supersede(ArcIndex arc) noexcept TAPPET_REALTIME;
 
-    // ---- the walk: one program or question at a time, so that it may stop anywhere
-    bool go_on(Time now) noexcept TAPPET_REALTIME;
-    bool advance(Time now) noexcept TAPPET_REALTIME;
-    void begin(const StateArc& arc, bool otherwise, Time now) noexcept TAPPET_REALTIME;
-    void begin_request(TransitionIndex number, StateIndex target) noexcept TAPPET_REALTIME;
-    void begin_handle(StateIndex state) noexcept TAPPET_REALTIME;
-    void supersede(TransitionIndex number, StateIndex target) noexcept TAPPET_REALTIME;
-    void depart(Time now) noexcept TAPPET_REALTIME;
-    void settle(Time now) noexcept TAPPET_REALTIME;
-    // Arcs before `from` have said no.
-    bool react(std::size_t trigger, const std::byte* arguments, Time now, ArcIndex from = start_arc) noexcept
+    // ---- what happens on the way
+    void holds(const Job& job) noexcept TAPPET_REALTIME {
+        job_ = job;
+        set(in_hand);
+    }
+    void depart() noexcept TAPPET_REALTIME;
+    /// A program or question that did not end well; false.
+    bool breaks_off(ProgramReturn why, StatePart part, StateIndex state, NodeIndex node) noexcept
         TAPPET_REALTIME;
-    void round(Time now) noexcept TAPPET_REALTIME;
-    bool run_states(Time now) noexcept TAPPET_REALTIME;
-    bool run_state(ActiveState& at, Time now) noexcept TAPPET_REALTIME;
-    bool handle_states(Time now) noexcept TAPPET_REALTIME;
-    Answer find_condition(Time now, Selected& found) noexcept TAPPET_REALTIME;
-    Answer ask(const StateArc& arc, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
-    Answer ask(const ConditionRef& condition, Time now) noexcept TAPPET_REALTIME;
-    bool capture(TransitionIndex transition, const std::byte* arguments, Time now) noexcept TAPPET_REALTIME;
-    Answer may_enter(StateIndex target, std::size_t kept, EntryKind enters, Time now) noexcept
-        TAPPET_REALTIME;
-    bool perform(const ProgramRef& program, Time now) noexcept TAPPET_REALTIME;
-    ProgramReturn run(ProgramPosition& position, Time now) noexcept TAPPET_REALTIME;
-    void fail(StatePart part, StateIndex state, NodeIndex node, Time now) noexcept TAPPET_REALTIME;
-    [[nodiscard]] StatePart part_in_hand() const noexcept TAPPET_REALTIME;
-
-    // ---- where native code hands over. The position of a program that did not end is in the context.
-
-    /// How far a step has come: what is left of its statements, whose run programs are due (by level), which
-    /// were entered again after they had run, and how many transitions it has taken.
-    struct Round {
-        std::int64_t statements = 0;
-        std::uint8_t due = 0xff;
-        std::uint8_t held = 0;
-        std::uint8_t taken = 0;
-    };
-    void tell(StateIndex from, StateIndex to, TransitionIndex transition, Time now) noexcept TAPPET_REALTIME;
-    StateOutcome finish_with(StateOutcome outcome, std::int64_t statements, Time now) noexcept
-        TAPPET_REALTIME;
-    void resume_transition(ArcIndex arc, std::size_t part, ProgramReturn why, Time now) noexcept
-        TAPPET_REALTIME;
-    StateOutcome resume_event(std::size_t trigger, Time now, const std::byte* arguments,
-                              ArcIndex from) noexcept TAPPET_REALTIME;
-    void resume_run(Round round, std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
-    void resume_handle(Round round, std::size_t level, ProgramReturn why, Time now) noexcept TAPPET_REALTIME;
-    void resume_round(Round round, std::size_t levels, Time now) noexcept TAPPET_REALTIME;
-    void note_round(Round round, std::size_t levels) noexcept TAPPET_REALTIME;
-    void go_round(std::size_t taken, Time now) noexcept TAPPET_REALTIME;
-    void hand_over(std::size_t part, ProgramReturn why) noexcept TAPPET_REALTIME;
-    ProgramReturn take_over(const ProgramRef& program) noexcept TAPPET_REALTIME;
+    bool lacks_statements() noexcept TAPPET_REALTIME {
+        statements_left_ = true;
+        return false;
+    }
+    Answer refuses(StatePart part, const StateArc& arc) noexcept TAPPET_REALTIME;
+    void fail(StatePart part, StateIndex state, NodeIndex node) noexcept TAPPET_REALTIME;
+    bool capture(TransitionIndex transition, const std::byte* arguments) noexcept TAPPET_REALTIME;
+    /// The run program of a state that has begun; false: nothing after it is done in this call.
+    bool goes_on_running(ActiveState& at, Call& call) noexcept TAPPET_REALTIME {
+        return has_run_so_far(at, run(at.position, call));
+    }
+    bool has_run_so_far(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME;
+    /// A program of the table, from where it stands.
+    ProgramReturn run(ProgramPosition& position, Call& call) noexcept TAPPET_REALTIME;
 
     // ---- the active states
-    using Entering = Bounded<StateIndex, max_active_states>;
-    void plan_entries(Entering& into, StateIndex target, std::size_t kept, EntryKind enters) const noexcept
-        TAPPET_REALTIME;
-    [[nodiscard]] StateIndex child_to_enter(StateIndex state, std::size_t region, StateIndex target,
-                                            EntryKind enters) const noexcept TAPPET_REALTIME;
-    [[nodiscard]] StateIndex ancestor(StateIndex state, std::size_t depth) const noexcept TAPPET_REALTIME;
-    [[nodiscard]] bool is_inside(StateIndex state, StateIndex outer) const noexcept TAPPET_REALTIME;
+    void plan_remembered(statechart::Entering& into, const StateArc& arc) const noexcept TAPPET_REALTIME;
     [[nodiscard]] std::size_t index_of(StateIndex state) const noexcept TAPPET_REALTIME;
     [[nodiscard]] std::size_t end_of(std::size_t index) const noexcept TAPPET_REALTIME;
-    void insert(std::size_t index, StateIndex state, Time now) noexcept TAPPET_REALTIME;
+    void insert(std::size_t index, StateIndex state) noexcept TAPPET_REALTIME;
     void remove(std::size_t index) noexcept TAPPET_REALTIME;
     void find_active() noexcept TAPPET_REALTIME;
 
@@ -359,9 +363,6 @@ private:
     ProgramContext context_;
     ProgramCode code_;
     StateMachineFast fast_;
-    StateOutcome (*dispatch_)(StateMachineExecution&, std::size_t trigger, Time now,
-                              const std::byte* arguments) noexcept TAPPET_REALTIME = &dispatch_walked;
-    void (*step_)(StateMachineExecution&, Time now) noexcept TAPPET_REALTIME = &step_walked;
     Mode mode_ = inactive;
     bool automatic_ = false;
     bool conditions_left_ = false;
@@ -370,29 +371,11 @@ private:
     bool run_once_ = false;      // asked for by request_state()
     bool program_begun_ = false; // position_ holds
 
-    struct {
-        Job phase = Job::none;
-        bool otherwise = false;
-        bool placed = false; // the state that is being entered stands among the active ones
-        bool all = false;    // once the exit in hand has ended, everything is left
-        EntryKind enters = EntryKind::initial;
-        std::uint8_t kept = 0;
-        std::uint8_t entered = 0;
-        std::uint8_t first = 0, end = 0; // the active states that are left
-        TransitionIndex transition = no_transition;
-        StateIndex source = no_state; // of a handle program: its state
-        StateIndex target = no_state;
-        StateIndex from = no_state; // the leaf, for the trace
-    } job_;
+    Job job_;
     ProgramPosition position_; // of the program in hand
-    Entering entering_;
+    statechart::Entering remembered_;
     Bounded<Selected, max_active_states> selected_; // of one event, that have still to be taken; last first
-    std::uint32_t statements_ = 0;                  // left in this call
-    // What native code has run of what is in hand: so many programs, of which the last stands as `why` says.
-    std::uint8_t handed_parts_ = 0;
-    ProgramReturn handed_why_ = ProgramReturn::ended;
-    bool handed_error_ = false;
-    std::uint32_t asked_ = 0; // questions of this round that single steps have had
+    std::uint32_t asked_ = 0;                       // questions of this round that single steps have had
     std::array<std::uint64_t, max_states / 64> ran_{};
     StateMachinePolicy policy_;
     StateMachineStatus status_;
@@ -417,46 +400,5 @@ private:
     std::uint8_t raised_first_ = 0;
     std::uint8_t raised_count_ = 0;
 };
-
-// What a taken transition leaves and enters. Its programs have run.
-inline void StateMachineExecution::arrive(const StateArc& arc, Time now) noexcept TAPPET_REALTIME {
-    StateIndex state = arc.target;
-    for (std::size_t level = arc.target_levels; level > arc.kept_levels;
-         state = machine_.plans[state].parent) {
-        ActiveState& at = status_.states[--level];
-        at.state = state;
-        at.run = RunPhase::fresh;
-        at.entered_at = now;
-    }
-    status_.states.used = arc.target_levels;
-    const StateIndex from = status_.active;
-    status_.active = arc.target;
-    status_.last_transition = arc.transition;
-    ++status_.transitions;
-    if (trace_ != nullptr) trace_(trace_context_, from, arc.target, arc.transition, now);
-}
-
-inline void StateMachineExecution::take(const StateArc& arc, Time now) noexcept TAPPET_REALTIME {
-    if (arc.gives_reason)
-        give_reason(arc.transition, machine_.table.transitions[arc.transition].because, now);
-    call(arc.programs);
-    arrive(arc, now);
-}
-
-inline bool StateMachineExecution::take_first(ArcIndex first, Time now) noexcept TAPPET_REALTIME {
-    if (first == no_arc) return false;
-    for (const StateArc* arc = machine_.arcs + first;; ++arc) {
-        if (arc->guard == nullptr || arc->guard(context_.component)) {
-            take(*arc, now);
-            return true;
-        }
-        if (arc->last) break;
-    }
-    if (machine_.handles) {
-        const ProgramRef& handle = row(machine_.arcs[first].source).handle;
-        if (handle.call != nullptr) handle.call(context_.component);
-    }
-    return false;
-}
 
 } // namespace tappet

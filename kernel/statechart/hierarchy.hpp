@@ -98,6 +98,19 @@ struct StateHierarchy {
     [[nodiscard]] constexpr bool is_inside(StateIndex state, StateIndex outer) const noexcept {
         return ancestor(state, depth[outer]) == outer;
     }
+    [[nodiscard]] constexpr std::size_t depth_of(StateIndex state) const noexcept { return depth[state]; }
+    [[nodiscard]] constexpr std::size_t region_holding(StateIndex state) const noexcept {
+        return region_of[state];
+    }
+    [[nodiscard]] constexpr std::size_t first_region_of(StateIndex state) const noexcept {
+        return first_region[state];
+    }
+    [[nodiscard]] constexpr std::size_t regions_of(StateIndex state) const noexcept {
+        return region_count[state];
+    }
+    [[nodiscard]] constexpr StateIndex initial_of(std::size_t region) const noexcept {
+        return region_initial[region];
+    }
     [[nodiscard]] constexpr bool orthogonal() const noexcept {
         for (std::size_t i = 0; i < states(); ++i)
             if (region_count[i] > 1) return true;

@@ -1,6 +1,6 @@
-// A state machine with its names folded away: for each leaf and trigger the transitions that may be taken, in
-// order. Where nothing may wait each of those has one list of programs to call. Computed by the compiler, or
-// on the target into bounded memory.
+// A state machine with its names folded away: for each leaf and trigger the transitions that may be taken,
+// and for each transition its steps, both in their order. What the order is stands here and in order.hpp, and
+// nowhere else. Computed by the compiler, or on the target into bounded memory.
 #pragma once
 
 #include "kernel/statechart/check.hpp"
@@ -11,54 +11,98 @@
 
 namespace tappet {
 
-/// A piece of the array of programs.
-struct ProgramSlice {
-    std::uint16_t first = 0;
-    std::uint16_t count = 0;
+/// One thing that a transition does.
+enum class StepKind : std::uint8_t {
+    act,        ///< its program
+    otherwise,  ///< its else program
+    leave,      ///< all that it leaves, from the inside: each exit program, then that state is active no more
+    place,      ///< a state is active
+    entry,      ///< the entry program of that state
+    remembered, ///< what a history says: as `place` and `entry` of each
+    arrive,     ///< it is done
+    depart,     ///< likewise, and nothing is active
+    handle      ///< of no transition: a state's handle program
 };
 
-/// Number of an arc. Arcs that are asked one after the other lie side by side, up to the one that is `last`.
+struct TransitionStep {
+    StepKind kind = StepKind::arrive;
+    std::uint8_t number = 0;     ///< place: so many were placed before; leave: so many levels are kept
+    StateIndex state = no_state; ///< arrive: the last that was placed; no_state: none, or a history's
+};
+
+/// Number of a step. Those of one transition lie side by side, up to one that ends it.
+using StepIndex = std::uint32_t;
+inline constexpr StepIndex no_step = 0xffffffff;
+constexpr bool is_last(StepKind kind) noexcept TAPPET_REALTIME {
+    return kind == StepKind::arrive || kind == StepKind::depart || kind == StepKind::handle;
+}
+
+/// Number of an arc: four that every machine has, then the transitions of the table in their order.
 using ArcIndex = std::uint16_t;
 inline constexpr ArcIndex start_arc = 0;
 inline constexpr ArcIndex reset_arc = 1;
-inline constexpr ArcIndex no_arc = start_arc; ///< in a list of arcs, where no start stands
+inline constexpr ArcIndex final_arc = 2;
+inline constexpr ArcIndex leaving_arc = 3;
+inline constexpr ArcIndex first_arc = 4;
+inline constexpr ArcIndex no_arc = 0xffff;
 
-/// One way out of one leaf.
+/// A transition.
 struct StateArc {
-    StateGuard guard = nullptr; ///< of a folded machine
-    Duration after{};           ///< 0: at once
-    ProgramSlice programs;      ///< folded: transition program, exits inside out, entries outside in
+    ConditionRef guard{};
+    Duration after{}; ///< 0: at once
+    StepIndex steps = 0;
+    StepIndex otherwise_steps = 0; ///< when the guard says no
     StateIndex source = no_state;
     StateIndex to = no_state;        ///< as the row names it; no_state: internal
     StateIndex otherwise = no_state; ///< likewise, when the guard says no
-    StateIndex target = no_state;    ///< the leaf that is active afterwards, in a plain machine
     TransitionIndex transition = 0;
+    EntryKind enters = EntryKind::initial;
     std::uint8_t source_level = 0;   ///< depth of `source` - 1
     std::uint8_t kept_levels = 0;    ///< states that are neither left nor entered, from the outside
     std::uint8_t otherwise_kept = 0; ///< likewise, on the way to `otherwise`
-    std::uint8_t target_levels = 0;  ///< depth of `target`
+    bool captures = false;
+    bool has_otherwise = false;
     bool gives_reason = false;
-    bool last = true;
 };
 
-/// What a state needs beside its arcs. Composite states have no arcs and programs of their own.
+/// One of the arcs that are asked one after the other.
+class AskedArc {
+public:
+    constexpr AskedArc() = default;
+    constexpr AskedArc(ArcIndex arc, bool is_last) noexcept
+        : word_{static_cast<std::uint16_t>(arc | (is_last ? last_bit : 0u))} {}
+    [[nodiscard]] constexpr ArcIndex arc() const noexcept TAPPET_REALTIME {
+        return static_cast<ArcIndex>(word_ & (last_bit - 1u));
+    }
+    [[nodiscard]] constexpr bool is_last() const noexcept TAPPET_REALTIME { return (word_ & last_bit) != 0; }
+
+private:
+    static constexpr std::uint16_t last_bit = 0x8000;
+    static_assert(first_arc + max_transitions < last_bit);
+    std::uint16_t word_ = last_bit;
+};
+/// Where such a row of arcs begins.
+using AskedIndex = std::uint16_t;
+inline constexpr AskedIndex none_asked = 0xffff;
+static_assert(max_leaf_transitions < none_asked);
+
+/// What a state needs beside its arcs. Composite states are not asked: their leaves are.
 struct StatePlan {
     StateIndex parent = no_state;
     std::uint16_t depth = 0;
-    std::uint16_t region = 0;       ///< that it lies in
-    std::uint16_t first_region = 0; ///< of those inside
-    std::uint16_t regions = 0;      ///< 0: a leaf
-    ArcIndex conditions = no_arc;   ///< condition transitions and time-outs
-    ArcIndex to_final = no_arc;     ///< always valid
-    ProgramSlice run;               ///< folded: from the outside
-    ProgramSlice handle;            ///< folded: from the outside
+    std::uint16_t region = 0;           ///< that it lies in
+    std::uint16_t first_region = 0;     ///< of those inside
+    std::uint16_t regions = 0;          ///< 0: a leaf
+    AskedIndex conditions = none_asked; ///< condition transitions and time-outs
+    StepIndex handle = no_step;         ///< its handle program
 };
 
 struct ResolvedSizes {
     std::size_t states = 0;
     std::size_t triggers = 0;
     std::size_t arcs = 0;
-    std::size_t programs = 0;
+    std::size_t asked = 0;
+    std::size_t steps = 0;
     std::size_t regions = 0;
     // Of the memory of one execution, see StateMachineBinding.
     std::size_t history = 0;  ///< StateIndex
@@ -66,7 +110,7 @@ struct ResolvedSizes {
 
     [[nodiscard]] constexpr bool fits_in(const ResolvedSizes& room) const noexcept {
         return states <= room.states && triggers <= room.triggers && arcs <= room.arcs &&
-               programs <= room.programs && regions <= room.regions;
+               asked <= room.asked && steps <= room.steps && regions <= room.regions;
     }
     constexpr bool operator==(const ResolvedSizes&) const = default;
 };
@@ -75,34 +119,90 @@ struct ResolvedSizes {
 struct ResolvedView {
     StateMachineTable table{};
     std::span<const std::string_view> triggers{};
-    const StatePlan* plans = nullptr; ///< [state]
-    const ArcIndex* cells = nullptr;  ///< [state][trigger]: the first arc to ask, or no_arc
+    const StatePlan* plans = nullptr;  ///< [state]
+    const AskedIndex* cells = nullptr; ///< [state][trigger]: the first arc to ask
+    const AskedArc* asked = nullptr;
     const StateArc* arcs = nullptr;
-    const StateProgram* programs = nullptr;
+    const TransitionStep* steps = nullptr;
     const StateIndex* regions = nullptr;     ///< [region]: its initial state
     const std::uint16_t* captured = nullptr; ///< [trigger]: bytes of its arguments that transitions take
     ResolvedSizes sizes{};
     StateIndex final_state = no_state;
     /// No orthogonal regions, no history: the active states are a leaf and those around it.
     bool plain = false;
-    /// Plain, and every program and guard is a C++ function: nothing waits and nothing fails.
-    bool folded = false;
     bool preconditions = false; ///< some state has one
-    bool handles = false;       ///< some state has a handle program
+
+    // What plan_entries() asks of a tree of states.
+    [[nodiscard]] constexpr std::size_t depth_of(StateIndex state) const noexcept TAPPET_REALTIME {
+        return plans[state].depth;
+    }
+    [[nodiscard]] constexpr StateIndex parent_of(StateIndex state) const noexcept TAPPET_REALTIME {
+        return plans[state].parent;
+    }
+    [[nodiscard]] constexpr std::size_t region_holding(StateIndex state) const noexcept TAPPET_REALTIME {
+        return plans[state].region;
+    }
+    [[nodiscard]] constexpr std::size_t first_region_of(StateIndex state) const noexcept TAPPET_REALTIME {
+        return plans[state].first_region;
+    }
+    [[nodiscard]] constexpr std::size_t regions_of(StateIndex state) const noexcept TAPPET_REALTIME {
+        return plans[state].regions;
+    }
+    [[nodiscard]] constexpr StateIndex initial_of(std::size_t region) const noexcept TAPPET_REALTIME {
+        return regions[region];
+    }
+    [[nodiscard]] constexpr StateIndex ancestor(StateIndex state, std::size_t depth) const noexcept
+        TAPPET_REALTIME {
+        while (state != no_state && plans[state].depth > depth) state = plans[state].parent;
+        return state;
+    }
+    [[nodiscard]] constexpr bool is_inside(StateIndex state, StateIndex outer) const noexcept
+        TAPPET_REALTIME {
+        return ancestor(state, plans[outer].depth) == outer;
+    }
 };
 
 /// Where the resolver writes. What has no room is counted and not stored.
 struct ResolvedRoom {
     std::span<StatePlan> plans;
     std::span<std::string_view> triggers;
-    std::span<ArcIndex> cells;
+    std::span<AskedIndex> cells;
+    std::span<AskedArc> asked;
     std::span<StateArc> arcs;
-    std::span<StateProgram> programs;
+    std::span<TransitionStep> steps;
     std::span<StateIndex> regions;
     std::span<std::uint16_t> captured; ///< as many as triggers
 };
 
 namespace statechart {
+
+/// States that are entered together, each before those inside it.
+using Entering = Bounded<StateIndex, max_active_states>;
+
+/// What is entered below the outermost `kept` states on the way to `target`, depth first, regions in their
+/// order. `remembered(region, child, enters)`: the state that a history says, or no_state.
+template <class Tree, class Remembered>
+constexpr void plan_entries(const Tree& tree, Entering& into, StateIndex target, std::size_t kept,
+                            const Remembered& remembered) noexcept TAPPET_REALTIME {
+    Entering open;
+    into.clear();
+    static_cast<void>(open.push(tree.ancestor(target, kept + 1)));
+    while (!open.empty() && !into.full()) {
+        const StateIndex state = open[--open.used];
+        static_cast<void>(into.push(state));
+        const bool is_above = state != target && tree.is_inside(target, state);
+        for (std::size_t r = tree.regions_of(state); r-- > 0;) {
+            const std::size_t region = tree.first_region_of(state) + r;
+            StateIndex child = no_state;
+            if (is_above) {
+                child = tree.ancestor(target, tree.depth_of(state) + 1u);
+                if (tree.region_holding(child) != region) child = no_state;
+            }
+            if (child == no_state) child = remembered(state, region, is_above);
+            static_cast<void>(open.push(child != no_state ? child : tree.initial_of(region)));
+        }
+    }
+}
 
 class Resolver {
 public:
@@ -111,53 +211,36 @@ public:
     }
 
     constexpr ResolvedSizes resolve() {
-        for (std::size_t i = 0; i < names_.triggers; ++i)
-            if (i < room_.triggers.size()) room_.triggers[i] = names_.trigger_name(i);
+        for (std::size_t i = 0; i < names_.triggers; ++i) put(room_.triggers, i, names_.trigger_name(i));
         find_captured();
-        for (std::size_t r = 0; r < names_.regions; ++r)
-            if (r < room_.regions.size()) room_.regions[r] = names_.region_initial[r];
-        add_request(no_state, names_.initial_top, start_transition); // start_arc, then reset_arc
+        for (std::size_t r = 0; r < names_.regions; ++r) put(room_.regions, r, names_.region_initial[r]);
+        add_request(no_state, names_.initial_top, start_transition); // in the order of their numbers
         add_request(names_.final_state, names_.initial_top, reset_transition);
-        for (std::size_t i = 0; i < names_.states(); ++i) {
-            StatePlan plan;
-            const auto state = static_cast<StateIndex>(i);
-            plan.parent = names_.parent[i];
-            plan.depth = names_.depth[i];
-            plan.region = names_.region_of[i];
-            plan.first_region = names_.first_region[i];
-            plan.regions = names_.region_count[i];
-            if (!names_.composite[i]) resolve_leaf(state, plan);
-            if (i < room_.plans.size()) room_.plans[i] = plan;
-        }
-        return {names_.states(), names_.triggers, arcs_, programs_, names_.regions, history_, captured_};
+        add_request(no_state, names_.final_state, final_transition);
+        add_request(no_state, no_state, leaving_transition);
+        for (std::size_t t = 0; t < names_.transitions(); ++t) add_transition(t);
+        for (std::size_t i = 0; i < names_.states(); ++i) put(room_.plans, i, plan_of(i));
+        return {names_.states(), names_.triggers, arcs_, asked_, steps_, names_.regions, history_, captured_};
     }
     /// The flags of the view; its pointers are whose the room is.
     constexpr void describe(ResolvedView& view) const {
         view.final_state = names_.final_state;
         view.plain = plain_;
-        view.folded = folded_;
         view.preconditions = preconditions_;
-        view.handles = handles_;
     }
 
 private:
+    template <class Row>
+    static constexpr void put(std::span<Row> rows, std::size_t at, const Row& row) {
+        if (at < rows.size()) rows[at] = row;
+    }
     constexpr void look() {
         plain_ = !names_.orthogonal();
         for (const TransitionRow& row : names_.table.transitions)
             if (row.enters != EntryKind::initial) plain_ = false, history_ = names_.regions;
-        folded_ = plain_;
-        const auto note = [this](const ProgramRef& program) { folded_ &= program.program == no_program; };
-        for (const StateRow& row : names_.table.states) {
-            for (const ProgramRef* program : {&row.entry, &row.exit, &row.run, &row.handle}) note(*program);
-            preconditions_ |= !row.precondition.empty();
-            handles_ |= !row.handle.empty();
-        }
-        for (const TransitionRow& row : names_.table.transitions) {
-            note(row.then);
-            folded_ &= row.guard.condition == no_condition && !row.has_otherwise && row.captures == 0;
+        for (const StateRow& row : names_.table.states) preconditions_ |= !row.precondition.empty();
+        for (const TransitionRow& row : names_.table.transitions)
             captured_ = std::max(captured_, captured_by(row));
-        }
-        folded_ &= !preconditions_;
     }
     [[nodiscard]] constexpr std::size_t captured_by(const TransitionRow& row) const {
         std::size_t bytes = 0;
@@ -177,105 +260,118 @@ private:
         }
     }
 
-    constexpr void resolve_leaf(StateIndex leaf, StatePlan& plan) {
-        plan.conditions = add_arcs(leaf, no_trigger);
-        for (std::size_t trigger = 0; trigger < names_.triggers; ++trigger) {
-            const ArcIndex first = add_arcs(leaf, static_cast<TriggerIndex>(trigger));
-            const std::size_t cell = leaf * names_.triggers + trigger;
-            if (cell < room_.cells.size()) room_.cells[cell] = first;
+    constexpr StatePlan plan_of(std::size_t i) {
+        const auto state = static_cast<StateIndex>(i);
+        StatePlan plan;
+        plan.parent = names_.parent[i];
+        plan.depth = names_.depth[i];
+        plan.region = names_.region_of[i];
+        plan.first_region = names_.first_region[i];
+        plan.regions = names_.region_count[i];
+        if (!names_.table.states[i].handle.empty())
+            plan.handle = add_step({.kind = StepKind::handle, .state = state});
+        if (!names_.composite[i]) {
+            plan.conditions = add_asked(state, no_trigger);
+            for (std::size_t trigger = 0; trigger < names_.triggers; ++trigger)
+                put(room_.cells, i * names_.triggers + trigger,
+                    add_asked(state, static_cast<TriggerIndex>(trigger)));
         }
-        plan.to_final = static_cast<ArcIndex>(arcs_);
-        add_request(leaf, names_.final_state, final_transition);
-
-        plan.run = begin_programs();
-        for (std::size_t level = 1; level <= names_.depth[leaf]; ++level)
-            add(row_of(names_.ancestor(leaf, level)).run, plan.run);
-        plan.handle = begin_programs();
-        for (std::size_t level = 1; level <= names_.depth[leaf]; ++level)
-            add(row_of(names_.ancestor(leaf, level)).handle, plan.handle);
+        return plan;
     }
-
     // The transitions of one leaf and trigger, in the order in which they are asked (UML).
-    constexpr ArcIndex add_arcs(StateIndex leaf, TriggerIndex trigger) {
-        const std::size_t first = arcs_;
+    constexpr AskedIndex add_asked(StateIndex leaf, TriggerIndex trigger) {
+        const std::size_t first = asked_;
         names_.for_each_out(leaf, [&](TransitionIndex t) {
             if (names_.trigger[t] != trigger) return true;
-            if (arcs_ > first && arcs_ <= room_.arcs.size()) room_.arcs[arcs_ - 1].last = false;
-            add_transition(leaf, names_.from[t], t);
+            if (asked_ > first && asked_ <= room_.asked.size())
+                room_.asked[asked_ - 1] = {room_.asked[asked_ - 1].arc(), false};
+            put(room_.asked, asked_++, AskedArc{static_cast<ArcIndex>(first_arc + t), true});
             return true;
         });
-        return arcs_ > first ? static_cast<ArcIndex>(first) : no_arc;
+        return asked_ > first ? static_cast<AskedIndex>(first) : none_asked;
     }
 
-    constexpr void add_transition(StateIndex leaf, StateIndex source, std::size_t t) {
+    constexpr void add_transition(std::size_t t) {
         const TransitionRow& row = names_.table.transitions[t];
-        const bool is_internal = row.to.empty();
-        const StateIndex target = is_internal ? leaf : names_.initial_leaf(names_.to[t]);
-        const std::size_t kept = is_internal ? names_.depth[leaf] : names_.shared_depth(source, names_.to[t]);
         StateArc arc;
-        arc.guard = row.guard.call;
+        arc.guard = row.guard;
         arc.after = row.timed ? row.after : Duration{};
-        arc.source = source;
-        arc.to = names_.to[t];
-        arc.otherwise = names_.otherwise_to[t];
-        if (arc.otherwise != no_state)
-            arc.otherwise_kept = static_cast<std::uint8_t>(names_.shared_depth(source, arc.otherwise));
-        arc.source_level = static_cast<std::uint8_t>(names_.depth[source] - 1);
+        arc.source = names_.from[t];
+        arc.source_level = static_cast<std::uint8_t>(names_.depth[arc.source] - 1);
         arc.transition = static_cast<TransitionIndex>(t);
+        arc.enters = row.enters;
+        arc.captures = row.captures != 0;
+        arc.has_otherwise = row.has_otherwise;
         arc.gives_reason = !row.because.empty();
-        arc.programs = begin_programs();
-        add(row.then, arc.programs);
-        finish(arc, leaf, target, kept);
+        arc.to = names_.to[t];
+        arc.kept_levels = kept_by(arc.source, arc.to);
+        arc.steps = add_steps(row.then, StepKind::act, arc.to, arc.kept_levels, row.enters);
+        if (row.has_otherwise) {
+            arc.otherwise = names_.otherwise_to[t];
+            arc.otherwise_kept = kept_by(arc.source, arc.otherwise);
+            arc.otherwise_steps = add_steps(row.otherwise, StepKind::otherwise, arc.otherwise,
+                                            arc.otherwise_kept, EntryKind::initial);
+        }
+        put(room_.arcs, arcs_++, arc);
     }
-
-    constexpr void add_request(StateIndex leaf, StateIndex target, TransitionIndex number) {
+    [[nodiscard]] constexpr std::uint8_t kept_by(StateIndex source, StateIndex to) const {
+        return static_cast<std::uint8_t>(to == no_state ? 0 : names_.shared_depth(source, to));
+    }
+    constexpr void add_request(StateIndex source, StateIndex to, TransitionIndex number) {
         StateArc arc;
         arc.transition = number;
-        arc.source = leaf;
-        arc.to = target;
-        arc.programs = begin_programs();
-        finish(arc, leaf, names_.initial_leaf(target), 0);
+        arc.source = source;
+        arc.to = to;
+        if (to == no_state) {
+            arc.steps = add_step({.kind = StepKind::leave});
+            add_step({.kind = StepKind::depart});
+        } else {
+            arc.steps = add_steps({}, StepKind::act, to, 0, EntryKind::initial);
+        }
+        put(room_.arcs, arcs_++, arc);
     }
 
-    constexpr void finish(StateArc& arc, StateIndex leaf, StateIndex target, std::size_t kept) {
-        if (leaf != no_state) add_exits(leaf, kept, arc.programs);
-        for (std::size_t level = kept + 1; level <= names_.depth[target]; ++level)
-            add(row_of(names_.ancestor(target, level)).entry, arc.programs);
-        arc.target = target;
-        arc.kept_levels = static_cast<std::uint8_t>(kept);
-        arc.target_levels = names_.depth[target];
-        if (arcs_ < room_.arcs.size()) room_.arcs[arcs_] = arc;
-        ++arcs_;
+    // The order of one transition.
+    constexpr StepIndex add_steps(const ProgramRef& program, StepKind kind, StateIndex to, std::size_t kept,
+                                  EntryKind enters) {
+        const auto first = static_cast<StepIndex>(steps_);
+        TransitionStep arrival{.kind = StepKind::arrive};
+        if (!program.empty()) add_step({.kind = kind});
+        if (to != no_state) {
+            add_step({.kind = StepKind::leave, .number = static_cast<std::uint8_t>(kept)});
+            if (enters == EntryKind::initial)
+                arrival.state = add_entries(to, kept);
+            else
+                add_step({.kind = StepKind::remembered});
+        }
+        add_step(arrival);
+        return first;
     }
-
-    constexpr void add_exits(StateIndex leaf, std::size_t kept, ProgramSlice& slice) {
-        for (StateIndex state = leaf; state != no_state && names_.depth[state] > kept;
-             state = names_.parent[state])
-            add(row_of(state).exit, slice);
+    constexpr StateIndex add_entries(StateIndex to, std::size_t kept) {
+        Entering states;
+        plan_entries(names_, states, to, kept,
+                     [](StateIndex, std::size_t, bool) noexcept TAPPET_REALTIME { return no_state; });
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            add_step({StepKind::place, static_cast<std::uint8_t>(i), states[i]});
+            if (!names_.table.states[states[i]].entry.empty())
+                add_step({.kind = StepKind::entry, .state = states[i]});
+        }
+        return states[states.size() - 1];
     }
-    [[nodiscard]] constexpr ProgramSlice begin_programs() const {
-        return {static_cast<std::uint16_t>(programs_), 0};
-    }
-    constexpr void add(ProgramRef program, ProgramSlice& slice) {
-        if (!folded_ || program.call == nullptr) return;
-        if (programs_ < room_.programs.size()) room_.programs[programs_] = program.call;
-        ++programs_;
-        ++slice.count;
-    }
-    [[nodiscard]] constexpr const StateRow& row_of(StateIndex state) const {
-        return names_.table.states[state];
+    constexpr StepIndex add_step(const TransitionStep& step) {
+        put(room_.steps, steps_, step);
+        return static_cast<StepIndex>(steps_++);
     }
 
     const StateHierarchy& names_;
     ResolvedRoom room_;
     std::size_t arcs_ = 0;
-    std::size_t programs_ = 0;
+    std::size_t asked_ = 0;
+    std::size_t steps_ = 0;
     std::size_t history_ = 0;
     std::size_t captured_ = 0;
     bool plain_ = false;
-    bool folded_ = false;
     bool preconditions_ = false;
-    bool handles_ = false;
 };
 
 constexpr ResolvedView view_of(const StateMachineTable& table, const ResolvedRoom& room,
@@ -284,8 +380,9 @@ constexpr ResolvedView view_of(const StateMachineTable& table, const ResolvedRoo
                       .triggers = room.triggers.first(std::min(taken.triggers, room.triggers.size())),
                       .plans = room.plans.data(),
                       .cells = room.cells.data(),
+                      .asked = room.asked.data(),
                       .arcs = room.arcs.data(),
-                      .programs = room.programs.data(),
+                      .steps = room.steps.data(),
                       .regions = room.regions.data(),
                       .captured = room.captured.data(),
                       .sizes = taken};
@@ -317,9 +414,10 @@ constexpr ResolvedSizes measure(const StateMachineTable& table) {
 template <ResolvedSizes sizes> struct ResolvedMachine {
     std::array<StatePlan, sizes.states> plans{};
     std::array<std::string_view, sizes.triggers> triggers{};
-    std::array<ArcIndex, sizes.states * sizes.triggers> cells{};
+    std::array<AskedIndex, sizes.states * sizes.triggers> cells{};
+    std::array<AskedArc, sizes.asked> asked{};
     std::array<StateArc, sizes.arcs> arcs{};
-    std::array<StateProgram, sizes.programs> programs{};
+    std::array<TransitionStep, sizes.steps> steps{};
     std::array<StateIndex, sizes.regions> regions{};
     std::array<std::uint16_t, sizes.triggers> captured{};
     ResolvedView described{}; ///< without its pointers, so that the room may be copied
@@ -334,14 +432,14 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
         if (Sentence fault = statechart::check_limits(of); !fault.empty()) return fault;
         const StateHierarchy names{of};
         if (Sentence fault = statechart::Checker{names}.check(); !fault.empty()) return fault;
-        statechart::Resolver resolver{names, {plans, triggers, cells, arcs, programs, regions, captured}};
+        statechart::Resolver resolver{names, {plans, triggers, cells, asked, arcs, steps, regions, captured}};
         const ResolvedSizes taken = resolver.resolve();
         if (!taken.fits_in(sizes)) {
             const auto list = [](const ResolvedSizes& n) {
                 return Sentence{n.states,    " states, ", n.triggers,
-                                " events, ", n.arcs,      " transitions of leaves, "}
-                    .add(n.programs)
-                    .add(" program calls, ")
+                                " events, ", n.asked,     " transitions of leaves, "}
+                    .add(n.steps)
+                    .add(" steps of transitions, ")
                     .add(n.regions)
                     .add(" regions");
             };
@@ -360,8 +458,9 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
         view.triggers = std::span{triggers}.first(described.sizes.triggers);
         view.plans = plans.data();
         view.cells = cells.data();
+        view.asked = asked.data();
         view.arcs = arcs.data();
-        view.programs = programs.data();
+        view.steps = steps.data();
         view.regions = regions.data();
         view.captured = captured.data();
         return view;

@@ -148,14 +148,15 @@ void UnitBench::resolve(BenchPart& part, const ProgramCode& code, const StateMac
     part.plans.resize(sizes.states);
     part.triggers.resize(sizes.triggers);
     part.cells.resize(sizes.states * sizes.triggers);
+    part.asked.resize(sizes.asked);
     part.arcs.resize(sizes.arcs);
-    part.programs.resize(sizes.programs);
+    part.steps.resize(sizes.steps);
     part.regions.resize(sizes.regions);
     part.captured.resize(sizes.triggers);
     part.history.resize(sizes.history);
     part.deferred.resize(sizes.captured * StateMachineExecution::max_raised_events);
-    const ResolvedRoom room{part.plans,    part.triggers, part.cells,   part.arcs,
-                            part.programs, part.regions,  part.captured};
+    const ResolvedRoom room{part.plans, part.triggers, part.cells,   part.asked,
+                            part.arcs,  part.steps,    part.regions, part.captured};
     StateMachineBinding binding;
     binding.machine = resolve_into(part.type->machine, room);
     binding.component = &own;

@@ -32,9 +32,10 @@ struct BenchPart {
     // Of the resolved machine.
     std::vector<StatePlan> plans{};
     std::vector<std::string_view> triggers{};
-    std::vector<ArcIndex> cells{};
+    std::vector<AskedIndex> cells{};
+    std::vector<AskedArc> asked{};
     std::vector<StateArc> arcs{};
-    std::vector<StateProgram> programs{};
+    std::vector<TransitionStep> steps{};
     std::vector<StateIndex> regions{}, history{};
     std::vector<std::uint16_t> captured{};
     std::vector<std::byte> deferred{};

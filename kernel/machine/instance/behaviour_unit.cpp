@@ -68,7 +68,9 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     unit_ = unit;
     options_ = options;
     machine_ = &machine;
-    engine_ = &machine.engines()[machine.machine().index.activity[driven]];
+    Engine& engine = machine.engines()[machine.machine().index.activity[driven]];
+    engine_ = &engine;
+    limit_.stamps = &engine.stamps();
     driven_ = driven;
     const std::size_t instances = unit.instances.size();
     detail::UnitLayout layout{memory};
@@ -144,6 +146,7 @@ void BehaviourUnit::bind(UnitPart& part, const BehaviourCode& native, const Reso
         context.component = component;
         context.data = part.data;
         context.links = part.links;
+        context.limit = &limit_;
         part.program->bind(code, context, part.row->image, {statements, options_.on_error == OnError::go_on});
         return;
     }
@@ -154,6 +157,7 @@ void BehaviourUnit::bind(UnitPart& part, const BehaviourCode& native, const Reso
     part.binding.fast = native.fast;
     part.binding.data = part.data;
     part.binding.links = part.links;
+    part.binding.limit = &limit_;
     part.binding.policy = {statements, options_.escalates};
     if (part.row->parent != no_instance)
         part.binding.parent = (&part - (part.row - unit_.instances.data()) + part.row->parent)->machine;
@@ -204,19 +208,28 @@ void BehaviourUnit::begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIM
         part.machine->request_initial(now) == StateOutcome::ignored && !part.machine->in_error();
 }
 
+void BehaviourUnit::limit_work(Time now) noexcept TAPPET_REALTIME {
+    const Duration budget = engine_->plan().budget;
+    limit_.until = budget > Duration::zero() ? now + budget : never;
+}
+
 void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
+    limit_work(now);
     for (UnitPart& part : parts_)
         if (part.program != nullptr) part.program->step(now);
 }
 
-void BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
+bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
+    bool worked = false;
+    limit_work(now);
     for (UnitPart& part : parts_) {
         if (part.machine == nullptr) continue;
-        part.machine->step(now);
+        worked |= part.machine->step(now);
         if (part.begins_anew) [[unlikely]]
             begin_anew(part, now);
     }
-    if (left_over()) ++left_over_;
+    if (worked && left_over()) ++left_over_;
+    return worked;
 }
 
 void BehaviourUnit::finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME {
@@ -305,6 +318,7 @@ Time BehaviourUnit::next() const noexcept TAPPET_REALTIME {
 }
 
 void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
+    limit_work(now);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const TriggerIndex trigger = routes_[event * parts_.size() + i].trigger;
         if (trigger != no_trigger) static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));

@@ -57,8 +57,9 @@ Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {
         behaviour.programs = [](void* self, Time now) noexcept
             TAPPET_REALTIME { unit_at(self).step_programs(now); };
     behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME {
-        unit_at(self).step(now);
+        const bool worked = unit_at(self).step(now);
         unit_at(self).report_errors();
+        return worked;
     };
     behaviour.stop = [](void* self, Time now) noexcept
         TAPPET_REALTIME { unit_at(self).finish(now, "its component stops"); };
@@ -106,7 +107,7 @@ void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
     behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).start(now); };
     behaviour.programs = [](void* self, Time now) noexcept
         TAPPET_REALTIME { slot_at(self).step_programs(now); };
-    behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).step(now); };
+    behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { return slot_at(self).step(now); };
     behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).stop(now); };
     behaviour.has_ended = [](const void* self) noexcept TAPPET_REALTIME {
         const BehaviourUnit* unit = static_cast<const BehaviourSlot*>(self)->active();

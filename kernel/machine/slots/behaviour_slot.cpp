@@ -81,17 +81,19 @@ void BehaviourSlot::step_programs(Time now) noexcept TAPPET_REALTIME {
     if (BehaviourUnit* unit = active(); unit != nullptr) unit->step_programs(now);
 }
 
-void BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
-    if (phase() == SlotPhase::waiting) {
+bool BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
+    const SlotPhase before = phase();
+    if (before == SlotPhase::waiting) {
         connect(true);
         if (is_due()) hand_over(now);
-    } else if (phase() == SlotPhase::handing_over) {
+    } else if (before == SlotPhase::handing_over) {
         hand_over(now);
     }
     BehaviourUnit* unit = active();
-    if (unit == nullptr) return;
-    unit->step(now);
+    if (unit == nullptr) return before != phase();
+    const bool worked = unit->step(now);
     judge(now);
+    return worked || before != phase();
 }
 
 void BehaviourSlot::hand_over(Time now) noexcept TAPPET_REALTIME {

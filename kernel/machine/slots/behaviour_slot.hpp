@@ -93,8 +93,9 @@ constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_
     ResolvedSizes resolved;
     resolved.states = resolved.regions = sizes.states;
     resolved.triggers = std::min<std::size_t>(sizes.transitions, events * sizes.types);
-    resolved.arcs = 3 * std::size_t{sizes.transitions} + 2 * std::size_t{sizes.states};
-    resolved.programs = 2 * resolved.arcs;
+    resolved.arcs = std::size_t{sizes.transitions} + first_arc;
+    resolved.asked = 3 * std::size_t{sizes.transitions};
+    resolved.steps = 6 * resolved.arcs + 2 * std::size_t{sizes.states};
     return resolved;
 }
 /// Of event arguments that wait, each instance; of the histories of all together.
@@ -198,7 +199,7 @@ public:
     static void obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME;
     void start(Time now) noexcept TAPPET_REALTIME;
     void step_programs(Time now) noexcept TAPPET_REALTIME;
-    void step(Time now) noexcept TAPPET_REALTIME;
+    bool step(Time now) noexcept TAPPET_REALTIME;
     void stop(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
     void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;

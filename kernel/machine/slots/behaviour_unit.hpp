@@ -74,16 +74,19 @@ constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& t
 
 /// Where a type's resolved state machine lies.
 constexpr ResolvedRoom take_room(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
-    auto* plans = layout.take<StatePlan>(sizes.states);
-    auto* triggers = layout.take<std::string_view>(sizes.triggers);
-    auto* cells = layout.take<ArcIndex>(sizes.states * sizes.triggers);
-    auto* arcs = layout.take<StateArc>(sizes.arcs);
-    auto* programs = layout.take<StateProgram>(sizes.programs);
-    auto* regions = layout.take<StateIndex>(sizes.regions);
-    auto* captured = layout.take<std::uint16_t>(sizes.triggers);
-    return {{plans, sizes.states},     {triggers, sizes.triggers}, {cells, sizes.states * sizes.triggers},
-            {arcs, sizes.arcs},        {programs, sizes.programs}, {regions, sizes.regions},
-            {captured, sizes.triggers}};
+    const auto take = [&layout]<class T>(std::span<T>& into, std::size_t count) {
+        into = {layout.take<T>(count), count};
+    };
+    ResolvedRoom room;
+    take(room.plans, sizes.states);
+    take(room.triggers, sizes.triggers);
+    take(room.cells, sizes.states * sizes.triggers);
+    take(room.asked, sizes.asked);
+    take(room.arcs, sizes.arcs);
+    take(room.steps, sizes.steps);
+    take(room.regions, sizes.regions);
+    take(room.captured, sizes.triggers);
+    return room;
 }
 
 /// Of one instance, what its execution keeps from step to step.
@@ -161,7 +164,7 @@ public:
     /// The programs alone; their engine does so before it steps any state machine (thesis fig. 5.21).
     void step_programs(Time now) noexcept TAPPET_REALTIME;
     /// The state machines.
-    void step(Time now) noexcept TAPPET_REALTIME;
+    bool step(Time now) noexcept TAPPET_REALTIME;
     /// Into the final states; those that cannot go at once follow in the next steps.
     void finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME;
     /// Whether finish() has come to its end, or cannot: a machine in error stays where it is.
@@ -189,12 +192,14 @@ public:
 
 private:
     void bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view);
+    void limit_work(Time now) noexcept TAPPET_REALTIME;
     void begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME;
 
     ScriptUnit unit_{};
     BehaviourOptions options_{};
     MachineInstance* machine_ = nullptr;
     const Engine* engine_ = nullptr;
+    WorkLimit limit_{}; ///< of what runs in memory
     std::size_t driven_ = 0;
     std::span<UnitPart> parts_{};
     std::uint64_t left_over_ = 0;

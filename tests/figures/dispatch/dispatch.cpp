@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     add_commands(groups, goals);
     add_events(groups, goals);
     add_steps(groups, goals);
+    add_cycles(groups, goals);
     run_candidates(options, argv, groups, goals, result);
     return finish(options, result);
 }

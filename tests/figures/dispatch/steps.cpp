@@ -58,6 +58,7 @@ struct RealTime {
     std::array<FunctionTiming, functions_per_part> functions{};
     Engine engine;
     RealTime() {
+        static_cast<void>(os::prove_processor_counter()); // as it is when the machine arms
         part.component = &idle;
         part.type = &component_type<Idle>;
         EnginePlan plan;
@@ -187,6 +188,12 @@ void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                        {"step, with its two time stamps", Standing::ours, &step_with_stamps},
                        {"two calls through a function pointer", Standing::floor, &two_calls},
                        {"two readings of the clock", Standing::floor, &two_readings}}});
+    goals.push_back(
+        {"empty cycle with its time stamps <= 0.3 x two readings of the clock (13 ns where they take 44)",
+         "dispatch.step.empty",
+         "step, with its two time stamps",
+         0.3,
+         {"two readings of the clock"}});
     goals.push_back({"empty engine step of a component without pending work, time stamps excluded and shown "
                      "beside it <= 2 function-pointer calls",
                      "dispatch.step.empty",

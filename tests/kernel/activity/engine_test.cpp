@@ -140,6 +140,7 @@ struct Wish {
         each.step = [](void* self, Time) noexcept TAPPET_REALTIME {
             static_cast<Wish*>(self)->at = never;
             static_cast<Wish*>(self)->log->add("behaviour");
+            return true;
         };
         each.stop = [](void* self, Time) noexcept
             TAPPET_REALTIME { static_cast<Wish*>(self)->log->add("behaviour stops"); };

@@ -111,7 +111,7 @@ bool same(const Instance& one, const Instance& other) {
 template <std::uint64_t seed, bool folded> void both_ways(Coverage& coverage) {
     static_assert(check(machine<seed, folded>.table).empty());
     constexpr const auto& room = native::resolved_type<machine<seed, folded>, 0>;
-    static_assert(room.view().plain && room.view().folded == folded);
+    static_assert(room.view().plain);
     constexpr const ProgramTables& rows = tables<seed, folded>;
     for (std::uint64_t run = 0; run < 60; ++run) {
         Random random{seed * 1000 + run};

@@ -240,7 +240,7 @@ private:
     std::vector<CaptureRow> captures_;
     std::vector<ProgramRow> program_rows_;
     ProgramTables tables_;
-    ResolvedMachine<ResolvedSizes{24, 8, 400, 0, 24}> room_;
+    ResolvedMachine<ResolvedSizes{24, 8, 60, 400, 900, 24}> room_;
     alignas(data_alignment) std::byte data_[data_alignment]{};
     std::array<StateIndex, 24> history_{};
     std::array<std::byte, 8 * sizeof(int)> deferred_{};

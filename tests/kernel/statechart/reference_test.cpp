@@ -197,7 +197,7 @@ private:
     }
 };
 
-using Slot = ResolvedMachine<ResolvedSizes{20, 5, 2048, 16384, 20}>;
+using Slot = ResolvedMachine<ResolvedSizes{20, 5, 256, 2048, 16384, 20}>;
 
 ProgramReturn run_program(const ProgramTables&, ProgramContext& context, std::uint32_t& statements) noexcept
     TAPPET_REALTIME {

@@ -41,15 +41,15 @@ constexpr auto loom = state_machine<R>(
 static_assert(check(loom.view()).empty());
 constexpr ResolvedView view = resolved<loom>.view();
 
-ArcIndex cell(std::string_view leaf, std::size_t trigger) {
+AskedIndex cell(std::string_view leaf, std::size_t trigger) {
     return view.cells[find_state(view.table, leaf) * view.triggers.size() + trigger];
 }
-std::vector<TransitionIndex> transitions_of(ArcIndex first) {
+std::vector<TransitionIndex> transitions_of(AskedIndex first) {
     std::vector<TransitionIndex> numbers;
-    if (first == no_arc) return numbers;
-    for (const StateArc* arc = view.arcs + first;; ++arc) {
-        numbers.push_back(arc->transition);
-        if (arc->last) return numbers;
+    if (first == none_asked) return numbers;
+    for (const AskedArc* asked = view.asked + first;; ++asked) {
+        numbers.push_back(view.arcs[asked->arc()].transition);
+        if (asked->is_last()) return numbers;
     }
 }
 using Numbers = std::vector<TransitionIndex>;
@@ -69,14 +69,29 @@ TEST(StateMachineResolver, orders_the_transitions_of_a_leaf_from_the_inside_and_
     EXPECT_EQ(transitions_of(view.plans[find_state(view.table, "run_up")].conditions), (Numbers{3, 4}));
 }
 
-TEST(StateMachineResolver, folds_the_programs_of_a_transition_into_one_list) {
-    const StateArc& start = view.arcs[cell("idle", 1)];
-    Recorder recorder;
-    for (std::size_t i = 0; i < start.programs.count; ++i) view.programs[start.programs.first + i](&recorder);
-    EXPECT_EQ(recorder.heard(), "*start -idle +working +run_up");
-    EXPECT_EQ(start.target, find_state(view.table, "run_up"));
+std::string steps_of(StepIndex at) {
+    constexpr std::array<std::string_view, 9> words{"act",        "otherwise", "leave",  "place", "entry",
+                                                    "remembered", "arrive",    "depart", "handle"};
+    std::string text;
+    for (;; ++at) {
+        const TransitionStep& step = view.steps[at];
+        text.append(text.empty() ? "" : " ").append(words[static_cast<std::size_t>(step.kind)]);
+        if (step.state != no_state) text.append("(").append(view.table.states[step.state].name).append(")");
+        if (is_last(step.kind)) return text;
+    }
+}
+
+TEST(StateMachineResolver, lists_the_steps_of_a_transition_in_their_order) {
+    const StateArc& start = view.arcs[first_arc + 1];
+    EXPECT_EQ(start.transition, 1);
+    EXPECT_EQ(steps_of(start.steps),
+              "act leave place(working) entry(working) place(run_up) entry(run_up) arrive(run_up)");
     EXPECT_EQ(start.kept_levels, 0);
-    EXPECT_EQ(start.target_levels, 2);
+    EXPECT_EQ(steps_of(view.arcs[first_arc + 3].steps), "leave place(weave) arrive(weave)");
+    EXPECT_EQ(view.arcs[first_arc + 3].kept_levels, 1);
+    EXPECT_EQ(steps_of(view.arcs[start_arc].steps), "leave place(idle) arrive(idle)");
+    EXPECT_EQ(steps_of(view.arcs[final_arc].steps), "leave place(safe) arrive(safe)");
+    EXPECT_EQ(steps_of(view.arcs[leaving_arc].steps), "leave depart");
 }
 
 TEST(StateMachineResolver, takes_exactly_the_room_it_measured) {
@@ -89,30 +104,38 @@ TEST(StateMachineResolver, takes_exactly_the_room_it_measured) {
             << said.view();
         EXPECT_EQ(room.view().plans, nullptr);
     };
-    refused(ResolvedMachine<ResolvedSizes{sizes.states - 1, sizes.triggers, sizes.arcs, sizes.programs,
-                                          sizes.regions}>{});
-    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers - 1, sizes.arcs, sizes.programs,
-                                          sizes.regions}>{});
-    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers, sizes.arcs - 1, sizes.programs,
-                                          sizes.regions}>{});
-    refused(ResolvedMachine<ResolvedSizes{sizes.states, sizes.triggers, sizes.arcs, sizes.programs - 1,
-                                          sizes.regions}>{});
+    const auto without = []<ResolvedSizes all, auto member>() {
+        constexpr ResolvedSizes less = [] {
+            ResolvedSizes one = all;
+            --(one.*member);
+            return one;
+        }();
+        return ResolvedMachine<less>{};
+    };
+    refused(without.template operator()<sizes, &ResolvedSizes::states>());
+    refused(without.template operator()<sizes, &ResolvedSizes::triggers>());
+    refused(without.template operator()<sizes, &ResolvedSizes::asked>());
+    refused(without.template operator()<sizes, &ResolvedSizes::arcs>());
+    refused(without.template operator()<sizes, &ResolvedSizes::steps>());
+    refused(without.template operator()<sizes, &ResolvedSizes::regions>());
 }
 
 TEST(StateMachineResolver, makes_the_same_of_a_table_at_run_time_as_the_compiler_did) {
     const std::vector<StateRow> states{loom.states.begin(), loom.states.end()};
     const std::vector<TransitionRow> transitions{loom.transitions.begin(), loom.transitions.end()};
-    ResolvedMachine<ResolvedSizes{40, 10, 500, 900, 8}> room;
+    ResolvedMachine<ResolvedSizes{40, 10, 40, 500, 900, 8}> room;
     ASSERT_EQ(room.load({"loom", states, transitions, type_id<R>}).view(), "");
     const ResolvedView loaded = room.view();
     constexpr ResolvedSizes sizes = measure(loom.view());
     EXPECT_TRUE(std::ranges::equal(loaded.triggers, view.triggers));
-    EXPECT_TRUE(std::equal(view.programs, view.programs + sizes.programs, loaded.programs));
     for (std::size_t i = 0; i < sizes.arcs; ++i) {
-        EXPECT_EQ(loaded.arcs[i].target, view.arcs[i].target);
         EXPECT_EQ(loaded.arcs[i].transition, view.arcs[i].transition);
-        EXPECT_EQ(loaded.arcs[i].programs.first, view.arcs[i].programs.first);
-        EXPECT_EQ(loaded.arcs[i].programs.count, view.arcs[i].programs.count);
+        EXPECT_EQ(loaded.arcs[i].steps, view.arcs[i].steps);
+    }
+    for (std::size_t i = 0; i < sizes.asked; ++i) EXPECT_EQ(loaded.asked[i].arc(), view.asked[i].arc());
+    for (std::size_t i = 0; i < sizes.steps; ++i) {
+        EXPECT_EQ(loaded.steps[i].kind, view.steps[i].kind);
+        EXPECT_EQ(loaded.steps[i].state, view.steps[i].state);
     }
     for (std::size_t i = 0; i < sizes.states * sizes.triggers; ++i) EXPECT_EQ(loaded.cells[i], view.cells[i]);
 }
@@ -120,7 +143,7 @@ TEST(StateMachineResolver, makes_the_same_of_a_table_at_run_time_as_the_compiler
 TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
     static constexpr auto small = state_machine<R>("small", states(state("a", initial), state("z", final)),
                                                    transitions(transition("a", "z", on("end"))));
-    ResolvedMachine<ResolvedSizes{40, 10, 500, 900, 8}> room;
+    ResolvedMachine<ResolvedSizes{40, 10, 40, 500, 900, 8}> room;
     Recorder recorder;
     StateMachineExecution execution;
     ASSERT_EQ(room.load(loom.view()).view(), "");
@@ -139,7 +162,7 @@ TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
 }
 
 TEST(StateMachineResolver, keeps_no_machine_when_a_faulty_one_was_loaded) {
-    ResolvedMachine<ResolvedSizes{40, 10, 500, 900, 8}> room{loom.view()};
+    ResolvedMachine<ResolvedSizes{40, 10, 40, 500, 900, 8}> room{loom.view()};
     const std::vector<StateRow> faulty{state("a", initial), state("safe", final)};
     EXPECT_EQ(room.load({"faulty", faulty, {}, type_id<R>}).view(),
               "state machine \"faulty\": state \"a\" has no way out; give it a transition, or mark it final");

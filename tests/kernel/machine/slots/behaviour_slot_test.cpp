@@ -353,6 +353,21 @@ TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_i
     EXPECT_EQ(state_now(), "Begin");
 }
 
+TEST_F(BehaviourSlotTest, one_whose_statements_take_longer_than_the_budget_is_stopped_between_two_of_them) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load("StateMachine Slow { var int i = 0; initial state A { transition oven.tick() select B }\n"
+                   "state B { entry { while (i < 200) { do oven.bake(5); set i = i + 1; } } "
+                   "transition oven.tick() select A }\nfinal state End {} }"),
+              "");
+    run(3ms);
+    ASSERT_EQ(slot.phase(), SlotPhase::trial);
+    oven().tick.emit();
+    run(2ms);
+    // A thousand microseconds of work in fewer statements than one step may execute: it would be late.
+    EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
+    EXPECT_EQ(state_now(), "Begin") << "the first is at work";
+}
+
 TEST_F(BehaviourSlotTest, one_that_stays_within_its_claim_is_kept) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(takes(40)), "");
