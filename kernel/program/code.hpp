@@ -1,5 +1,5 @@
 // How the programs of one table are executed: the interface between who runs programs and the two forms they
-// come in, native code made of a constant table, or the table itself walked in memory.
+// come in, native code made of a constant table, or the table itself, read in memory.
 #pragma once
 
 #include "kernel/program/context.hpp"

@@ -12,7 +12,7 @@ ConditionResult test_condition(const ProgramTables& tables, ProgramContext& cont
                                ConditionIndex condition) noexcept TAPPET_REALTIME;
 Time program_wakes(const ProgramTables& tables, const ProgramContext& context) noexcept TAPPET_REALTIME;
 
-/// The programs of these tables, which outlive it, walked in memory.
+/// The programs of these tables, which outlive it, read in memory.
 constexpr ProgramCode interpreted(const ProgramTables& tables) noexcept {
     return {&tables, &run_program, &test_condition, &program_wakes};
 }

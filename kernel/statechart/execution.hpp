@@ -52,7 +52,7 @@ struct StateMachineBinding {
     ProgramCode code{};        ///< of machine.table.programs; without run: C++ functions only
     std::byte* data = nullptr; ///< see DataLayout; filled from the instance's image
     const ProgramLink* links = nullptr;
-    void* machines = nullptr;        ///< see ProgramContext
+    void* machines = nullptr; ///< see ProgramContext
     const WorkLimit* limit = nullptr;
     std::span<StateIndex> history{}; ///< machine.sizes.history
     std::span<std::byte> deferred{}; ///< machine.sizes.captured * StateMachineExecution::max_raised_events

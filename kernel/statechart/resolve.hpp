@@ -204,6 +204,11 @@ constexpr void plan_entries(const Tree& tree, Entering& into, StateIndex target,
     }
 }
 
+template <class Row>
+constexpr void put(std::span<Row> rows, std::size_t at, const Row& row) {
+    if (at < rows.size()) rows[at] = row;
+}
+
 class Resolver {
 public:
     constexpr Resolver(const StateHierarchy& names, const ResolvedRoom& room) : names_{names}, room_{room} {
@@ -230,10 +235,6 @@ public:
     }
 
 private:
-    template <class Row>
-    static constexpr void put(std::span<Row> rows, std::size_t at, const Row& row) {
-        if (at < rows.size()) rows[at] = row;
-    }
     constexpr void look() {
         plain_ = !names_.orthogonal();
         for (const TransitionRow& row : names_.table.transitions)

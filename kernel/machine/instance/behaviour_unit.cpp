@@ -81,7 +81,7 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     if (layout.full()) return too_small("instances");
     for (std::size_t t = 0; t < unit.types.size(); ++t) {
         const BehaviourType& type = unit.types[t];
-        // Native code is made of tables that the C++ compiler checked; what it leaves of them is not walked.
+        // Native code is made of tables that the C++ compiler checked; what it leaves of them is no program.
         const bool is_native = t < code.size() && code[t].code.run != nullptr;
         if (!is_native)
             if (Sentence fault = check_tables(type.tables); !fault.empty()) return fault;

@@ -59,7 +59,7 @@ struct BehaviourRow {
     BehaviourInstance instance{}; ///< the only one of a C++ table
     ProgramSpelling program{};    ///< of a program table: what the check names
     const ScriptUnit* script = nullptr;
-    std::span<const BehaviourCode> code{}; ///< of each type; empty: the tables are walked
+    std::span<const BehaviourCode> code{}; ///< of each type; empty: they stand in memory
     Slot slot{};
     bool reserves = false; ///< it is a slot
     BehaviourOptions options{};

@@ -21,9 +21,9 @@ struct CompiledBehaviour {
 
 namespace native {
 
-/// Of a state machine with more transitions only the programs and guards are native, and its states are
-/// walked: to fold a switch over all of them takes the C++ compiler as long as everything else that it does
-/// for that machine.
+/// Of a state machine with more transitions only the programs and guards are native, and its states stand in
+/// memory: to fold all of them takes the C++ compiler as long as everything else that it does for that
+/// machine.
 inline constexpr std::size_t most_folded_transitions = 128;
 
 /// A script without its instructions, and its code.
@@ -38,9 +38,10 @@ template <const auto& source> struct CompiledUnit {
         return row;
     }
     template <std::size_t type> static constexpr BehaviourCode code_of() {
-        if constexpr (source.types[type].is_program() ||
-                      source.types[type].machine.transitions.size() > most_folded_transitions)
+        if constexpr (source.types[type].is_program())
             return {native_code<source, type>, {}};
+        else if constexpr (source.types[type].machine.transitions.size() > most_folded_transitions)
+            return {native_code<source, type>, {.capture = &MachineRows<source, type>::capture}};
         else
             return {native_code<source, type>, native_machine<source, type>};
     }

@@ -1,4 +1,4 @@
-// A state machine of a constant source bound by hand, as native code or walked in memory.
+// A state machine of a constant source bound by hand, as native code or in memory.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -12,7 +12,7 @@ namespace tappet::figures {
 
 enum class Form : std::uint8_t {
     compiled, ///< native code, as of a behaviour that is compiled with the firmware
-    loaded    ///< walked, as of a script that is loaded while the machine runs
+    loaded    ///< in memory, as of a script that is loaded while the machine runs
 };
 
 /// `source`: a StateMachine, or a ScriptUnit of which it is the first type.

@@ -15,7 +15,7 @@ TEST(BehaviourFigures, stand_beside_switches_by_hand_and_judge_each_goal) {
         ASSERT_NE(found, result.figures.end()) << id;
         EXPECT_GT(std::ranges::count(found->rows, Standing::floor, &Row::role), 0) << id;
     }
-    EXPECT_EQ(result.goals.size(), 6u);
+    EXPECT_EQ(result.goals.size(), 4u);
 }
 
 } // namespace

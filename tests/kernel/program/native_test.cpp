@@ -1,5 +1,5 @@
 // The compiled form does what the loaded form does, step for step (thesis 5.1.1 - 5.1.3): the same table, as
-// native code and walked by the interpreter, from the same data, leaves the same data, position and trace.
+// native code and read in memory, from the same data, leaves the same data, position and trace.
 #include "kernel/program/interpreter.hpp"
 #include "kernel/program/native.hpp"
 #include "tests/kernel/program/random_tables.hpp"

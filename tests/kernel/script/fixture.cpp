@@ -10,8 +10,8 @@ namespace script_test {
 
 namespace {
 
-using Resolved =
-    ResolvedMachine<ResolvedSizes{.states = 64, .triggers = 16, .arcs = 200, .asked = 512, .steps = 1024, .regions = 32}>;
+using Resolved = ResolvedMachine<ResolvedSizes{
+    .states = 64, .triggers = 16, .arcs = 200, .asked = 512, .steps = 1024, .regions = 32}>;
 
 constexpr std::array<Reachable, 3> three{{{"own", &component_type<Cell>, true},
                                           {"robot", &component_type<Cell>, true},

@@ -1,4 +1,4 @@
-// The compiled form of a state machine does what the walk over its table does (thesis 5.2.1 - 5.2.3): random
+// The compiled form of a state machine does what its table in memory does (thesis 5.2.1 - 5.2.3): random
 // machines whose programs wait, fail and raise events are driven both ways by the same calls.
 #include "kernel/program/interpreter.hpp"
 #include "tests/kernel/statechart/random_constant_machine.hpp"
@@ -115,7 +115,7 @@ template <std::uint64_t seed, bool folded> void both_ways(Coverage& coverage) {
     constexpr const ProgramTables& rows = tables<seed, folded>;
     for (std::uint64_t run = 0; run < 60; ++run) {
         Random random{seed * 1000 + run};
-        const std::uint64_t most = random(2) == 0 ? 12 : 60; // with very few it is walked
+        const std::uint64_t most = random(2) == 0 ? 12 : 60; // with very few it stands in memory
         const auto statements =
             static_cast<std::uint32_t>(folded || random(2) == 0 ? 1000 : 1 + random(most));
         Instance one{room.view(), rows, native_code<machine<seed, folded>>,
@@ -140,7 +140,7 @@ template <std::uint64_t seed, bool folded> void both_ways(Coverage& coverage) {
     }
 }
 
-TEST(NativeMachine, AMachineAsNativeCodeDoesCallForCallWhatTheWalkOverItsTableDoes) {
+TEST(NativeMachine, AMachineAsNativeCodeDoesCallForCallWhatItsTableInMemoryDoes) {
     Coverage coverage;
     const auto all = [&coverage]<bool folded, std::uint64_t... seed>() {
         (both_ways<seed, folded>(coverage), ...);
