@@ -99,8 +99,10 @@ void Activity::run_once() noexcept {
 }
 
 bool Activity::sleep_until(Time time) noexcept TAPPET_REALTIME {
-    return engine_->heeds_devices() ? engine_->waiter().wait(time)
-                                    : engine_->waiter().wait_without_devices(time);
+    const bool woken = engine_->heeds_devices() ? engine_->waiter().wait(time)
+                                                : engine_->waiter().wait_without_devices(time);
+    if (!woken) engine_->stamps().renew(); // a stamp that lags the clock would take the time for not come
+    return woken;
 }
 
 void Activity::cycles() noexcept TAPPET_REALTIME {

@@ -267,7 +267,8 @@ private:
     void end_of(FunctionTiming& timing, std::uint64_t together = 1) noexcept TAPPET_REALTIME {
         const Time end = stamps_.now();
         const Duration took = end - lap_;
-        if (timing.exceeds_usual(took, worst_excess_)) note_excess(timing, took);
+        const Duration each = together == 1 ? took : took / static_cast<std::int64_t>(together);
+        if (timing.exceeds_usual(each, worst_excess_)) note_excess(timing, each);
         timing.add(took, together);
         lap_ = end;
         if (tape_ != nullptr) tape_->mark(index_of(timing), (end - cycle_.now).count());

@@ -39,6 +39,7 @@ void Engine::finalise() {
 void Engine::start(Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity, &cycle_.now};
+    stamps_.renew();
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     next_release_ = plan_.periodic ? now + plan_.period : never;
     if (was_stopped_) {
@@ -82,6 +83,7 @@ bool Engine::have_ended(std::uint32_t part) const noexcept TAPPET_REALTIME {
 void Engine::begin_end(Time now, Time until) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity, &cycle_.now};
+    stamps_.renew();
     cycle_.now = cycle_.release = lap_ = now;
     static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
@@ -102,6 +104,7 @@ bool Engine::has_ended(Time now) const noexcept TAPPET_REALTIME {
 void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity, &cycle_.now};
+    stamps_.renew();
     cycle_.now = cycle_.release = lap_ = now;
     // What others asked before the stop is done, and what the own behaviours ask at their end: a valve that
     // somebody told to close closes. A thread that hangs in its cycle may hang in its mailbox: that is left

@@ -20,11 +20,11 @@ struct FunctionTiming {
     /// `together`: so many passes that were timed as one.
     void add(Duration took, std::uint64_t together = 1) noexcept TAPPET_REALTIME {
         const bool is_first = passes == 0;
-        passes += together;
-        last = took;
+        passes += is_first ? 1 : together;
         total += took;
-        if (took <= longest) return;
-        longest = is_first ? Duration::zero() : took;
+        last = together == 1 ? took : took / static_cast<std::int64_t>(together);
+        if (last <= longest) return;
+        longest = is_first ? Duration::zero() : last;
         if (is_first) total = Duration::zero();
     }
     /// The mean of all passes but the first.

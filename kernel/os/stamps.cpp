@@ -18,12 +18,13 @@ namespace {
 /// 0: the counter is not used.
 std::atomic<std::uint64_t> proven_ns_per_tick{0};
 
-// It may be slewed by 500 ppm at most, and the measurement is good for less than 100: a counter that is taken
-// for slower than it is never leads ahead of the clock, so no stamp is taken back.
-constexpr std::uint64_t ppm = 1'000'000, slower_by_ppm = 600;
+// The clock may be slewed, by 500 ppm where NTP does it, and the measurement is good for less than 100: a
+// counter that is taken for slower than it is does not lead ahead of the clock. Whoever slews more, or steps
+// the rate, lets stamps stand still for a while.
+constexpr std::uint64_t ppm = 1'000'000, slower_by_ppm = 600, slewed_by_ppm = 500;
 // Longer between two readings of the counter, and something else ran in between: the pair tells nothing.
 constexpr Duration most_between = 300ns;
-static_assert(most_between + Stamps::window * slower_by_ppm / ppm < Stamps::most_behind);
+static_assert(most_between + Stamps::window * (slower_by_ppm + slewed_by_ppm) / ppm < Stamps::most_behind);
 
 bool counter_is_invariant() noexcept {
 #if defined(__x86_64__)
@@ -70,15 +71,14 @@ bool prove_processor_counter(std::string_view root) noexcept {
 }
 
 Time Stamps::look_at_clock() noexcept TAPPET_REALTIME {
-    ns_per_tick_ = proven_ns_per_tick.load(std::memory_order_relaxed); // no step: nothing else hangs on it
     const std::uint64_t before = ticks();
+    close_window(before);
+    ns_per_tick_ = proven_ns_per_tick.load(std::memory_order_relaxed); // no step: nothing else hangs on it
     const Time now = clock_->now();
+    if (now < floor_) return floor_;
     if (ns_per_tick_ == 0) return now;
     const std::uint64_t after = ticks();
-    const auto in_ns = [this](std::uint64_t count) noexcept TAPPET_REALTIME {
-        return Duration{static_cast<std::int64_t>(count * ns_per_tick_ >> fraction_bits)};
-    };
-    ticks_of_window_ = 0;
+    floor_ = now;
     if (after - before > (std::uint64_t{1} << fraction_bits) || in_ns(after - before) > most_between)
         return now;
     anchor_ = now;

@@ -14,22 +14,30 @@ namespace tappet::os {
 /// how fast it counts. `root` stands before the kernel's files. Answers whether they do. Not real-time.
 bool prove_processor_counter(std::string_view root = {}) noexcept;
 
-/// Of one thread. On each line of CLOCK_MONOTONIC or of virtual time: a stamp is never before the one taken
-/// last, none is ahead of the clock, and none so far behind it as most_behind.
+/// Of one thread, of CLOCK_MONOTONIC or of virtual time. A stamp is never before the one taken last. While
+/// the clock is slewed by no more than NTP's 500 ppm none is ahead of it, and none so far behind it as
+/// most_behind.
 class Stamps {
 public:
-    static constexpr Duration most_behind = 500ns;
+    static constexpr Duration most_behind = 600ns;
     /// How long the counter is followed from one reading of the clock.
     static constexpr Duration window = 200us;
 
-    void place(const Clock& clock) noexcept { clock_ = &clock, ticks_of_window_ = 0; }
+    void place(const Clock& clock) noexcept {
+        clock_ = &clock;
+        floor_ = Time::min();
+        ticks_of_window_ = 0;
+    }
+
+    /// The next one is a reading of the clock: after a wait for a time, which has come then.
+    void renew() noexcept TAPPET_REALTIME { close_window(ticks()); }
 
     [[nodiscard]] Time now() noexcept TAPPET_REALTIME {
         if (clock_->is_virtual()) return clock_->now();
         const std::uint64_t passed = ticks() - anchor_ticks_;
         if (passed >= ticks_of_window_) [[unlikely]]
             return look_at_clock();
-        return anchor_ + Duration{static_cast<std::int64_t>(passed * ns_per_tick_ >> fraction_bits)};
+        return anchor_ + in_ns(passed);
     }
 
 private:
@@ -42,11 +50,22 @@ private:
         return 0; // the proof fails: the clock is read
 #endif
     }
+    [[nodiscard]] Duration in_ns(std::uint64_t count) const noexcept TAPPET_REALTIME {
+        return Duration{static_cast<std::int64_t>(count * ns_per_tick_ >> fraction_bits)};
+    }
+    /// No stamp that was taken is after `floor_`.
+    void close_window(std::uint64_t now) noexcept TAPPET_REALTIME {
+        if (ticks_of_window_ == 0) return;
+        const std::uint64_t passed = now - anchor_ticks_;
+        floor_ = anchor_ + in_ns(passed < ticks_of_window_ ? passed : ticks_of_window_);
+        ticks_of_window_ = 0;
+    }
     Time look_at_clock() noexcept TAPPET_REALTIME;
     friend bool prove_processor_counter(std::string_view root) noexcept;
 
     const Clock* clock_ = nullptr;
     Time anchor_{};
+    Time floor_ = Time::min();
     std::uint64_t anchor_ticks_ = 0;
     std::uint64_t ticks_of_window_ = 0; ///< 0: the clock is read each time
     std::uint64_t ns_per_tick_ = 0;     ///< with fraction_bits

@@ -24,16 +24,18 @@ struct ProgramPosition {
     Time entered_at{};
 };
 
-/// Until when programs in memory may work in one step: then their activity's budget is used up, and what is
-/// left goes on in the next step.
+/// Until when programs in memory may work in one step: then their activity would miss its deadline, and what
+/// is left goes on in the next step. Time of the clock: the processor time that a budget claims takes a
+/// system call to read.
 struct WorkLimit {
     /// That are executed between two looks at the time.
-    static constexpr std::uint32_t statements = 32;
+    static constexpr std::uint32_t statements = 16;
     os::Stamps* stamps = nullptr; ///< of the activity
     Time until = never;
+    bool has_begun = false; ///< something is executed in each step, however late it comes to it
 
     [[nodiscard]] bool is_reached() const noexcept TAPPET_REALTIME {
-        return until != never && stamps->now() >= until;
+        return has_begun && until != never && stamps->now() >= until;
     }
 };
 
@@ -43,8 +45,8 @@ struct ProgramContext {
     const ProgramLink* links = nullptr; ///< by LinkRow
     Time now{};
     ProgramPosition position{};
-    void* machines = nullptr;         ///< the state machines and programs that this one may command
-    const WorkLimit* limit = nullptr; ///< null: only the number of statements is bounded
+    void* machines = nullptr;   ///< the state machines and programs that this one may command
+    WorkLimit* limit = nullptr; ///< null: only the number of statements is bounded
 };
 
 } // namespace tappet

@@ -67,6 +67,73 @@ struct NodeInMemory {
     }
 };
 
+/// As most are: it leads on, over one arc or one of two, and no time matters.
+struct StatementInMemory : NodeInMemory {
+    [[gnu::always_inline]] static bool is(const ProgramTables& tables, const NodeRow& node) noexcept
+        TAPPET_REALTIME {
+        const ArcRow* const arc = tables.arcs.data() + node.first_arc;
+        const bool is_one = node.arcs == 1, is_two = node.arcs == 2;
+        return (is_one || is_two) && !node.repeats && !node.yields && arc->after == no_data &&
+               (is_one || arc[1].after == no_data);
+    }
+    [[nodiscard]] NodeRow row() const noexcept TAPPET_REALTIME {
+        NodeRow same = *node;
+        same.repeats = same.yields = false;
+        return same;
+    }
+    [[gnu::always_inline]] NextNode asks_arcs(bool has_acted, ProgramContext& context,
+                                              ProgramRun& run) const noexcept TAPPET_REALTIME {
+        const auto follows = [&] [[gnu::always_inline]] (std::size_t number) noexcept TAPPET_REALTIME {
+            ArcRow arc = tables.arcs[node->first_arc + number];
+            arc.after = no_data;
+            return node_order::follows(*this, ArcInMemory{tables, arc}, has_acted, context, run);
+        };
+        const NextNode next = follows(0);
+        return next != leads_nowhere || node->arcs == 1 ? next : follows(1);
+    }
+};
+// A function of its own: what it needs would push out of the registers what the others need.
+[[gnu::noinline]] NextNode executes_any(NodeInMemory node, ProgramContext& context,
+                                        ProgramRun& shared) noexcept TAPPET_REALTIME {
+    ProgramRun run = shared;
+    const NextNode next = node_order::executes(node, context, run);
+    shared = run;
+    return next;
+}
+
+ProgramReturn run(const ProgramTables& tables, ProgramContext& context, std::uint32_t& statements) noexcept
+    TAPPET_REALTIME {
+    NodeIndex at = context.position.node;
+    ProgramRun run{context.data, statements, context.position.entered};
+    const NodeRow* row = at == end_node ? nullptr : &tables.nodes[at];
+    while (at != end_node) {
+        const NodeInMemory node{tables, row, at};
+        NextNode next = leads_nowhere;
+        if (StatementInMemory::is(tables, *row)) [[likely]] {
+            next = node_order::executes(StatementInMemory{node}, context, run);
+        } else {
+            ProgramRun shared = run; // so that `run` stays in registers
+            next = executes_any(node, context, shared);
+            run = shared;
+        }
+        // Mostly to the next row: a branch is predicted, a number that was read is waited for.
+        if (next == at + 1u) [[likely]] {
+            ++at, ++row;
+            asm("" : "+r"(row)); // so that it stays a branch
+            continue;
+        }
+        if (next >= halted) {
+            statements = static_cast<std::uint32_t>(run.left);
+            return returns_at(next, context, run);
+        }
+        at = static_cast<NodeIndex>(next);
+        row = tables.nodes.data() + at;
+    }
+    statements = static_cast<std::uint32_t>(run.left);
+    context.position = {};
+    return ProgramReturn::ended;
+}
+
 } // namespace
 
 ConditionResult test_condition(const ProgramTables& tables, ProgramContext& context,
@@ -76,39 +143,17 @@ ConditionResult test_condition(const ProgramTables& tables, ProgramContext& cont
 
 ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
                           std::uint32_t& statements) noexcept TAPPET_REALTIME {
-    NodeIndex at = context.position.node;
-    // Statements are counted in pieces of WorkLimit::statements, over all programs of a step.
-    const auto next_piece = [&]() noexcept TAPPET_REALTIME -> std::int64_t {
+    if (context.limit == nullptr) return run(tables, context, statements);
+    // In pieces, over all programs of a step.
+    for (;;) {
         if (statements % WorkLimit::statements == 0 && context.limit->is_reached()) statements = 0;
-        return statements == 0 ? 0 : (statements - 1) % WorkLimit::statements + 1;
-    };
-    const bool is_limited = context.limit != nullptr;
-    std::int64_t piece = is_limited ? next_piece() : std::int64_t{statements};
-    ProgramRun run{context.data, piece, context.position.entered};
-    const auto account = [&]() noexcept
-        TAPPET_REALTIME { statements -= static_cast<std::uint32_t>(piece - run.left); };
-    const NodeRow* row = at == end_node ? nullptr : &tables.nodes[at];
-    while (at != end_node) {
-        const NextNode next = node_order::executes(NodeInMemory{tables, row, at}, context, run);
-        // Mostly to the next row: a branch is predicted, a number that was read is waited for.
-        if (next == at + 1u) [[likely]] {
-            ++at, ++row;
-            asm("" : "+r"(row)); // so that it stays a branch
-            continue;
-        }
-        if (next >= halted) {
-            account();
-            const bool is_left_over = run.left == 0 && next == halts_at(at, ProgramReturn::left_over);
-            if (!is_left_over || !is_limited || statements == 0) return returns_at(next, context, run);
-            run.left = piece = next_piece();
-            continue;
-        }
-        at = static_cast<NodeIndex>(next);
-        row = tables.nodes.data() + at;
+        const std::uint32_t piece = statements == 0 ? 0 : (statements - 1) % WorkLimit::statements + 1;
+        std::uint32_t left = piece;
+        const ProgramReturn why = run(tables, context, left);
+        statements -= piece - left;
+        context.limit->has_begun = true;
+        if (why != ProgramReturn::left_over || statements == 0) return why;
     }
-    account();
-    context.position = {};
-    return ProgramReturn::ended;
 }
 
 Time program_wakes(const ProgramTables& tables, const ProgramContext& context) noexcept TAPPET_REALTIME {

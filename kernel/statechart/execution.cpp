@@ -229,7 +229,7 @@ bool StateMachineExecution::step_once(Time now) noexcept TAPPET_REALTIME {
     single_ = statements_left_ = false;
     clear(busy);
     if (raised_count_ == 0 && wanted_state_ == no_state) clear(waiting);
-    return call.left == 0 || status_.transitions != transitions;
+    return call.left <= 0 || status_.transitions != transitions;
 }
 
 StateOutcome StateMachineExecution::request_state(StateIndex target, Time now, bool run_once) noexcept
@@ -316,7 +316,7 @@ StateOutcome StateMachineExecution::deactivate(Time now) noexcept TAPPET_REALTIM
     else {
         clear(error);
         program_begun_ = false;
-        if (job_.end > job_.first) remove(--job_.end);
+        if (job_.end > job_.first) leaves_last();
     }
     static_cast<void>(Order::goes_on(*this, call));
     clear(busy);

@@ -53,7 +53,7 @@ struct StateMachineBinding {
     std::byte* data = nullptr; ///< see DataLayout; filled from the instance's image
     const ProgramLink* links = nullptr;
     void* machines = nullptr; ///< see ProgramContext
-    const WorkLimit* limit = nullptr;
+    WorkLimit* limit = nullptr;
     std::span<StateIndex> history{}; ///< machine.sizes.history
     std::span<std::byte> deferred{}; ///< machine.sizes.captured * StateMachineExecution::max_raised_events
     StateMachineExecution* parent = nullptr;
@@ -344,6 +344,7 @@ private:
     [[nodiscard]] std::size_t end_of(std::size_t index) const noexcept TAPPET_REALTIME;
     void insert(std::size_t index, StateIndex state) noexcept TAPPET_REALTIME;
     void remove(std::size_t index) noexcept TAPPET_REALTIME;
+    void leaves_last() noexcept TAPPET_REALTIME;
     void find_active() noexcept TAPPET_REALTIME;
 
     [[nodiscard]] const StateRow& row(StateIndex state) const noexcept TAPPET_REALTIME {

@@ -44,6 +44,15 @@ void StateMachineExecution::remove(std::size_t index) noexcept TAPPET_REALTIME {
     find_active();
 }
 
+// Of those that are to be left.
+void StateMachineExecution::leaves_last() noexcept TAPPET_REALTIME {
+    remove(--job_.end);
+    if (!job_.all) return;
+    job_.all = false;
+    job_.first = 0;
+    job_.end = static_cast<std::uint8_t>(status_.states.size());
+}
+
 void StateMachineExecution::find_active() noexcept TAPPET_REALTIME {
     status_.active = no_state;
     for (const ActiveState& each : status_.states) {
@@ -72,7 +81,7 @@ void StateMachineExecution::plan_remembered(statechart::Entering& into, const St
 
 ProgramReturn StateMachineExecution::run(ProgramPosition& position, Call& call) noexcept TAPPET_REALTIME {
     context_.position = position;
-    auto left = static_cast<std::uint32_t>(call.left);
+    auto left = static_cast<std::uint32_t>(std::max<std::int64_t>(call.left, 0));
     const ProgramReturn result = code_.run(*code_.tables, context_, left);
     call.left = left;
     position = context_.position;

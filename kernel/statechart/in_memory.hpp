@@ -41,7 +41,7 @@ struct InMemory {
         // Where it stands is kept when it does not end.
         static ProgramReturn goes_on(Execution& e, ProgramPosition& position, Call& call) noexcept
             TAPPET_REALTIME {
-            auto left = static_cast<std::uint32_t>(call.left);
+            auto left = static_cast<std::uint32_t>(std::max<std::int64_t>(call.left, 0));
             const ProgramReturn why = e.code_.run(*e.code_.tables, e.context_, left);
             call.left = left;
             if (why != ProgramReturn::ended) [[unlikely]]
@@ -114,7 +114,7 @@ struct InMemory {
     static bool has_preconditions(const Execution& e) noexcept TAPPET_REALTIME {
         return e.machine_.preconditions;
     }
-    static bool lacks_statements(const Call& call) noexcept TAPPET_REALTIME { return call.left == 0; }
+    static bool lacks_statements(const Call& call) noexcept TAPPET_REALTIME { return call.left <= 0; }
     static void is_done(Execution& e) noexcept TAPPET_REALTIME { e.job_.at = no_step; }
     static ActiveState& source_of(Execution& e, Arc arc) noexcept TAPPET_REALTIME {
         return e.status_.states[e.machine_.plain ? arc.row().source_level : e.index_of(arc.row().source)];
@@ -247,13 +247,7 @@ struct InMemory {
         }
         return true;
     }
-    static void remove(Execution& e, State) noexcept TAPPET_REALTIME {
-        e.remove(--e.job_.end);
-        if (!e.job_.all) return;
-        e.job_.all = false;
-        e.job_.first = 0;
-        e.job_.end = static_cast<std::uint8_t>(e.status_.states.size());
-    }
+    static void remove(Execution& e, State) noexcept TAPPET_REALTIME { e.leaves_last(); }
     static void place(Execution& e, Step step) noexcept TAPPET_REALTIME {
         e.insert(std::size_t{e.job_.first} + step.step.number, step.step.state);
     }

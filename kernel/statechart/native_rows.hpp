@@ -44,7 +44,8 @@ template <const auto& source, std::size_t type> struct MachineRows {
     static constexpr std::uint32_t statements_of(const ProgramRef& program) {
         return program.program != no_program ? Programs::facts[program.program].statements : !program.empty();
     }
-    /// No more than one call executes: so many rounds in a leaf and transitions from it.
+    /// No more than one call executes: so many rounds in a leaf and transitions from it, and after each one
+    /// to the final state by request.
     static constexpr std::uint64_t most_statements = [] {
         std::uint64_t most_in_leaf = 0, most_on_the_way = 0;
         for (std::size_t leaf = 0; leaf < view.sizes.states; ++leaf) {
@@ -59,7 +60,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
         for (const TransitionRow& row : view.table.transitions)
             for (const ProgramRef* each : {&row.then, &row.otherwise})
                 most_on_the_way = std::max<std::uint64_t>(most_on_the_way, statements_of(*each));
-        return (most_in_leaf + most_on_the_way) * (Execution::max_transitions_per_step + 1);
+        return (most_in_leaf + most_on_the_way) * (2 * Execution::max_transitions_per_step + 2);
     }();
     /// Where they are few nothing counts them.
     static constexpr bool counts = most_statements >= Programs::unbounded;

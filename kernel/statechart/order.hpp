@@ -159,6 +159,7 @@ template <class Table> struct Order {
             return Answer::no;
         if (arc.row().captures && !Table::captures(e, arc, arguments)) [[unlikely]]
             return e.refuses(StatePart::capture, arc.row());
+        e.context_.position.entered = false; // a question has waited for nothing
         Answer answer = Table::ask(e, arc.guard());
         if (answer == Answer::yes) answer = may_enter<false>(e, arc);
         if (answer == Answer::no && arc.row().has_otherwise) {
@@ -261,7 +262,7 @@ template <class Table> struct Order {
                     return Flow::on;
                 if (Table::is_single(e)) {
                     if (number++ < e.asked_) return Flow::on;
-                    found = call.left == 0 ? Found::halted : Found::nothing;
+                    found = call.left <= 0 ? Found::halted : Found::nothing;
                     if (found == Found::halted) {
                         static_cast<void>(e.lacks_statements());
                         return Flow::stop;

@@ -209,14 +209,16 @@ void BehaviourUnit::begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIM
 }
 
 void BehaviourUnit::limit_work(Time now) noexcept TAPPET_REALTIME {
-    const Duration budget = engine_->plan().budget;
-    limit_.until = budget > Duration::zero() ? now + budget : never;
+    const Duration deadline = engine_->plan().deadline;
+    limit_.until = deadline > Duration::zero() ? now + deadline : never;
+    limit_.has_begun = false;
 }
 
 void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
     limit_work(now);
     for (UnitPart& part : parts_)
         if (part.program != nullptr) part.program->step(now);
+    limit_.until = never;
 }
 
 bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
@@ -225,9 +227,12 @@ bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
     for (UnitPart& part : parts_) {
         if (part.machine == nullptr) continue;
         worked |= part.machine->step(now);
-        if (part.begins_anew) [[unlikely]]
+        if (part.begins_anew) [[unlikely]] {
             begin_anew(part, now);
+            worked = true;
+        }
     }
+    limit_.until = never; // what makes the component safe is not cut short
     if (worked && left_over()) ++left_over_;
     return worked;
 }
@@ -323,6 +328,7 @@ void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time no
         const TriggerIndex trigger = routes_[event * parts_.size() + i].trigger;
         if (trigger != no_trigger) static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
     }
+    limit_.until = never;
 }
 
 Sentence BehaviourUnit::describe_fault() const {

@@ -135,7 +135,8 @@ Sentence BehaviourSlot::describe_roll_back() const {
     Sentence text{"taken back: "};
     text.add(failed.name.view());
     if (why_ == RollBack::left_over)
-        return text.add(": its statements of one step did not come to an end; let it wait, or allow it more");
+        return text.add(": its statements of one step did not come to an end within their number and the "
+                        "deadline of its activity; let it wait, or allow it more");
     if (why_ == RollBack::late)
         return text.add(": its activity missed a deadline by it; let it do less in one step");
     if (why_ == RollBack::too_much)

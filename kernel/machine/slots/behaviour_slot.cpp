@@ -93,7 +93,7 @@ bool BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
     if (unit == nullptr) return before != phase();
     const bool worked = unit->step(now);
     judge(now);
-    return worked || before != phase();
+    return worked || before != phase() || before == SlotPhase::handing_over;
 }
 
 void BehaviourSlot::hand_over(Time now) noexcept TAPPET_REALTIME {

@@ -44,7 +44,7 @@ constexpr std::string_view to_text(SlotPhase phase) noexcept {
 enum class RollBack : std::uint8_t {
     none,
     error,     ///< a program of it failed
-    left_over, ///< it did not come to an end of its statements in one step
+    left_over, ///< its statements of one step did not come to an end within their number or the deadline
     late,      ///< its activity missed a deadline by it
     too_much,  ///< its activity used more of its processor than its row claims
     asked      ///< from outside
@@ -95,7 +95,7 @@ constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_
     resolved.triggers = std::min<std::size_t>(sizes.transitions, events * sizes.types);
     resolved.arcs = std::size_t{sizes.transitions} + first_arc;
     resolved.asked = 3 * std::size_t{sizes.transitions};
-    resolved.steps = 6 * resolved.arcs + 2 * std::size_t{sizes.states};
+    resolved.steps = 12 * resolved.arcs + 2 * std::size_t{sizes.states};
     return resolved;
 }
 /// Of event arguments that wait, each instance; of the histories of all together.

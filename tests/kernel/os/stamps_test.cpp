@@ -51,6 +51,19 @@ TEST(Stamps, are_readings_of_the_clock_where_the_counter_is_not_proven) {
     expect_stamps_of_the_clock(1000, Duration::zero());
 }
 
+TEST(Stamps, say_that_a_time_has_come_once_they_are_renewed) {
+    static_cast<void>(prove_processor_counter());
+    const Clock clock{Clock::Kind::real};
+    Stamps stamps;
+    stamps.place(clock);
+    for (int i = 0; i < 10'000; ++i) {
+        static_cast<void>(stamps.now());
+        const Time come = Clock::monotonic();
+        stamps.renew();
+        ASSERT_GE(stamps.now(), come) << i;
+    }
+}
+
 TEST(Stamps, stand_still_with_virtual_time) {
     static_cast<void>(prove_processor_counter());
     Clock clock{Clock::Kind::virtual_time};

@@ -344,6 +344,25 @@ TEST(StateMachineOrder, line_52_goes_on_without_the_failing_program_in_a_second_
     EXPECT_FALSE(m.execution.in_error());
 }
 
+TEST(StateMachineOrder, line_52_leaves_what_is_around_a_failing_exit_that_was_under_way) {
+    Play m{R"(
+        state o initial exit -o
+        state a in o initial exit -a!.
+        state b in o
+        state safe final
+        from a to b on go
+        from b to a on back
+        from o to safe on stop)"};
+    m.start();
+    m.send("go");
+    m.deactivate();
+    m.step();
+    ASSERT_TRUE(m.execution.in_error()) << "the exit that deactivation waited for";
+    EXPECT_EQ(m.deactivate(), "-o");
+    EXPECT_FALSE(m.execution.is_active());
+    EXPECT_TRUE(m.execution.states().empty());
+}
+
 TEST(StateMachineOrder, line_53_brings_a_parent_into_error_where_the_policy_says_so) {
     const std::string text = "state a initial run !a!\nstate safe final\nfrom a to safe on go";
     for (const bool escalates : {false, true}) {

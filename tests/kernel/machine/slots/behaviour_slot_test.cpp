@@ -353,18 +353,21 @@ TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_i
     EXPECT_EQ(state_now(), "Begin");
 }
 
-TEST_F(BehaviourSlotTest, one_whose_statements_take_longer_than_the_budget_is_stopped_between_two_of_them) {
+TEST_F(BehaviourSlotTest, one_whose_statements_take_until_the_deadline_is_stopped_between_two_of_them) {
     load_and_settle(numbered(1));
+    // Six milliseconds of work, which the number of statements alone would let one cycle do.
     EXPECT_EQ(load("StateMachine Slow { var int i = 0; initial state A { transition oven.tick() select B }\n"
-                   "state B { entry { while (i < 200) { do oven.bake(5); set i = i + 1; } } "
-                   "transition oven.tick() select A }\nfinal state End {} }"),
+                   "state B { entry { while (i < 20) { do oven.bake(300); set i = i + 1; } } "
+                   "exit { do oven.note(77); } transition oven.tick() select A }\nfinal state End {} }"),
               "");
     run(3ms);
     ASSERT_EQ(slot.phase(), SlotPhase::trial);
+    const Time before = instance.clock().now();
     oven().tick.emit();
     run(2ms);
-    // A thousand microseconds of work in fewer statements than one step may execute: it would be late.
+    EXPECT_LT(instance.clock().now() - before, 4ms);
     EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
+    EXPECT_THAT(oven().told, testing::Contains(77)) << "its exit program runs although the time is used up";
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
 
