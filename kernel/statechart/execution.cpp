@@ -256,7 +256,7 @@ StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_RE
     using Table = statechart::InMemory;
     const StateIndex target = wanted_state_;
     wanted_state_ = no_state;
-    bool there = is_in(target), has_failed = false;
+    bool there = is_in(target);
     if (!there && target == machine_.final_state) {
         supersede(final_arc);
         there = true;
@@ -269,9 +269,8 @@ StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_RE
             *this, Table::conditions(), [&](Table::Leaf, Table::Arc arc) noexcept TAPPET_REALTIME {
                 const Answer answer = arc.row().to == target ? Order::asks(*this, arc, nullptr) : Answer::no;
                 there = answer == Answer::yes;
-                has_failed = answer == Answer::failed;
                 if (there) Order::begins<false>(*this, arc);
-                return there || has_failed ? statechart::Flow::stop : statechart::Flow::on;
+                return there || answer == Answer::failed ? statechart::Flow::stop : statechart::Flow::on;
             });
     if (!there) return StateOutcome::ignored;
     run_once_ = wanted_run_ && !automatic_;

@@ -238,9 +238,8 @@ private:
         StateIndex from = no_state;      ///< the leaf, for the trace
         std::uint8_t first = 0, end = 0; ///< the active states that are still to be left
         std::uint8_t remembered = 0;     ///< of a history: so many were entered
-        bool otherwise = false;
-        bool placed = false; ///< of a history: the next one is active
-        bool all = false;    ///< once the exit in hand has ended, everything is left
+        bool placed = false;             ///< of a history: the next one is active
+        bool all = false;                ///< once the exit in hand has ended, everything is left
     };
     struct Selected {
         StateIndex source = no_state;
@@ -332,11 +331,19 @@ private:
     bool capture(TransitionIndex transition, const std::byte* arguments) noexcept TAPPET_REALTIME;
     /// The run program of a state that has begun; false: nothing after it is done in this call.
     bool goes_on_running(ActiveState& at, Call& call) noexcept TAPPET_REALTIME {
+        context_.position = at.position;
         return has_run_so_far(at, run(at.position, call));
     }
     bool has_run_so_far(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME;
-    /// A program of the table, from where it stands.
-    ProgramReturn run(ProgramPosition& position, Call& call) noexcept TAPPET_REALTIME;
+    /// A program of the table, from the context's position; where it stands is kept when it does not end.
+    ProgramReturn run(ProgramPosition& kept, Call& call) noexcept TAPPET_REALTIME {
+        auto left = static_cast<std::uint32_t>(call.left > 0 ? call.left : 0);
+        const ProgramReturn why = code_.run(*code_.tables, context_, left);
+        call.left = left;
+        if (why != ProgramReturn::ended) [[unlikely]]
+            kept = context_.position;
+        return why;
+    }
 
     // ---- the active states
     void plan_remembered(statechart::Entering& into, const StateArc& arc) const noexcept TAPPET_REALTIME;

@@ -79,15 +79,6 @@ void StateMachineExecution::plan_remembered(statechart::Entering& into, const St
 
 // ---- programs and questions
 
-ProgramReturn StateMachineExecution::run(ProgramPosition& position, Call& call) noexcept TAPPET_REALTIME {
-    context_.position = position;
-    auto left = static_cast<std::uint32_t>(std::max<std::int64_t>(call.left, 0));
-    const ProgramReturn result = code_.run(*code_.tables, context_, left);
-    call.left = left;
-    position = context_.position;
-    return result;
-}
-
 bool StateMachineExecution::capture(TransitionIndex transition, const std::byte* arguments) noexcept
     TAPPET_REALTIME {
     if (fast_.capture != nullptr) return fast_.capture(*this, transition, arguments);

@@ -22,14 +22,14 @@ struct InMemory {
         // A run program.
         bool begins(Execution& e, ActiveState& at, Call& call) const noexcept TAPPET_REALTIME {
             e.context_.position = {.node = first_node(e)};
-            return e.has_run_so_far(at, goes_on(e, at.position, call));
+            return e.has_run_so_far(at, e.run(at.position, call));
         }
         // The one in hand: from its beginning, or from where it stands.
         template <class Step>
         bool ends(Execution& e, StatePart part, StateIndex state, Step, Call& call) const noexcept
             TAPPET_REALTIME {
             e.context_.position = e.program_begun_ ? e.position_ : ProgramPosition{.node = first_node(e)};
-            const ProgramReturn why = goes_on(e, e.position_, call);
+            const ProgramReturn why = e.run(e.position_, call);
             e.program_begun_ = why != ProgramReturn::ended;
             return why == ProgramReturn::ended || e.breaks_off(why, part, state, e.position_.node);
         }
@@ -37,16 +37,6 @@ struct InMemory {
     private:
         [[nodiscard]] NodeIndex first_node(const Execution& e) const noexcept TAPPET_REALTIME {
             return e.code_.tables->programs[ref.program].first;
-        }
-        // Where it stands is kept when it does not end.
-        static ProgramReturn goes_on(Execution& e, ProgramPosition& position, Call& call) noexcept
-            TAPPET_REALTIME {
-            auto left = static_cast<std::uint32_t>(std::max<std::int64_t>(call.left, 0));
-            const ProgramReturn why = e.code_.run(*e.code_.tables, e.context_, left);
-            call.left = left;
-            if (why != ProgramReturn::ended) [[unlikely]]
-                position = e.context_.position;
-            return why;
         }
     };
     struct State {
@@ -197,7 +187,6 @@ struct InMemory {
         Execution::Job job;
         job.at = otherwise ? row.otherwise_steps : row.steps;
         job.arc = arc.number();
-        job.otherwise = otherwise;
         job.from = e.machine_.plain ? e.status_.active : states[e.end_of(e.index_of(row.source)) - 1].state;
         if ((otherwise ? row.otherwise : row.to) == no_state) return job;
         const std::size_t kept = otherwise ? row.otherwise_kept : row.kept_levels;

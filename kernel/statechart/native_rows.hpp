@@ -194,7 +194,6 @@ template <const auto& source, std::size_t type> struct MachineRows {
                 constexpr StateArc row = view.arcs[List::arc];
                 job.arc = List::arc;
                 job.from = leaf;
-                job.otherwise = List::otherwise;
                 job.first = List::otherwise ? row.otherwise_kept : row.kept_levels;
                 job.end = static_cast<std::uint8_t>(e.status_.states.size());
             }

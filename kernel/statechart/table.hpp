@@ -30,10 +30,6 @@ inline constexpr std::size_t max_state_events = 255;
 /// Transitions counted once for each leaf that they lead out of, with the requests that every machine has.
 inline constexpr std::size_t max_leaf_transitions = 3600;
 static_assert(max_states * max_state_events <= 0xffff, "a cell of the resolved table has a 16-bit number");
-static_assert(
-    max_leaf_transitions * (2 * max_state_depth + 1) + max_states * 2 * max_state_depth <= 0xffff,
-    "a place in the resolved list of programs has a 16-bit number: one transition calls at most its "
-    "own program and an exit and an entry a level, one state at most a run and a handle a level");
 
 /// A program of a state or transition: a C++ function, which is atomic, or one of the table's own programs,
 /// which may take several steps.

@@ -54,25 +54,22 @@ namespace detail {
 
 /// The rows of a compiled script, in a bank.
 constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& sizes) noexcept {
-    const auto take = [&layout]<class T>(std::span<T>& into, std::size_t count) {
-        into = {layout.take<T>(count), count};
-    };
     ScriptRoom room;
-    take(room.instructions, sizes.instructions);
-    take(room.conditions, sizes.conditions);
-    take(room.nodes, sizes.nodes);
-    take(room.arcs, sizes.arcs);
-    take(room.programs, sizes.programs);
-    take(room.variables, sizes.variables);
-    take(room.links, sizes.links);
+    layout.take(room.instructions, sizes.instructions);
+    layout.take(room.conditions, sizes.conditions);
+    layout.take(room.nodes, sizes.nodes);
+    layout.take(room.arcs, sizes.arcs);
+    layout.take(room.programs, sizes.programs);
+    layout.take(room.variables, sizes.variables);
+    layout.take(room.links, sizes.links);
     room.image = {layout.take(sizes.image, data_alignment), sizes.image};
-    take(room.states, sizes.states);
-    take(room.transitions, sizes.transitions);
-    take(room.captures, sizes.captures);
-    take(room.types, sizes.types);
-    take(room.instances, sizes.instances);
-    take(room.names, sizes.names);
-    take(room.reach, sizes.reach);
+    layout.take(room.states, sizes.states);
+    layout.take(room.transitions, sizes.transitions);
+    layout.take(room.captures, sizes.captures);
+    layout.take(room.types, sizes.types);
+    layout.take(room.instances, sizes.instances);
+    layout.take(room.names, sizes.names);
+    layout.take(room.reach, sizes.reach);
     return room;
 }
 

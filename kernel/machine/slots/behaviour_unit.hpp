@@ -53,6 +53,9 @@ public:
         at_ += bytes;
         return memory_.empty() || at_ > memory_.size() ? nullptr : memory_.data() + here;
     }
+    template <class T> constexpr void take(std::span<T>& into, std::size_t count) noexcept {
+        into = {take<T>(count), count};
+    }
     [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
     [[nodiscard]] constexpr bool full() const noexcept { return at_ > memory_.size(); }
 
@@ -74,18 +77,15 @@ constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& t
 
 /// Where a type's resolved state machine lies.
 constexpr ResolvedRoom take_room(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
-    const auto take = [&layout]<class T>(std::span<T>& into, std::size_t count) {
-        into = {layout.take<T>(count), count};
-    };
     ResolvedRoom room;
-    take(room.plans, sizes.states);
-    take(room.triggers, sizes.triggers);
-    take(room.cells, sizes.states * sizes.triggers);
-    take(room.asked, sizes.asked);
-    take(room.arcs, sizes.arcs);
-    take(room.steps, sizes.steps);
-    take(room.regions, sizes.regions);
-    take(room.captured, sizes.triggers);
+    layout.take(room.plans, sizes.states);
+    layout.take(room.triggers, sizes.triggers);
+    layout.take(room.cells, sizes.states * sizes.triggers);
+    layout.take(room.asked, sizes.asked);
+    layout.take(room.arcs, sizes.arcs);
+    layout.take(room.steps, sizes.steps);
+    layout.take(room.regions, sizes.regions);
+    layout.take(room.captured, sizes.triggers);
     return room;
 }
 

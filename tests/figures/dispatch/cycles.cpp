@@ -2,13 +2,7 @@
 // script's tables in memory.
 #include "tests/figures/behaviour/steps.hpp"
 #include "tests/figures/dispatch/groups.hpp"
-
-#include "kernel/activity/engine.hpp"
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance/instance.hpp"
-
-#include <cstdlib>
-#include <iostream>
+#include "tests/figures/dispatch/world.hpp"
 
 namespace tappet::figures {
 
@@ -23,40 +17,24 @@ constexpr auto swing_machine(const Options&... options) {
 }
 constexpr auto automatic_table = swing_machine();
 constexpr auto reactive_table = swing_machine(reactive_mode);
-constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 1024 * 1024};
-
-template <const auto& table>
-struct World {
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
-    World() {
-        static_cast<void>(os::prove_processor_counter()); // as it is when the machine arms
-        if (const auto configured = instance.configure({}); !configured) {
-            std::cerr << configured.error().view() << '\n';
-            std::exit(2);
-        }
-        engine().start(clock.now());
-    }
-    Engine& engine() { return instance.engines()[0]; }
-    Swing& swing() { return *instance.find<Swing>("swing"); }
-    static World& get() {
-        static World world;
-        return world;
-    }
-};
+template <const auto& table> World& world_of() {
+    static World world{os::Clock::Kind::real, Firmware<table, figures_board>::machine()};
+    return world;
+}
 
 template <const auto& table>
 void idle(std::size_t times) {
-    auto& world = World<table>::get();
+    World& world = world_of<table>();
     const RunsActivity here{0};
     for (std::size_t i = 0; i < times; ++i) world.engine().run(true);
 }
 template <const auto& table>
 void event(std::size_t times) {
-    auto& world = World<table>::get();
+    World& world = world_of<table>();
     const RunsActivity here{0};
+    auto& swing = *world.instance.find<Swing>("swing");
     for (std::size_t i = 0; i < times; ++i) {
-        world.swing().beat.emit();
+        swing.beat.emit();
         world.engine().run(true);
     }
 }

@@ -1,12 +1,7 @@
 // Steps of engines whose components have nothing to do: what the framework itself takes.
 #include "tests/figures/dispatch/groups.hpp"
+#include "tests/figures/dispatch/world.hpp"
 
-#include "kernel/activity/engine.hpp"
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance/instance.hpp"
-
-#include <cstdlib>
-#include <iostream>
 #include <memory>
 
 namespace tappet::figures {
@@ -25,24 +20,9 @@ struct Idle {
 constexpr auto idle_table = machine("idle", components(component<Idle>("idle")),
                                     activities(activity("motion", every(1ms), budget(50us), runs("idle"))),
                                     connections(), reactions(), behaviours());
-constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 1024 * 1024};
-
-struct World {
-    os::Clock clock;
-    MachineInstance instance;
-    World(os::Clock::Kind kind, const AcceptedMachine& machine) : clock{kind}, instance{machine, clock} {
-        if (const auto configured = instance.configure({}); !configured) {
-            std::cerr << configured.error().view() << '\n';
-            std::exit(2);
-        }
-        engine().start(clock.now());
-    }
-    Engine& engine() { return instance.engines()[0]; }
-};
-
 /// As an activity does it: when is it due, it is due, it runs.
 void step_without_stamps(std::size_t times) {
-    static World world{os::Clock::Kind::virtual_time, Firmware<idle_table, board>::machine()};
+    static World world{os::Clock::Kind::virtual_time, Firmware<idle_table, figures_board>::machine()};
     Engine& engine = world.engine();
     const RunsActivity here{engine.plan().activity}; // as its thread does, once for ever
     for (std::size_t i = 0; i < times; ++i) {
