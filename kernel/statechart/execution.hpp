@@ -318,6 +318,9 @@ private:
         job_ = job;
         set(in_hand);
     }
+    /// At a step of a compiled machine, whose leaf is active; `kept`: so many states are not left.
+    [[gnu::cold]] void stands_at(StepIndex step, ArcIndex arc, StateIndex leaf, std::uint8_t kept) noexcept
+        TAPPET_REALTIME;
     void depart() noexcept TAPPET_REALTIME;
     /// A program or question that did not end well; false.
     bool breaks_off(ProgramReturn why, StatePart part, StateIndex state, NodeIndex node) noexcept

@@ -171,6 +171,12 @@ void StateMachineExecution::supersede(ArcIndex arc) noexcept TAPPET_REALTIME {
         program_begun_ = false;
 }
 
+void StateMachineExecution::stands_at(StepIndex step, ArcIndex arc, StateIndex leaf,
+                                      std::uint8_t kept) noexcept TAPPET_REALTIME {
+    const std::size_t active = arc != no_arc ? status_.states.size() : 0;
+    holds({.at = step, .arc = arc, .from = leaf, .first = kept, .end = static_cast<std::uint8_t>(active)});
+}
+
 void StateMachineExecution::depart() noexcept TAPPET_REALTIME {
     const StateIndex from = job_.from;
     job_ = {};

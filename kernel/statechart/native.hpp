@@ -54,13 +54,16 @@ template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf :
         TAPPET_REALTIME {
         return Rows::template captures<view.arcs[arc].transition>(e, arguments);
     }
+    template <AskedIndex first, class Visit, std::size_t... i>
+    [[gnu::always_inline]] static void all_asked([[maybe_unused]] const Visit& visit,
+                                                 std::index_sequence<i...>) noexcept TAPPET_REALTIME {
+        static_cast<void>(
+            ((visit(AtLeaf{}, Arc<view.asked[first + i].arc()>{}) == statechart::Flow::on) && ...));
+    }
     template <AskedIndex first, class Visit>
     [[gnu::always_inline]] static void for_each_asked(Execution&, Asked<first>, const Visit& visit) noexcept
         TAPPET_REALTIME {
-        static_cast<void>(for_each_below<Asked<first>::count>(
-            [&]<std::size_t i> [[gnu::always_inline]] () noexcept TAPPET_REALTIME {
-                return visit(AtLeaf{}, Arc<view.asked[first + i].arc()>{}) == statechart::Flow::on;
-            }));
+        all_asked<first>(visit, std::make_index_sequence<Asked<first>::count>{});
     }
     template <ArcIndex arc> static constexpr bool is_asked_from(const Execution&, AtLeaf, Arc<arc>) noexcept
         TAPPET_REALTIME {
@@ -75,38 +78,56 @@ template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf :
         return State<view.arcs[view.asked[first].arc()].source>{};
     }
     template <bool otherwise, ArcIndex arc, class Visit>
-    [[gnu::always_inline]] static void for_each_entered(Execution&, Arc<arc>, const Visit& visit) noexcept
+    [[gnu::always_inline]] static void for_each_entered(Execution&, Arc<arc>,
+                                                        [[maybe_unused]] const Visit& visit) noexcept
         TAPPET_REALTIME {
-        using List = decltype(Arc<arc>::template steps<otherwise>());
-        static_cast<void>(for_each_below<List::count>(
-            [&]<std::size_t i> [[gnu::always_inline]] () noexcept TAPPET_REALTIME {
-                if constexpr (view.steps[List::first + i].kind == StepKind::place)
-                    return visit(State<view.steps[List::first + i].state>{});
-                else
-                    return true;
-            }));
+        if constexpr (view.preconditions) {
+            using List = decltype(Arc<arc>::template steps<otherwise>());
+            static_cast<void>(for_each_below<List::count>(
+                [&]<std::size_t i> [[gnu::always_inline]] () noexcept TAPPET_REALTIME {
+                    if constexpr (view.steps[List::first + i].kind == StepKind::place)
+                        return visit(State<view.steps[List::first + i].state>{});
+                    else
+                        return true;
+                }));
+        }
     }
 
     // ---- one transition
 
+    // Folds, not closures: the compiler takes each closure apart again, at each of these places.
+    template <class Here, class Visit>
+    [[gnu::always_inline]] static bool one_step([[maybe_unused]] Execution& e, const Visit& visit) noexcept
+        TAPPET_REALTIME {
+        constexpr StepKind kind = Here::row().kind;
+        const bool has_ended = visit.template operator()<kind>(Here{});
+        if constexpr (may_stand(kind))
+            if (!has_ended) [[unlikely]] {
+                Here::stands(e);
+                return false;
+            }
+        return true;
+    }
+    template <class List, class Visit, std::size_t... i>
+    [[gnu::always_inline]] static bool all_steps([[maybe_unused]] Execution& e,
+                                                 [[maybe_unused]] const Visit& visit,
+                                                 std::index_sequence<i...>) noexcept TAPPET_REALTIME {
+        return (one_step<Step<List::first + i, List>>(e, visit) && ...);
+    }
     template <class List, class Visit>
     [[gnu::always_inline]] static bool for_each_step(Execution& e, List, const Visit& visit) noexcept
         TAPPET_REALTIME {
-        return for_each_below<List::count>(
-            [&]<std::size_t i> [[gnu::always_inline]] () noexcept TAPPET_REALTIME {
-                using Here = Step<List::first + i, List>;
-                if (visit.template operator()<Here::row().kind>(Here{})) [[likely]]
-                    return true;
-                Here::stands(e);
-                return false;
-            });
+        return all_steps<List>(e, visit, std::make_index_sequence<List::count>{});
+    }
+    template <std::size_t from, class Visit, std::size_t... i>
+    [[gnu::always_inline]] static bool all_states([[maybe_unused]] const Visit& visit,
+                                                  std::index_sequence<i...>) noexcept TAPPET_REALTIME {
+        return (visit(StateAt<from == 0 ? i + 1 : from - i>{}) && ...);
     }
     template <StepIndex index, class List, class Visit>
     [[gnu::always_inline]] static bool for_each_left(Execution&, Step<index, List>,
                                                      const Visit& visit) noexcept TAPPET_REALTIME {
-        return for_each_below<depth - view.steps[index].number>(
-            [&]<std::size_t i> [[gnu::always_inline]] () noexcept
-            TAPPET_REALTIME { return visit(StateAt<depth - i>{}); });
+        return all_states<depth>(visit, std::make_index_sequence<depth - view.steps[index].number>{});
     }
     template <StateIndex state> [[gnu::always_inline]] static void remove(Execution& e, State<state>) noexcept
         TAPPET_REALTIME {
@@ -130,8 +151,7 @@ template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf :
     template <class Visit>
     [[gnu::always_inline]] static bool for_each_active(Execution&, const Visit& visit) noexcept
         TAPPET_REALTIME {
-        return for_each_below<depth>([&]<std::size_t i> [[gnu::always_inline]] () noexcept
-                                     TAPPET_REALTIME { return visit(StateAt<i + 1>{}); });
+        return all_states<0>(visit, std::make_index_sequence<depth>{});
     }
 };
 

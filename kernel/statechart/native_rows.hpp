@@ -188,16 +188,13 @@ template <const auto& source, std::size_t type> struct MachineRows {
         static constexpr const TransitionStep& row() noexcept TAPPET_REALTIME { return view.steps[index]; }
         static constexpr State<view.steps[index].state> state() noexcept TAPPET_REALTIME { return {}; }
         /// Here it is left to the loaded form.
-        [[gnu::noinline, gnu::cold]] static void stands(Execution& e) noexcept TAPPET_REALTIME {
-            Execution::Job job{.at = index};
-            if constexpr (List::arc != no_arc) {
+        [[gnu::always_inline]] static void stands(Execution& e) noexcept TAPPET_REALTIME {
+            if constexpr (List::arc == no_arc) {
+                e.stands_at(index, no_arc, no_state, 0);
+            } else {
                 constexpr StateArc row = view.arcs[List::arc];
-                job.arc = List::arc;
-                job.from = leaf;
-                job.first = List::otherwise ? row.otherwise_kept : row.kept_levels;
-                job.end = static_cast<std::uint8_t>(e.status_.states.size());
+                e.stands_at(index, List::arc, leaf, List::otherwise ? row.otherwise_kept : row.kept_levels);
             }
-            e.holds(job);
         }
     };
     /// Arcs that are asked one after the other.

@@ -36,6 +36,10 @@ inline constexpr StepIndex no_step = 0xffffffff;
 constexpr bool is_last(StepKind kind) noexcept TAPPET_REALTIME {
     return kind == StepKind::arrive || kind == StepKind::depart || kind == StepKind::handle;
 }
+/// It may have to be gone on with: all but what only notes what is so.
+constexpr bool may_stand(StepKind kind) noexcept TAPPET_REALTIME {
+    return kind != StepKind::place && kind != StepKind::arrive && kind != StepKind::depart;
+}
 
 /// Number of an arc: four that every machine has, then the transitions of the table in their order.
 using ArcIndex = std::uint16_t;

@@ -23,6 +23,17 @@ inline loom::Settings nobody_there() {
     return settings;
 }
 
+/// The seeds of a suite, each another plant. Under the real-time sanitizer, which looks at the ways that the
+/// code takes and is twelve times slower, the first: the others take the same ways.
+inline auto seeds(std::uint64_t number) {
+#if defined(__has_feature)
+#if __has_feature(realtime_sanitizer)
+    number = 1;
+#endif
+#endif
+    return testing::Range<std::uint64_t>(1, number + 1);
+}
+
 class LoomRig {
 public:
     explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = no_faults())

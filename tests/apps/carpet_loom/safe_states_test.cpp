@@ -6,10 +6,8 @@ namespace {
 
 using loom::Fault;
 
-constexpr std::uint64_t seeds = 6;
-
 class SafeStates : public testing::TestWithParam<std::uint64_t> {};
-INSTANTIATE_TEST_SUITE_P(seed, SafeStates, testing::Range<std::uint64_t>(1, seeds + 1));
+INSTANTIATE_TEST_SUITE_P(seed, SafeStates, seeds(6));
 
 /// The shaft stands, the brake holds, no valve is open, and the lamps say that hands are needed.
 void expect_safe(LoomRig& rig) {

@@ -10,10 +10,8 @@ using loom::Fault;
 namespace cob = wires::cob;
 namespace line = wires::line;
 
-constexpr std::uint64_t seeds = 4;
-
 class Wires : public testing::TestWithParam<std::uint64_t> {};
-INSTANTIATE_TEST_SUITE_P(seed, Wires, testing::Range<std::uint64_t>(1, seeds + 1));
+INSTANTIATE_TEST_SUITE_P(seed, Wires, seeds(4));
 
 using CanBus = can::Bus<can_signals>;
 using LinePort = gpio::LinePort<io_lines>;

@@ -145,11 +145,11 @@ TEST(NativeMachine, AMachineAsNativeCodeDoesCallForCallWhatItsTableInMemoryDoes)
     const auto all = [&coverage]<bool folded, std::uint64_t... seed>() {
         (both_ways<seed, folded>(coverage), ...);
     };
-    all.template operator()<false, 1, 2, 5, 7>(); // of which check() finds no fault
-    all.template operator()<true, 101, 102>();
+    all.template operator()<false, 1, 2, 5>(); // of which check() finds no fault
+    all.template operator()<true, 101>();
     EXPECT_EQ(coverage.statuses.size(), 6u) << "inactive to error";
     EXPECT_GT(coverage.faults.size(), 5u) << "entries, exits, runs, transition programs, guards failed";
-    EXPECT_GT(coverage.transitions, 5000u);
+    EXPECT_GT(coverage.transitions, 3000u);
     EXPECT_GT(coverage.under_way, 500u);
     EXPECT_GT(coverage.left_over, 500u);
     EXPECT_GT(coverage.deferred, 500u);
