@@ -14,6 +14,8 @@
 
 namespace tappet {
 
+struct Controlled; ///< kernel/machine/instance/controlled.hpp
+
 // clang-format off
 /// A component is a plain struct. What it has of the following is used, in this order of its life; a member
 /// of such a name, or nearly, that is spelled otherwise is refused by the table's check:
@@ -30,6 +32,8 @@ namespace tappet {
 ///     void finalise()                                     after its activity stopped, on the stopper's thread; not real-time
 // clang-format on
 struct ComponentType {
+    /// What a component that its row makes the master of another one controls there.
+    enum class Controls : std::uint8_t { nothing, life, behaviour };
     TypeId tag = nullptr;
     std::size_t size = 0;
     std::size_t align = 0;
@@ -42,7 +46,10 @@ struct ComponentType {
     bool records_cycles = false; ///< it is given the tapes of all activities
     bool watches_life = false;   ///< its row names an activity or an output with watches(...)
     bool slot_required = false;  ///< room for a behaviour that is loaded later
-    NeverRun never_run{};        ///< what the table's check refuses
+    Controls controls = Controls::nothing; ///< its row names another component with controls(...)
+    std::string_view script{};             ///< of the behaviour that it controls; empty: whatever there is
+    std::string_view instance{};           ///< in that script
+    NeverRun never_run{};                  ///< what the table's check refuses
     void (*construct)(void* memory) = nullptr;
     Sentence (*configure)(void* component, Setup&) = nullptr;
     Sentence (*initialise)(void* component) = nullptr;
@@ -55,6 +62,7 @@ struct ComponentType {
     void (*stop)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
     Sentence (*accepts)(const void* component, const Proposal&) noexcept TAPPET_REALTIME = nullptr;
     void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
+    void (*control)(void* component, const Controlled&) = nullptr; ///< before its properties are set
 };
 
 namespace detail {
@@ -77,6 +85,12 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::records_cycles; }) type.records_cycles = T::records_cycles;
     if constexpr (requires { T::watches_life; }) type.watches_life = T::watches_life;
     if constexpr (requires { T::slot_required; }) type.slot_required = T::slot_required;
+    if constexpr (requires { T::controls; }) {
+        type.controls = T::controls;
+        type.control = [](void* c, const Controlled& controlled) { static_cast<T*>(c)->control(controlled); };
+    }
+    if constexpr (requires { T::script_name; })
+        type.script = T::script_name, type.instance = T::instance_name;
     if constexpr (requires { T::behaviour_required; }) type.behaviour_required = T::behaviour_required;
     if constexpr (life_configure<T>)
         type.configure = [](void* c, Setup& s) { return static_cast<T*>(c)->configure(s); };

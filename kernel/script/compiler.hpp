@@ -30,13 +30,21 @@ public:
     }
 
 private:
-    /// "program name { ... }": one instance of its own type.
+    /// "program name { ... }": one instance of its own type; "program name(type parameter, ...) { ... }"
+    /// waits for its task's command.
     constexpr void parse_named_program() {
         advance();
         const Token name = need_name("the name of the program");
-        need(Sign::open_brace, "\"{\"");
         make_program(name, name.text, false);
         need(Sign::close_brace, "\"}\"");
+    }
+    constexpr void parse_program_parameters() {
+        while (ok() && !is(Sign::close_round)) {
+            const TypeId type = parse_type();
+            if (ok()) parse_variable_of(type, VariableKind::parameter);
+            if (!is(Sign::close_round)) need(Sign::comma, "\",\" or \")\"");
+        }
+        need(Sign::close_round, "\")\"");
     }
     /// Statements alone are one program with the name of the file.
     constexpr void parse_bare_program() {
@@ -51,15 +59,21 @@ private:
         begin_type();
         BehaviourType type;
         type.name = keep({name});
+        const std::size_t symbols = symbols_used_;
+        const bool on_command = !to_the_end && take(Sign::open_round);
+        if (on_command) parse_program_parameters();
+        if (!to_the_end) need(Sign::open_brace, "\"{\"");
         exports_variables_ = true;
         const ProgramIndex program = parse_program({name}, to_the_end);
         exports_variables_ = false;
+        symbols_used_ = symbols;
         if (ok() && program == no_program) return fail(at, {"the program has no statement"});
         end_type(type);
         if (!ok()) return;
         BehaviourInstance instance;
         instance.name = types_.room[types_.used - 1].name;
         instance.type = static_cast<TypeIndex>(types_.used - 1);
+        instance.on_command = on_command;
         instance.image = types_.room[instance.type].tables.image;
         check_instance_name(at, instance.name);
         add(instances_, instance, "instances");

@@ -19,32 +19,39 @@ constexpr void Statements::parse_set(const Token& at) {
                                                                 : "a constant or an argument"});
         return parse_set_place(at, symbol->operand);
     }
-    std::uint16_t component = 0;
+    const FacetPlace place = parse_facet_place(name);
+    if (!ok()) return;
+    need(Sign::assign, "\"=\"");
+    const Token where = token_;
+    Operand value = assigned_value(place.action.type);
+    value = as(where, value, place.action.type, "");
+    act(place.action, place.component, place.number, no_data, value.at);
+    pending_ = add_arc(end_action(at));
+}
+
+constexpr Statements::FacetPlace Statements::parse_facet_place(const Token& name) {
+    FacetPlace place;
     Token facet_name = name;
     if (is(Sign::dot) && find_component(name.text) != none) {
-        component = find_component(name.text);
+        place.component = find_component(name.text);
         advance();
         facet_name = need_word("the name of an output or property");
     } else if (find_facet(std::uint16_t{0}, name.text) == none) {
-        return fail_unknown_value(name, nullptr);
+        fail_unknown_value(name, nullptr);
     }
-    const std::uint16_t number = ok() ? parse_facet(component, facet_name) : none;
-    if (number == none) return;
-    const Facet& facet = facet_of(component, number);
-    const FacetAction action = find_write(facet);
-    if (!action)
-        return fail(facet_name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind),
-                                 ", which is not to be assigned; outputs, properties and variables are"});
-    if (facet.kind != FacetKind::property && component != 0)
-        return fail(facet_name, {"\"", quoted(facet.name), "\" is an output of \"",
-                                 reach_.components[component].name, "\", which alone writes it"});
-    check_near(facet_name, component, to_text(facet.kind));
-    need(Sign::assign, "\"=\"");
-    const Token where = token_;
-    Operand value = assigned_value(action.type);
-    value = as(where, value, action.type, "");
-    act(action, component, number, no_data, value.at);
-    pending_ = add_arc(end_action(at));
+    place.number = ok() ? parse_facet(place.component, facet_name) : none;
+    if (place.number == none) return place;
+    const Facet& facet = facet_of(place.component, place.number);
+    place.action = find_write(facet);
+    if (!place.action)
+        fail(facet_name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind),
+                          ", which is not to be assigned; outputs, properties and variables are"});
+    else if (facet.kind != FacetKind::property && place.component != 0)
+        fail(facet_name, {"\"", quoted(facet.name), "\" is an output of \"",
+                          reach_.components[place.component].name, "\", which alone writes it"});
+    else
+        check_near(facet_name, place.component, to_text(facet.kind));
+    return place;
 }
 
 constexpr void Statements::parse_set_place(const Token& at, Operand place) {
@@ -191,7 +198,11 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
         is_own ? place_in(Region::arguments, std::max<std::size_t>(command.value_bytes(), 1))
         : command.argument_bytes != 0 ? scratch(command.argument_bytes)
                                       : no_data;
-    std::array<Operand, 8> results{};
+    struct ResultPlace {
+        const Symbol* variable = nullptr;
+        FacetPlace facet{};
+    };
+    std::array<ResultPlace, 8> results{};
     std::size_t result_count = 0, input_at = 0, input = 0;
     if (!need(Sign::open_round, "\"(\" and the arguments")) return;
     const auto all = facet.type->elements;
@@ -203,13 +214,16 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
             ++input;
             continue;
         }
-        const Token result = need_name("the variable that receives this result");
-        const Symbol* const symbol = ok() ? find_symbol(result) : nullptr;
-        if (ok() && (symbol == nullptr || symbol->fixed || symbol->kind != SymbolKind::variable))
+        const Token result = need_word("the variable or property that receives this result");
+        ResultPlace place{ok() ? find_symbol(result) : nullptr};
+        if (ok() && place.variable == nullptr)
+            place.facet = parse_facet_place(result);
+        else if (ok() && (place.variable->fixed || place.variable->kind != SymbolKind::variable))
             return fail(result,
-                        {"\"", quoted(result.text), "\" is no variable; a result of a command needs one"});
+                        {"\"", quoted(result.text),
+                         "\" is not to be assigned; a result of a command needs a variable or a property"});
         if (ok() && result_count == results.size()) return fail_limit("results of one command");
-        if (ok()) results[result_count++] = symbol->operand;
+        if (ok()) results[result_count++] = place;
     }
     end_arguments(all.size());
     if (!ok()) return;
@@ -243,7 +257,13 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
     for (std::size_t i = 0; ok() && i < result_count; ++i) {
         const TypeId type = command.results->elements[i];
         const Operand value = reckoned(at, at_place(type, from));
-        store(at, value, results[i].type, results[i].at, " as a result");
+        if (const Symbol* const variable = results[i].variable; variable != nullptr) {
+            store(at, value, variable->operand.type, variable->operand.at, " as a result");
+        } else {
+            const FacetPlace& to = results[i].facet;
+            act(to.action, to.component, to.number, no_data,
+                as(at, value, to.action.type, " as a result").at);
+        }
         from = moved(from, type->size);
     }
     pending_ = add_arc(end_action(at));

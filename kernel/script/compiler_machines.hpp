@@ -55,6 +55,38 @@ protected:
         return none;
     }
 
+    /// "name" or "name = value" of a variable of a whole type.
+    constexpr void parse_variable_of(TypeId type, VariableKind kind) {
+        const Token name = need_name("the name");
+        if (!ok()) return;
+        Symbol symbol;
+        if (kind == VariableKind::constant) {
+            need(Sign::assign, "\"=\" and the constant's value");
+            symbol.kind = SymbolKind::value;
+            symbol.fixed = true;
+            symbol.operand = known_value(type, "a constant");
+            return declare(name, symbol);
+        }
+        Operand value;
+        const Token where = token_;
+        const bool given = take(Sign::assign);
+        if (given) value = known_value(type, "the first value of a variable");
+        DataOffset at = 0;
+        std::byte* const bytes = add_variable(type->size, at);
+        if (!ok()) return;
+        if (given && value.literal) {
+            if (!encode(value, type, bytes)) return fail_type(where, value.type, type_name(type), "");
+        } else if (given) {
+            std::copy_n(constant_bytes(value.at), type->size, bytes);
+        }
+        if (variables_.used < max_script_nodes)
+            required_.put(variables_.used, kind == VariableKind::parameter && !given);
+        add(variables_, VariableRow{keep({name.text}), type, at, kind}, "variables");
+        symbol.kind = SymbolKind::variable;
+        symbol.operand = at_place(type, at);
+        declare(name, symbol);
+    }
+
     /// "(1, 2)" or "(first = 1, second = 2)" for the parameters of a type; answers how many.
     constexpr std::uint16_t parse_machine_arguments(const Token& at, TypeIndex type) {
         const auto variables = types_.room[type].tables.variables;
@@ -142,39 +174,8 @@ private:
     }
     constexpr void parse_variable(VariableKind kind) {
         const TypeId type = parse_type();
-        do {
-            const Token name = need_name("the name");
-            if (!ok()) return;
-            Symbol symbol;
-            if (kind == VariableKind::constant) {
-                need(Sign::assign, "\"=\" and the constant's value");
-                symbol.kind = SymbolKind::value;
-                symbol.fixed = true;
-                symbol.operand = known_value(type, "a constant");
-                declare(name, symbol);
-                continue;
-            }
-            Operand value;
-            const Token where = token_;
-            const bool given = take(Sign::assign);
-            if (given) value = known_value(type, "the first value of a variable");
-            DataOffset at = 0;
-            std::byte* const bytes = add_variable(type->size, at);
-            if (!ok()) return;
-            if (given && value.literal) {
-                if (!encode(value, type, bytes)) return fail_type(where, value.type, type_name(type), "");
-            } else if (given) {
-                std::copy_n(constant_bytes(value.at), type->size, bytes);
-            }
-            if (kind == VariableKind::parameter && !given && variables_.used < max_script_nodes)
-                required_.put(variables_.used, true);
-            else if (variables_.used < max_script_nodes)
-                required_.put(variables_.used, false);
-            add(variables_, VariableRow{keep({name.text}), type, at, kind}, "variables");
-            symbol.kind = SymbolKind::variable;
-            symbol.operand = at_place(type, at);
-            declare(name, symbol);
-        } while (ok() && take(Sign::comma));
+        do parse_variable_of(type, kind);
+        while (ok() && take(Sign::comma));
         static_cast<void>(take(Sign::semicolon));
     }
     constexpr void parse_child() {

@@ -297,6 +297,12 @@ private:
     }
 
     constexpr void parse_set(const Token& at);
+    /// An output or a property that may be assigned, after its first name.
+    struct FacetPlace {
+        std::uint16_t component = 0, number = none;
+        FacetAction action{};
+    };
+    constexpr FacetPlace parse_facet_place(const Token& name);
     /// A variable or a part of one.
     constexpr void parse_set_place(const Token& at, Operand place);
     constexpr Operand assigned_value(TypeId type);

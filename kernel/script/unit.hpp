@@ -29,6 +29,7 @@ struct BehaviourInstance {
     InstanceIndex parent = no_instance;
     InstanceIndex first_child = no_instance; ///< its children stand side by side
     std::uint16_t children = 0;
+    bool on_command = false;            ///< a program with parameters: it starts when it is told to
     std::span<const std::byte> image{}; ///< its data at the beginning, its arguments in place
 };
 

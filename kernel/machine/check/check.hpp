@@ -2,9 +2,9 @@
 // cure. The same function runs in the compiler and in tests.
 #pragma once
 
-#include "kernel/machine/check/behaviours.hpp"
 #include "kernel/machine/check/board.hpp"
 #include "kernel/machine/check/components.hpp"
+#include "kernel/machine/check/controls.hpp"
 #include "kernel/machine/check/flow.hpp"
 #include "kernel/machine/check/operations.hpp"
 #include "kernel/machine/check/reach.hpp"
@@ -29,6 +29,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_uses(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_reach(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_behaviours(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_controls(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
         for (std::size_t e = 0; e < m.extras->size(); ++e)
             if (Sentence fault = m.extras->at(e)->check(m, r); !fault.empty()) return fault;

@@ -19,27 +19,18 @@ T* make(detail::UnitLayout& layout, std::size_t count) noexcept {
     return memory;
 }
 
-/// The addresses behind an instance's links, and slots for the commands that it sends to other activities.
-void bind_links(const ScriptUnit& unit, UnitPart& part, detail::UnitLayout& layout, MachineInstance& machine,
-                std::size_t driven) {
+/// Slots for the commands that an instance sends to other activities.
+void aim_slots(const ScriptUnit& unit, UnitPart& part, detail::UnitLayout& layout, MachineInstance& machine,
+               std::size_t driven) {
     const MachineView& table = machine.machine().table;
-    const std::string_view name = table.components[driven].name;
-    const auto rows = part.type->tables.links;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const std::size_t c = component_of(table, name, unit, rows[i].peer);
-        ProgramLink& link = part.links[i];
-        link.component = link.place = machine.component(c);
-        link.type = table.components[c].type;
-        if (rows[i].facet == LinkRow::component_itself) continue;
-        if (void* place = machine.place_of({c, rows[i].facet}); place != nullptr) link.place = place;
-    }
     std::size_t slot = 0;
     const std::size_t sender = machine.machine().index.activity[driven];
     detail::for_each_slot_link(unit, *part.type, [&](std::size_t i, const Facet& facet) {
         std::byte* values = layout.take(facet.command->value_bytes(), data_alignment);
         if (values == nullptr) return;
-        const std::size_t c = component_of(table, name, unit, rows[i].peer);
-        part.slots[slot].place(machine.requests().command_route({c, rows[i].facet}, sender), values);
+        const LinkRow& row = part.type->tables.links[i];
+        const std::size_t c = component_of(table, table.components[driven].name, unit, row.peer);
+        part.slots[slot].place(machine.requests().command_route({c, row.facet}, sender), values);
         part.links[i].slot = &part.slots[slot++];
     });
 }
@@ -114,7 +105,7 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
         detail::for_each_slot_link(unit, *part.type, [&](std::size_t, const Facet&) { ++part.slot_count; });
         part.slots = make<CommandSlot>(layout, part.slot_count);
         if (layout.full()) return too_small("data and commands");
-        bind_links(unit, part, layout, machine, driven);
+        aim_slots(unit, part, layout, machine, driven);
         if (layout.full()) return too_small("commands");
         std::fill_n(part.data, bytes, std::byte{});
         std::copy(row.image.begin(), row.image.end(), part.data);
@@ -135,6 +126,20 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     parts_ = {parts, instances};
     routes_ = {routes, events.size() * instances};
     return {};
+}
+
+void BehaviourUnit::connect_links() {
+    const MachineView& table = machine_->machine().table;
+    for (UnitPart& part : parts_)
+        for (std::size_t i = 0; i < part.type->tables.links.size(); ++i) {
+            const LinkRow& row = part.type->tables.links[i];
+            const std::size_t c = component_of(table, table.components[driven_].name, unit_, row.peer);
+            ProgramLink& link = part.links[i];
+            link.component = link.place = machine_->component(c);
+            link.type = table.components[c].type;
+            if (row.facet == LinkRow::component_itself) continue;
+            if (void* place = machine_->place_of({c, row.facet}); place != nullptr) link.place = place;
+        }
 }
 
 void BehaviourUnit::bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view) {
@@ -190,7 +195,7 @@ void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
     for (UnitPart& part : parts_) {
         if (part.row->parent != no_instance) continue;
         if (part.program != nullptr) {
-            static_cast<void>(part.program->start());
+            if (!part.row->on_command) static_cast<void>(part.program->start());
             continue;
         }
         if (part.machine->is_active())

@@ -1,5 +1,7 @@
 // Places the behaviours that drive components, and the slots for more, and hands them to their engines.
+#include "kernel/machine/check/controls.hpp"
 #include "kernel/machine/instance/builder.hpp"
+#include "kernel/machine/instance/controlled.hpp"
 
 #include <new>
 
@@ -34,6 +36,27 @@ Sentence MachineBuilder::place_behaviours() {
             Behaviour{behaviour};
     }
     return {};
+}
+
+void MachineBuilder::connect_controls() {
+    for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
+        const ComponentRow& row = machine_.table.components[c];
+        if (row.type->control == nullptr) continue;
+        Controlled controlled;
+        controlled.life = &instance_.life();
+        controlled.component = find_component(machine_.table, row.controlled);
+        if (row.type->controls == ComponentType::Controls::behaviour) {
+            const std::size_t b = checks::controlled_behaviour(machine_.table, row);
+            controlled.engine = &instance_.engines()[machine_.index.activity[c]];
+            controlled.slot = instance_.slot_of_row(b);
+            controlled.unit = instance_.unit_of_row(b);
+            if (controlled.slot == nullptr)
+                controlled.part = checks::controlled_instance(machine_.table.behaviours[b].unit(), row);
+        }
+        row.type->control(instance_.component(c), controlled);
+    }
+    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b)
+        if (BehaviourUnit* const unit = instance_.unit_of_row(b); unit != nullptr) unit->connect_links();
 }
 
 Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {

@@ -142,6 +142,8 @@ public:
                                  const BehaviourOptions& options, std::span<std::byte> memory,
                                  std::span<const std::string_view> events, MachineInstance& machine,
                                  std::size_t driven);
+    /// What it touches of components, once all units are placed: of a task that is a variable of one.
+    void connect_links();
     [[nodiscard]] std::span<UnitPart> parts() noexcept TAPPET_REALTIME { return parts_; }
     [[nodiscard]] std::span<const UnitPart> parts() const noexcept TAPPET_REALTIME { return parts_; }
     [[nodiscard]] const ScriptUnit& unit() const noexcept TAPPET_REALTIME { return unit_; }

@@ -68,6 +68,12 @@ struct Watches {
 /// What a watchdog watches: an activity, or an output that a connection leads to another activity.
 constexpr Watches watches(std::string_view name) noexcept { return {name}; }
 
+struct Controls {
+    std::string_view component{};
+};
+/// The component whose life or behaviour this one controls: a BehaviourTask or a ComponentLife.
+constexpr Controls controls(std::string_view component) noexcept { return {component}; }
+
 struct PropertiesFile {
     std::string_view name{};
     bool may_be_missing = false;
@@ -84,6 +90,7 @@ struct ComponentRow {
     const ComponentType* type = nullptr;
     std::string_view device{};
     std::string_view watched{};
+    std::string_view controlled{};
     Bounded<PropertyRow, max_settings> settings{};
     bool too_many_settings = false;
     bool has_properties_file = false;
@@ -94,6 +101,7 @@ namespace detail {
 
 constexpr void apply(ComponentRow& row, DeviceName option) noexcept { row.device = option.name; }
 constexpr void apply(ComponentRow& row, Watches option) noexcept { row.watched = option.name; }
+constexpr void apply(ComponentRow& row, Controls option) noexcept { row.controlled = option.component; }
 constexpr void apply(ComponentRow& row, const PropertyRow& option) noexcept {
     row.too_many_settings |= !row.settings.push(option);
 }

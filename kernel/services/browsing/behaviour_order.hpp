@@ -2,26 +2,12 @@
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/slots/behaviour_action.hpp"
 
 #include <cstdint>
 #include <string_view>
 
 namespace tappet::browsing {
-
-/// Thesis fig. 5.9 and 5.19.
-enum class BehaviourAction : std::uint8_t {
-    start,      ///< a program runs, a machine is activated and goes automatically
-    stop,       ///< a program ends, a machine goes to its final state
-    pause,      ///< where it stands
-    step,       ///< one statement or question of what is paused
-    reset,      ///< a program to its beginning, a machine from the final to the initial state
-    deactivate, ///< a machine runs its exits and is inactive
-    reactive,   ///< a machine hears events and requests only
-    request     ///< a machine takes the transition to a state, if its guard holds
-};
-
-inline constexpr std::array<std::string_view, 8> behaviour_actions{
-    "start", "stop", "pause", "step", "reset", "deactivate", "reactive", "request"};
 
 /// False: there is no such action.
 constexpr bool parse(std::string_view text, BehaviourAction& action) noexcept {

@@ -8,7 +8,6 @@
 
 namespace tappet {
 
-using browsing::BehaviourAction;
 using browsing::BehaviourOrder;
 
 namespace {
@@ -16,45 +15,11 @@ namespace {
 constexpr int reading_attempts = 1000;
 constexpr std::size_t shown_characters = 64;
 
-bool command_machine(StateMachineExecution& machine, const BehaviourOrder& order, Time now) noexcept
-    TAPPET_REALTIME {
-    switch (order.action) {
-    case BehaviourAction::start: return machine.start(now) != StateOutcome::ignored;
-    case BehaviourAction::stop:
-        return machine.request_final(now, "asked for from outside") != StateOutcome::ignored;
-    case BehaviourAction::pause: return machine.pause() != StateOutcome::ignored;
-    case BehaviourAction::step: return machine.step_once(now);
-    case BehaviourAction::reset: return machine.request_initial(now) != StateOutcome::ignored;
-    case BehaviourAction::deactivate: return machine.deactivate(now) != StateOutcome::ignored;
-    case BehaviourAction::reactive: return machine.reactive() != StateOutcome::ignored;
-    case BehaviourAction::request: return machine.request_state(order.state, now) != StateOutcome::ignored;
-    }
-    return false;
-}
-
-bool command_program(ProgramExecution& program, const BehaviourOrder& order, Time now) noexcept
-    TAPPET_REALTIME {
-    switch (order.action) {
-    case BehaviourAction::start: return program.start();
-    case BehaviourAction::stop: return program.stop();
-    case BehaviourAction::pause: return program.pause();
-    case BehaviourAction::step: return program.single_step(now);
-    case BehaviourAction::reset: return program.reset();
-    case BehaviourAction::deactivate:
-    case BehaviourAction::reactive:
-    case BehaviourAction::request: return false;
-    }
-    return false;
-}
-
 /// In the engine that runs the behaviour. Another one may have taken over since it was asked for.
 void command_behaviour(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     auto& order = *static_cast<BehaviourOrder*>(self);
     if (order.slot != nullptr && order.slot->active() != order.unit) return;
-    UnitPart& part = order.unit->parts()[order.part];
-    const Time now = order.engine->now();
-    order.done = part.machine != nullptr ? command_machine(*part.machine, order, now)
-                                         : command_program(*part.program, order, now);
+    order.done = act(order.unit->parts()[order.part], order.action, order.state, order.engine->now());
 }
 
 /// Whether a name is that of an instance: "component.instance".

@@ -181,6 +181,23 @@ TEST(A_command, hands_its_results_to_variables) {
     }
 }
 
+TEST(A_command, hands_its_results_to_properties_and_outputs) {
+    for (const std::string_view whose : {"", "robot.", "far."}) {
+        Played p{"var int taken = 0; do " + std::string{whose} + "measure(12, taken, gain); do " +
+                 std::string{whose} + "measure(4, taken, speed); do note(taken);"};
+        p.steps(6);
+        EXPECT_EQ(p.own.trace, "4") << whose;
+        EXPECT_EQ(p.own.gain.get(), 2.5) << whose;
+        EXPECT_EQ(p.own.speed.last(), 2.5) << whose;
+    }
+}
+
+TEST(A_command, whose_result_a_property_does_not_take_fails_its_statement) {
+    Played p{"var double mean; try do measure(40000, narrow, mean); catch do note(narrow);"};
+    p.steps(4);
+    EXPECT_EQ(p.own.trace, "7");
+}
+
 TEST(A_function, is_expanded_where_it_is_called) {
     EXPECT_EQ(notes(R"(
         function int twice(int a) { return a * 2; }

@@ -1,0 +1,43 @@
+#include "kernel/machine/slots/behaviour_action.hpp"
+
+namespace tappet {
+
+namespace {
+
+bool act(StateMachineExecution& machine, BehaviourAction action, StateIndex state, Time now) noexcept
+    TAPPET_REALTIME {
+    switch (action) {
+    case BehaviourAction::start: return machine.start(now) != StateOutcome::ignored;
+    case BehaviourAction::stop:
+        return machine.request_final(now, "asked for from outside") != StateOutcome::ignored;
+    case BehaviourAction::pause: return machine.pause() != StateOutcome::ignored;
+    case BehaviourAction::step: return machine.step_once(now);
+    case BehaviourAction::reset: return machine.request_initial(now) != StateOutcome::ignored;
+    case BehaviourAction::deactivate: return machine.deactivate(now) != StateOutcome::ignored;
+    case BehaviourAction::reactive: return machine.reactive() != StateOutcome::ignored;
+    case BehaviourAction::request: return machine.request_state(state, now) != StateOutcome::ignored;
+    }
+    return false;
+}
+
+bool act(ProgramExecution& program, BehaviourAction action, Time now) noexcept TAPPET_REALTIME {
+    switch (action) {
+    case BehaviourAction::start: return program.start();
+    case BehaviourAction::stop: return program.stop();
+    case BehaviourAction::pause: return program.pause();
+    case BehaviourAction::step: return program.single_step(now);
+    case BehaviourAction::reset: return program.reset();
+    case BehaviourAction::deactivate:
+    case BehaviourAction::reactive:
+    case BehaviourAction::request: return false;
+    }
+    return false;
+}
+
+} // namespace
+
+bool act(UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept TAPPET_REALTIME {
+    return part.machine != nullptr ? act(*part.machine, action, state, now) : act(*part.program, action, now);
+}
+
+} // namespace tappet

@@ -1,0 +1,26 @@
+// What a component whose row says controls("...") is given.
+#pragma once
+
+#include "kernel/machine/slots/behaviour_slot.hpp"
+
+namespace tappet {
+
+class MachineLife;
+
+/// Of the component that it controls; of one with a slot the unit is whatever is loaded there.
+struct Controlled {
+    MachineLife* life = nullptr;
+    std::size_t component = 0;
+    const Engine* engine = nullptr; ///< that runs the behaviour, and the one that controls it
+    BehaviourSlot* slot = nullptr;
+    BehaviourUnit* unit = nullptr;
+    std::size_t part = 0;
+
+    /// Null: no behaviour is loaded. In that engine. Real-time.
+    [[nodiscard]] UnitPart* behaviour() const noexcept TAPPET_REALTIME {
+        BehaviourUnit* const active = slot != nullptr ? slot->active() : unit;
+        return active != nullptr && part < active->parts().size() ? &active->parts()[part] : nullptr;
+    }
+};
+
+} // namespace tappet

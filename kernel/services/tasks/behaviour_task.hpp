@@ -1,0 +1,239 @@
+// A program or state machine as a light-weight task (thesis 5.1.6, 5.2.5): its status is commanded and asked,
+// its variables are properties, and a program that has parameters is a command. It is a component like any
+// other, so rows, scripts and browsers reach it as they reach those.
+//
+//     component<BehaviourTask<weft_script, "feed">>("feeding", controls("weft"), set("speed", 0.5)),
+//     uses("console.feed", "feeding.run")          // program feed(int pieces) { ... } of the script of
+//     "weft"
+#pragma once
+
+#include "kernel/activity/engine.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/machine/instance/controlled.hpp"
+#include "kernel/machine/slots/behaviour_action.hpp"
+#include "kernel/program/operator_kinds.hpp"
+#include "kernel/script/unit.hpp"
+
+namespace tappet {
+
+namespace detail {
+
+/// What every behaviour is told and asked, whatever it is.
+class AnyBehaviourTask {
+public:
+    static constexpr auto controls = ComponentType::Controls::behaviour;
+    void control(const Controlled& controlled) noexcept { controlled_ = controlled; }
+
+    // Commands; rejected while nothing is loaded, or in a status in which it does not do that.
+    bool start_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::start); }
+    bool stop_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::stop); }
+    bool pause_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::pause); }
+    bool step_once() noexcept TAPPET_REALTIME { return acts(BehaviourAction::step); }
+    bool reset_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::reset); }
+    bool make_reactive() noexcept TAPPET_REALTIME { return acts(BehaviourAction::reactive); }
+    bool deactivate_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::deactivate); }
+    bool request(const ScriptText& state) noexcept TAPPET_REALTIME {
+        return acts(BehaviourAction::request, find(state.view()));
+    }
+
+    CommandProgress is_stopped() noexcept TAPPET_REALTIME {
+        return until([](const UnitPart& part) noexcept TAPPET_REALTIME {
+            return part.machine != nullptr ? part.machine->is_final() && !part.machine->under_way()
+                                           : !is_at_work(*part.program);
+        });
+    }
+    CommandProgress is_deactivated() noexcept TAPPET_REALTIME {
+        return until([](const UnitPart& part) noexcept
+                     TAPPET_REALTIME { return !part.machine->is_active(); });
+    }
+    CommandProgress has_ended() noexcept TAPPET_REALTIME {
+        return until([](const UnitPart& part) noexcept
+                     TAPPET_REALTIME { return !is_at_work(*part.program); });
+    }
+
+    // Methods.
+    bool is_active() noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        if (part == nullptr) return false;
+        return part->machine != nullptr ? part->machine->is_active() : is_at_work(*part->program);
+    }
+    bool in_error() noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        return part != nullptr && is_in_error(*part);
+    }
+    bool is_in(const ScriptText& state) noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        const StateIndex wanted = find(state.view());
+        return part != nullptr && wanted != no_state && part->machine->is_in(wanted);
+    }
+
+protected:
+    [[nodiscard]] std::byte* data() noexcept TAPPET_REALTIME { return controlled_.behaviour()->data; }
+
+private:
+    static bool is_at_work(const ProgramExecution& program) noexcept TAPPET_REALTIME {
+        return program.status() == ProgramStatus::running || program.status() == ProgramStatus::paused;
+    }
+    static bool is_in_error(const UnitPart& part) noexcept TAPPET_REALTIME {
+        return part.machine != nullptr ? part.machine->in_error()
+                                       : part.program->status() == ProgramStatus::error;
+    }
+    bool acts(BehaviourAction action, StateIndex state = no_state) noexcept TAPPET_REALTIME {
+        UnitPart* const part = controlled_.behaviour();
+        if (part == nullptr || (action == BehaviourAction::request && state == no_state)) return false;
+        return act(*part, action, state, controlled_.engine->now());
+    }
+    template <class Is> CommandProgress until(const Is& is) noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        if (part == nullptr || is_in_error(*part)) return CommandProgress::failed;
+        return is(*part) ? CommandProgress::done : CommandProgress::executing;
+    }
+    [[nodiscard]] StateIndex find(std::string_view state) noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        if (part == nullptr || part->machine == nullptr) return no_state;
+        const auto states = part->type->machine.states;
+        for (std::size_t i = 0; i < states.size(); ++i)
+            if (states[i].name == state) return static_cast<StateIndex>(i);
+        return no_state;
+    }
+
+    Controlled controlled_{};
+};
+
+/// The C++ type of a script's variable that may be a property or a parameter from outside; void: of no other.
+template <TypeId id>
+using TaskValue = std::conditional_t<
+    id == script_bool, bool,
+    std::conditional_t<
+        id == script_int, ScriptInt,
+        std::conditional_t<id == script_double, double,
+                           std::conditional_t<id == script_duration, Duration,
+                                              std::conditional_t<id == script_text, ScriptText, void>>>>>;
+
+template <class... P> struct Parameters {};
+
+} // namespace detail
+
+/// Of which no script is known to the compiler: a table of C++, or what a slot holds just now.
+inline constexpr ScriptUnit any_script{};
+
+/// In the table: component<BehaviourTask<script, "instance">>("name", controls("component")), in the activity
+/// of that component. `script`: the ScriptUnit that drives it; without one the task has commands and methods
+/// alone, which serve the first program or machine that it finds. Properties are its variables and parameters
+/// of type bool, int, double, duration and text; they may be set by the row and kept in a properties file.
+/// Commands and methods are real-time.
+template <const auto& script = any_script, text instance = "">
+struct BehaviourTask : detail::AnyBehaviourTask {
+    static constexpr bool knows_script = !script.types.empty();
+    static constexpr std::string_view script_name = script.name;
+    static constexpr std::string_view instance_name = instance.view();
+    static constexpr std::size_t number = [] {
+        for (std::size_t i = 0; i < script.instances.size(); ++i)
+            if (script.instances[i].name == instance_name) return i;
+        return std::size_t{0};
+    }();
+    /// Null: it is not known.
+    static constexpr const BehaviourType* type =
+        knows_script ? &script.types[script.instances[number].type] : nullptr;
+    static constexpr bool may_be_program = type == nullptr || type->is_program();
+    static constexpr bool may_be_machine = type == nullptr || !type->is_program();
+    static constexpr bool is_command = type != nullptr && script.instances[number].on_command;
+
+    static constexpr auto interface() {
+        std::array<Facet, facet_count> all{};
+        std::size_t at = 0;
+        visit([&](const Facet& facet) { all[at++] = facet; });
+        return all;
+    }
+
+private:
+    using Self = BehaviourTask;
+    template <std::size_t i> using Value = detail::TaskValue<type->tables.variables[i].type>;
+    template <std::size_t i>
+    static constexpr bool is_parameter = type->tables.variables[i].kind == VariableKind::parameter;
+
+    // ---- a program that is a command: its parameters
+
+    static constexpr std::size_t parameters = [] {
+        std::size_t count = 0;
+        if constexpr (is_command)
+            for (const VariableRow& each : type->tables.variables)
+                count += each.kind == VariableKind::parameter;
+        return count;
+    }();
+    // They stand before all other variables.
+    template <class> struct Run;
+    template <std::size_t... i> struct Run<std::index_sequence<i...>> {
+        static_assert(
+            (!std::is_void_v<Value<i>> && ...),
+            "a program that is told to run from outside takes bool, int, double, duration and text");
+        using Pack = detail::Packing<Value<i>...>;
+        static bool begin(void* component, [[maybe_unused]] std::byte* values) noexcept TAPPET_REALTIME {
+            auto& task = *static_cast<Self*>(component);
+            if (task.is_active()) return false;
+            (std::memcpy(task.data() + type->tables.variables[i].at, values + Pack::offsets[i],
+                         sizeof(Value<i>)),
+             ...);
+            return task.start_it();
+        }
+        static CommandProgress progress(void* component, std::byte*) noexcept TAPPET_REALTIME {
+            return static_cast<Self*>(component)->has_ended();
+        }
+        static constexpr CommandOperations operations{
+            type_id<Arguments<Value<i>...>>, type_id<Arguments<>>, Pack::input_bytes, 0, &begin, &progress};
+        static constexpr Facet facet{.name = "run",
+                                     .doc = "executes it with these parameters, to its end",
+                                     .kind = FacetKind::command,
+                                     .type = type_id<Arguments<Value<i>...>>,
+                                     .command = &operations};
+    };
+
+    // ---- variables
+
+    static void* variable_at(void* component, std::size_t offset) noexcept {
+        return static_cast<Self*>(component)->data() + offset;
+    }
+    template <std::size_t i, class Visit> static constexpr void visit_variable(const Visit& visitor) {
+        constexpr VariableRow row = type->tables.variables[i];
+        if constexpr (!row.name.empty() && row.at != no_data &&
+                      (row.kind == VariableKind::variable || is_parameter<i>) && !std::is_void_v<Value<i>>)
+            visitor(Facet{.name = row.name,
+                          .doc = is_parameter<i> ? "a parameter" : "a variable",
+                          .kind = FacetKind::property,
+                          .type = row.type,
+                          .index = row.at,
+                          .at = &variable_at,
+                          .property = &detail::PropertyAccess<Value<i>>::operations});
+    }
+    template <class Visit, std::size_t... i>
+    static constexpr void visit_variables(const Visit& visitor, std::index_sequence<i...>) {
+        (visit_variable<i>(visitor), ...);
+    }
+
+    template <class Visit> static constexpr void visit(const Visit& visitor) {
+        visitor(command<&Self::start_it>("start", "a program runs, a machine is active and goes by itself"));
+        visitor(command<&Self::stop_it, &Self::is_stopped>("stop", "to its end, or to its final state"));
+        visitor(command<&Self::pause_it>("pause", "where it stands"));
+        visitor(command<&Self::step_once>("step", "one statement or question of what is paused"));
+        visitor(
+            command<&Self::reset_it>("reset", "to its beginning, or from the final to the initial state"));
+        visitor(method<&Self::is_active>("is_active", "it runs, or is in a state"));
+        visitor(method<&Self::in_error>("in_error", "a program of it failed"));
+        if constexpr (may_be_machine) {
+            visitor(command<&Self::deactivate_it, &Self::is_deactivated>("deactivate", "out of its states"));
+            visitor(command<&Self::make_reactive>("reactive", "it hears events and requests only"));
+            visitor(command<&Self::request>("request", "the transition to a state, if its guard holds"));
+            visitor(method<&Self::is_in>("is_in", "that state is active"));
+        }
+        if constexpr (is_command) visitor(Run<std::make_index_sequence<parameters>>::facet);
+        if constexpr (knows_script)
+            visit_variables(visitor, std::make_index_sequence<type->tables.variables.size()>{});
+    }
+    static constexpr std::size_t facet_count = [] {
+        std::size_t count = 0;
+        visit([&](const Facet&) { ++count; });
+        return count;
+    }();
+};
+
+} // namespace tappet

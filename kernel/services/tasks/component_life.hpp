@@ -1,0 +1,51 @@
+// The life of another component as commands (thesis 3.1.3), so that rows and scripts may start and stop it.
+#pragma once
+
+#include "kernel/component/component.hpp"
+#include "kernel/machine/instance/controlled.hpp"
+#include "kernel/machine/instance/life.hpp"
+
+namespace tappet {
+
+/// In the table: component<ComponentLife>("printing", controls("printer")); `do printing.stop()` in a script,
+/// uses("console.stop_printer", "printing.stop") in a row. The component may run in any activity; the command
+/// is done when that one says so, and failed when it refuses. Real-time.
+struct ComponentLife {
+    static constexpr auto controls = ComponentType::Controls::life;
+    void control(const Controlled& controlled) noexcept { controlled_ = controlled; }
+
+    bool start_it() noexcept TAPPET_REALTIME { return asks(LifeChange::start); }
+    bool stop_it() noexcept TAPPET_REALTIME { return asks(LifeChange::stop); }
+    bool restart_it() noexcept TAPPET_REALTIME { return asks(LifeChange::restart); }
+    CommandProgress is_done() noexcept TAPPET_REALTIME {
+        switch (controlled_.life->answer_of_component(controlled_.component, ticket_).outcome) {
+        case LifeOutcome::pending: return CommandProgress::executing;
+        case LifeOutcome::done: return CommandProgress::done;
+        case LifeOutcome::refused:
+        case LifeOutcome::superseded: break;
+        }
+        return CommandProgress::failed;
+    }
+    bool runs() noexcept TAPPET_REALTIME {
+        return controlled_.life->state_of(controlled_.component) == ComponentState::running;
+    }
+
+    static constexpr auto interface() {
+        return facets(
+            command<&ComponentLife::start_it, &ComponentLife::is_done>("start", "from its safe values"),
+            command<&ComponentLife::stop_it, &ComponentLife::is_done>("stop", "to its safe values"),
+            command<&ComponentLife::restart_it, &ComponentLife::is_done>("restart", "both"),
+            method<&ComponentLife::runs>("is_running", "steps and messages reach it", any_thread));
+    }
+
+private:
+    bool asks(LifeChange change) noexcept TAPPET_REALTIME {
+        ticket_ = controlled_.life->ask_component(controlled_.component, change);
+        return true;
+    }
+
+    Controlled controlled_{};
+    LifeTicket ticket_{};
+};
+
+} // namespace tappet

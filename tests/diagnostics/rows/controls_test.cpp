@@ -1,0 +1,65 @@
+// What controls something else: the tasks of behaviours, and the lives of components.
+#include "kernel/machine/table/compiled.hpp"
+#include "kernel/script/compiled.hpp"
+#include "kernel/services/tasks/behaviour_task.hpp"
+#include "kernel/services/tasks/component_life.hpp"
+#include "tests/diagnostics/rows/fault.hpp"
+#include "tests/diagnostics/small_machine.hpp"
+
+namespace {
+
+using namespace small;
+using namespace tappet::diagnostics;
+
+constexpr ScriptSource weaving_source{"weaving.osd", "program feed(int picks) { yield; }"};
+constexpr auto weft_reach = script_reach(reachable<Weft>("weft"));
+constexpr const ScriptUnit& weaving = compiled_script<weaving_source, weft_reach>;
+constexpr ScriptSource other_source{"other.osd", "program feed(int picks) { yield; }"};
+constexpr const ScriptUnit& other = compiled_script<other_source, weft_reach>;
+
+Table controlled_loom() {
+    Table m = small_loom();
+    m.add(component<BehaviourTask<weaving, "feed">>("feeding", controls("weft")));
+    m.add(component<ComponentLife>("lighting", controls("lamps")));
+    m.put(activity("logic", on_work(), at_most(8, 4ms), deadline(2ms), budget(30us),
+                   runs("weft", "lamps", "feeding", "lighting")));
+    m.behaviours[0] = behaviour("weft", weaving, {});
+    return m;
+}
+
+constexpr Fault control_faults[] = {
+    {"control_of_nothing", [](Table& m) { m.put(component<ComponentLife>("lighting")); },
+     R"(loom: component "lighting" controls nothing; add controls("...") with a component)"},
+    {"control_by_another", [](Table& m) { m.put(component<Weft>("weft", controls("lamps"))); },
+     R"(loom: component "weft" is nothing that controls; remove controls("lamps"), or make it a BehaviourTask or a ComponentLife)"},
+    {"control_of_an_unknown_component",
+     [](Table& m) { m.put(component<ComponentLife>("lighting", controls("lamp"))); },
+     R"(loom: component "lighting" controls "lamp": there is no component "lamp"; did you mean "lamps"?)"},
+    {"control_of_itself", [](Table& m) { m.put(component<ComponentLife>("lighting", controls("lighting"))); },
+     R"(loom: component "lighting" controls itself; name another component)"},
+    {"task_of_what_has_no_behaviour",
+     [](Table& m) { m.put(component<BehaviourTask<>>("feeding", controls("lamps"))); },
+     R"(loom: component "feeding" controls "lamps", which no behaviour drives; add behaviour("lamps", ...) to behaviours(...))"},
+    {"task_of_what_is_loaded_later",
+     [](Table& m) {
+         m.add(behaviour("tension", slot(nodes(20), data_bytes(100), depth(1))));
+         m.put(component<BehaviourTask<weaving, "feed">>("feeding", controls("tension")));
+     },
+     R"(loom: component "feeding" controls "tension", which no behaviour that is compiled with the machine drives; add behaviour("tension", ...) to behaviours(...))"},
+    {"task_of_another_script", [](Table& m) { m.behaviours[0] = behaviour("weft", other, {}); },
+     R"(loom: component "feeding" is a task of script "weaving.osd" but "weft" is driven by "other.osd"; make it BehaviourTask<...> of that script)"},
+    {"task_of_an_unknown_program",
+     [](Table& m) { m.put(component<BehaviourTask<weaving, "fed">>("feeding", controls("weft"))); },
+     R"(loom: component "feeding" is the task of "fed", which script "weaving.osd" does not have; did you mean "feed"?)"},
+    {"task_in_another_activity",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(8, 4ms), deadline(2ms), budget(30us),
+                        runs("weft", "lamps", "lighting")));
+         m.add(activity("elsewhere", every(10ms), budget(10us), runs("feeding")));
+     },
+     R"(loom: component "feeding" controls the behaviour of "weft", which activity "logic" runs; run both in that one)"},
+};
+INSTANTIATE_TEST_SUITE_P(controls, Refusal, testing::ValuesIn(planted_into(controlled_loom, control_faults)),
+                         name_of);
+
+} // namespace

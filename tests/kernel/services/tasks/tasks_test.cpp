@@ -1,0 +1,229 @@
+// Behaviours and lives as light-weight tasks (thesis 5.1.6, 5.2.5, 3.1.3): their commands are reached by rows
+// and scripts, their variables are properties, and a program with parameters is a command.
+#include "kernel/services/configuration/property_files.hpp"
+#include "kernel/services/tasks/behaviour_task.hpp"
+#include "kernel/services/tasks/component_life.hpp"
+#include "tests/kernel/machine/behaviour_machine.hpp"
+
+#include "kernel/machine/table/compiled.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <gmock/gmock.h>
+
+namespace tappet::bakery {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr ScriptSource baking{"baking.osd", R"(
+StateMachine Baking {
+    param double heat = 150.0
+    var int count = 7; var text words = "none"; var bool open = false; var duration since; var vector3 place;
+    const int fixed = 3;
+    initial state Cold {
+        transition oven.tick() if count > 8 then { do oven.note(count); } select Hot
+    }
+    state Hot {
+        entry { set oven.target = heat; }
+        transition oven.tick() select Cold
+    }
+    final state Off { entry { do feeder.feed(3); do oven.note(99); } }
+}
+RootStateMachine Baking baking
+program loaves(int number, double weight = 0.5) {
+    var int made = 0;
+    while (made < number) { do oven.note(made + int(weight * 100)); set made = made + 1; yield; }
+    if (number == 3) then { do oven.note(-1); }
+}
+program clean() { do oven.note(500); }
+program always { while true { yield; } }
+)"};
+constexpr auto reach = script_reach(reachable<Oven>("oven"), reachable<Feeder>("feeder", false));
+constexpr const ScriptUnit& script = compiled_script<baking, reach>;
+
+struct Panel {
+    CommandCall<ScriptInt, double> bake;
+    CommandCall<> clean, halt_it, stop_feeder;
+    CommandCall<ScriptText> request;
+    static constexpr auto interface() {
+        return facets(sends<&Panel::bake>("bake", "so many"), sends<&Panel::clean>("clean", ""),
+                      sends<&Panel::halt_it>("stop", ""), sends<&Panel::stop_feeder>("stop_feeder", ""),
+                      sends<&Panel::request>("request", ""));
+    }
+};
+
+// The one beside it, of another component, commands it.
+using Loaves = BehaviourTask<script, "loaves">;
+using Machine = BehaviourTask<script, "baking">;
+constexpr ScriptSource serving{"serving.osd", R"(
+StateMachine Serving {
+    initial state Idle { transition door.moved() select Busy }
+    state Busy {
+        entry { do making.run(2, 0.1); set machine.count = 20; do feeding.stop(); do oven.note(3000); }
+        transition door.moved() select Idle
+    }
+    final state Off { }
+}
+)"};
+constexpr auto serving_reach =
+    script_reach(reachable<Door>("door"), reachable<Oven>("oven"), reachable<Loaves>("making"),
+                 reachable<Machine>("machine"), reachable<ComponentLife>("feeding"));
+constexpr const ScriptUnit& beside = compiled_script<serving, serving_reach>;
+
+// clang-format off
+constexpr auto table = machine("bakery",
+    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Panel>("panel"),
+               component<Machine>("machine", controls("oven"), set("heat", 80.0), set("words", "from the row")),
+               component<Loaves>("making", controls("oven")),
+               component<BehaviourTask<script, "clean">>("cleaning", controls("oven")),
+               component<BehaviourTask<>>("any", controls("oven")),
+               component<ComponentLife>("feeding", controls("feeder"))),
+    activities(
+        activity("fast", every(1ms), budget(50us), runs("oven", "door", "machine", "making", "cleaning", "any", "feeding")),
+        activity("slow", every(5ms), budget(50us), runs("feeder")),
+        activity("desk", every(5ms), budget(50us), runs("panel"))),
+    connections(),
+    reactions(uses("panel.bake", "making.run"), uses("panel.clean", "cleaning.run"), uses("panel.stop", "machine.stop"),
+              uses("panel.request", "machine.request"), uses("panel.stop_feeder", "feeding.stop")),
+    behaviours(behaviour("oven", compiled<script>, on_error(OnError::report)), behaviour("door", beside, {})));
+// clang-format on
+
+struct Tasks : Rig<Firmware<table, board>> {
+    Panel& panel() { return *instance.find<Panel>("panel"); }
+    const BehaviourUnit& unit() { return *instance.behaviour_of("oven"); }
+    template <class T> T property(std::string_view task, std::string_view name) {
+        const MachineView& of = instance.machine().table;
+        const std::size_t c = find_component(of, task);
+        return *static_cast<const T*>(instance.facet({c, find_facet(of.components[c], name)}));
+    }
+};
+
+TEST(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_at_its_end) {
+    Tasks rig;
+    rig.run(10ms);
+    EXPECT_TRUE(rig.oven().told.empty()) << "it does not start by itself";
+    ASSERT_TRUE(rig.panel().bake.send(2, 0.25));
+    rig.run(1ms);
+    EXPECT_EQ(rig.panel().bake.state(), CommandState::executing);
+    EXPECT_FALSE(rig.panel().bake.send(1, 1.0)) << "it is on its way";
+    rig.run(20ms);
+    EXPECT_EQ(rig.panel().bake.state(), CommandState::done);
+    EXPECT_THAT(rig.oven().told, ElementsAre(25, 26));
+    ASSERT_TRUE(rig.panel().bake.send(1, 7.0)); // from its beginning again
+    rig.run(20ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(25, 26, 700));
+}
+
+TEST(A_task_of_a_program, without_parameters_is_a_command_too) {
+    Tasks rig;
+    ASSERT_TRUE(rig.panel().clean.send());
+    rig.run(10ms);
+    EXPECT_EQ(rig.panel().clean.state(), CommandState::done);
+    EXPECT_THAT(rig.oven().told, ElementsAre(500));
+}
+
+TEST(A_task_of_a_program, fails_when_the_program_does) {
+    Tasks rig;
+    ASSERT_TRUE(rig.panel().bake.send(3, 0.0));
+    rig.run(20ms);
+    EXPECT_EQ(rig.panel().bake.state(), CommandState::failed);
+}
+
+TEST(A_task_of_a_machine, has_its_variables_and_parameters_as_properties_which_the_row_sets) {
+    Tasks rig;
+    EXPECT_EQ(rig.property<double>("machine", "heat"), 80.0);
+    EXPECT_EQ(rig.property<ScriptInt>("machine", "count"), 7);
+    EXPECT_EQ(rig.property<ScriptText>("machine", "words").view(), "from the row");
+    const ComponentType& type = component_type<Machine>;
+    const auto has = [&](std::string_view name) {
+        return std::ranges::any_of(type.facets, [&](const Facet& each) { return each.name == name; });
+    };
+    EXPECT_TRUE(has("open") && has("since"));
+    EXPECT_FALSE(has("fixed")) << "a constant";
+    EXPECT_FALSE(has("place")) << "a vector";
+    EXPECT_FALSE(has("run")) << "it is no program";
+}
+
+// clang-format off
+constexpr auto kept = machine("kept",
+    components(component<Oven>("oven"), component<Feeder>("feeder"),
+               component<Machine>("machine", controls("oven"), properties_file("baking.cpf", optional))),
+    activities(activity("fast", every(1ms), budget(50us), runs("oven", "machine")),
+               activity("slow", every(5ms), budget(50us), runs("feeder"))),
+    connections(), reactions(), behaviours(behaviour("oven", script, {})));
+// clang-format on
+
+TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
+    const std::string directory = testing::TempDir() + "tasks_test_properties";
+    std::filesystem::remove_all(directory);
+    std::filesystem::create_directory(directory);
+    const auto files = std::make_unique<PropertyFiles>(directory);
+    const End count{2, find_facet(kept.view().components[2], "count")};
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    for (const ScriptInt expected : {7, 12}) { // the script's, then the one that was kept
+        MachineInstance instance{Firmware<kept, board>::machine(), clock};
+        instance.read_properties_from(files->store());
+        const auto standing = instance.configure({});
+        ASSERT_TRUE(standing) << standing.error().view();
+        auto& value = *static_cast<ScriptInt*>(instance.facet(count));
+        EXPECT_EQ(value, expected);
+        value = 12;
+        EXPECT_EQ(instance.save_properties(*standing).view(), "");
+    }
+    std::filesystem::remove_all(directory);
+}
+
+TEST(A_task_of_a_machine, leads_it_to_its_final_state_and_is_done_when_it_is_there) {
+    Tasks rig;
+    rig.run(10ms);
+    ASSERT_TRUE(rig.panel().halt_it.send());
+    rig.run(2ms);
+    EXPECT_EQ(rig.panel().halt_it.state(), CommandState::executing)
+        << "the entry program of Off feeds for 15 ms";
+    rig.run(40ms);
+    EXPECT_EQ(rig.panel().halt_it.state(), CommandState::done);
+    EXPECT_EQ(rig.state(rig.unit()), "Off");
+    EXPECT_THAT(rig.oven().told, ElementsAre(99));
+}
+
+TEST(A_task_of_a_machine, rejects_a_state_that_it_does_not_have_or_cannot_reach) {
+    Tasks rig;
+    rig.run(10ms);
+    for (const std::string_view state : {"Hott", "Hot"}) { // of the second there is no condition transition
+        ScriptText text;
+        static_cast<void>(text.assign(state));
+        ASSERT_TRUE(rig.panel().request.send(text));
+        rig.run(10ms);
+        EXPECT_EQ(rig.panel().request.state(), CommandState::rejected) << state;
+    }
+}
+
+TEST(A_behaviour, commands_the_one_beside_it_and_the_life_of_components_and_sets_its_variables) {
+    Tasks rig;
+    rig.run(10ms);
+    rig.door().moved.emit();
+    rig.run(3ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11));
+    rig.run(40ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 3000)) << "once the feeder said that it had stopped";
+    EXPECT_EQ(rig.instance.life().state_of(2), ComponentState::stopped);
+    rig.oven().tick.emit();
+    rig.run(2ms);
+    EXPECT_EQ(rig.state(rig.unit()), "Hot") << "its guard asks for the variable";
+    EXPECT_EQ(rig.oven().target.get(), 80.0);
+}
+
+TEST(The_life_of_a_component, is_commanded_by_a_row) {
+    Tasks rig;
+    rig.run(10ms);
+    ASSERT_TRUE(rig.panel().stop_feeder.send());
+    rig.run(20ms);
+    EXPECT_EQ(rig.panel().stop_feeder.state(), CommandState::done);
+    EXPECT_EQ(rig.instance.life().state_of(2), ComponentState::stopped);
+}
+
+} // namespace
+} // namespace tappet::bakery
