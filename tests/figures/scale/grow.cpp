@@ -25,6 +25,10 @@ using Fault = std::optional<std::string>;
 
 constexpr const char* clang = "clang++-22";
 
+/// From so many components on as many connections lead to other activities as in larger machines; 10 are one
+/// activity.
+constexpr std::size_t wired_alike = 50;
+
 /// What is measured of each size.
 enum class What : std::uint8_t {
     gcc_seconds,
@@ -280,21 +284,26 @@ void Growing::report_subject(const Subject& subject) {
     if (!plot.series.empty()) result_.plots.push_back(std::move(plot));
 }
 
-// What the engines take beyond the components' own work, which is what the bare loop takes.
+// What the engines take beyond the components' own work, which is what the bare loop takes; and the whole
+// step, beside that of the first machine whose connections lead to other activities as often: one activity
+// alone reads nothing from another.
 void Growing::judge_step() {
-    const auto beyond = [this](std::size_t size) {
-        const auto& values = measured_[size];
-        return values.contains(What::step) ? values.at(What::step).median - values.at(What::bare).median
-                                           : 0.0;
+    const auto judge = [this](std::size_t small, const char* goal, double limit,
+                              double (*of)(std::map<What, Summary>&)) {
+        const std::size_t large = measured_.rbegin()->first;
+        if (small >= large || !measured_.contains(small)) return;
+        const double before = of(measured_[small]), after = of(measured_[large]);
+        if (before <= 0 || after <= 0) return;
+        std::ostringstream detail;
+        detail << after << " ns with " << large << " components beside " << before << " ns with " << small
+               << ": a round of all engines, divided by the components";
+        result_.goals.push_back({goal, limit, after / before, "x", detail.str()});
     };
-    const std::size_t smallest = measured_.begin()->first, largest = measured_.rbegin()->first;
-    if (smallest == largest || beyond(smallest) <= 0 || beyond(largest) <= 0) return;
-    std::ostringstream detail;
-    detail << beyond(largest) << " ns beside " << beyond(smallest)
-           << " ns: a round of all engines without the "
-           << "bare steps, divided by the components";
-    result_.goals.push_back({"1000 components: engine time per component the same as with 10", 1.05,
-                             beyond(largest) / beyond(smallest), "x", detail.str()});
+    judge(measured_.begin()->first,
+          "1000 components: engine time per component, without its step, as with 10", 1.05,
+          [](auto& values) { return values[What::step].median - values[What::bare].median; });
+    judge(wired_alike, "1000 components: a component's step as with 50", 1.5,
+          [](auto& values) { return values[What::step].median; });
 }
 
 void Growing::report() {
@@ -324,7 +333,7 @@ const std::vector<std::string>& Toolset::words(const std::string& name) const { 
 Growth growth(const Options& options) {
     if (options.setting == "smoke") return {{10}, {}};
     if (options.setting == "long") return {{10, 50, 100, 250, 500, 1000}, {10, 50, 100, 250, 500, 1000}};
-    return {{10, 100, 1000}, {10, 100}};
+    return {{10, wired_alike, 100, 1000}, {10, 100}};
 }
 
 void measure_growth(const Options& options, const Toolset& tools, Result& result) {
