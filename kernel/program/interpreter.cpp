@@ -73,12 +73,12 @@ struct StatementInMemory : NodeInMemory {
         TAPPET_REALTIME {
         const ArcRow* const arc = tables.arcs.data() + node.first_arc;
         const bool is_one = node.arcs == 1, is_two = node.arcs == 2;
-        return (is_one || is_two) && !node.repeats && !node.yields && arc->after == no_data &&
+        return (is_one || is_two) && !node.yields && arc->after == no_data &&
                (is_one || arc[1].after == no_data);
     }
     [[nodiscard]] NodeRow row() const noexcept TAPPET_REALTIME {
         NodeRow same = *node;
-        same.repeats = same.yields = false;
+        same.yields = false;
         return same;
     }
     [[gnu::always_inline]] NextNode asks_arcs(bool has_acted, ProgramContext& context,

@@ -99,7 +99,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
     }
     // A program may wait there, or ask when it was entered.
     static constexpr bool stands(const NodeRow& row) {
-        bool open = false, timed = false, waits = row.repeats || row.yields;
+        bool open = false, timed = false, waits = row.yields;
         for (std::size_t i = row.first_arc; i < std::size_t{row.first_arc} + row.arcs; ++i) {
             const ArcRow& arc = tables.arcs[i];
             open = open || (arc.condition == no_condition && arc.after == no_data);

@@ -7,7 +7,7 @@
 //                 of the arcs only time-outs, those without a condition, are asked until then.
 //   arcs          asked in their order after the action, and in each later step without it; the first open one is
 //                 followed. An arc is open when its time has passed since the node was entered and its condition holds.
-//   none open     the program waits. The action of a node that `repeats` is executed again in the next step.
+//   none open     the program waits.
 //   yields        the program waits after the action although an arc is open.
 //   failed        of an instruction or a condition, or the arc leads to no_node: on to the node of on_error, or the
 //                 program has failed there.
@@ -119,7 +119,7 @@ template <class Node>
     const NextNode next = node.asks_arcs(has_acted, context, run);
     if (next != leads_nowhere) [[likely]]
         return next;
-    return waits(node.number(), has_acted && !row.repeats, context, run);
+    return waits(node.number(), has_acted, context, run);
 }
 
 } // namespace node_order

@@ -1,5 +1,5 @@
 // A program as plain data (thesis 5.1.1): nodes with one action each, arcs with conditions, and the
-// expressions in both. C++ tables and scripts, compiled or loaded, all give this one form; whatever executes,
+// expressions in both. Scripts, compiled or loaded, give this one form; whatever executes,
 // checks, draws or verifies a program reads nothing else.
 #pragma once
 
@@ -79,17 +79,16 @@ struct ArcRow {
 };
 
 /// One statement. Without an open arc the program waits here; its action is not done twice unless it says
-/// `again` or the node repeats (thesis 5.1.3, 5.1.5).
+/// `again` (thesis 5.1.3, 5.1.5).
 struct NodeRow {
     std::uint16_t first = 0; ///< instruction
     std::uint16_t count = 0;
     std::uint16_t first_arc = 0;
     std::uint16_t arcs = 0;
     NodeIndex on_error = no_node;
-    std::uint16_t line = 0; ///< of the script, from 1; 0: a C++ table
+    std::uint16_t line = 0; ///< of the script, from 1
     std::uint16_t column = 0;
-    bool repeats = false; ///< its action is executed in each step while the program waits here
-    bool yields = false;  ///< its arcs are asked from the next step on
+    bool yields = false; ///< its arcs are asked from the next step on
 };
 
 using ProgramIndex = std::uint16_t;

@@ -4,7 +4,6 @@
 
 #include "kernel/machine/check/events.hpp"
 #include "kernel/machine/table/unit_rows.hpp"
-#include "kernel/program/check_rows.hpp"
 #include "kernel/script/room.hpp"
 #include "kernel/statechart/check.hpp"
 
@@ -153,8 +152,6 @@ constexpr Sentence check_unit(const MachineView& m, const TableIndexView& r, con
                                 "\" is written for ", machine.component->name, " but \"", row.component,
                                 "\" is a ", m.components[driven].type->tag->name,
                                 "; name a component of its type");
-        if (!row.program.nodes.empty())
-            if (Sentence fault = check(row.program); !fault.empty()) return of_behaviour(row, ": ", fault);
         if (is_program) continue;
         if (Sentence fault = check(machine); !fault.empty()) return of_behaviour(row, ": ", fault);
         for (std::size_t t = 0; t < machine.transitions.size(); ++t) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
-#include "kernel/program/rows.hpp"
 #include "kernel/script/unit.hpp"
 #include "kernel/statechart/execution.hpp"
 #include "kernel/statechart/rows.hpp"
@@ -57,7 +56,6 @@ struct BehaviourRow {
     std::string_view component{};
     BehaviourType type{};         ///< of a C++ table; script and slot have none
     BehaviourInstance instance{}; ///< the only one of a C++ table
-    ProgramSpelling program{};    ///< of a program table: what the check names
     const ScriptUnit* script = nullptr;
     std::span<const BehaviourCode> code{}; ///< of each type; empty: they stand in memory
     Slot slot{};
@@ -182,20 +180,6 @@ constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<
     row.type.machine = machine.view();
     row.type.name = row.type.machine.name;
     row.instance.name = row.type.name;
-    (detail::apply(row.options, options), ...);
-    return row;
-}
-/// A program table; it runs with its component, from its first node on. The table outlives the row.
-template <std::size_t N, std::size_t A, class... Options>
-constexpr BehaviourRow behaviour(std::string_view component, const ProgramTable<N, A>& program,
-                                 const Options&... options) noexcept {
-    BehaviourRow row;
-    row.component = component;
-    row.type.name = row.instance.name = row.type.machine.name = program.name;
-    row.type.machine.component = program.component;
-    row.type.tables = program.tables();
-    row.program = program.spelling();
-    row.instance.image = row.type.tables.image;
     (detail::apply(row.options, options), ...);
     return row;
 }

@@ -44,24 +44,6 @@ TEST(A_program, waits_where_no_arc_is_open_and_acts_there_once) {
     EXPECT_EQ(running.get<ScriptInt>(p.third), 1);
 }
 
-TEST(A_program, repeats_the_action_of_a_node_that_says_so_in_each_step) {
-    TableBuilder table;
-    const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset count = table.value(ScriptInt{0});
-    const DataOffset go = table.value(false);
-    table.node({increment(count, one)});
-    table.arc(end_node, table.condition({}, go));
-    table.last().repeats = true;
-    Running running{table};
-    running.run();
-    running.step(at_ms(1));
-    running.step(at_ms(2));
-    EXPECT_EQ(running.get<ScriptInt>(count), 3);
-    running.put(go, true);
-    EXPECT_EQ(running.step(at_ms(3)), ProgramStatus::stopped);
-    EXPECT_EQ(running.get<ScriptInt>(count), 4) << "the action, then the arcs";
-}
-
 TEST(A_program, that_yields_goes_on_in_the_next_step) {
     TableBuilder table;
     const DataOffset one = table.value(ScriptInt{1});

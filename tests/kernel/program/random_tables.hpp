@@ -117,7 +117,6 @@ constexpr void fill_node(Random& random, Rows& rows, std::size_t node, std::uint
         give({.run = &witness, .a = operand(random), .size = static_cast<std::uint16_t>(node)});
     }
     row.first_arc = static_cast<std::uint16_t>(node * arcs_each);
-    row.repeats = random(6) == 0;
     row.yields = random(6) == 0;
     if (random(3) == 0) row.on_error = static_cast<NodeIndex>(random(node_count));
     for (std::size_t i = 0; i < arcs_each; ++i) {

@@ -185,7 +185,6 @@ std::string program_to_plantuml(const Chart& chart, ProgramIndex number) {
         text += "state \"" + (node.line != 0 ? "line " + std::to_string(node.line) : id(n)) + "\" as " +
                 id(n) + "\n";
         for (const Statement& each : read.statements) text += id(n) + " : " + plain(each.text) + "\n";
-        if (node.repeats) text += id(n) + " : (repeated while it waits)\n";
         if (node.yields) text += id(n) + " : (goes on in the next step)\n";
         for (std::size_t a = 0; a < node.arcs; ++a) {
             const ArcRow& arc = tables.arcs[node.first_arc + a];

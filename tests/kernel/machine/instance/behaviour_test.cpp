@@ -1,4 +1,4 @@
-// A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script or a program table, in the
+// A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script, in the
 // component's activity, after its commands and events; what it may touch the table checks.
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
@@ -160,35 +160,6 @@ TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
     EXPECT_THAT(why, HasSubstr("\"baking\": run of state \"Feeding\" failed in line 10"));
 }
 
-/// Heats until it is hot, by member functions.
-struct Kettle {
-    std::int64_t heated = 0;
-    bool off = false;
-    void heat() noexcept TAPPET_REALTIME { ++heated; }
-    void switch_off() noexcept TAPPET_REALTIME { off = true; }
-    bool boils() noexcept TAPPET_REALTIME { return heated >= 5; }
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
-constexpr auto boiling =
-    program<Kettle>("boiling", graph(node<&Kettle::heat>("heat", repeated), node<&Kettle::switch_off>("off")),
-                    arcs(arc<&Kettle::boils>("heat", "off"), arc("off", program_end)));
-// clang-format off
-constexpr auto kitchen = machine("kitchen", components(component<Kettle>("kettle")),
-    activities(activity("fast", every(1ms), budget(50us), runs("kettle"))), connections(), reactions(),
-    behaviours(behaviour("kettle", boiling)));
-// clang-format on
-
-TEST(Behaviour, a_program_table_of_member_functions_drives_a_component) {
-    Rig<Firmware<kitchen, board>> rig;
-    rig.run(3ms);
-    Kettle& kettle = *rig.instance.find<Kettle>("kettle");
-    EXPECT_FALSE(kettle.off);
-    rig.run(10ms);
-    EXPECT_EQ(kettle.heated, 5);
-    EXPECT_TRUE(kettle.off);
-    EXPECT_EQ(rig.instance.behaviour_of("kettle")->parts()[0].program->status(), ProgramStatus::stopped);
-}
-
 // ---- what the table refuses
 
 template <class... Rows>
@@ -215,15 +186,6 @@ TEST(BehaviourChecks, a_peer_that_the_machine_does_not_have_is_named_with_the_ne
     static constexpr ScriptSource pushes{"pushes.osd", "do doors.push(1);"};
     EXPECT_THAT(refusal_of(behaviour("oven", compiled_script<pushes, misspelt>, {})),
                 HasSubstr("there is no component \"doors\"; did you mean \"door\"?"));
-}
-
-TEST(BehaviourChecks, a_program_table_that_names_no_node_of_its_own_is_refused_with_the_nearest) {
-    static constexpr auto misspelt = program<Oven>("p", graph(node("heat"), node("off")),
-                                                   arcs(arc("heat", "of"), arc("off", program_end)));
-    EXPECT_THAT(
-        refusal_of(behaviour("oven", misspelt)),
-        HasSubstr("behaviour of \"oven\": program \"p\": arc 1 (\"heat\" to \"of\"): there is no node "
-                  "\"of\"; did you mean \"off\"?"));
 }
 
 } // namespace
