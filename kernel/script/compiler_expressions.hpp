@@ -384,7 +384,7 @@ protected:
     }
 
     std::uint32_t nesting_ = 0;
-    std::size_t program_symbols_ = 0; // how many names were in sight before the program in hand
+    std::size_t program_symbols_ = 0; // how many names were in sight before the program or member in hand
 };
 
 } // namespace tappet::script_detail

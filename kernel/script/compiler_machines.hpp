@@ -159,6 +159,7 @@ protected:
 private:
     constexpr void parse_member() {
         const Token at = token_;
+        program_symbols_ = symbols_used_; // what a function sees in a guard or a first value
         switch (at.sign) {
         case Sign::semicolon: advance(); return;
         case Sign::k_param: advance(); return parse_variable(VariableKind::parameter);

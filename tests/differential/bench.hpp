@@ -36,6 +36,14 @@ struct Job {
     }
 };
 
+/// A record.
+struct Place {
+    double x = 0;
+    std::int32_t turns = 0;
+};
+template <> inline constexpr auto fields_of<Place> =
+    fields(field<&Place::x>("x"), field<&Place::turns>("turns"));
+
 /// Under the script's component and its peer in the same activity alike.
 struct Bench {
     Diary* diary = nullptr;
@@ -46,6 +54,8 @@ struct Bench {
     Property<bool> open{false};
     Input<double> measured;
     Output<double> setpoint;
+    BufferInput<std::int64_t> queue;
+    BufferOutput<double> sent;
     Event<> tick;
     Event<std::int32_t, double> moved;
     Event<bool> switched;
@@ -63,6 +73,14 @@ struct Bench {
         TAPPET_ESCAPE("a test's diary grows", log("ask " + std::to_string(n)));
         return (n & 1) == 0;
     }
+    Place shift(const Place& from, double by) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log("shift " + std::to_string(from.turns)));
+        return {from.x + by, from.turns / 2 + 1};
+    }
+    bool say(const Text<8>& what) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's diary grows", log("say " + std::string{what.view()}));
+        return what.length != 3;
+    }
     void poke(bool hard) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a test's diary grows", log(hard ? "poke hard" : "poke"));
     }
@@ -79,6 +97,9 @@ struct Bench {
             property<&Bench::open>("open", "", "a boolean"),
             input<&Bench::measured>("measured", "", "comes from outside", optional),
             output<&Bench::setpoint>("setpoint", "", "goes there"),
+            input<&Bench::queue>("queue", "", "whole numbers, one after the other", optional),
+            output<&Bench::sent>("sent", "", "real ones, likewise"),
+            method<&Bench::shift>("shift", "a record"), method<&Bench::say>("say", "false of three letters"),
             event<&Bench::tick>("tick", "without arguments"), event<&Bench::moved>("moved", "with two"),
             event<&Bench::switched>("switched", "with one"), method<&Bench::note>("note", "writes it down"),
             method<&Bench::mix>("mix", "of both kinds"), method<&Bench::ask>("ask", "whether it is even"),

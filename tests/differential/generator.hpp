@@ -25,7 +25,7 @@ public:
     std::string script();
 
 private:
-    enum class Kind : std::uint8_t { integer, real, boolean, time, vector };
+    enum class Kind : std::uint8_t { integer, real, boolean, time, vector, record, text };
     struct Named {
         std::string name;
         Kind kind;
@@ -65,6 +65,7 @@ private:
     std::string vector(int depth);
     const Named* variable(Kind kind, bool to_write);
     std::string goal();
+    std::string argument();
 
     // ---- programs
     void block(int statements, int depth, bool may_wait);
@@ -75,6 +76,8 @@ private:
     void assignment();
     void loop(int depth, bool may_wait);
     void child_call();
+    void whole_value();
+    void functions();
     void program_of(std::string_view what, std::uint64_t seldom, bool may_wait);
 
     // ---- state machines
@@ -99,9 +102,11 @@ private:
     std::vector<Named> names_;
     std::vector<Planned> states_;
     std::vector<std::string> functions_;
+    bool has_value_functions_ = false; ///< half(int) in expressions, pick(double, int) after "="
     bool has_child_ = false;
     bool in_child_ = false;
     bool in_function_ = false;
+    bool returns_value_ = false;
     int counters_ = 0;
     int loops_ = 0; ///< around the statement
 };

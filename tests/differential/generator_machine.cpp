@@ -31,7 +31,8 @@ std::string Generator::script() {
 }
 
 void Generator::declare(std::string_view word, Kind kind, const std::string& name) {
-    const std::string value = kind == Kind::vector || word == "param" ? "" : " = " + literal(kind);
+    const std::string value =
+        kind == Kind::vector || kind == Kind::record || word == "param" ? "" : " = " + literal(kind);
     line(std::string{word} + " " + std::string{type_of(kind)} + " " + name + value + ";");
     names_.push_back({name, kind, word != "const"});
 }
@@ -45,6 +46,10 @@ void Generator::variables() {
     declare("var", Kind::boolean, "p");
     declare("var", Kind::boolean, "q");
     declare("var", Kind::time, "t");
+    declare("var", Kind::record, "c");
+    declare("var", Kind::record, "d");
+    declare("var", Kind::text, "s");
+    declare("var", Kind::text, "r");
     declare("var", Kind::vector, "v");
     declare("var", Kind::vector, "w");
 }
@@ -118,12 +123,34 @@ std::vector<std::size_t> Generator::inside(int parent, const std::string& region
     return found;
 }
 
+// One is an expression, the other one has statements.
+void Generator::functions() {
+    in_function_ = true;
+    const std::size_t kept = names_.size();
+    names_.push_back({"n", Kind::integer, false});
+    open("function int half(int n)");
+    line("return " + expression(Kind::integer, 2) + ";");
+    close();
+    names_.push_back({"m", Kind::real, false});
+    open("function double pick(double m, int n)");
+    returns_value_ = true;
+    if (one_in(2)) statement(1, one_in(3));
+    returns_value_ = false;
+    line("if " + expression(Kind::boolean, 1) + " then return " + expression(Kind::real, 1) + ";");
+    line("return " + expression(one_in(4) ? Kind::integer : Kind::real, 1) + ";");
+    close();
+    names_.resize(kept);
+    in_function_ = false;
+    has_value_functions_ = true;
+}
+
 void Generator::machine() {
     open("StateMachine Machine");
     declare("param", Kind::integer, "goal");
     declare("param", Kind::real, "speed");
     variables();
     if (has_child_) line("SubStateMachine Child left(" + std::to_string(below(6)) + ")");
+    if (one_in(2)) functions();
     if (one_in(2)) {
         functions_.push_back("helper");
         open("function helper(int n)");

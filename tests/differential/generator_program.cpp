@@ -12,6 +12,8 @@ std::string_view Generator::type_of(Kind kind) {
     case Kind::boolean: return "bool";
     case Kind::time: return "Duration";
     case Kind::vector: return "vector3";
+    case Kind::record: return "Place";
+    case Kind::text: return "text";
     }
     return "?";
 }
@@ -26,13 +28,16 @@ const Generator::Named* Generator::variable(Kind kind, bool to_write) {
 std::string Generator::literal(Kind kind) {
     static constexpr std::array<std::string_view, 6> wholes = {"0", "1", "2", "3", "100", "40000"};
     static constexpr std::array<std::string_view, 5> reals = {"0.5", "2.0", "1.25e2", "0.1", "3.75"};
+    static constexpr std::array<std::string_view, 5> texts = {"", "a", "abc", "eight ch", "nine char"};
     static constexpr std::array<std::string_view, 4> times = {"10ms", "25ms", "1s", "1500us"};
     switch (kind) {
     case Kind::integer: return one_in(60) ? "9223372036854775807" : std::string{any(wholes)};
     case Kind::real: return std::string{any(reals)};
     case Kind::boolean: return one_in(2) ? "true" : "false";
     case Kind::time: return std::string{any(times)};
-    case Kind::vector: return {};
+    case Kind::text: return "\"" + std::string{any(texts)} + "\"";
+    case Kind::vector:
+    case Kind::record: return {};
     }
     return {};
 }
@@ -47,13 +52,21 @@ std::string Generator::expression(Kind kind, int depth) {
     case Kind::boolean: return truth(depth - 1);
     case Kind::time: return time(depth - 1);
     case Kind::vector: return vector(depth - 1);
+    case Kind::record:
+    case Kind::text: break;
     }
     return {};
 }
 
 std::string Generator::whole(int depth) {
     const std::string a = expression(Kind::integer, depth);
-    switch (below(10)) {
+    switch (below(12)) {
+    case 10:
+        if (const Named* place = variable(Kind::record, false)) return place->name + ".turns";
+        return literal(Kind::integer);
+    case 11:
+        if (has_value_functions_ && !in_child_ && !in_function_) return "half(" + a + ")";
+        return literal(Kind::integer);
     case 0: return "(" + a + " + " + expression(Kind::integer, depth) + ")";
     case 1: return "(" + a + " - " + expression(Kind::integer, depth) + ")";
     case 2: return "(" + a + " * " + expression(Kind::integer, depth) + ")";
@@ -71,7 +84,10 @@ std::string Generator::whole(int depth) {
 
 std::string Generator::real(int depth) {
     const std::string a = expression(Kind::real, depth);
-    switch (below(11)) {
+    switch (below(12)) {
+    case 11:
+        if (const Named* place = variable(Kind::record, false)) return place->name + ".x";
+        return literal(Kind::real);
     case 0: return a + " + " + expression(Kind::real, depth);
     case 1: return "(" + a + " - " + expression(Kind::real, depth) + ")";
     case 2: return "(" + a + " * " + expression(Kind::integer, depth) + ")";
@@ -91,7 +107,8 @@ std::string Generator::real(int depth) {
 
 std::string Generator::truth(int depth) {
     static constexpr std::array<std::string_view, 6> orders = {" == ", " != ", " < ", " > ", " <= ", " >= "};
-    switch (below(9)) {
+    switch (below(10)) {
+    case 9: return "queue.empty";
     case 0: return "!" + expression(Kind::boolean, 0);
     case 1: return "(" + expression(Kind::boolean, depth) + " && " + expression(Kind::boolean, depth) + ")";
     case 2: return "(" + expression(Kind::boolean, depth) + " || " + expression(Kind::boolean, depth) + ")";
@@ -128,6 +145,11 @@ std::string Generator::vector(int depth) {
     }
 }
 
+// Known before, or not: to reckon one is a statement.
+std::string Generator::argument() {
+    return one_in(3) ? std::to_string(below(9)) : "a % 50 + " + expression(Kind::integer, 1);
+}
+
 void Generator::block(int statements, int depth, bool may_wait) {
     const std::size_t kept = names_.size();
     for (int i = 0; i < statements; ++i) statement(depth, may_wait);
@@ -146,7 +168,7 @@ void Generator::statement(int depth, bool may_wait) {
     case 7: return has_child_ && !in_child_ && !in_function_ ? child_call() : assignment();
     case 8:
         if (!functions_.empty() && !in_function_ && !in_child_)
-            return line("do " + any(functions_) + "(" + expression(Kind::integer, 1) + ");");
+            return line("do " + any(functions_) + "(" + argument() + ");");
         return assignment();
     case 9:
     case 10:
@@ -166,7 +188,9 @@ void Generator::statement(int depth, bool may_wait) {
         block(1, depth - 1, may_wait);
         return close();
     case 14:
-        if (one_in(2)) return line("if " + expression(Kind::boolean, 1) + " then return;");
+        if (one_in(2))
+            return line("if " + expression(Kind::boolean, 1) + " then return" +
+                        (returns_value_ ? " " + expression(Kind::real, 1) : "") + ";");
         if (loops_ > 0) return line("if " + expression(Kind::boolean, 1) + " then break;");
         return call();
     default: {
@@ -215,7 +239,13 @@ void Generator::command() {
 }
 
 void Generator::call() {
-    switch (below(9)) {
+    switch (below(11)) {
+    case 9: return line("do sent.push(" + expression(Kind::real, 1) + ");");
+    case 10: {
+        const Named* said = variable(Kind::text, false);
+        const std::string what = said != nullptr && one_in(2) ? said->name : one_in(2) ? "\"ab\"" : "\"abc\"";
+        return line(std::string{one_in(2) ? "do say(" : "do mate.say("} + what + ");");
+    }
     case 0: return line("do note(" + expression(Kind::integer, 2) + ");");
     case 1: return line("do mate.note(" + expression(Kind::integer, 1) + ");");
     case 2:
@@ -236,7 +266,15 @@ void Generator::assignment() {
     static constexpr std::array<Kind, 10> kinds = {Kind::integer, Kind::integer, Kind::integer, Kind::real,
                                                    Kind::real,    Kind::boolean, Kind::boolean, Kind::time,
                                                    Kind::vector,  Kind::real};
-    switch (below(12)) {
+    switch (below(16)) {
+    case 12:
+    case 13:
+    case 14: return whole_value();
+    case 15:
+        if (has_value_functions_ && !in_child_ && !in_function_ && variable(Kind::real, true) != nullptr)
+            return line("set " + variable(Kind::real, true)->name + " = pick(" +
+                        (one_in(3) ? "0.5" : "y + " + expression(Kind::real, 1)) + ", " + argument() + ");");
+        break;
     case 0: return line("set gain = " + expression(Kind::integer, 1) + " % 50;");
     case 1: return line("set level = " + expression(Kind::real, 1) + ";");
     case 2: return line("set setpoint = " + expression(Kind::real, 2) + ";");
@@ -252,6 +290,28 @@ void Generator::assignment() {
     // A real takes a whole number as well.
     const Kind from = kind == Kind::real && one_in(5) ? Kind::integer : kind;
     line("set " + to->name + " = " + expression(from, 2) + ";");
+}
+
+// Of what is copied as a whole, and of its parts; and of what comes one after the other.
+void Generator::whole_value() {
+    const Named* to = variable(Kind::record, true);
+    const Named* text = variable(Kind::text, true);
+    if (to == nullptr || text == nullptr) return call();
+    const Named* from = variable(Kind::record, false);
+    switch (below(8)) {
+    case 0: return line("set " + to->name + " = " + from->name + ";");
+    case 1: return line("set " + to->name + ".x = " + expression(Kind::real, 1) + ";");
+    case 2: return line("set " + to->name + ".turns = b + " + expression(Kind::integer, 1) + ";");
+    case 3:
+        return line("set " + to->name + " = Place(" + expression(Kind::real, 1) + ", b + " +
+                    expression(Kind::integer, 1) + ");");
+    case 4:
+        return line("set " + to->name + " = " + (one_in(2) ? "mate." : "") + "shift(" + from->name + ", " +
+                    expression(Kind::real, 1) + ");");
+    case 5: return line("set " + text->name + " = " + literal(Kind::text) + ";");
+    case 6: return line("set " + text->name + " = " + variable(Kind::text, false)->name + ";");
+    default: return line("set a = queue.pop();");
+    }
 }
 
 void Generator::loop(int depth, bool may_wait) {

@@ -14,9 +14,7 @@ void RandomDay::Alone::start(const reference::Type& type) {
     status = "running";
 }
 
-void RandomDay::Alone::step(std::int64_t now) {
-    if (status != "running") return;
-    std::int64_t statements = reference::Machine::enough_statements;
+void RandomDay::Alone::step(std::int64_t now, std::int64_t statements) {
     switch (run.run(scope, now, statements)) {
     case reference::ProgramRun::Result::ended: status = "stopped"; break;
     case reference::ProgramRun::Result::failed: status = "error in line " + std::to_string(run.line()); break;
@@ -27,12 +25,16 @@ void RandomDay::Alone::step(std::int64_t now) {
 RandomDay::RandomDay(std::uint64_t seed, const std::string& text, const ScriptUnit& unit,
                      std::span<const ProgramCode> code, std::span<const StateMachineFast> fast)
     : random_{seed}, script_{reference::read(text)} {
-    bench_.place(unit, code, fast);
+    // Few statements in a step: what is left over goes on in the next one.
+    policy_ = {.statements = random_.one_in(2) ? static_cast<std::uint32_t>(random_.between(1, 8)) : 100'000,
+               .escalates = random_.one_in(2)};
+    bench_.place(unit, code, fast, policy_);
     if (script_.roots.empty()) {
         alone_.scope.world = &world_;
     } else {
-        root_ =
-            std::make_unique<reference::Machine>(script_, script_.roots[0], script_.roots[0].name, world_);
+        root_ = std::make_unique<reference::Machine>(
+            script_, script_.roots[0], script_.roots[0].name, world_,
+            reference::Machine::Policy{policy_.statements, policy_.escalates});
         world_.heard = [this](const std::string& event, const std::vector<Value>& given) {
             for (std::size_t i = 0; i <= root_->children().size(); ++i)
                 machine(i).event(event, given, bench_.now.time_since_epoch().count());
@@ -68,8 +70,26 @@ void RandomDay::step() {
     did("step at " + std::to_string(bench_.now.time_since_epoch().count()));
     const std::int64_t now = bench_.now.time_since_epoch().count();
     bench_.step();
-    if (root_ == nullptr) return alone_.step(now);
+    if (root_ == nullptr) {
+        if (alone_.status == "running") alone_.step(now, policy_.statements);
+        return;
+    }
     for (std::size_t i = 0; i <= root_->children().size(); ++i) machine(i).step(now);
+}
+
+/// Of what is paused.
+void RandomDay::single_step() {
+    did("single step");
+    const std::int64_t now = bench_.now.time_since_epoch().count();
+    if (root_ == nullptr) {
+        bench_.parts()[0].program.single_step(bench_.now);
+        if (alone_.status == "paused") alone_.step(now, 1);
+        return;
+    }
+    for (std::size_t i = 0; i <= root_->children().size(); ++i) {
+        bench_.parts()[i].machine->step_once(bench_.now);
+        machine(i).step_once(now);
+    }
 }
 
 void RandomDay::do_something() {
@@ -91,6 +111,7 @@ void RandomDay::do_something() {
     case 4:
         if (random_.one_in(2)) return root_ != nullptr ? command() : command_program();
         break;
+    case 6: return random_.one_in(2) ? feed() : drain();
     case 5: {
         const bool value = random_.one_in(2);
         did(value ? "opened" : "closed");
@@ -106,7 +127,22 @@ void RandomDay::do_something() {
         world_.step_arm();
     }
     bench_.now += Duration{random_.between(1, 30) * 1'000'000};
-    step();
+    random_.one_in(3) ? single_step() : step();
+}
+
+void RandomDay::feed() {
+    const std::int64_t number = random_.between(-3, 100'000);
+    const bool taken = bench_.feed.push(number);
+    did("fed " + std::to_string(number) + (taken ? "" : " in vain"));
+    if (taken) world_.queue.push_back(number);
+}
+
+void RandomDay::drain() {
+    double one = 0, other = 0;
+    const bool is_there = bench_.drain.pop(one);
+    if (!world_.sent.empty()) other = world_.sent.front(), world_.sent.pop_front();
+    bench_.diary.write("-- drained " + (is_there ? reference::print(Value{one}) : "nothing"));
+    world_.diary.write("-- drained " + (is_there ? reference::print(Value{other}) : "nothing"));
 }
 
 void RandomDay::emit() {

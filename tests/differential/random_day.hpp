@@ -23,16 +23,18 @@ private:
         reference::Scope scope{};
         reference::ProgramRun run{};
         std::string status{"ready"};
-        bool paused = false;
         void start(const reference::Type& type);
-        void step(std::int64_t now);
+        void step(std::int64_t now, std::int64_t statements);
     };
 
     void do_something();
     void emit();
+    void feed();
+    void drain();
     void command();
     void command_program();
     void step();
+    void single_step();
     [[nodiscard]] std::string difference() const;
     [[nodiscard]] std::string compare(const BenchPart& part, const std::string& picture,
                                       const reference::Scope& scope) const;
@@ -40,6 +42,7 @@ private:
     [[nodiscard]] reference::Machine& machine(std::size_t i) const;
 
     Random random_;
+    StateMachinePolicy policy_{};
     reference::Script script_;
     reference::BenchWorld world_{};
     UnitBench bench_{};

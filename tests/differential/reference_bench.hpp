@@ -18,6 +18,9 @@ public:
     Arm arm{};
     double measured = 0; ///< what the input gets
     double setpoint = 0;
+    static constexpr std::size_t places = 4; ///< of a buffer
+    std::deque<std::int64_t> queue{};
+    std::deque<double> sent{};
     /// Hears what is emitted, after the diary.
     std::function<void(const std::string& event, const std::vector<Value>& arguments)> heard;
 
@@ -52,7 +55,8 @@ public:
         if (name == "arm.move" || name == "arm.grip") return Kind::sent_command;
         const std::string last = name.substr(name.rfind('.') + 1);
         if (last == "tick" || last == "moved" || last == "switched") return Kind::event;
-        return last == "note" || last == "mix" || last == "ask" || last == "poke" || last == "sum"
+        return last == "note" || last == "mix" || last == "ask" || last == "poke" || last == "sum" ||
+                       last == "shift" || last == "say" || last == "pop" || last == "push"
                    ? Kind::method
                    : Kind::value;
     }
@@ -64,6 +68,7 @@ public:
         if (last == "open") return Value{of.open.get()};
         if (last == "measured") return Value{measured};
         if (last == "setpoint") return Value{setpoint};
+        if (name == "queue.empty") return Value{queue.empty()};
         return std::nullopt;
     }
     bool write(const std::string& name, const Value& value) override {
@@ -103,6 +108,27 @@ public:
             const auto n = whole(0, 1 << 15);
             if (!n) return std::nullopt;
             return Value{of.ask(static_cast<std::int16_t>(*n))};
+        }
+        if (last == "shift") {
+            const Record& from = std::get<Record>(given[0]);
+            const Place place = of.shift({from.x, static_cast<std::int32_t>(from.turns)}, real(given[1]));
+            return Value{Record{place.x, place.turns}};
+        }
+        if (last == "say") {
+            Text<8> text;
+            if (!text.assign(std::get<std::string>(given[0]))) return std::nullopt;
+            return Value{of.say(text)};
+        }
+        if (last == "pop") {
+            if (queue.empty()) return std::nullopt;
+            const std::int64_t number = queue.front();
+            queue.pop_front();
+            return Value{number};
+        }
+        if (last == "push") {
+            if (sent.size() == places) return std::nullopt;
+            sent.push_back(real(given[0]));
+            return Value{};
         }
         if (last == "poke") {
             of.poke(std::get<bool>(given[0]));

@@ -63,6 +63,7 @@ void Machine::round(std::int64_t now) {
             each.phase = Phase::under_way;
         else if (!mid_round_ && each.phase != Phase::under_way)
             each.phase = Phase::fresh;
+    if (!mid_round_) asked_ = 0;
     mid_round_ = true;
     for (std::size_t taken = 0;;) {
         if (!run_states(now)) return;
@@ -113,16 +114,17 @@ bool Machine::run_states(std::int64_t now) {
                 at.phase = Phase::held;
                 continue;
             }
+            if (left_ <= 0) return false;
             at.run.start(&at.state->run);
         }
         ran_.insert(at.state);
-        std::int64_t statements = enough_statements;
         running_ = at.state;
-        const ProgramRun::Result result = at.run.run(scope_, now, statements);
+        const ProgramRun::Result result = at.run.run(scope_, now, left_);
         running_ = nullptr;
         switch (result) {
         case ProgramRun::Result::ended: at.phase = Phase::ran; break;
         case ProgramRun::Result::failed: fail(at.run.line()); return false;
+        case ProgramRun::Result::left_over: at.phase = Phase::under_way; return false;
         default: at.phase = Phase::waits;
         }
         if (error_) return false;
@@ -130,13 +132,21 @@ bool Machine::run_states(std::int64_t now) {
     return true;
 }
 
+// A single step asks one; failed: it has had that.
 Machine::Reply Machine::find_condition(std::int64_t now, Chosen& found) {
+    std::size_t number = 0;
     for (const State* leaf : leaves())
         for (const State* state : asked_at(leaf))
             for (const Transition& each : state->transitions) {
                 if (!each.event.empty()) continue;
                 const Phase phase = active_of(state)->phase;
                 if (phase != Phase::ran && !(phase == Phase::waits && each.timed)) continue;
+                if (single_) {
+                    if (number++ < asked_) continue;
+                    if (left_ <= 0) return Reply::failed;
+                    --left_, ++asked_;
+                    count("condition in a single step");
+                }
                 const Reply reply = ask(state, each, nullptr, now);
                 if (reply == Reply::no) continue;
                 found = {state, &each, false};
@@ -196,7 +206,7 @@ void Machine::event(const std::string& name, const std::vector<Value>& arguments
     });
     if (!known || !is_active_ || error_ || leaving_) return;
     if (!busy_ && !in_hand() && deferred_.empty() && wanted_.empty() && !paused_ && !final_wanted_) {
-        busy_ = true;
+        open();
         react({name, arguments}, now);
         static_cast<void>(work(now));
         finish(now);
@@ -209,11 +219,12 @@ void Machine::event(const std::string& name, const std::vector<Value>& arguments
         count(in_hand() ? "event deferred by a transition" : "event deferred");
         deferred_.push_back({name, arguments});
     }
-    if (!busy_) finish(now);
+    if (busy_) return;
+    open();
+    finish(now);
 }
 
 void Machine::finish(std::int64_t now) {
-    busy_ = true;
     for (std::size_t n = 0; n < most_deferred; ++n) {
         serve_final(now);
         if (!is_active_ || error_ || in_hand() || paused_) break;

@@ -13,10 +13,15 @@ class Machine final : public World {
 public:
     static constexpr std::size_t most_transitions = 8; ///< in a step
     static constexpr std::size_t most_deferred = 8;
-    static constexpr std::int64_t enough_statements = 1'000'000;
+    static constexpr std::int64_t enough_statements = 100'000;
 
+    /// What a row of the table says of it, and of its children.
+    struct Policy {
+        std::int64_t statements = enough_statements;
+        bool escalates = false;
+    };
     Machine(const Script& script, const Instance& instance, const std::string& name, World& bench,
-            Scope* outer = nullptr);
+            Policy policy, Machine* parent = nullptr);
 
     // ---- what the engine, an operator or a parent asks for
     bool activate(std::int64_t now);
@@ -28,6 +33,7 @@ public:
     bool deactivate(std::int64_t now);
     bool request(const std::string& state, bool run_once, std::int64_t now);
     void step(std::int64_t now);
+    void step_once(std::int64_t now);
     void event(const std::string& name, const std::vector<Value>& arguments, std::int64_t now);
 
     // ---- what is compared
@@ -111,6 +117,9 @@ private:
     /// The states that are asked at a leaf: itself and those around it, of which it is the last leaf.
     [[nodiscard]] std::vector<const State*> asked_at(const State* leaf) const;
 
+    /// A call from outside begins, with the statements of one.
+    void open() { busy_ = true, left_ = policy_.statements; }
+
     // ---- what is in hand
     bool work(std::int64_t now);
     bool do_acts(std::int64_t now);
@@ -162,6 +171,11 @@ private:
     bool busy_ = false;
     bool mid_round_ = false;
     bool conditions_left_ = false;
+    Policy policy_{};
+    Machine* parent_ = nullptr;
+    std::int64_t left_ = 0; ///< statements of this call from outside
+    bool single_ = false;   ///< a single step
+    std::size_t asked_ = 0; ///< conditions that single steps have asked in this round
     std::set<const State*> ran_;
     std::size_t lost_ = 0;
     std::int64_t now_ = 0;

@@ -1,6 +1,7 @@
 // Walks the statements of a program.
 #include "tests/differential/reference_program.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <utility>
@@ -16,6 +17,7 @@ const Function* Scope::function(const std::string& name) const {
 }
 
 Variables* Scope::holder(const std::string& name) {
+    if (!given.empty() && given.back()->values.contains(name)) return given.back();
     if (run != nullptr)
         if (Variables* const own = run->holder(name)) return own;
     return values.contains(name) ? this : nullptr;
@@ -42,6 +44,11 @@ ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t&
     } const at_work{scope, std::exchange(scope.run, this)};
     while (!open_.empty()) {
         Open& top = open_.back();
+        if (catches_) { // to come there is a statement too
+            if (statements == 0) return Result::left_over;
+            --statements;
+            catches_ = false;
+        }
         if (top.next == top.block->size()) {
             const Statement* owner = top.owner;
             const bool is_loop = owner != nullptr && owner->kind == Statement::Kind::loop;
@@ -54,9 +61,14 @@ ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t&
             continue;
         }
         const Statement& statement = (*top.block)[top.next];
-        if (!entered_) {
-            if (statements == 0) return Result::left_over;
+        if (counts(scope, statement) && (!entered_ || again_)) {
+            if (statements == 0) {
+                ++covered()["statements left over"];
+                return Result::left_over;
+            }
             --statements;
+        }
+        if (!entered_) {
             entered_ = true;
             acted_ = false;
             entered_at_ = now;
@@ -65,17 +77,28 @@ ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t&
         switch (execute(scope, statement, now)) {
         case Done::next:
             ++open_.back().next;
-            entered_ = false;
+            entered_ = again_ = false;
             break;
-        case Done::elsewhere: entered_ = false; break;
+        case Done::elsewhere: entered_ = again_ = false; break;
         case Done::wait: ++covered()["a step ends in a program"]; return Result::waits;
         case Done::failed:
             if (!recover()) return Result::failed;
-            entered_ = false;
+            entered_ = again_ = false;
             break;
         }
     }
     return Result::ended;
+}
+
+// Whether it is one of the statements that a step may execute: of a call the reckoning of its arguments is
+// one.
+bool ProgramRun::counts(const Scope& scope, const Statement& statement) {
+    if (statement.kind != Statement::Kind::perform ||
+        scope.function(statement.expressions[0].text) == nullptr)
+        return statement.counts;
+    return std::ranges::any_of(statement.expressions[0].parts, [](const Expression& argument) {
+        return argument.kind != Expression::Kind::literal;
+    });
 }
 
 // The innermost try around the statement goes on with its catch.
@@ -87,9 +110,22 @@ bool ProgramRun::recover() {
         ++covered()["failure caught"];
         open_.resize(i + 1);
         open_[i] = {.block = &owner->second, .owner = owner};
+        catches_ = true;
         return true;
     }
     return false;
+}
+
+ProgramRun::Done ProgramRun::set_part(Value& variable, const std::string& name, const Value& value) {
+    ++covered()["field of a record"];
+    Record& record = std::get<Record>(variable);
+    if (name.ends_with(".x")) {
+        record.x = std::get<double>(*convert(value, "double"));
+        return Done::next;
+    }
+    const std::optional<std::int64_t> turns = turns_of(value);
+    if (turns) record.turns = *turns;
+    return turns ? Done::next : Done::failed;
 }
 
 ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, std::int64_t now) {
@@ -109,7 +145,8 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
     }
     case Kind::assign: {
         ++covered()["set"];
-        Variables* const holder = scope.holder(statement.text);
+        const std::string variable_name = statement.text.substr(0, statement.text.find('.'));
+        Variables* const holder = scope.holder(variable_name);
         std::optional<std::int64_t> index;
         if (!statement.indices.empty()) {
             const std::optional<Value> at = evaluate(scope, statement.indices[0]);
@@ -119,14 +156,15 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
         std::optional<Value> value = value_of(0);
         if (!value) return Done::failed;
         if (holder == nullptr) return scope.world->write(statement.text, *value) ? Done::next : Done::failed;
-        Value& variable = holder->values[statement.text];
+        Value& variable = holder->values[variable_name];
+        if (variable_name != statement.text) return set_part(variable, statement.text, *value);
         if (index) {
             auto& vector = std::get<Vector>(variable);
             if (*index < 0 || *index >= static_cast<std::int64_t>(vector.size())) return Done::failed;
             vector[static_cast<std::size_t>(*index)] = std::get<double>(*convert(*value, "double"));
             return Done::next;
         }
-        value = convert(*value, holder->types[statement.text]);
+        value = convert(*value, holder->types[variable_name]);
         if (!value) return Done::failed;
         variable = *value;
         return Done::next;
@@ -151,6 +189,15 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
     }
     case Kind::leave:
         ++covered()["return"];
+        if (!statement.expressions.empty()) {
+            ++covered()["return of a value"];
+            std::size_t call = open_.size() - 1;
+            while (!open_[call].is_call) --call;
+            std::optional<Value> value = value_of(0);
+            if (value) value = convert(*value, open_[call].function->result);
+            if (!value) return Done::failed;
+            result_ = *value;
+        }
         while (!open_.empty() && !open_.back().is_call) open_.pop_back();
         if (open_.empty()) return Done::elsewhere;
         open_.pop_back();
@@ -205,7 +252,7 @@ ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, s
     if (const Function* function = scope.function(call.text)) {
         ++covered()["function"];
         if (!arguments()) return Done::failed;
-        Open call_of{.block = &function->body, .is_call = true};
+        Open call_of{.block = &function->body, .is_call = true, .function = function};
         for (std::size_t i = 0; i < given.size(); ++i) {
             const Variable& parameter = function->parameters[i];
             call_of.own.declare(parameter.name, parameter.type, *convert(given[i], parameter.type));
@@ -247,7 +294,8 @@ ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, s
     case World::Kind::sent_command:
         if (!acted_) {
             if (!arguments()) return Done::failed;
-            if (!scope.world->send(call.text, given)) {
+            again_ = !scope.world->send(call.text, given);
+            if (again_) {
                 ++covered()["command still on its way"];
                 return waits_or_late();
             }

@@ -59,6 +59,8 @@ struct Scope : Variables {
     const std::vector<Function>* outer_functions = nullptr;
     ProgramRun* run = nullptr; ///< at work just now; its own variables are nearer
 
+    std::vector<Variables*> given{}; ///< of the functions that are being reckoned, nearest last
+
     [[nodiscard]] const Function* function(const std::string& name) const;
     /// Those among which the nearest of that name stands; null: no variable has it.
     [[nodiscard]] Variables* holder(const std::string& name);
@@ -67,6 +69,8 @@ struct Scope : Variables {
 std::optional<Value> evaluate(Scope& scope, const Expression& expression);
 /// A value on its way into a variable or an argument of that type.
 std::optional<Value> convert(const Value& value, const std::string& type);
+/// A whole number as the field of the record that holds one; nothing: it does not fit there.
+std::optional<std::int64_t> turns_of(const Value& value);
 Value zero_of(const std::string& type);
 std::string print(const Value& value);
 
@@ -80,7 +84,7 @@ public:
     void start(const Block* block, bool stands_alone = false) {
         open_.clear();
         open_.push_back({.block = block});
-        entered_ = acted_ = false;
+        entered_ = acted_ = again_ = catches_ = false;
         stands_alone_ = stands_alone;
     }
     [[nodiscard]] bool is_on() const { return !open_.empty(); }
@@ -91,6 +95,7 @@ public:
     [[nodiscard]] Variables* holder(const std::string& name);
     /// Of the statement that failed, or that waits.
     [[nodiscard]] int line() const { return line_; }
+    [[nodiscard]] const Value& result() const { return result_; }
     static std::map<std::string, std::size_t>& covered();
 
 private:
@@ -100,19 +105,25 @@ private:
         const Statement* owner = nullptr; ///< a loop, what is tried, or a call
         bool is_increment = false;
         bool is_call = false;
+        const Function* function = nullptr; ///< that is called
         Variables own{};
     };
     enum class Done : std::uint8_t { next, elsewhere, wait, failed };
 
     Done execute(Scope& scope, const Statement& statement, std::int64_t now);
+    static Done set_part(Value& variable, const std::string& name, const Value& value);
     Done perform(Scope& scope, const Statement& statement, std::int64_t now);
     bool recover();
+    static bool counts(const Scope& scope, const Statement& statement);
 
     std::vector<Open> open_{};
     std::int64_t time_limit_ = 0; ///< of a wait
     bool entered_ = false;        ///< the statement in hand
     bool acted_ = false;
+    bool again_ = false;   ///< it could not act yet: to try again is a statement
+    bool catches_ = false; ///< what failed leads there
     std::vector<Value> given_{};
+    Value result_{};
     std::int64_t entered_at_ = 0;
     int line_ = 0;
     bool stands_alone_ = false;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <set>
 
 namespace tappet::reference {
 namespace {
@@ -108,6 +109,8 @@ private:
             static_cast<void>(take(","));
         }
         made.body = block();
+        const bool is_value = made.body.size() == 1 && made.body[0].kind == Statement::Kind::leave;
+        if (!made.result.empty() && !is_value) with_statements_.insert(made.name);
         return made;
     }
     Type program() {
@@ -263,6 +266,13 @@ private:
         }
         expect("=");
         made.expressions.push_back(expression());
+        Expression& value = made.expressions[0];
+        if (value.kind == Expression::Kind::call && with_statements_.contains(value.text)) {
+            Statement call{.kind = Statement::Kind::perform, .line = line};
+            call.expressions.push_back(value);
+            into.push_back(call);
+            value = {.kind = Expression::Kind::name, .text = std::string{result_of_call}, .line = line};
+        }
         into.push_back(made);
     }
     void timeout(Statement& of) {
@@ -287,6 +297,7 @@ private:
                 Statement made{.kind = Statement::Kind::declare, .line = line};
                 made.text = each.name;
                 made.type = each.type;
+                made.counts = each.kind != "const";
                 if (each.has_initial) made.expressions.push_back(each.initial);
                 into.push_back(made);
             }
@@ -295,7 +306,7 @@ private:
         } else if (take("do")) {
             perform(into, line);
         } else if (take("try")) {
-            Statement made{.kind = Statement::Kind::guarded, .line = line};
+            Statement made{.kind = Statement::Kind::guarded, .counts = false, .line = line};
             made.first = block();
             semicolons();
             if (take("catch")) made.second = block();
@@ -431,6 +442,7 @@ private:
 
     std::vector<Word> words_;
     std::size_t at_ = 0;
+    std::set<std::string> with_statements_; ///< functions that give a value and are no expression
 };
 
 } // namespace

@@ -66,7 +66,8 @@ bool Machine::activate(std::int64_t now) {
     deferred_.clear();
     wanted_.clear();
     current_.drop();
-    busy_ = true;
+    open();
+    asked_ = 0;
     acts_.push_back({.kind = Act::Kind::plan, .state = initial_of("", "")});
     static_cast<void>(work(now));
     finish(now);
@@ -106,6 +107,7 @@ bool Machine::request_final(std::int64_t now) {
     final_wanted_ = true;
     if (busy_) return true;
     paused_ = false;
+    open();
     finish(now);
     return true;
 }
@@ -115,7 +117,7 @@ bool Machine::reset(std::int64_t now) {
     if (busy_ || in_hand() || error_ || !is_final()) return false;
     count("reset");
     paused_ = false;
-    busy_ = true;
+    open();
     replace(initial_of("", ""), false);
     static_cast<void>(work(now));
     finish(now);
@@ -128,7 +130,7 @@ bool Machine::deactivate(std::int64_t now) {
     paused_ = final_wanted_ = false;
     deferred_.clear();
     wanted_.clear();
-    busy_ = true;
+    open();
     if (!leaving_) {
         count("deactivated");
         replace(nullptr, true);
@@ -154,7 +156,7 @@ bool Machine::request(const std::string& state, bool run_once, std::int64_t now)
     wanted_ = state;
     wanted_run_ = run_once;
     if (waits) return true;
-    busy_ = true;
+    open();
     const bool done = serve_request(now);
     finish(now);
     return done;
@@ -163,12 +165,33 @@ bool Machine::request(const std::string& state, bool run_once, std::int64_t now)
 void Machine::step(std::int64_t now) {
     now_ = now;
     if (!is_active_ || busy_ || paused_ || error_) return;
-    busy_ = true;
+    open();
     ran_.clear();
     conditions_left_ = false;
     serve_final(now);
     round(now);
     finish(now);
+}
+
+// One statement of what is in hand or of a run program, or one condition, or one event.
+void Machine::step_once(std::int64_t now) {
+    now_ = now;
+    if (!is_active_ || busy_ || !paused_ || error_) return;
+    open();
+    left_ = 1;
+    single_ = true;
+    if (!mid_round_) ran_.clear();
+    if (!in_hand() && !mid_round_ && !deferred_.empty()) {
+        count("event in a single step");
+        left_ = 0;
+        const Event next = deferred_.front();
+        deferred_.pop_front();
+        react(next, now);
+    } else {
+        round(now);
+    }
+    serve_final(now);
+    busy_ = single_ = false;
 }
 
 // ---- as the world of its programs

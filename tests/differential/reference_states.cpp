@@ -8,8 +8,8 @@
 namespace tappet::reference {
 
 Machine::Machine(const Script& script, const Instance& instance, const std::string& name, World& bench,
-                 Scope* outer)
-    : name_{name}, bench_{bench} {
+                 Policy policy, Machine* parent)
+    : name_{name}, bench_{bench}, policy_{policy}, parent_{parent} {
     for (const Type& each : script.types)
         if (each.name == instance.type) type_ = &each;
     if (type_ == nullptr) std::abort();
@@ -22,14 +22,14 @@ Machine::Machine(const Script& script, const Instance& instance, const std::stri
     for (const Variable& each : type_->variables) {
         Value value = zero_of(each.type);
         if (each.kind == "param" && argument < instance.arguments.size())
-            value = *evaluate(outer != nullptr ? *outer : nothing, instance.arguments[argument++]);
+            value = *evaluate(parent != nullptr ? parent->scope_ : nothing, instance.arguments[argument++]);
         else if (each.has_initial)
             value = *evaluate(scope_, each.initial);
         scope_.types[each.name] = each.type;
         scope_.values[each.name] = *convert(value, each.type);
     }
     for (const Instance& each : type_->children)
-        children_.push_back(std::make_unique<Machine>(script, each, each.name, bench, &scope_));
+        children_.push_back(std::make_unique<Machine>(script, each, each.name, bench, policy, this));
 }
 
 // ---- the tree
@@ -189,9 +189,9 @@ bool Machine::do_acts(std::int64_t now) {
             is_active_ = automatic_ = leaving_ = error_ = paused_ = final_wanted_ = mid_round_ = false;
             return true;
         default:
+            if (left_ <= 0) return false;
             if (!current_.is_on()) current_.start(act.block);
-            std::int64_t statements = enough_statements;
-            const ProgramRun::Result result = current_.run(scope_, now, statements);
+            const ProgramRun::Result result = current_.run(scope_, now, left_);
             if (result == ProgramRun::Result::failed) {
                 fail(current_.line());
                 return false;
@@ -231,6 +231,12 @@ void Machine::fail(int line) {
     fault_line_ = line;
     current_.drop();
     count("machine in error");
+    if (!policy_.escalates) return;
+    for (Machine* above = parent_; above != nullptr; above = above->parent_) {
+        if (!above->is_active_ || above->error_) return;
+        count("child in error: so is its parent");
+        above->error_ = true;
+    }
 }
 
 // The program, the exits from the inside, the entries from the outside.
@@ -252,6 +258,7 @@ void Machine::plan(const State* source, const State* target, const Block& progra
 
 void Machine::take(const Chosen& chosen) {
     const Transition& t = *chosen.transition;
+    asked_ = 0;
     for (Active& each : active_)
         if (each.phase == Phase::asked) each.phase = Phase::ran;
     const State* const target = find(chosen.otherwise ? t.otherwise_to : t.to);
@@ -274,6 +281,7 @@ void Machine::take(const Chosen& chosen) {
 void Machine::replace(const State* target, bool departs) {
     chosen_.clear();
     run_once_ = false;
+    asked_ = 0;
     std::deque<Act> begun;
     if (!acts_.empty() && acts_.front().kind == Act::Kind::exit && current_.is_on() && !error_) {
         begun.push_back(acts_[0]);

@@ -18,7 +18,13 @@ struct Span {
     auto operator<=>(const Span&) const = default;
 };
 using Vector = std::vector<double>;
-using Value = std::variant<std::monostate, bool, std::int64_t, double, Span, Vector, std::string>;
+struct Record {
+    double x = 0;
+    std::int64_t turns = 0;
+};
+using Value = std::variant<std::monostate, bool, std::int64_t, double, Span, Vector, std::string, Record>;
+/// What the last function that has statements returned, as a name.
+inline constexpr std::string_view result_of_call = "result of the call";
 
 struct Expression {
     enum class Kind : std::uint8_t { literal, name, call, unary, binary, element };
@@ -54,6 +60,7 @@ struct Statement {
     Block second{}; ///< else, what is done on failure, the increment of a for
     Expression timeout{};
     bool has_timeout = false;
+    bool counts = true; ///< a constant is known before, and "try" says only where a failure leads
     int line = 0;
 };
 

@@ -169,7 +169,14 @@ std::optional<Value> element(const Value& of, const Value& at) {
 }
 
 std::optional<Value> named(Scope& scope, const std::string& name) {
-    if (const Variables* const holder = scope.holder(name)) return holder->values.at(name);
+    if (name == result_of_call) return scope.run->result();
+    const std::string variable = name.substr(0, name.find('.'));
+    if (const Variables* const holder = scope.holder(variable)) {
+        const Value& value = holder->values.at(variable);
+        if (variable == name) return value;
+        const Record& record = std::get<Record>(value);
+        return name.ends_with(".x") ? Value{record.x} : Value{record.turns};
+    }
     return scope.world->read(name);
 }
 
@@ -181,6 +188,23 @@ std::optional<Value> called(Scope& scope, const Expression& expression) {
         given.push_back(*value);
     }
     if (const auto result = mathematics(expression.text, given)) return *result;
+    if (const Function* const function = scope.function(expression.text)) {
+        count("function in an expression");
+        Variables parameters;
+        for (std::size_t i = 0; i < given.size(); ++i)
+            parameters.declare(function->parameters[i].name, function->parameters[i].type,
+                               *convert(given[i], function->parameters[i].type));
+        scope.given.push_back(&parameters);
+        const std::optional<Value> result = evaluate(scope, function->body[0].expressions[0]);
+        scope.given.pop_back();
+        return result ? convert(*result, function->result) : std::nullopt;
+    }
+    if (expression.text == "Place") {
+        count("record put together");
+        const std::optional<std::int64_t> turns = turns_of(given[1]);
+        if (!turns) return std::nullopt;
+        return Value{Record{real_of(given[0]), *turns}};
+    }
     return scope.world->call(expression.text, given);
 }
 
@@ -211,12 +235,22 @@ std::optional<Value> convert(const Value& value, const std::string& type) {
     return value;
 }
 
+std::optional<std::int64_t> turns_of(const Value& value) {
+    const std::int64_t number = std::get<std::int64_t>(value);
+    if (number < std::numeric_limits<std::int32_t>::min() ||
+        number > std::numeric_limits<std::int32_t>::max())
+        return std::nullopt;
+    return number;
+}
+
 Value zero_of(const std::string& type) {
     if (type == "bool") return false;
     if (type == "int") return std::int64_t{0};
     if (type == "double") return 0.0;
     if (type == "Duration") return Span{};
     if (type == "vector3") return Vector(3, 0.0);
+    if (type == "Place") return Record{};
+    if (type == "text") return std::string{};
     std::cerr << "the reference knows no type '" << type << "'\n";
     std::abort();
 }
@@ -239,6 +273,9 @@ std::string print(const Value& value) {
             return text + "]";
         }
         std::string operator()(const std::string& v) const { return v; }
+        std::string operator()(const Record& v) const {
+            return "{" + (*this)(v.x) + " " + std::to_string(v.turns) + " }";
+        }
     };
     return std::visit(Printer{}, value);
 }

@@ -1,6 +1,8 @@
 // Binds a unit by hand, as a machine does from its plan.
 #include "tests/differential/unit_bench.hpp"
 
+#include "kernel/program/operator_kinds.hpp"
+
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -36,6 +38,16 @@ std::string print(TypeId type, const std::byte* at) {
         for (std::size_t i = 0; i < type->rows * type->columns; ++i)
             text += print(type->element, at + i * type->element->size) + " ";
         return text + "]";
+    }
+    case ValueKind::text: {
+        ScriptText text;
+        std::memcpy(&text, at, sizeof text);
+        return std::string{text.view()};
+    }
+    case ValueKind::record: {
+        std::string text = "{";
+        for (const RecordField& each : type->fields) text += print(each.type, at + each.offset()) + " ";
+        return text + "}";
     }
     default: return "?";
     }
@@ -91,6 +103,8 @@ UnitBench::UnitBench() {
     PortAccess::data<double>.set_clock(&own.measured, true, &now);
     PortAccess::data<double>.set_clock(&mate.measured, true, &now);
     source.write(0);
+    connect(feed, own.queue);
+    connect(own.sent, drain);
     for (Bench* each : {&own, &mate})
         for (const Facet& facet : component_type<Bench>.facets) {
             if (facet.kind != FacetKind::event) continue;
@@ -105,17 +119,26 @@ UnitBench::UnitBench() {
                                    : static_cast<const void*>(&Heard::call<bool>);
             facet.event->subscribe(event, call, heard_.back().get()) |= 1;
         }
-    constexpr std::size_t places = 64;
-    mail_.resize(CommandMailbox::bytes_for(places) + CommandMailbox::alignment);
+    constexpr std::size_t letters = 64;
+    mail_.resize(CommandMailbox::bytes_for(letters) + CommandMailbox::alignment);
     const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(mail_.data()) % CommandMailbox::alignment;
     mailbox_ = std::make_unique<CommandMailbox>(
-        mail_.data() + (misaligned == 0 ? 0 : CommandMailbox::alignment - misaligned), places,
+        mail_.data() + (misaligned == 0 ? 0 : CommandMailbox::alignment - misaligned), letters,
         Overflow::reject);
-    followed_.resize(places);
-    commands_.place({mailbox_.get(), 1}, followed_, places);
+    followed_.resize(letters);
+    commands_.place({mailbox_.get(), 1}, followed_, letters);
 }
 
 UnitBench::~UnitBench() = default;
+
+template <class T> void UnitBench::connect(BufferOutput<T>& from, BufferInput<T>& to) {
+    const BufferOperations& operations = PortAccess::buffer<T>;
+    std::vector<std::byte>& ring =
+        rings_.emplace_back(operations.ring_bytes(places, false) + operations.ring_align);
+    const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(ring.data()) % operations.ring_align;
+    operations.link(&from, &to, ring.data() + (misaligned == 0 ? 0 : operations.ring_align - misaligned),
+                    places, Overflow::reject, false);
+}
 
 void UnitBench::bind_links(BenchPart& part) {
     void* const components[] = {&own, &mate, &arm};
@@ -132,7 +155,7 @@ void UnitBench::bind_links(BenchPart& part) {
                 slot_values_.emplace_back(facet.command->value_bytes() + 1);
                 CommandSlot::Route route;
                 route.command = facet.command;
-                route.component = &arm;
+                route.component = link.component;
                 route.receiver_state = &arm_state_;
                 route.inbox = &commands_.inbox();
                 slot.place(route, slot_values_.back().data());
@@ -143,7 +166,8 @@ void UnitBench::bind_links(BenchPart& part) {
     }
 }
 
-void UnitBench::resolve(BenchPart& part, const ProgramCode& code, const StateMachineFast& fast) {
+void UnitBench::resolve(BenchPart& part, const ProgramCode& code, const StateMachineFast& fast,
+                        const StateMachinePolicy& policy) {
     const ResolvedSizes sizes = measure(part.type->machine);
     part.plans.resize(sizes.states);
     part.triggers.resize(sizes.triggers);
@@ -166,13 +190,14 @@ void UnitBench::resolve(BenchPart& part, const ProgramCode& code, const StateMac
     if (part.row->children != 0) binding.machines = &machines_[part.row->first_child];
     binding.history = part.history;
     binding.deferred = part.deferred;
-    binding.policy.statements = 100'000;
+    binding.policy = policy;
+    if (part.row->parent != no_instance) binding.parent = &machines_[part.row->parent];
     binding.fast = fast;
     if (!part.machine->bind(binding)) std::abort();
 }
 
 void UnitBench::place(const ScriptUnit& unit, std::span<const ProgramCode> code,
-                      std::span<const StateMachineFast> fast) {
+                      std::span<const StateMachineFast> fast, StateMachinePolicy policy) {
     unit_ = unit;
     machines_ = std::make_unique<StateMachineExecution[]>(unit_.instances.size());
     for (const BehaviourInstance& row : unit_.instances) {
@@ -194,9 +219,9 @@ void UnitBench::place(const ScriptUnit& unit, std::span<const ProgramCode> code,
             context.component = &own;
             context.data = part.data;
             context.links = part.links.data();
-            part.program.bind(with, context, part.row->image, {.statements = 100'000});
+            part.program.bind(with, context, part.row->image, {.statements = policy.statements});
         } else {
-            resolve(part, with, fast.empty() ? StateMachineFast{} : fast[part.row->type]);
+            resolve(part, with, fast.empty() ? StateMachineFast{} : fast[part.row->type], policy);
         }
     }
 }

@@ -49,7 +49,10 @@ public:
     Bench own{};
     Bench mate{};
     Arm arm{};
-    Output<double> source{}; ///< of own.measured
+    Output<double> source{};                 ///< of own.measured
+    BufferOutput<std::int64_t> feed{};       ///< of own.queue
+    BufferInput<double> drain{};             ///< of own.sent
+    static constexpr std::size_t places = 4; ///< of either
     Time now{};
 
     UnitBench();
@@ -59,7 +62,8 @@ public:
 
     /// One ProgramCode for each type; without: interpreted.
     void place(const ScriptUnit& unit, std::span<const ProgramCode> code = {},
-               std::span<const StateMachineFast> fast = {});
+               std::span<const StateMachineFast> fast = {},
+               StateMachinePolicy policy = {.statements = 100'000});
     void start();
     void step();
     /// The other activity: what was sent begins, what began goes on.
@@ -76,15 +80,17 @@ public:
 
 private:
     struct Heard; // of one event
+    template <class T> void connect(BufferOutput<T>& from, BufferInput<T>& to);
     void bind_links(BenchPart& part);
-    void resolve(BenchPart& part, const ProgramCode& code, const StateMachineFast& fast);
+    void resolve(BenchPart& part, const ProgramCode& code, const StateMachineFast& fast,
+                 const StateMachinePolicy& policy);
 
     ScriptUnit unit_{};
     std::deque<BenchPart> parts_;
     std::unique_ptr<StateMachineExecution[]> machines_; ///< by instance: children side by side
     std::deque<CommandSlot> slots_;
     std::deque<std::vector<std::byte>> slot_values_;
-    std::deque<std::vector<std::byte>> subscribers_;
+    std::deque<std::vector<std::byte>> subscribers_, rings_;
     std::vector<std::unique_ptr<Heard>> heard_;
     std::vector<std::byte> mail_;
     std::unique_ptr<CommandMailbox> mailbox_;

@@ -164,6 +164,19 @@ StateMachine M {
     EXPECT_EQ(p.state("M"), "B");
 }
 
+TEST(A_function, sees_the_machines_variables_in_a_guard_that_stands_before_any_program) {
+    Played p{R"(
+StateMachine M {
+    var int b = 2
+    function int times(int n) { return b * n; }
+    initial state A { precondition (times(1) == 2) transition halt if times(3) == 6 then select Z }
+    final state Z { }
+})"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    p.event("M", "halt");
+    EXPECT_EQ(p.state("M"), "Z");
+}
+
 // Waiting programs keep what they had: a function is expanded with places of its own at every call.
 TEST(A_function, keeps_its_arguments_and_variables_apart_in_programs_that_wait_at_the_same_time) {
     Played p{R"(
