@@ -48,6 +48,7 @@ struct ComponentType {
     bool slot_required = false;  ///< room for a behaviour that is loaded later
     Controls controls = Controls::nothing; ///< its row names another component with controls(...)
     std::string_view script{};             ///< of the behaviour that it controls; empty: whatever there is
+    const void* script_rows = nullptr;     ///< its instances: another script may have its name
     std::string_view instance{};           ///< in that script
     NeverRun never_run{};                  ///< what the table's check refuses
     void (*construct)(void* memory) = nullptr;
@@ -85,12 +86,15 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::records_cycles; }) type.records_cycles = T::records_cycles;
     if constexpr (requires { T::watches_life; }) type.watches_life = T::watches_life;
     if constexpr (requires { T::slot_required; }) type.slot_required = T::slot_required;
-    if constexpr (requires { T::controls; }) {
+    if constexpr (requires(T& t, const Controlled& controlled) { t.control(controlled); }) {
         type.controls = T::controls;
         type.control = [](void* c, const Controlled& controlled) { static_cast<T*>(c)->control(controlled); };
+        if constexpr (T::controls == ComponentType::Controls::behaviour) {
+            type.script = T::script_name;
+            type.script_rows = T::script_rows;
+            type.instance = T::instance_name;
+        }
     }
-    if constexpr (requires { T::script_name; })
-        type.script = T::script_name, type.instance = T::instance_name;
     if constexpr (requires { T::behaviour_required; }) type.behaviour_required = T::behaviour_required;
     if constexpr (life_configure<T>)
         type.configure = [](void* c, Setup& s) { return static_cast<T*>(c)->configure(s); };

@@ -15,18 +15,31 @@ void ProgramExecution::bind(const ProgramCode& code, const ProgramContext& conte
     policy_ = policy;
     program_ = program;
     failures_ = 0;
+    fill();
     status_ = ProgramStatus::stopped;
     static_cast<void>(reset());
 }
 
-bool ProgramExecution::reset() noexcept TAPPET_REALTIME {
-    if (status_ == ProgramStatus::running || status_ == ProgramStatus::paused) return false;
+void ProgramExecution::fill() noexcept TAPPET_REALTIME {
     const DataLayout& layout = code_.tables->layout;
     const std::size_t given = std::min<std::size_t>(image_.size(), layout.size);
     if (given != 0) std::memcpy(context_.data, image_.data(), given);
     if (layout.size != given) std::memset(context_.data + given, 0, layout.size - given);
+}
+
+bool ProgramExecution::reset() noexcept TAPPET_REALTIME {
+    if (status_ == ProgramStatus::running || status_ == ProgramStatus::paused) return false;
+    // The parameters stand before all other variables.
+    const DataLayout& layout = code_.tables->layout;
+    std::size_t end = layout.constants;
+    for (const VariableRow& row : code_.tables->variables)
+        if (row.kind == VariableKind::parameter) end = std::size_t{row.at} + row.type->size;
+    const std::size_t given = std::min<std::size_t>(image_.size(), layout.size);
+    if (given > end) std::memcpy(context_.data + end, image_.data() + end, given - end);
+    if (layout.size > std::max(given, end))
+        std::memset(context_.data + std::max(given, end), 0, layout.size - std::max(given, end));
     context_.position = {};
-    left_over_ = waits_ = false;
+    left_over_ = waits_ = has_ended_ = false;
     status_ = ProgramStatus::ready;
     return true;
 }
@@ -35,6 +48,7 @@ bool ProgramExecution::start() noexcept TAPPET_REALTIME {
     switch (status_) {
     case ProgramStatus::ready:
     case ProgramStatus::stopped:
+        has_ended_ = false;
         context_.position = {.node = code_.tables->programs[program_].first};
         waits_ = false;
         break;
@@ -79,7 +93,10 @@ void ProgramExecution::run(Time now, std::uint32_t statements) noexcept TAPPET_R
     // statements.
     for (std::uint32_t turn = 0, turns = statements; turn <= turns; ++turn) {
         switch (code_.run(*code_.tables, context_, statements)) {
-        case ProgramReturn::ended: status_ = ProgramStatus::stopped; return;
+        case ProgramReturn::ended:
+            status_ = ProgramStatus::stopped;
+            has_ended_ = true;
+            return;
         case ProgramReturn::waits: waits_ = true; return;
         case ProgramReturn::left_over: left_over_ = true; return;
         case ProgramReturn::failed: break;

@@ -37,6 +37,7 @@ public:
     bool start() noexcept TAPPET_REALTIME;
     bool pause() noexcept TAPPET_REALTIME;
     bool stop() noexcept TAPPET_REALTIME;
+    /// Its variables have their first values; parameters keep theirs.
     bool reset() noexcept TAPPET_REALTIME;
     /// One step of the engine; does nothing unless it is running.
     void step(Time now) noexcept TAPPET_REALTIME;
@@ -44,6 +45,8 @@ public:
     bool single_step(Time now) noexcept TAPPET_REALTIME;
 
     [[nodiscard]] ProgramStatus status() const noexcept TAPPET_REALTIME { return status_; }
+    /// It has executed its last statement since it was started; it was not stopped.
+    [[nodiscard]] bool has_ended() const noexcept TAPPET_REALTIME { return has_ended_; }
     [[nodiscard]] const ProgramPosition& position() const noexcept TAPPET_REALTIME {
         return context_.position;
     }
@@ -63,6 +66,7 @@ public:
     [[nodiscard]] const ProgramContext& context() const noexcept TAPPET_REALTIME { return context_; }
 
 private:
+    void fill() noexcept TAPPET_REALTIME;
     void run(Time now, std::uint32_t statements) noexcept TAPPET_REALTIME;
 
     ProgramCode code_{};
@@ -73,6 +77,7 @@ private:
     ProgramStatus status_ = ProgramStatus::ready;
     bool left_over_ = false;
     bool waits_ = false;
+    bool has_ended_ = false;
     std::uint32_t failures_ = 0;
 };
 

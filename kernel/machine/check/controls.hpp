@@ -32,7 +32,8 @@ constexpr Sentence check_task(const MachineView& m, const TableIndexView& r, std
                             "drives; add behaviour(\"", task.controlled, "\", ...) to behaviours(...)");
     const BehaviourRow& row = m.behaviours[b];
     const ScriptUnit unit = row.unit();
-    if (!task.type->script.empty() && unit.name != task.type->script)
+    if (!task.type->script.empty() &&
+        (unit.name != task.type->script || unit.instances.data() != task.type->script_rows))
         return of_component(task.name, " is a task of script \"", task.type->script, "\" but \"",
                             row.component, "\" is driven by \"", unit.name,
                             "\"; make it BehaviourTask<...> of that script");
@@ -69,7 +70,12 @@ constexpr Sentence check_controls(const MachineView& m, const TableIndexView& r)
             return of_component(row.name, " controls \"", row.controlled,
                                 "\": ", unknown_component(m, row.controlled));
         if (controlled == c) return of_component(row.name, " controls itself; name another component");
-        if (row.type->controls != Controls::behaviour) continue;
+        if (row.type->controls == Controls::life) {
+            if (const ActivityRow& own = m.activities[r.activity[c]]; !own.periodic())
+                return of_component(row.name, " looks once in each cycle for the answer, but activity \"",
+                                    own.name, "\" may sleep for ever; run it in one that is every(...)");
+            continue;
+        }
         if (Sentence fault = check_task(m, r, c); !fault.empty()) return fault;
     }
     return {};

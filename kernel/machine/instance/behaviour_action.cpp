@@ -16,7 +16,10 @@ bool act(StateMachineExecution& machine, BehaviourAction action, StateIndex stat
     case BehaviourAction::reset: return machine.request_initial(now) != StateOutcome::ignored;
     case BehaviourAction::deactivate: return machine.deactivate(now) != StateOutcome::ignored;
     case BehaviourAction::reactive: return machine.reactive() != StateOutcome::ignored;
-    case BehaviourAction::request: return machine.request_state(state, now) != StateOutcome::ignored;
+    case BehaviourAction::request: {
+        const StateOutcome outcome = machine.request_state(state, now);
+        return outcome != StateOutcome::ignored && outcome != StateOutcome::lost;
+    }
     }
     return false;
 }
@@ -37,8 +40,14 @@ bool act(ProgramExecution& program, BehaviourAction action, Time now) noexcept T
 
 } // namespace
 
-bool act(UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept TAPPET_REALTIME {
-    return part.machine != nullptr ? act(*part.machine, action, state, now) : act(*part.program, action, now);
+bool act(BehaviourUnit& unit, UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept
+    TAPPET_REALTIME {
+    const bool ends = action == BehaviourAction::stop || action == BehaviourAction::deactivate;
+    if (!unit.may_begin() && !ends && action != BehaviourAction::pause) return false;
+    const bool acts =
+        part.machine != nullptr ? act(*part.machine, action, state, now) : act(*part.program, action, now);
+    if (acts && ends) part.begins_anew = false;
+    return acts;
 }
 
 } // namespace tappet

@@ -192,6 +192,7 @@ bool BehaviourUnit::is_quiet() const noexcept TAPPET_REALTIME {
 // The stop of a component leaves its machines in the final state; the next start leads from there.
 void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
     reported_ = false;
+    may_begin_ = true;
     for (UnitPart& part : parts_) {
         if (part.row->parent != no_instance) continue;
         if (part.program != nullptr) {
@@ -229,7 +230,10 @@ void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
 bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
     bool worked = false;
     limit_work(now);
+    stepped_at_ = now;
     for (UnitPart& part : parts_) {
+        if (part.awaited != 0 && is_at_rest(part)) [[unlikely]]
+            --part.awaited;
         if (part.machine == nullptr) continue;
         worked |= part.machine->step(now);
         if (part.begins_anew) [[unlikely]] {
@@ -243,6 +247,7 @@ bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
 }
 
 void BehaviourUnit::finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME {
+    may_begin_ = false;
     for (UnitPart& part : parts_) {
         part.begins_anew = false;
         if (part.program != nullptr)
@@ -322,8 +327,9 @@ void BehaviourUnit::report_errors() noexcept TAPPET_REALTIME {
 Time BehaviourUnit::next() const noexcept TAPPET_REALTIME {
     Time earliest = never;
     for (const UnitPart& part : parts_)
-        earliest = std::min(earliest,
-                            part.machine != nullptr ? part.machine->next_timeout() : part.program->wakes());
+        earliest = std::min(earliest, part.awaited != 0 && is_at_rest(part) ? stepped_at_
+                                      : part.machine != nullptr             ? part.machine->next_timeout()
+                                                                            : part.program->wakes());
     return earliest;
 }
 

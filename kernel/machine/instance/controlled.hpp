@@ -17,8 +17,11 @@ struct Controlled {
     std::size_t part = 0;
 
     /// Null: no behaviour is loaded. In that engine. Real-time.
+    [[nodiscard]] BehaviourUnit* active() const noexcept TAPPET_REALTIME {
+        return slot != nullptr ? slot->active() : unit;
+    }
     [[nodiscard]] UnitPart* behaviour() const noexcept TAPPET_REALTIME {
-        BehaviourUnit* const active = slot != nullptr ? slot->active() : unit;
+        BehaviourUnit* const active = this->active();
         return active != nullptr && part < active->parts().size() ? &active->parts()[part] : nullptr;
     }
 };

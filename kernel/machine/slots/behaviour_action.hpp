@@ -23,7 +23,9 @@ enum class BehaviourAction : std::uint8_t {
 inline constexpr std::array<std::string_view, 8> behaviour_actions{
     "start", "stop", "pause", "step", "reset", "deactivate", "reactive", "request"};
 
-/// In the engine that runs it. `state`: of a request. False: it does not do that in its present status.
-bool act(UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept TAPPET_REALTIME;
+/// In the engine that runs it. `state`: of a request. False: it does not do that in its present status, or
+/// its component stands or comes to its end, where nothing begins.
+bool act(BehaviourUnit& unit, UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept
+    TAPPET_REALTIME;
 
 } // namespace tappet

@@ -25,9 +25,22 @@ struct UnitPart {
     ProgramLink* links = nullptr;
     CommandSlot* slots = nullptr;
     std::size_t slot_count = 0;
-    bool begins_anew = false;      ///< once it has come to its final state
+    bool begins_anew = false; ///< once it has come to its final state
+    /// A command waits for it to come to rest: for so many steps from then on its activity looks again, since
+    /// commands are followed before behaviours are stepped.
+    std::uint8_t awaited = 0;
     StateMachineBinding binding{}; ///< of a machine, to bind it anew
 };
+
+/// A program that has ended or was stopped, a machine in its final state or in none. Real-time.
+inline bool is_at_rest(const UnitPart& part) noexcept TAPPET_REALTIME {
+    if (part.machine != nullptr)
+        return !part.machine->is_active() || (part.machine->is_final() && !part.machine->under_way());
+    return part.program->status() != ProgramStatus::running &&
+           part.program->status() != ProgramStatus::paused;
+}
+
+inline void await_rest(UnitPart& part) noexcept TAPPET_REALTIME { part.awaited = 2; }
 
 /// The trigger of an instance that an event means; no_trigger: none.
 struct UnitRoute {
@@ -174,6 +187,8 @@ public:
     /// Out of the final states. A second call goes on without a program that failed in the first.
     void deactivate(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME;
+    /// Between start() and finish(): outside of it nothing begins.
+    [[nodiscard]] bool may_begin() const noexcept TAPPET_REALTIME { return may_begin_; }
     /// Inactive from now on, whatever was in hand: no program of it runs.
     void drop() noexcept TAPPET_REALTIME;
     /// The first instance in error; null: none is.
@@ -205,12 +220,14 @@ private:
     std::size_t driven_ = 0;
     std::span<UnitPart> parts_{};
     std::uint64_t left_over_ = 0;
+    Time stepped_at_{};
     struct {
         InstanceIndex instance = no_instance;
         std::uint16_t line = 0; // of a program
         StateMachineFault machine{};
     } fault_;
     bool reported_ = false;
+    bool may_begin_ = false;
     StateMachineExecution::Trace trace_ = nullptr;
     void* trace_context_ = nullptr;
     std::span<const UnitRoute> routes_{}; // [event * instances + instance]

@@ -19,7 +19,8 @@ constexpr std::size_t shown_characters = 64;
 void command_behaviour(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     auto& order = *static_cast<BehaviourOrder*>(self);
     if (order.slot != nullptr && order.slot->active() != order.unit) return;
-    order.done = act(order.unit->parts()[order.part], order.action, order.state, order.engine->now());
+    order.done =
+        act(*order.unit, order.unit->parts()[order.part], order.action, order.state, order.engine->now());
 }
 
 /// Whether a name is that of an instance: "component.instance".

@@ -3,8 +3,7 @@
 // other, so rows, scripts and browsers reach it as they reach those.
 //
 //     component<BehaviourTask<weft_script, "feed">>("feeding", controls("weft"), set("speed", 0.5)),
-//     uses("console.feed", "feeding.run")          // program feed(int pieces) { ... } of the script of
-//     "weft"
+//     uses("console.feed", "feeding.run")          // program feed(int pieces, double speed) { ... } of it
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -38,24 +37,36 @@ public:
 
     CommandProgress is_stopped() noexcept TAPPET_REALTIME {
         return until([](const UnitPart& part) noexcept TAPPET_REALTIME {
-            return part.machine != nullptr ? part.machine->is_final() && !part.machine->under_way()
-                                           : !is_at_work(*part.program);
+            return is_at_rest(part) ? CommandProgress::done : CommandProgress::executing;
         });
     }
     CommandProgress is_deactivated() noexcept TAPPET_REALTIME {
-        return until([](const UnitPart& part) noexcept
-                     TAPPET_REALTIME { return !part.machine->is_active(); });
+        return until([](const UnitPart& part) noexcept TAPPET_REALTIME {
+            return part.machine != nullptr && part.machine->is_active() ? CommandProgress::executing
+                                                                        : CommandProgress::done;
+        });
     }
+    /// A program that was stopped, by whomever, has not come to its end.
     CommandProgress has_ended() noexcept TAPPET_REALTIME {
-        return until([](const UnitPart& part) noexcept
-                     TAPPET_REALTIME { return !is_at_work(*part.program); });
+        return until([](const UnitPart& part) noexcept TAPPET_REALTIME {
+            if (!is_at_rest(part)) return CommandProgress::executing;
+            return part.program->has_ended() ? CommandProgress::done : CommandProgress::failed;
+        });
+    }
+    CommandProgress is_requested(const ScriptText& state) noexcept TAPPET_REALTIME {
+        const StateIndex wanted = find(state.view());
+        return until([wanted](const UnitPart& part) noexcept TAPPET_REALTIME {
+            if (part.machine->is_in(wanted)) return CommandProgress::done;
+            const bool waits = part.machine->request_waits() || part.machine->under_way();
+            return waits ? CommandProgress::executing : CommandProgress::failed;
+        });
     }
 
     // Methods.
     bool is_active() noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
         if (part == nullptr) return false;
-        return part->machine != nullptr ? part->machine->is_active() : is_at_work(*part->program);
+        return part->machine != nullptr ? part->machine->is_active() : !is_at_rest(*part);
     }
     bool in_error() noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
@@ -68,12 +79,15 @@ public:
     }
 
 protected:
+    /// A program that may be started; one in error is brought out of it first, as by a stop.
+    [[nodiscard]] bool is_free() noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        if (part == nullptr || !controlled_.active()->may_begin() || !is_at_rest(*part)) return false;
+        return !is_in_error(*part) || acts(BehaviourAction::stop);
+    }
     [[nodiscard]] std::byte* data() noexcept TAPPET_REALTIME { return controlled_.behaviour()->data; }
 
 private:
-    static bool is_at_work(const ProgramExecution& program) noexcept TAPPET_REALTIME {
-        return program.status() == ProgramStatus::running || program.status() == ProgramStatus::paused;
-    }
     static bool is_in_error(const UnitPart& part) noexcept TAPPET_REALTIME {
         return part.machine != nullptr ? part.machine->in_error()
                                        : part.program->status() == ProgramStatus::error;
@@ -81,12 +95,16 @@ private:
     bool acts(BehaviourAction action, StateIndex state = no_state) noexcept TAPPET_REALTIME {
         UnitPart* const part = controlled_.behaviour();
         if (part == nullptr || (action == BehaviourAction::request && state == no_state)) return false;
-        return act(*part, action, state, controlled_.engine->now());
+        if (!act(*controlled_.active(), *part, action, state, controlled_.engine->now())) return false;
+        commanded_ = part;
+        await_rest(*part);
+        return true;
     }
-    template <class Is> CommandProgress until(const Is& is) noexcept TAPPET_REALTIME {
+    // What was commanded may have been taken over by another one.
+    template <class How> CommandProgress until(const How& how) noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
-        if (part == nullptr || is_in_error(*part)) return CommandProgress::failed;
-        return is(*part) ? CommandProgress::done : CommandProgress::executing;
+        if (part == nullptr || part != commanded_ || is_in_error(*part)) return CommandProgress::failed;
+        return how(*part);
     }
     [[nodiscard]] StateIndex find(std::string_view state) noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
@@ -98,6 +116,7 @@ private:
     }
 
     Controlled controlled_{};
+    const UnitPart* commanded_ = nullptr;
 };
 
 /// The C++ type of a script's variable that may be a property or a parameter from outside; void: of no other.
@@ -119,14 +138,18 @@ inline constexpr ScriptUnit any_script{};
 
 /// In the table: component<BehaviourTask<script, "instance">>("name", controls("component")), in the activity
 /// of that component. `script`: the ScriptUnit that drives it; without one the task has commands and methods
-/// alone, which serve the first program or machine that it finds. Properties are its variables and parameters
-/// of type bool, int, double, duration and text; they may be set by the row and kept in a properties file.
-/// Commands and methods are real-time.
+/// alone, which serve the first program or machine that it finds. Properties are the variables and parameters
+/// of a machine and the parameters of a program (whose variables begin anew with it), as far as they are
+/// bool, int, double, duration or text; they may be set by the row and kept in a properties file. `run` of a
+/// program gives them anew, `start` takes them as they are. Commands and methods are real-time.
 template <const auto& script = any_script, text instance = "">
 struct BehaviourTask : detail::AnyBehaviourTask {
     static constexpr bool knows_script = !script.types.empty();
     static constexpr std::string_view script_name = script.name;
     static constexpr std::string_view instance_name = instance.view();
+    static constexpr const void* script_rows = script.instances.data();
+    static_assert(knows_script || instance_name.empty(),
+                  "name the script whose instance this is the task of");
     static constexpr std::size_t number = [] {
         for (std::size_t i = 0; i < script.instances.size(); ++i)
             if (script.instances[i].name == instance_name) return i;
@@ -170,7 +193,7 @@ private:
         using Pack = detail::Packing<Value<i>...>;
         static bool begin(void* component, [[maybe_unused]] std::byte* values) noexcept TAPPET_REALTIME {
             auto& task = *static_cast<Self*>(component);
-            if (task.is_active()) return false;
+            if (!task.is_free()) return false;
             (std::memcpy(task.data() + type->tables.variables[i].at, values + Pack::offsets[i],
                          sizeof(Value<i>)),
              ...);
@@ -190,13 +213,22 @@ private:
 
     // ---- variables
 
+    static constexpr bool is_command_name(std::string_view name) {
+        for (const std::string_view each : {"start", "stop", "pause", "step", "reset", "run", "deactivate",
+                                            "reactive", "request", "is_active", "in_error", "is_in"})
+            if (each == name) return true;
+        return false;
+    }
     static void* variable_at(void* component, std::size_t offset) noexcept {
         return static_cast<Self*>(component)->data() + offset;
     }
     template <std::size_t i, class Visit> static constexpr void visit_variable(const Visit& visitor) {
         constexpr VariableRow row = type->tables.variables[i];
         if constexpr (!row.name.empty() && row.at != no_data &&
-                      (row.kind == VariableKind::variable || is_parameter<i>) && !std::is_void_v<Value<i>>)
+                      (is_parameter<i> || (row.kind == VariableKind::variable && !type->is_program())) &&
+                      !std::is_void_v<Value<i>>) {
+            static_assert(!is_command_name(row.name), "a variable of the script has the name of a command or "
+                                                      "method of its task; rename it in the script");
             visitor(Facet{.name = row.name,
                           .doc = is_parameter<i> ? "a parameter" : "a variable",
                           .kind = FacetKind::property,
@@ -204,6 +236,7 @@ private:
                           .index = row.at,
                           .at = &variable_at,
                           .property = &detail::PropertyAccess<Value<i>>::operations});
+        }
     }
     template <class Visit, std::size_t... i>
     static constexpr void visit_variables(const Visit& visitor, std::index_sequence<i...>) {
@@ -222,7 +255,8 @@ private:
         if constexpr (may_be_machine) {
             visitor(command<&Self::deactivate_it, &Self::is_deactivated>("deactivate", "out of its states"));
             visitor(command<&Self::make_reactive>("reactive", "it hears events and requests only"));
-            visitor(command<&Self::request>("request", "the transition to a state, if its guard holds"));
+            visitor(command<&Self::request, &Self::is_requested>(
+                "request", "the transition to a state, if its guard holds"));
             visitor(method<&Self::is_in>("is_in", "that state is active"));
         }
         if constexpr (is_command) visitor(Run<std::make_index_sequence<parameters>>::facet);

@@ -9,7 +9,8 @@ namespace tappet {
 
 /// In the table: component<ComponentLife>("printing", controls("printer")); `do printing.stop()` in a script,
 /// uses("console.stop_printer", "printing.stop") in a row. The component may run in any activity; the command
-/// is done when that one says so, and failed when it refuses. Real-time.
+/// is done when that one says so, and failed when it refuses or another change was asked for meanwhile. Its
+/// own activity is a periodic one. Real-time.
 struct ComponentLife {
     static constexpr auto controls = ComponentType::Controls::life;
     void control(const Controlled& controlled) noexcept { controlled_ = controlled; }
@@ -17,8 +18,8 @@ struct ComponentLife {
     bool start_it() noexcept TAPPET_REALTIME { return asks(LifeChange::start); }
     bool stop_it() noexcept TAPPET_REALTIME { return asks(LifeChange::stop); }
     bool restart_it() noexcept TAPPET_REALTIME { return asks(LifeChange::restart); }
-    CommandProgress is_done() noexcept TAPPET_REALTIME {
-        switch (controlled_.life->answer_of_component(controlled_.component, ticket_).outcome) {
+    template <LifeChange change> CommandProgress is_done() noexcept TAPPET_REALTIME {
+        switch (controlled_.life->answer_of_component(controlled_.component, ticket(change)).outcome) {
         case LifeOutcome::pending: return CommandProgress::executing;
         case LifeOutcome::done: return CommandProgress::done;
         case LifeOutcome::refused:
@@ -31,21 +32,27 @@ struct ComponentLife {
     }
 
     static constexpr auto interface() {
-        return facets(
-            command<&ComponentLife::start_it, &ComponentLife::is_done>("start", "from its safe values"),
-            command<&ComponentLife::stop_it, &ComponentLife::is_done>("stop", "to its safe values"),
-            command<&ComponentLife::restart_it, &ComponentLife::is_done>("restart", "both"),
-            method<&ComponentLife::runs>("is_running", "steps and messages reach it", any_thread));
+        return facets(command<&ComponentLife::start_it, &ComponentLife::is_done<LifeChange::start>>(
+                          "start", "from its safe values"),
+                      command<&ComponentLife::stop_it, &ComponentLife::is_done<LifeChange::stop>>(
+                          "stop", "to its safe values"),
+                      command<&ComponentLife::restart_it, &ComponentLife::is_done<LifeChange::restart>>(
+                          "restart", "both"),
+                      method<&ComponentLife::runs>("is_running", "steps and messages reach it", any_thread));
     }
 
 private:
     bool asks(LifeChange change) noexcept TAPPET_REALTIME {
-        ticket_ = controlled_.life->ask_component(controlled_.component, change);
+        ticket(change) = controlled_.life->ask_component(controlled_.component, change);
         return true;
     }
 
+    LifeTicket& ticket(LifeChange change) noexcept TAPPET_REALTIME {
+        return tickets_[static_cast<std::size_t>(change)];
+    }
+
     Controlled controlled_{};
-    LifeTicket ticket_{};
+    std::array<LifeTicket, 3> tickets_{}; ///< of each change the last that was asked for
 };
 
 } // namespace tappet

@@ -22,7 +22,8 @@ Table controlled_loom() {
     m.add(component<BehaviourTask<weaving, "feed">>("feeding", controls("weft")));
     m.add(component<ComponentLife>("lighting", controls("lamps")));
     m.put(activity("logic", on_work(), at_most(8, 4ms), deadline(2ms), budget(30us),
-                   runs("weft", "lamps", "feeding", "lighting")));
+                   runs("weft", "lamps", "feeding")));
+    m.add(activity("light", every(10ms), not_real_time, runs("lighting")));
     m.behaviours[0] = behaviour("weft", weaving, {});
     return m;
 }
@@ -37,6 +38,9 @@ constexpr Fault control_faults[] = {
      R"(loom: component "lighting" controls "lamp": there is no component "lamp"; did you mean "lamps"?)"},
     {"control_of_itself", [](Table& m) { m.put(component<ComponentLife>("lighting", controls("lighting"))); },
      R"(loom: component "lighting" controls itself; name another component)"},
+    {"life_that_may_sleep",
+     [](Table& m) { m.put(activity("light", on_work(), not_real_time, runs("lighting"))); },
+     R"(loom: component "lighting" looks once in each cycle for the answer, but activity "light" may sleep for ever; run it in one that is every(...))"},
     {"task_of_what_has_no_behaviour",
      [](Table& m) { m.put(component<BehaviourTask<>>("feeding", controls("lamps"))); },
      R"(loom: component "feeding" controls "lamps", which no behaviour drives; add behaviour("lamps", ...) to behaviours(...))"},
@@ -54,7 +58,7 @@ constexpr Fault control_faults[] = {
     {"task_in_another_activity",
      [](Table& m) {
          m.put(activity("logic", on_work(), at_most(8, 4ms), deadline(2ms), budget(30us),
-                        runs("weft", "lamps", "lighting")));
+                        runs("weft", "lamps")));
          m.add(activity("elsewhere", every(10ms), budget(10us), runs("feeding")));
      },
      R"(loom: component "feeding" controls the behaviour of "weft", which activity "logic" runs; run both in that one)"},

@@ -132,6 +132,63 @@ TEST(A_task_of_a_program, fails_when_the_program_does) {
     EXPECT_EQ(rig.panel().bake.state(), CommandState::failed);
 }
 
+TEST(A_task_of_a_program, runs_again_after_it_failed) {
+    Tasks rig;
+    ASSERT_TRUE(rig.panel().bake.send(3, 0.0));
+    rig.run(20ms);
+    ASSERT_EQ(rig.panel().bake.state(), CommandState::failed);
+    rig.oven().told.clear();
+    ASSERT_TRUE(rig.panel().bake.send(1, 0.5));
+    rig.run(20ms);
+    EXPECT_EQ(rig.panel().bake.state(), CommandState::done);
+    EXPECT_THAT(rig.oven().told, ElementsAre(50));
+}
+
+TEST(A_task_of_a_program, that_is_broken_off_has_failed_and_nothing_begins_while_its_component_stands) {
+    Tasks rig;
+    ASSERT_TRUE(rig.panel().bake.send(1000, 0.0));
+    rig.run(10ms);
+    ASSERT_EQ(rig.panel().bake.state(), CommandState::executing);
+    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::stop));
+    rig.run(40ms);
+    EXPECT_EQ(rig.panel().bake.state(), CommandState::failed);
+    rig.oven().told.clear();
+    ASSERT_TRUE(rig.panel().bake.send(2, 0.0));
+    ASSERT_TRUE(rig.panel().clean.send());
+    rig.run(20ms);
+    EXPECT_EQ(rig.panel().bake.state(), CommandState::rejected);
+    EXPECT_EQ(rig.panel().clean.state(), CommandState::rejected);
+    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::start));
+    rig.run(20ms);
+    EXPECT_TRUE(rig.oven().told.empty()) << "it does not begin later";
+}
+
+// clang-format off
+constexpr auto woken = machine("woken",
+    components(component<Oven>("oven"), component<Feeder>("feeder"), component<Panel>("panel"),
+               component<Machine>("machine", controls("oven")), component<Loaves>("making", controls("oven")),
+               component<BehaviourTask<script, "clean">>("cleaning", controls("oven")), component<ComponentLife>("feeding", controls("feeder"))),
+    activities(activity("fast", on_work(), at_most(10, 1ms), deadline(1ms), budget(50us), runs("oven", "machine", "making", "cleaning")),
+               activity("slow", every(5ms), budget(50us), runs("feeder")),
+               activity("desk", every(5ms), budget(50us), runs("panel", "feeding"))),
+    connections(),
+    reactions(uses("panel.bake", "making.run"), uses("panel.clean", "cleaning.run"), uses("panel.stop", "machine.stop"),
+              uses("panel.request", "machine.request"), uses("panel.stop_feeder", "feeding.stop")),
+    behaviours(behaviour("oven", script, {})));
+// clang-format on
+
+TEST(A_task, answers_in_an_activity_that_nothing_else_wakes) {
+    Rig<Firmware<woken, board>> rig;
+    Panel& panel = *rig.instance.find<Panel>("panel");
+    rig.run(20ms);
+    ASSERT_TRUE(panel.clean.send());
+    rig.run(20ms);
+    EXPECT_EQ(panel.clean.state(), CommandState::done);
+    ASSERT_TRUE(panel.halt_it.send());
+    rig.run(60ms);
+    EXPECT_EQ(panel.halt_it.state(), CommandState::done);
+}
+
 TEST(A_task_of_a_machine, has_its_variables_and_parameters_as_properties_which_the_row_sets) {
     Tasks rig;
     EXPECT_EQ(rig.property<double>("machine", "heat"), 80.0);
