@@ -15,29 +15,26 @@ void ProgramExecution::bind(const ProgramCode& code, const ProgramContext& conte
     policy_ = policy;
     program_ = program;
     failures_ = 0;
-    fill();
+    fill(0);
     status_ = ProgramStatus::stopped;
     static_cast<void>(reset());
 }
 
-void ProgramExecution::fill() noexcept TAPPET_REALTIME {
-    const DataLayout& layout = code_.tables->layout;
-    const std::size_t given = std::min<std::size_t>(image_.size(), layout.size);
-    if (given != 0) std::memcpy(context_.data, image_.data(), given);
-    if (layout.size != given) std::memset(context_.data + given, 0, layout.size - given);
+// The data from there on, as they are at the beginning: what the image does not give is zero.
+void ProgramExecution::fill(std::size_t from) noexcept TAPPET_REALTIME {
+    const std::size_t size = code_.tables->layout.size;
+    const std::size_t given = std::clamp<std::size_t>(image_.size(), from, size);
+    if (given != from) std::memcpy(context_.data + from, image_.data() + from, given - from);
+    if (size != given) std::memset(context_.data + given, 0, size - given);
 }
 
 bool ProgramExecution::reset() noexcept TAPPET_REALTIME {
     if (status_ == ProgramStatus::running || status_ == ProgramStatus::paused) return false;
     // The parameters stand before all other variables.
-    const DataLayout& layout = code_.tables->layout;
-    std::size_t end = layout.constants;
+    std::size_t end = code_.tables->layout.constants;
     for (const VariableRow& row : code_.tables->variables)
         if (row.kind == VariableKind::parameter) end = std::size_t{row.at} + row.type->size;
-    const std::size_t given = std::min<std::size_t>(image_.size(), layout.size);
-    if (given > end) std::memcpy(context_.data + end, image_.data() + end, given - end);
-    if (layout.size > std::max(given, end))
-        std::memset(context_.data + std::max(given, end), 0, layout.size - std::max(given, end));
+    fill(end);
     context_.position = {};
     left_over_ = waits_ = has_ended_ = false;
     status_ = ProgramStatus::ready;

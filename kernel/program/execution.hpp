@@ -66,7 +66,7 @@ public:
     [[nodiscard]] const ProgramContext& context() const noexcept TAPPET_REALTIME { return context_; }
 
 private:
-    void fill() noexcept TAPPET_REALTIME;
+    void fill(std::size_t from) noexcept TAPPET_REALTIME;
     void run(Time now, std::uint32_t statements) noexcept TAPPET_REALTIME;
 
     ProgramCode code_{};

@@ -153,9 +153,9 @@ public:
     [[nodiscard]] bool is_paused() const noexcept TAPPET_REALTIME { return is(paused); }
     [[nodiscard]] bool in_error() const noexcept TAPPET_REALTIME { return is(error); }
     /// A transition, exit, entry or handle program waits for a later step.
+    [[nodiscard]] bool under_way() const noexcept TAPPET_REALTIME { return is(in_hand); }
     /// A request for a state waits until what is in hand has ended.
     [[nodiscard]] bool request_waits() const noexcept TAPPET_REALTIME { return wanted_state_ != no_state; }
-    [[nodiscard]] bool under_way() const noexcept TAPPET_REALTIME { return is(in_hand); }
     /// The active leaf; with regions the first. While a transition is under way the innermost state that is
     /// still, or already, active; no_state only inside a call.
     [[nodiscard]] StateIndex active() const noexcept TAPPET_REALTIME { return status_.active; }

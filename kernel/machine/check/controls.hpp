@@ -32,8 +32,7 @@ constexpr Sentence check_task(const MachineView& m, const TableIndexView& r, std
                             "drives; add behaviour(\"", task.controlled, "\", ...) to behaviours(...)");
     const BehaviourRow& row = m.behaviours[b];
     const ScriptUnit unit = row.unit();
-    if (!task.type->script.empty() &&
-        (unit.name != task.type->script || unit.instances.data() != task.type->script_rows))
+    if (task.type->script_rows != nullptr && unit.instances.data() != task.type->script_rows)
         return of_component(task.name, " is a task of script \"", task.type->script, "\" but \"",
                             row.component, "\" is driven by \"", unit.name,
                             "\"; make it BehaviourTask<...> of that script");

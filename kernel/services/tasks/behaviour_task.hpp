@@ -129,8 +129,6 @@ using TaskValue = std::conditional_t<
                            std::conditional_t<id == script_duration, Duration,
                                               std::conditional_t<id == script_text, ScriptText, void>>>>>;
 
-template <class... P> struct Parameters {};
-
 } // namespace detail
 
 /// Of which no script is known to the compiler: a table of C++, or what a slot holds just now.
@@ -158,7 +156,6 @@ struct BehaviourTask : detail::AnyBehaviourTask {
     /// Null: it is not known.
     static constexpr const BehaviourType* type =
         knows_script ? &script.types[script.instances[number].type] : nullptr;
-    static constexpr bool may_be_program = type == nullptr || type->is_program();
     static constexpr bool may_be_machine = type == nullptr || !type->is_program();
     static constexpr bool is_command = type != nullptr && script.instances[number].on_command;
 
