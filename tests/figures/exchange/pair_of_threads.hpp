@@ -46,8 +46,10 @@ inline void wait_ticks(std::uint64_t from, double ns) noexcept {
     }
 }
 
+/// At least one tick: what is shorter than a look at the clock cannot be told from it, and a ratio of two
+/// such times is a number.
 inline double took_ns(std::uint64_t first, std::uint64_t last) noexcept {
-    return std::max(0.0, (static_cast<double>(last - first) - ticks_of_reading()) * ns_per_tick());
+    return std::max(1.0, static_cast<double>(last - first) - ticks_of_reading()) * ns_per_tick();
 }
 
 using Parcel = Packet<160>;
