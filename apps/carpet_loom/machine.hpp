@@ -24,7 +24,7 @@
 namespace tappet::carpet {
 
 // clang-format off
-inline constexpr auto carpet_loom = machine("carpet-loom",
+inline constexpr auto table = machine("carpet-loom",
     components(
         component<can::Bus<can_signals>>("can", device("loom-can")),
         component<gpio::LinePort<io_lines>>("io", device("loom-io")),

@@ -31,6 +31,7 @@ template <const auto& map> struct Bus {
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
     static constexpr std::string_view device_kind = "can";
+    static constexpr Identifiers device_map{map.receives(), map.transmits()};
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
     static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through
@@ -48,6 +49,7 @@ template <const auto& map> struct Bus {
     Output<std::int64_t> bus_state{};
     Output<std::int64_t> frames_lost{};
     Output<std::int64_t> frames_received{};
+    Output<std::int64_t> wrong_lengths{};
     Event<> bus_fault{};
     Event<> bus_recovered{};
     Timer next_send{};
@@ -137,6 +139,8 @@ template <const auto& map> struct Bus {
                 output<&Bus::frames_lost>("frames_lost", "",
                                           "arrived but never read, since its start; written on change"),
                 output<&Bus::frames_received>("frames_received", "", "since its start; written on change"),
+                output<&Bus::wrong_lengths>("wrong_lengths", "",
+                                            "frames of another length than the map's; written on change"),
                 tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                 tappet::event<&Bus::bus_recovered>("bus_recovered", "the bus works again, with empty queues"),
                 operation<&Bus::purge>("purge", "drops what waits to be sent"),
@@ -148,7 +152,7 @@ template <const auto& map> struct Bus {
     }
 
 private:
-    static constexpr std::size_t fixed_facets = 9;
+    static constexpr std::size_t fixed_facets = 10;
     // At stop and at start: some milliseconds. Four frames at 125 kbit/s take 5 ms; the kernel's buffer holds
     // fewer frames.
     static constexpr int max_passes = 4096;
@@ -215,7 +219,11 @@ private:
 
     void take(const Frame& frame) noexcept TAPPET_REALTIME {
         std::size_t f = no_such;
-        if (store_.decode(frame, f) != Decoded::yes) return;
+        if (const Decoded decoded = store_.decode(frame, f); decoded != Decoded::yes) {
+            if (decoded == Decoded::wrong_length)
+                wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
+            return;
+        }
         ++taken_;
         const FrameRow& row = map.frames[f];
         const CausedBy arrival{frame.stamp};
@@ -243,6 +251,7 @@ private:
         bus_state.write(static_cast<std::int64_t>(status_.state));
         frames_lost.write(static_cast<std::int64_t>(status_.lost));
         frames_received.write(static_cast<std::int64_t>(status_.taken));
+        wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
     }
 
     void tell_state(Time now) noexcept TAPPET_REALTIME {

@@ -61,6 +61,11 @@ constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Ever
 
 inline constexpr std::size_t no_such = ~std::size_t{0};
 
+/// What one end of a bus takes and sends.
+struct Identifiers {
+    std::span<const Identifier> receive{}, transmit{};
+};
+
 template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<FrameRow, F> frames{};
     std::array<Signal, S> signals{};

@@ -8,7 +8,7 @@
 
 #include <array>
 #include <cstdint>
-#include <expected>
+#include <span>
 #include <string_view>
 
 namespace tappet::gpio {
@@ -87,21 +87,13 @@ template <class... Rows> constexpr LineMap<sizeof...(Rows)> line_map(const Rows&
     return map;
 }
 
-/// The map's lines with the offsets of a box. `offset_of(name)` answers the offset, or a negative number for
-/// none; the error names the first line that has none.
-template <std::size_t N, class OffsetOf>
-constexpr std::expected<std::array<Line, N>, Sentence> placed(const LineMap<N>& map, OffsetOf&& offset_of) {
-    std::array<Line, N> lines{};
-    for (std::size_t i = 0; i < N; ++i) {
-        lines[i] = map.rows[i].line;
-        const int offset = offset_of(lines[i].name);
-        if (offset < 0)
-            return std::unexpected(Sentence{"line \"", lines[i].name,
-                                            "\" has no offset on this board: add line(\"", lines[i].name,
-                                            "\", offset) to its device"});
-        lines[i].offset = static_cast<unsigned>(offset);
+/// The lines of a map as they are requested of a chip, each at the offset that `offset_of(name)` answers.
+template <class OffsetOf>
+constexpr void place(std::span<const LineRow> map, OffsetOf&& offset_of, std::span<Line> lines) {
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        lines[i] = map[i].line;
+        lines[i].offset = offset_of(map[i].line.name);
     }
-    return lines;
 }
 
 } // namespace tappet::gpio

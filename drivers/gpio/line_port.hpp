@@ -59,6 +59,7 @@ template <const auto& map> struct LinePort {
     static_assert(map.fault.empty(), "the line map is refused: its member `fault` says why");
     static constexpr std::size_t count = map.rows.size();
     static constexpr std::string_view device_kind = "gpio";
+    static constexpr std::span<const LineRow> device_map{map.rows};
     static constexpr std::span<const std::string_view> device_lines() { return LineNames<map>::plain; }
     static constexpr std::size_t edges_per_cycle = 64;
     static constexpr std::size_t most_batches_before_start = 32; ///< twice what the kernel's buffer holds

@@ -2,6 +2,7 @@
 // ends.
 #pragma once
 
+#include "drivers/gpio/far_end.hpp"
 #include "drivers/gpio/line_plan.hpp"
 #include "drivers/twin/ring.hpp"
 #include "kernel/base/bounded.hpp"
@@ -22,7 +23,7 @@ struct LineFaults {
 
 /// The Device's calls belong to the machine's thread, drive(), deliver_until() and the faults to the plant's;
 /// they meet in a ring and two words only. Levels are logical on both sides.
-class Twin final : public Device {
+class Twin final : public Device, public Wires {
 public:
     static constexpr std::size_t event_buffer = 1024; // as large as Linux grants one
 
@@ -43,11 +44,11 @@ public:
     // The plant's side; real-time.
     /// An input changes at `at`, which lies at or after the last deliver_until. False when 64 changes wait
     /// already.
-    bool drive(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
+    bool drive(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME override;
     /// Carries out the changes due by `now`: bounce, debounce, edges, then the listener.
     void deliver_until(Time now) noexcept TAPPET_REALTIME;
     /// The outputs as the machine wrote them, in their bits.
-    [[nodiscard]] Mask outputs() const noexcept TAPPET_REALTIME {
+    [[nodiscard]] Mask outputs() const noexcept TAPPET_REALTIME override {
         return driven_.load(std::memory_order_acquire);
     }
     /// Fault: the chip is gone. Writes are refused and change no output, levels are unknown, reads fail; the

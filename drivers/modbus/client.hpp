@@ -42,6 +42,7 @@ template <const auto& map> struct Client {
     static_assert(map.fault.empty(), "the register map is refused: its member `fault` says why");
     static constexpr std::size_t count = map.registers.size();
     static constexpr std::string_view device_kind = "modbus";
+    static constexpr const auto& device_map = map;
 
     std::array<Output<double>, count> read{};
     std::array<Input<double>, count> wanted{};

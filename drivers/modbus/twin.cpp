@@ -84,6 +84,10 @@ Answer Twin::write(Table table, std::uint16_t address, std::span<const std::uint
         return {.outcome = Outcome::exception, .exception = illegal_function, .took = turnaround_};
     const Answer answer = admit(address, values.size());
     if (answer.outcome != Outcome::ok) return answer;
+    constexpr std::uint8_t illegal_data_value = 3;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (!accepts(table, address + i, values[i]))
+            return {.outcome = Outcome::exception, .exception = illegal_data_value, .took = answer.took};
     for (std::size_t i = 0; i < values.size(); ++i) set(table, address + i, values[i]);
     return answer;
 }

@@ -1,9 +1,9 @@
 // A Modbus server of the host world: the client's transport on one side, the plant's registers on the other.
 #pragma once
 
+#include "drivers/modbus/far_end.hpp"
 #include "drivers/modbus/transport.hpp"
 
-#include <array>
 #include <atomic>
 
 namespace tappet::modbus {
@@ -18,12 +18,11 @@ enum class Fault : std::uint8_t {
     down,              ///< closes the connection and refuses new ones
 };
 
-/// The transport's calls belong to the client's thread, the rest to the plant's. It holds nobody: an answer
-/// says how long the caller would have waited, so that it works under virtual time.
-class Twin final : public Transport {
+/// All of its tables' addresses exist. The transport's calls belong to the client's thread, the rest to the
+/// plant's. It holds nobody: an answer says how long the caller would have waited, so that it works under
+/// virtual time.
+class Twin final : public Transport, public ServerTables {
 public:
-    static constexpr std::size_t size = 1024; ///< addresses 0 to 1023 exist in each table
-
     explicit Twin(Duration answer_within = 300ms, Duration turnaround = 2ms) noexcept
         : answer_within_{answer_within}, turnaround_{turnaround} {}
 
@@ -33,13 +32,7 @@ public:
     Answer read(Table table, std::uint16_t address, std::span<std::uint16_t> values) noexcept override;
     Answer write(Table table, std::uint16_t address, std::span<const std::uint16_t> values) noexcept override;
 
-    // The plant's side; wait-free. Addresses are below `size`.
-    void set(Table table, std::size_t address, std::uint16_t value) noexcept {
-        tables_[static_cast<std::size_t>(table)][address].store(value, std::memory_order_relaxed);
-    }
-    [[nodiscard]] std::uint16_t get(Table table, std::size_t address) const noexcept {
-        return tables_[static_cast<std::size_t>(table)][address].load(std::memory_order_relaxed);
-    }
+    // The plant's side; wait-free.
     /// Strikes the next `requests`, or all until told otherwise; `down` counts connects, too.
     void inject(Fault fault, std::uint32_t requests = ~0u) noexcept;
     void set_exception(std::uint8_t code) noexcept { exception_.store(code, std::memory_order_relaxed); }
@@ -50,7 +43,6 @@ private:
     /// What a request comes to before any register is touched.
     [[nodiscard]] Answer admit(std::uint16_t address, std::size_t count) noexcept;
 
-    std::array<std::array<std::atomic<std::uint16_t>, size>, 4> tables_{};
     std::atomic<Fault> fault_{Fault::none};
     std::atomic<std::uint32_t> strikes_left_{0};
     std::atomic<std::uint8_t> exception_{4};

@@ -40,6 +40,8 @@ struct ComponentType {
     std::span<const Facet> facets{};
     std::string_view device_kind{};                   ///< of the device it drives, "" for none
     std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
+    const void* device_map =
+        nullptr;                ///< what stands on that device, as a start-up that knows the kind reads it
     bool shares_device = false; ///< it may stand beside the device's driver; what it calls is safe there
     bool behaviour_required = false;
     bool sees_machine = false;   ///< it is given the machine: a service that shows, stores or changes it
@@ -81,6 +83,7 @@ constexpr ComponentType describe() {
     type.construct = [](void* memory) { new (memory) T{}; };
     if constexpr (requires { T::device_kind; }) type.device_kind = T::device_kind;
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
+    if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
     if constexpr (requires { T::shares_device; }) type.shares_device = T::shares_device;
     if constexpr (requires { T::sees_machine; }) type.sees_machine = T::sees_machine;
     if constexpr (requires { T::records_cycles; }) type.records_cycles = T::records_cycles;

@@ -1,5 +1,6 @@
-// A machine on a board: the table checked, planned and given its memory, all by the compiler. A table that
-// cannot work does not compile; the first error is one sentence that names the row, the fault and the cure.
+// A machine, bound to a board: the table checked, planned and given its memory, all by the compiler. A table
+// that cannot work does not compile; the first error is one sentence that names the row, the fault and the
+// cure.
 #pragma once
 
 #include "kernel/machine/check/check.hpp"
@@ -16,9 +17,10 @@ struct Verdict {
 };
 
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B, class... E>
-constexpr Verdict<C, A, X, R> judge(const Machine<C, A, X, R, B, E...>& table, const Board& board) {
+constexpr Verdict<C, A, X, R> judge(const Machine<C, A, X, R, B, E...>& table, const Board& board,
+                                    const Binding& binding = unbound) {
     Verdict<C, A, X, R> verdict;
-    verdict.refusal = check(table.view(), board, verdict.index.view());
+    verdict.refusal = check(table.view(), board, binding, verdict.index.view());
     return verdict;
 }
 
@@ -32,10 +34,11 @@ struct machine_table<text<0>{}> {};
 template <std::size_t S, std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B,
           class... E>
 constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B, E...>& table, const Board& board,
-                                       TableIndex<C, A, X, R> index, std::size_t map_bytes) {
+                                       const Binding& binding, TableIndex<C, A, X, R> index,
+                                       std::size_t map_bytes) {
     Plan<C, A, X, S, B> plan;
     PlanView view = plan.view();
-    make_plan(table.view(), board, index.view(), map_bytes, view);
+    make_plan(table.view(), board, binding, index.view(), map_bytes, view);
     plan.take_sizes(view);
     return plan;
 }
@@ -62,6 +65,7 @@ constexpr Sentence over_budget(const MachineView& m, const Board& board, std::si
 struct AcceptedMachine {
     MachineView table;
     const Board* board;
+    const Binding* binding;
     TableIndexView index;
     PlanView plan;
     std::span<std::byte> memory;
@@ -78,53 +82,53 @@ constexpr bool is_observed(const MachineView& m) noexcept {
 
 namespace detail {
 
-template <const auto& table, const Board& board>
+template <const auto& table, const Board& board, const Binding& binding>
 struct Judged {
-    static constexpr auto verdict = judge(table, board);
+    static constexpr auto verdict = judge(table, board, binding);
 };
 
-template <const auto& table, const Board& board, bool observed>
+template <const auto& table, const Board& board, const Binding& binding, bool observed>
 struct Mapped {
     static constexpr std::size_t bytes = 0;
     static std::span<const std::byte> map() { return {}; }
     static std::span<const TypeId> types() { return {}; }
 };
 
-template <const auto& table, const Board& board>
-struct Mapped<table, board, true> {
-    static constexpr auto& index = Judged<table, board>::verdict.index;
-    static constexpr map::Counts counts = map::count(table.view(), board, index);
-    static constexpr auto drawn = map::draw<counts>(table.view(), board, index);
+template <const auto& table, const Board& board, const Binding& binding>
+struct Mapped<table, board, binding, true> {
+    static constexpr auto& index = Judged<table, board, binding>::verdict.index;
+    static constexpr map::Counts counts = map::count(table.view(), board, binding, index);
+    static constexpr auto drawn = map::draw<counts>(table.view(), board, binding, index);
     static constexpr std::size_t bytes = sizeof drawn.map;
     static_assert(drawn.map.header.map_bytes == bytes, "no gap stands between the map's sections");
     static std::span<const std::byte> map() { return std::as_bytes(std::span{&drawn.map, 1}); }
     static std::span<const TypeId> types() { return {drawn.types.data(), counts.types}; }
 };
 
-template <const auto& table, const Board& board, bool good>
+template <const auto& table, const Board& board, const Binding& binding, bool good>
 struct Planned {
-    static constexpr Sentence refusal = Judged<table, board>::verdict.refusal;
+    static constexpr Sentence refusal = Judged<table, board, binding>::verdict.refusal;
 };
 
-template <const auto& table, const Board& board>
-struct Planned<table, board, true> {
-    static constexpr auto& verdict = Judged<table, board>::verdict;
-    using Map = Mapped<table, board, is_observed(table.view())>;
+template <const auto& table, const Board& board, const Binding& binding>
+struct Planned<table, board, binding, true> {
+    static constexpr auto& verdict = Judged<table, board, binding>::verdict;
+    using Map = Mapped<table, board, binding, is_observed(table.view())>;
     static constexpr auto plan =
-        plan_for<count_subscriptions(table.view())>(table, board, verdict.index, Map::bytes);
+        plan_for<count_subscriptions(table.view())>(table, board, binding, verdict.index, Map::bytes);
     static constexpr Sentence listeners = over_subscribed(table.view(), plan.subscriptions);
     static constexpr Sentence refusal =
         listeners.empty() ? over_budget(table.view(), board, plan.bytes, plan.stack_bytes) : listeners;
 };
 
-template <const auto& table, const Board& board, bool good>
+template <const auto& table, const Board& board, const Binding& binding, bool good>
 struct Instance {
     static AcceptedMachine machine() { return {}; }
 };
 
-template <const auto& table, const Board& board>
-struct Instance<table, board, true> {
-    using From = Planned<table, board, true>;
+template <const auto& table, const Board& board, const Binding& binding>
+struct Instance<table, board, binding, true> {
+    using From = Planned<table, board, binding, true>;
     // Start-up reads these through spans of mutable elements and does not write them.
     static inline constinit auto index = From::verdict.index.kept;
     static inline constinit auto plan = From::plan;
@@ -132,19 +136,19 @@ struct Instance<table, board, true> {
         4096) static inline constinit std::byte memory[From::plan.bytes]{};
 
     static AcceptedMachine machine() {
-        return {table.view(), &board,           index.view(),      plan.view(),
-                memory,       From::Map::map(), From::Map::types()};
+        return {table.view(), &board, &binding,         index.view(),
+                plan.view(),  memory, From::Map::map(), From::Map::types()};
     }
 };
 
 } // namespace detail
 
-/// `table` and `board` are constexpr variables at namespace scope:
-///     using LoomFirmware = tappet::Firmware<carpet_loom, board>;
-template <const auto& table, const Board& board>
+/// `table`, `board` and `binding` are constexpr variables at namespace scope:
+///     using LoomFirmware = tappet::Firmware<carpet_loom, board, binding>;
+template <const auto& table, const Board& board, const Binding& binding = unbound>
 struct Firmware {
-    static constexpr bool sound = detail::Judged<table, board>::verdict.refusal.empty();
-    static constexpr const Sentence& refusal = detail::Planned<table, board, sound>::refusal;
+    static constexpr bool sound = detail::Judged<table, board, binding>::verdict.refusal.empty();
+    static constexpr const Sentence& refusal = detail::Planned<table, board, binding, sound>::refusal;
     static constexpr bool accepted = refusal.empty();
 #if defined(__clang__)
     static_assert(accepted, refusal);
@@ -152,13 +156,13 @@ struct Firmware {
     static_assert(sizeof(machine_table<text<refusal.size()>{refusal.view()}>) != 0);
 #endif
 
-    static AcceptedMachine machine() { return detail::Instance<table, board, accepted>::machine(); }
+    static AcceptedMachine machine() { return detail::Instance<table, board, binding, accepted>::machine(); }
 
     /// The machine's map (thesis 4.7.2) as a constant: map::Storage. Of any accepted table, also of one that
     /// nothing sees.
     template <bool good = accepted>
     static constexpr const auto& map() {
-        return detail::Mapped<table, board, good>::drawn.map;
+        return detail::Mapped<table, board, binding, good>::drawn.map;
     }
 };
 

@@ -33,7 +33,7 @@ struct Copy {
 };
 
 /// What the check says of a table; empty: it is accepted.
-inline std::string refusal_of(const MachineView& m, const Board& board) {
+inline std::string refusal_of(const MachineView& m, const Board& board, const Binding& binding = unbound) {
     const std::size_t components = m.components.size();
     std::vector<std::size_t> by_name(components), activity(components), position(components),
         in_order(components), waits_for(components);
@@ -44,7 +44,7 @@ inline std::string refusal_of(const MachineView& m, const Board& board) {
     std::vector<std::uint64_t> reach(components);
     std::vector<std::size_t> rank(m.activities.size()), by_rank(m.activities.size());
     std::vector<std::int64_t> worst(m.activities.size());
-    return std::string{check(m, board,
+    return std::string{check(m, board, binding,
                              {.by_name = by_name,
                               .activity = activity,
                               .position = position,

@@ -39,7 +39,8 @@ struct Tally {
 /// Makes every mutation of one table and judges what the check says of it.
 class Mutations {
 public:
-    Mutations(const MachineView& table, const Board& board) : table_{table}, board_{board} {}
+    Mutations(const MachineView& table, const Board& board, const Binding& binding)
+        : table_{table}, board_{board}, binding_{binding} {}
 
     Tally run() {
         misspell_names();
@@ -54,7 +55,7 @@ private:
     void expect(std::size_t& count, const std::string& what, const Copy& copy,
                 const std::vector<std::string>& named) {
         ++count;
-        const std::string refusal = refusal_of(copy.view(), board_);
+        const std::string refusal = refusal_of(copy.view(), board_, binding_);
         for (const auto& each : named)
             if (refusal.find(each) != std::string::npos) return;
         tally_.wrong.push_back(what + ": " + (refusal.empty() ? "accepted" : refusal));
@@ -220,7 +221,7 @@ private:
             Copy copy{table_};
             (copy.*section).erase((copy.*section).begin() + static_cast<std::ptrdiff_t>(i));
             const Row& row = (integer.*section)[i];
-            if (refusal_of(copy.view(), board_).empty())
+            if (refusal_of(copy.view(), board_, binding_).empty())
                 tally_.may_be_dropped.push_back(label(row));
             else
                 expect(tally_.dropped, label(row) + " dropped", copy, named(row));
@@ -336,6 +337,7 @@ private:
 
     MachineView table_;
     const Board& board_;
+    const Binding& binding_;
     std::deque<std::string> characters_; // the misspelt names; a deque's elements stay where they are
     Tally tally_;
 };

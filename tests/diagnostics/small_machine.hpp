@@ -163,11 +163,14 @@ inline constexpr Board good_board{
     .heap_bytes = 100'000,
     .processors = 2,
     .default_processor = 1,
-    .placement = {{{{"hall", 0}}}, 1},
-    .devices = {{{board_device("main_encoder", "can", "can0", bit_rate(500'000)),
-                  board_device("hall", "modbus", "192.168.7.2:502"),
-                  board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("green", 5))}},
-                3}};
+    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(500'000)),
+                             board_device("io", "gpio", "/dev/gpiochip0", lines(8)),
+                             board_device("serial1", "serial", "/dev/ttyS0")),
+};
+
+inline constexpr Binding good_binding =
+    binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:502"),
+            wired("panel", "io", line("red", 4), line("green", 5)), place("hall", 0));
 
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t R, std::size_t B>
 constexpr Machine<C, A, X, R, B> loom(const Section<ComponentRow, C>& c, const Section<ActivityRow, A>& a,

@@ -41,15 +41,17 @@ const std::vector<Row> house{
     {"kernel/limits",     {"kernel/machine/instance"}},
     {"kernel/services",   {"kernel/machine/worlds"}},
 
-    {"drivers/twin",      {"kernel/base"}},
+    {"drivers/twin",      {"kernel/component"}},
     {"drivers/can",       {"kernel/component", "drivers/twin"}},
     {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
     {"drivers/canopen",   {"drivers/can"}},
+    {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus"}},
+    {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
     {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
     // A machine may say what spin is to prove of it.
-    {"apps",              {"board", "toolchain/tools/chart/model.hpp"}},
+    {"apps",              {"board", "drivers/plant", "toolchain/tools/chart/model.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
 
@@ -58,11 +60,12 @@ const std::vector<Row> house{
                            "kernel/machine/plan/scope_layout.hpp", "kernel/activity/cycle_tape.hpp",
                            "kernel/services/browsing/protocol.hpp"}},
 
+    {"toolchain/machine", {"board", "drivers/plant"}},
     {"toolchain/tools/bench", {}},
     {"toolchain/tools",   {"apps"}},
     {"toolchain",         {}},
     {"apps/carpet_loom/demo", {"apps", "toolchain/tools/bench"}},
-    {"tests",             {"apps", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools", "toolchain/tools/browser"}},
+    {"tests",             {"apps", "toolchain/machine", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools", "toolchain/tools/browser"}},
 };
 // clang-format on
 

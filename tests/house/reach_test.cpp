@@ -42,10 +42,16 @@ Findings dead(const Tree& files) {
     std::vector<std::regex> sources;
     std::set<std::string> headers;
     std::string cmake_text;
+    std::set<std::string> given_to_mains;
+    static const std::regex given("(TABLE|BINDINGS|PLANT|HOOKS)\\s+([^\\s()]+\\.hpp)");
     for (const File& file : files) {
         if (file.is_cmake()) {
             std::ranges::move(sources_of(file), std::back_inserter(sources));
-            for (const std::string& line : file.lines) cmake_text += line + "\n";
+            for (const std::string& line : file.lines) {
+                cmake_text += line + "\n";
+                for (std::sregex_iterator at(line.begin(), line.end(), given), end; at != end; ++at)
+                    given_to_mains.insert(file.folder() + "/" + (*at)[2].str());
+            }
         }
         for (const Include& include : includes(file)) headers.insert(include.name);
     }
@@ -54,8 +60,10 @@ Findings dead(const Tree& files) {
         if (!file.is_cpp() || has_no_target(file)) continue;
         if (file.path.ends_with(".hpp")) {
             // A board's header is named by the build, which picks the board.
-            const bool by_build = file.name() == "board.hpp" &&
-                                  cmake_text.contains(file.folder().substr(file.folder().rfind('/') + 1));
+            // So are the headers of a machine, which tappet_machine(..) of its folder hands to the mains.
+            const bool by_build = (file.name() == "board.hpp" &&
+                                   cmake_text.contains(file.folder().substr(file.folder().rfind('/') + 1))) ||
+                                  given_to_mains.contains(file.path);
             if (!headers.contains(file.path) && !by_build)
                 found.push_back(
                     {file.path, 1, "no file includes it", "remove it, or include it where it is needed"});

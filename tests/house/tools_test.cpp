@@ -53,7 +53,7 @@ TEST(Lint, finds_nothing_in_a_machine) {
     const std::string tool = TAPPET_CLANG_TIDY;
     if (tool.empty()) GTEST_SKIP() << "clang-tidy-22 is not installed; ci/setup does it";
     const Outcome outcome = run("cd '" TAPPET_TREE "' && '" + tool +
-                                "' --quiet -p '" TAPPET_BUILD "' apps/carpet_loom/host/in_process_loom.cpp "
+                                "' --quiet -p '" TAPPET_BUILD "' apps/carpet_loom/plant_on_wires.cpp "
                                 "kernel/machine/instance/instance.cpp");
     EXPECT_EQ(outcome.status, 0) << end_of(outcome.said, 4000)
                                  << "cure: see the check's name; .clang-tidy says which hold";

@@ -1,11 +1,15 @@
 // The stacks of the loom's activities: what its firmware's object code may use of each, against the table's
 // rows.
-#include "apps/carpet_loom/host/loom_on_host.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "tests/stack/bounds.hpp"
 
 #include <gtest/gtest.h>
 
 #include <iostream>
+
+namespace tappet::carpet {
+AcceptedMachine on_host();
+}
 
 namespace tappet::stack_bound {
 namespace {
@@ -46,7 +50,7 @@ const Rules rules{
              "__throw_", "__cxa_", "_Unwind_", "__libc_fatal", "pthread_exit"},
     // Called by the main thread: arming, opening devices, the end.
     .outside = {"os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "Limits<", "RealWorld::", "Activity::enter(", "MachineInstance",
-                "carpet::Devices::", "os::build_id()", "cpf::is_blank"},
+                "tappet::Hardware<", "run_firmware(", "os::build_id()", "cpf::is_blank"},
     .stated = {
         {picked_at_start, 256, "bytes copied or compared: libc picks the function for the processor, none has a frame to speak of"},
         {"tappet::compile_loaded(", script_stack_bytes, "as tests/kernel/script measures it on hostile texts; the table's check asks for it"},
@@ -72,7 +76,7 @@ TEST(Stacks, hold_what_the_firmware_may_use_of_them) {
     const Image image = read_image(LOOM_FIRMWARE);
     ASSERT_FALSE(image.functions.empty())
         << "the firmware or objdump is not there; ci/setup installs the latter";
-    const AcceptedMachine machine = carpet::loom_on_host(); // of the same table: a board changes no stack
+    const AcceptedMachine machine = carpet::on_host(); // of the same table: a board changes no stack
     Bounds bounds{image, rules};
     for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
         std::vector<std::string> owned;

@@ -85,8 +85,8 @@ std::vector<std::string> change_of_weaves() {
 }
 
 bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folder) {
-    std::string plant = "carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --fifo 1 --seed " +
-                        std::to_string(options.seed) + " --picks " + std::to_string(options.picks);
+    std::string plant = "carpet-loom-plant --fifo 1 --seed " + std::to_string(options.seed) + " --picks " +
+                        std::to_string(options.picks);
     for (const std::string& word : troubles(options.picks)) plant += " " + word;
     bench::Scenario scenario;
     scenario.init = options.init;
@@ -95,7 +95,7 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
                       {options.browser, "/bin/tappet-browse"},
                       {options.behaviours, "/weaves"}};
     scenario.can = {"can0"};
-    scenario.gpio = {{"loom-io", 14}};
+    scenario.gpio = {{"io", 32}};
     scenario.settings = {{"/proc/sys/kernel/sched_rt_runtime_us", "-1"}};
     // How long the requests of a browser take is the host's affair: the plant weaves on until they are
     // through, and some picks more.

@@ -31,7 +31,7 @@ constexpr std::array machine_keys{
     Key{"stop_reason", Type::text},
     Key{"can_frames_lost", Type::count},
     Key{"gpio_edges_lost", Type::count},
-    Key{"modbus_outages_survived", Type::count},
+    Key{"counters", Type::object},
     Key{"emissions_lost", Type::count},
     Key{"heap_allocations_after_arming", Type::count},
     Key{"page_faults_after_arming", Type::count},
@@ -40,10 +40,11 @@ constexpr std::array machine_keys{
     Key{"static_memory_bytes", Type::count},
     Key{"rss_bytes", Type::count},
     Key{"activities", Type::list},
-    Key{"weave", Type::object},
+    Key{"slots", Type::list},
 };
 // Without a script its name is empty.
-constexpr std::array weave_keys{Key{"loads", Type::count}, Key{"roll_backs", Type::count}};
+constexpr std::array slot_keys{Key{"loads", Type::count}, Key{"roll_backs", Type::count}};
+constexpr std::array counter_keys{Key{"utility.outages_survived", Type::count}};
 constexpr std::array activity_keys{Key{"name", Type::text},
                                    Key{"cycles", Type::count},
                                    Key{"longest_busy_us", Type::number},
@@ -150,12 +151,15 @@ std::expected<std::string, std::string> merge(std::string_view machine_text, std
                               fault_of(*plant, plants, judging_keys), fault_of(*plant, plants, plant_keys)})
         if (!fault.empty()) return Error{fault};
     for (const auto& fault : {fault_of_each((*machine)["activities"], "an activity", activity_keys),
-                              fault_of((*machine)["weave"], "\"weave\"", weave_keys),
+                              fault_of_each((*machine)["slots"], "a slot", slot_keys),
+                              fault_of((*machine)["counters"], "\"counters\"", counter_keys),
                               fault_of_each((*plant)["stops"], "a stop", stop_keys),
                               fault_of_each((*plant)["patterns"], "a pattern", pattern_keys),
                               fault_of((*plant)["cam_error_deg"], "\"cam_error_deg\"", cam_keys),
                               fault_of((*plant)["damage"], "\"damage\"", damage_keys)})
         if (!fault.empty()) return Error{fault};
+    if ((*machine)["slots"].empty())
+        return Error{std::string{machines} + " has no slot, and the loom has one"};
 
     Json activities = std::move((*machine)["activities"]);
     machine->erase("activities");

@@ -16,7 +16,7 @@ inline std::vector<std::string> troubles(std::int64_t picks) {
     };
     return {"--weft-break-one-in", "40",   "--warp-break-one-in", "150", "--weft-break-at",     at(1),
             "--emergency-stop-at", at(2),  "--warp-break-at",     at(3), "--operator-reaction", "500ms",
-            "--stop-modbus-at",    "3s/2s"};
+            "--stop-servers-at",   "3s/2s"};
 }
 
 } // namespace tappet::demo

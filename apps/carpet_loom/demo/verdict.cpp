@@ -54,7 +54,7 @@ std::string table_of(const Json& run) {
                             count(run, "picks"), number(run, "picks_per_minute"), number(plant, "time_s")));
     table += row("injected", format("%llu weft breaks, %llu warp breaks; %llu Modbus outages survived",
                                     count(run, "weft_breaks_injected"), count(run, "warp_breaks_injected"),
-                                    count(run, "modbus_outages_survived")));
+                                    count(run.at("counters"), "utility.outages_survived")));
     table += row("stops", format("%llu, measured at the true shaft", count(plant, "stops_total")));
     for (const Json& stop : run.at("stops")) {
         std::string words = format("  pick %4llu  %-9s at %6.2f deg", count(stop, "at_pick"),
@@ -76,7 +76,7 @@ std::string table_of(const Json& run) {
         lifted += format("%s%04llx from pick %llu on", lifted.empty() ? "" : ", ", count(each, "pattern"),
                          count(each, "first_at_pick"));
     table += row("weave", "the harnesses were lifted to " + lifted);
-    if (const Json& weave = run.at("weave"); count(weave, "loads") != 0)
+    if (const Json& weave = run.at("slots").at(0); count(weave, "loads") != 0)
         table += row("", format("%s is at work; %llu scripts took over; %s", text(weave, "script").c_str(),
                                 count(weave, "loads"), text(weave, "news").c_str()));
     table += row("timing", "activity   cycles   longest busy   of the claimed   worst response   misses");
@@ -110,7 +110,7 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
                        cause.c_str()));
     }
     if (picks_wanted >= least_picks_for_weaves) {
-        const Json& weave = run.at("weave");
+        const Json& weave = run.at("slots").at(0);
         std::uint64_t picks_of_it = 0;
         for (const Json& each : run.at("patterns"))
             if (count(each, "pattern") == pattern_of_new_weave) picks_of_it = count(each, "picks");

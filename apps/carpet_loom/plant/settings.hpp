@@ -42,7 +42,11 @@ struct Settings {
     bool operator_present = true;
     Duration operator_reaction = 1s; // from standstill to the repair; acknowledge and start take a part of it
     std::uint64_t last_pick = 0; // the operator presses stop when it is reached and starts no more; 0 = never
-    bool contact_bounce = true;  // of buttons and drop wires
+    /// It ends not before somebody told it so, and so many picks later at least; 0: nobody does.
+    std::uint64_t picks_after_told = 0;
+    Duration edge_burst_at = Duration::max(); // the weft detector's line flutters
+
+    bool contact_bounce = true;         // of buttons and drop wires
     double brake_wear_per_stop = 0.001; // part of the torque lost by each stop, at most 0.15 in all
 };
 

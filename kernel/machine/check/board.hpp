@@ -1,63 +1,152 @@
-// Checks of a machine against a board: every device and line that a driver names exists there and is of its
-// kind.
+// Checks of a machine against a board and the binding between them: every device and line that a driver names
+// is bound to one that the board has, and every row of the binding is of use.
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
+#include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 
 namespace tappet::checks {
 
-constexpr const BoardDevice* find_device(const Board& board, std::string_view name) noexcept {
-    for (const auto& device : board.devices)
-        if (device.name == name) return &device;
-    return nullptr;
+template <class Rows>
+constexpr const auto* find_named(const Rows& rows, std::string_view name) noexcept {
+    for (const auto& row : rows)
+        if (row.name == name) return &row;
+    return decltype(&*rows.begin()){nullptr};
 }
 
-constexpr Sentence check_devices(const MachineView& m, const Board& board) {
+/// What on the board drives this kind: a Modbus server is reached by a serial port, or by an address alone.
+constexpr std::string_view board_kind_of(std::string_view device_kind) noexcept {
+    return device_kind == "modbus" ? "serial" : device_kind;
+}
+
+/// The port of "192.168.7.2:502", numeric IPv4; 0: it is not written so.
+constexpr int tcp_port_of(std::string_view address) noexcept {
+    int parts = 0, number = -1;
+    for (const char character : address) {
+        if (character >= '0' && character <= '9') {
+            number = (number < 0 ? 0 : number) * 10 + (character - '0');
+            if (number > (parts < 4 ? 255 : 65535)) return 0;
+        } else if (number >= 0 && character == (parts < 3 ? '.' : ':')) {
+            ++parts;
+            number = -1;
+        } else {
+            return 0;
+        }
+    }
+    return parts == 4 && number > 0 ? number : 0;
+}
+
+template <class... Words>
+constexpr Sentence of_binding(const Board& board, std::string_view device, const Words&... words) {
+    return Sentence{"binding to board \"", board.name, "\", wired(\"", device, "\"): ", words...};
+}
+
+constexpr Sentence check_bound_lines(const ComponentRow& row, const Board& board, const BoundDevice& bound,
+                                     const BoardDevice& device) {
+    for (const auto& wanted : row.type->device_lines) {
+        if (find_named(bound.lines, wanted) != nullptr) continue;
+        Nearest nearest{wanted};
+        for (const auto& line : bound.lines) nearest.consider(line.name);
+        Sentence text = of_binding(board, bound.name, "it has no line \"", wanted, "\"");
+        detail::add_suggestion(text, nearest, "add line(\"...\", offset) to it");
+        return text;
+    }
+    for (std::size_t i = 0; i < bound.lines.size(); ++i) {
+        const BoundLine& line = bound.lines[i];
+        for (std::size_t j = 0; j < i; ++j)
+            if (line.offset == bound.lines[j].offset || line.name == bound.lines[j].name)
+                return of_binding(board, bound.name, "lines \"", bound.lines[j].name, "\" and \"", line.name,
+                                  "\" share a name or an offset; correct one");
+        if (line.offset >= device.lines)
+            return of_binding(board, bound.name, "line \"", line.name, "\" stands at ", line.offset,
+                              " but device \"", device.name, "\" has lines 0 to ", device.lines - 1,
+                              "; correct it");
+        bool wanted = false;
+        for (const auto& each : row.type->device_lines) wanted |= each == line.name;
+        if (!wanted)
+            return of_binding(board, bound.name, "line \"", line.name,
+                              "\" is not in the component's map; add it there or remove it here");
+    }
+    return {};
+}
+
+constexpr Sentence check_bound_device(const ComponentRow& row, const Board& board, const BoundDevice& bound) {
+    const std::string_view wants = board_kind_of(row.type->device_kind);
+    const BoardDevice* device = find_named(board.devices, bound.at);
+    if (device == nullptr) {
+        if (row.type->device_kind == "modbus" && tcp_port_of(bound.at) != 0) return {};
+        Nearest nearest{bound.at};
+        for (const auto& each : board.devices)
+            if (each.kind == wants) nearest.consider(each.name);
+        Sentence text = of_binding(board, bound.name, "the board has no device \"", bound.at, "\"");
+        detail::add_suggestion(text, nearest,
+                               row.type->device_kind == "modbus"
+                                   ? "write a server's address as 192.168.7.2:502, or add a serial port to "
+                                     "the board's devices"
+                                   : "add it to the board's devices");
+        return text;
+    }
+    if (device->kind != wants)
+        return of_binding(board, bound.name, "it drives a ", row.type->device_kind, " device but \"",
+                          device->name, "\" is of kind ", device->kind, "; name another");
+    if (device->kind == "can" && device->bit_rate.bits_per_second == 0)
+        return of_binding(board, bound.name, "device \"", device->name,
+                          "\" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the "
+                          "board's row");
+    if (device->kind == "gpio" && device->lines == 0)
+        return of_binding(board, bound.name, "device \"", device->name,
+                          "\" states no number of lines; add lines(32), or how many it has, to the board's "
+                          "row");
+    return check_bound_lines(row, board, bound, *device);
+}
+
+constexpr Sentence check_devices(const MachineView& m, const Board& board, const Binding& binding) {
+    if (binding.too_many)
+        return Sentence{
+            "binding to board \"", board.name,
+            "\": it has more rows than a binding holds: 16 devices, 64 placements; raise the bound in "
+            "kernel/machine/table/binding.hpp"};
     for (std::size_t c = 0; c < m.components.size(); ++c) {
         const ComponentRow& row = m.components[c];
         if (row.type->device_kind.empty()) continue;
-        const BoardDevice* device = find_device(board, row.device);
-        if (device == nullptr) {
-            Nearest nearest{row.device};
-            for (const auto& each : board.devices)
-                if (each.kind == row.type->device_kind) nearest.consider(each.name);
-            Sentence text =
-                of_component(row.name, ": board \"", board.name, "\" has no device \"", row.device, "\"");
-            detail::add_suggestion(text, nearest, "add it to the board's devices");
-            return text;
-        }
-        if (device->kind != row.type->device_kind)
-            return of_component(row.name, " drives a ", row.type->device_kind, " device but \"", row.device,
-                                "\" of board \"", board.name, "\" is of kind ", device->kind,
-                                "; name another");
-        if (device->kind == "can" && device->bit_rate.bits_per_second == 0)
-            return of_component(
-                row.name, ": device \"", row.device, "\" of board \"", board.name,
-                "\" states no bit rate; add bit_rate(500'000), or what its bus runs at, to it");
         for (std::size_t j = 0; j < c; ++j)
             if (m.components[j].device == row.device && !row.type->shares_device &&
                 !m.components[j].type->shares_device)
                 return of_component(row.name, " drives device \"", row.device, "\", as component \"",
                                     m.components[j].name, "\" does; a device has one driver");
-        for (const auto& wanted : row.type->device_lines) {
-            bool found = false;
-            Nearest nearest{wanted};
-            for (const auto& line : device->lines) found |= line.name == wanted, nearest.consider(line.name);
-            if (found) continue;
-            Sentence text = of_component(row.name, ": device \"", row.device, "\" of board \"", board.name,
-                                         "\" has no line \"", wanted, "\"");
-            detail::add_suggestion(text, nearest, "add line(\"...\", offset) to it");
+        if (row.type->shares_device) {
+            bool opened = false;
+            for (const auto& other : m.components)
+                opened |= other.device == row.device && !other.type->shares_device;
+            if (!opened)
+                return of_component(row.name, " shares device \"", row.device,
+                                    "\", which no component drives; correct the name");
+        }
+        if (board.simulated) continue;
+        const BoundDevice* bound = find_named(binding.devices, row.device);
+        if (bound == nullptr) {
+            Nearest nearest{row.device};
+            for (const auto& each : binding.devices) nearest.consider(each.name);
+            Sentence text = of_component(row.name, ": the binding to board \"", board.name,
+                                         "\" does not say where device \"", row.device, "\" stands");
+            detail::add_suggestion(text, nearest, "add wired(\"...\", \"a device of the board\") to it");
             return text;
         }
-        for (std::size_t i = 0; i < device->lines.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                if (device->lines[i].offset == device->lines[j].offset ||
-                    device->lines[i].name == device->lines[j].name)
-                    return of_component(row.name, ": lines \"", device->lines[j].name, "\" and \"",
-                                        device->lines[i].name, "\" of device \"", row.device,
-                                        "\" of board \"", board.name,
-                                        "\" share a name or an offset; correct one");
+        if (const Sentence fault = check_bound_device(row, board, *bound); !fault.empty())
+            return of_component(row.name, ": ", fault);
+    }
+    for (std::size_t i = 0; i < binding.devices.size(); ++i) {
+        const BoundDevice& bound = binding.devices[i];
+        for (std::size_t j = 0; j < i; ++j)
+            if (bound.name == binding.devices[j].name || bound.at == binding.devices[j].at)
+                return of_binding(board, bound.name, "wired(\"", binding.devices[j].name,
+                                  "\") has the same name or the same device of the board; correct one");
+        bool driven = false;
+        for (const auto& row : m.components) driven |= row.device == bound.name;
+        if (!driven)
+            return of_binding(board, bound.name,
+                              "no component of the machine drives it; correct the name or remove the row");
     }
     return {};
 }

@@ -1,5 +1,5 @@
-// The check of a whole table on a board: empty, or the one sentence that names the row, the fault and the
-// cure. The same function runs in the compiler and in tests.
+// The check of a whole table, bound to a board: empty, or the one sentence that names the row, the fault and
+// the cure. The same function runs in the compiler and in tests.
 #pragma once
 
 #include "kernel/machine/check/board.hpp"
@@ -17,7 +17,7 @@ namespace tappet {
 
 /// Checks in the order in which a reader would look, and fills `r`, which holds only as far as the checks
 /// went.
-constexpr Sentence check(const MachineView& m, const Board& board, TableIndexView r) {
+constexpr Sentence check(const MachineView& m, const Board& board, const Binding& binding, TableIndexView r) {
     const auto first_fault = [&]() -> Sentence {
         if (Sentence fault = checks::check_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_activities(m, r); !fault.empty()) return fault;
@@ -33,8 +33,8 @@ constexpr Sentence check(const MachineView& m, const Board& board, TableIndexVie
         if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
         for (std::size_t e = 0; e < m.extras->size(); ++e)
             if (Sentence fault = m.extras->at(e)->check(m, r); !fault.empty()) return fault;
-        if (Sentence fault = checks::check_devices(m, board); !fault.empty()) return fault;
-        return checks::check_schedulability(m, board, r);
+        if (Sentence fault = checks::check_devices(m, board, binding); !fault.empty()) return fault;
+        return checks::check_schedulability(m, board, binding, r);
     };
     const Sentence fault = first_fault();
     return fault.empty() ? fault : Sentence{m.name, ": ", fault};

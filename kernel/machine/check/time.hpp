@@ -4,6 +4,7 @@
 
 #include "kernel/machine/check/components.hpp"
 #include "kernel/machine/check/schedulability.hpp"
+#include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 
 namespace tappet::checks {
@@ -12,8 +13,8 @@ namespace tappet::checks {
 inline constexpr std::size_t max_activities = 63;
 static_assert(max_activities < Inbox::max_senders);
 
-constexpr int processor_of(const Board& board, std::string_view activity) noexcept {
-    for (const auto& each : board.placement)
+constexpr int processor_of(const Board& board, const Binding& binding, std::string_view activity) noexcept {
+    for (const auto& each : binding.placement)
         if (each.activity == activity) return each.processor;
     return board.default_processor;
 }
@@ -40,29 +41,30 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
 }
 
 /// Fills the worst response times.
-constexpr Sentence check_schedulability(const MachineView& m, const Board& board, TableIndexView r) {
+constexpr Sentence check_schedulability(const MachineView& m, const Board& board, const Binding& binding,
+                                        TableIndexView r) {
     if (m.activities.size() > max_activities)
         return Sentence{"the table has more than ", max_activities,
                         " activities; merge those of equal period"};
-    for (std::size_t i = 0; i < board.placement.size(); ++i) {
-        const BoardPlacement& place = board.placement[i];
+    for (const Placement& place : binding.placement) {
         if (find_activity(m, place.activity) == nowhere) {
             Nearest nearest{place.activity};
             for (const auto& row : m.activities) nearest.consider(row.name);
-            Sentence text{"board \"", board.name, "\" places activity \"", place.activity,
-                          "\", which the table has not"};
+            Sentence text{"binding to board \"", board.name, "\", place(\"", place.activity,
+                          "\"): the table has no such activity"};
             detail::add_suggestion(text, nearest, "remove the placement");
             return text;
         }
         if (place.processor < 0 || place.processor >= board.processors)
-            return of_activity(place.activity, ": board \"", board.name, "\" places it on processor ",
-                               place.processor, " but has processors 0 to ", board.processors - 1,
-                               "; correct its placement");
+            return of_activity(place.activity, ": its binding to board \"", board.name,
+                               "\" places it on processor ", place.processor,
+                               " but the board has processors 0 to ", board.processors - 1,
+                               "; correct place(\"", place.activity, "\")");
     }
     rank_activities(m, r);
     std::array<int, max_activities> processors{};
     for (std::size_t a = 0; a < m.activities.size(); ++a)
-        processors[a] = processor_of(board, m.activities[a].name);
+        processors[a] = processor_of(board, binding, m.activities[a].name);
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         r.worst_response_ns[a] = 0;
         const ActivityRow& row = m.activities[a];

@@ -75,13 +75,13 @@ public:
     constexpr Cartographer(const MachineView& table, const TableIndexView& index, const Room& room)
         : m_{table}, r_{index}, room_{room} {}
 
-    constexpr void draw(Header& header, const Board& board) {
+    constexpr void draw(Header& header, const Board& board, const Binding& binding) {
         header.machine = text(m_.name);
         header.board = text(board.name);
         header.world = text(board.world);
         static_cast<void>(types_.of(type_id<bool>)); // 0 is a type like any other
         draw_components();
-        draw_activities(board);
+        draw_activities(board, binding);
         draw_connections();
         draw_reactions();
         draw_behaviours();
@@ -116,7 +116,7 @@ private:
 
     constexpr void draw_components();
     constexpr void draw_facet(End end);
-    constexpr void draw_activities(const Board& board);
+    constexpr void draw_activities(const Board& board, const Binding& binding);
     constexpr void draw_connections();
     constexpr void draw_reactions();
     constexpr void draw_behaviours();
@@ -182,7 +182,7 @@ constexpr void Cartographer::draw_facet(End end) {
     put(room_.facets, n_.facets, record);
 }
 
-constexpr void Cartographer::draw_activities(const Board& board) {
+constexpr void Cartographer::draw_activities(const Board& board, const Binding& binding) {
     for (const ActivityRow& row : m_.activities) {
         Activity record;
         record.name = text(row.name);
@@ -198,7 +198,7 @@ constexpr void Cartographer::draw_activities(const Board& board) {
         record.real_time = row.real_time ? 1 : 0;
         record.priority =
             row.real_time ? board.highest_priority - static_cast<int>(r_.rank[n_.activities]) : 0;
-        record.processor = checks::processor_of(board, row.name);
+        record.processor = checks::processor_of(board, binding, row.name);
         put(room_.activities, n_.activities, record);
     }
 }
@@ -322,16 +322,18 @@ constexpr void Cartographer::draw_types() {
 }
 
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t R>
-constexpr Counts count(const MachineView& table, const Board& board, TableIndex<C, A, X, R> index) {
+constexpr Counts count(const MachineView& table, const Board& board, const Binding& binding,
+                       TableIndex<C, A, X, R> index) {
     Header header;
     const TableIndexView view = index.view();
     Cartographer counted{table, view, {}};
-    counted.draw(header, board);
+    counted.draw(header, board, binding);
     return counted.counts();
 }
 
 template <Counts counts, std::size_t C, std::size_t A, std::size_t X, std::size_t R>
-constexpr Drawn<counts> draw(const MachineView& table, const Board& board, TableIndex<C, A, X, R> index) {
+constexpr Drawn<counts> draw(const MachineView& table, const Board& board, const Binding& binding,
+                             TableIndex<C, A, X, R> index) {
     Drawn<counts> drawn;
     Storage<counts>& map = drawn.map;
     Header& header = map.header;
@@ -361,7 +363,7 @@ constexpr Drawn<counts> draw(const MachineView& table, const Board& board, Table
                               {map.components, map.facets, map.activities, map.connections, map.reactions,
                                map.behaviours, map.types, map.fields, map.enumerators, map.figures,
                                map.characters, drawn.types, header.texts.at}};
-    cartographer.draw(header, board);
+    cartographer.draw(header, board, binding);
     Digest structure;
     for (const char character : map.characters) structure.add(static_cast<std::uint64_t>(character));
     for (const Connection& row : map.connections) structure.add(std::uint64_t{row.from} << 32 | row.to);

@@ -300,8 +300,8 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
 } // namespace detail
 
 /// Plans a checked table for a board. The map comes first: whoever looks at the memory begins there.
-constexpr void make_plan(const MachineView& m, const Board& board, const TableIndexView& r,
-                         std::size_t map_bytes, PlanView& p) {
+constexpr void make_plan(const MachineView& m, const Board& board, const Binding& binding,
+                         const TableIndexView& r, std::size_t map_bytes, PlanView& p) {
     detail::Layout layout;
     layout.take(map_bytes, alignof(std::max_align_t));
     p.observed_at = layout.take<Observed>();
@@ -324,7 +324,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const TableIn
         plan.stack_bytes = (row.stack + page - 1) / page * page;
         plan.stack_at = layout.take(plan.stack_bytes, page);
         plan.priority = row.real_time ? board.highest_priority - static_cast<int>(r.rank[a]) : 0;
-        plan.processor = checks::processor_of(board, row.name);
+        plan.processor = checks::processor_of(board, binding, row.name);
     }
     p.bytes = (layout.used() + page - 1) / page * page;
     p.stack_bytes = layout.used() - before_stacks;

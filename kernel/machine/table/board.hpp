@@ -1,5 +1,5 @@
-// A board: what one kind of box calls the devices that a machine table names, and what the box can do. One
-// binary is one machine on one board.
+// A board: what one kind of box has and can do. It knows no machine; which of its devices a machine uses, and
+// for what, is said by a binding. One binary is one machine on one board.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -12,29 +12,22 @@
 
 namespace tappet {
 
-/// A line of a GPIO chip: the logical name of the machine, the offset on this box.
-struct BoardLine {
-    std::string_view name{};
-    unsigned offset = 0;
-};
-
 /// What a CAN bus of the box is wired and terminated for, in bit/s.
 struct BitRate {
     std::uint32_t bits_per_second = 0;
 };
 
-struct BoardDevice {
-    std::string_view name{};    ///< logical: what the machine table says
-    std::string_view kind{};    ///< "can", "gpio", "modbus": of the component that may drive it
-    std::string_view address{}; ///< "can0", "/dev/gpiochip0", "192.168.7.2:502", "/dev/ttyS1:19200:8E1"
-    Bounded<BoardLine, 64> lines{};
-    BitRate bit_rate{}; ///< of a "can" device, which must say it
+/// How many lines a GPIO chip has for wires.
+struct LineCount {
+    unsigned lines = 0;
 };
 
-/// The processor an activity is bound to, by the activity's name.
-struct BoardPlacement {
-    std::string_view activity{};
-    int processor = 0;
+struct BoardDevice {
+    std::string_view name{};    ///< as on the housing: what a binding says
+    std::string_view kind{};    ///< "can", "gpio", "serial", or what a driver of one's own drives
+    std::string_view address{}; ///< where Linux has it: "can0", "/dev/gpiochip0", "/dev/ttyS1"
+    unsigned lines = 0;         ///< of a "gpio" device, which must say it
+    BitRate bit_rate{};         ///< of a "can" device, which must say it
 };
 
 /// Whoever is this user, or in this group, has this role at least.
@@ -61,8 +54,9 @@ struct Board {
     int processors = 1;
     int highest_priority = 80; ///< SCHED_FIFO; interrupt threads stay above it
     int default_processor = 0;
-    Bounded<BoardPlacement, 32> placement{};
     Bounded<BoardDevice, 16> devices{};
+    bool simulated =
+        false; ///< any device that a machine names is there, as its twin: nothing needs a binding
     Bounded<std::string_view, 16>
         only_warned{}; ///< arming checks that this development board downgrades to warnings
     std::string_view kernel_command_line{};
@@ -72,13 +66,13 @@ struct Board {
 
 namespace detail {
 
-constexpr void add(BoardDevice& device, const BoardLine& line) { static_cast<void>(device.lines.push(line)); }
+constexpr void add(BoardDevice& device, LineCount count) { device.lines = count.lines; }
 constexpr void add(BoardDevice& device, BitRate rate) { device.bit_rate = rate; }
 
 } // namespace detail
 
-/// board_device("loom-can", "can", "can0", bit_rate(500'000)),
-/// board_device("loom-io", "gpio", "/dev/gpiochip0", line("brake", 9), ...)
+/// board_device("can0", "can", "can0", bit_rate(500'000)),
+/// board_device("io", "gpio", "/dev/gpiochip0", lines(32))
 template <class... Facts>
 constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address,
                                    const Facts&... facts) {
@@ -90,12 +84,8 @@ constexpr BoardDevice board_device(std::string_view name, std::string_view kind,
     return device;
 }
 
-constexpr BoardLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
+constexpr LineCount lines(unsigned count) noexcept { return {count}; }
 constexpr BitRate bit_rate(std::uint32_t bits_per_second) noexcept { return {bits_per_second}; }
-
-constexpr BoardPlacement place(std::string_view activity, int processor) noexcept {
-    return {activity, processor};
-}
 
 namespace detail {
 
@@ -114,10 +104,6 @@ constexpr Bounded<T, N> list_of(const Items&... items) {
 template <class... Devices>
 constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
     return detail::list_of<BoardDevice, 16>(devices...);
-}
-template <class... Places>
-constexpr Bounded<BoardPlacement, 32> placements(const Places&... places) {
-    return detail::list_of<BoardPlacement, 32>(places...);
 }
 constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {false, number, role}; }
 constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {true, number, role}; }

@@ -14,7 +14,7 @@ constexpr std::uint64_t picks = 100;
 
 loom::Settings breaks() {
     loom::Settings settings;
-    settings.weft_break_one_in = 40; // the program's own defaults
+    settings.weft_break_one_in = 40;
     settings.warp_break_one_in = 150;
     settings.last_pick = picks;
     return settings;
@@ -23,10 +23,10 @@ loom::Settings breaks() {
 std::uint64_t digest_of(std::uint64_t seed, bool bad_wires = false) {
     LoomRig rig{seed, breaks()};
     if (bad_wires) {
-        rig.wires().bus().faults.lose.one_in = 200;
-        rig.wires().bus().faults.duplicate.one_in = 100;
-        rig.wires().lines().faults(LoomRig::line_index(wires::line::button_start)).bounces = 3;
-        rig.wires().utility().inject(modbus::Fault::silent, 3);
+        rig.bus().faults.lose.one_in = 200;
+        rig.bus().faults.duplicate.one_in = 100;
+        rig.lines().faults(LoomRig::line_index(wires::line::button_start)).bounces = 3;
+        rig.utility().inject(modbus::Fault::silent, 3);
     }
     EXPECT_TRUE(rig.run().weave(picks, 300s)) << "in state " << rig.state() << ": " << rig.reason();
     rig.run().stop();
@@ -78,8 +78,8 @@ TEST(Determinism, two_processes_report_the_same_but_for_the_memory_they_took) {
     const std::string first = temporary_file("first.json");
     const std::string second = temporary_file("second.json");
     for (const std::string& path : {first, second})
-        EXPECT_EQ(run_loom({"--world", "host", "--virtual", "--quiet", "--seed", "3", "--picks", "100",
-                            "--summary", path})
+        EXPECT_EQ(run_loom({"--virtual", "--seed", "3", "--picks", "100", "--weft-break-one-in", "40",
+                            "--warp-break-one-in", "150", "--summary", path})
                       .exit_code,
                   0);
     const std::string one = without_field(contents(first), "rss_bytes");

@@ -2,8 +2,8 @@
 // state and its reason, and what the plant says of the run.
 #pragma once
 
-#include "apps/carpet_loom/host/virtual_run.hpp"
 #include "apps/carpet_loom/machine.hpp"
+#include "tests/apps/carpet_loom/loom_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ inline auto seeds(std::uint64_t number) {
 class LoomRig {
 public:
     explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = no_faults())
-        : run_{std::make_unique<VirtualRun>(settings, seed)} {
+        : run_{std::make_unique<LoomRun>(settings, seed)} {
         const auto started = run_->start();
         EXPECT_TRUE(started) << started.error().view();
     }
@@ -80,7 +80,7 @@ public:
         return run_until([&] { return state() == "weave" && plant().picks() >= wanted; }, 30s);
     }
 
-    [[nodiscard]] Time now() { return run_->clock().now(); }
+    [[nodiscard]] Time now() { return run_->now(); }
     [[nodiscard]] std::string_view state() {
         const auto path = execution().path();
         return path.empty() ? std::string_view{} : path[path.size() - 1];
@@ -96,14 +96,15 @@ public:
         return *run_->instance().find<T>(name);
     }
     [[nodiscard]] StopCause cause() { return component<Loom>("loom").cause.last(); }
-    [[nodiscard]] VirtualRun& run() { return *run_; }
-    [[nodiscard]] InProcessLoom& wires() { return run_->loom(); }
-    [[nodiscard]] loom::Plant& plant() { return run_->loom().plant(); }
+    [[nodiscard]] LoomRun& run() { return *run_; }
+    [[nodiscard]] can::TwinBus& bus() { return run_->devices().bus("loom-can"); }
+    [[nodiscard]] can::Twin& machine_can() { return run_->devices().controller("loom-can"); }
+    [[nodiscard]] gpio::Twin& lines() { return run_->devices().lines("loom-io"); }
+    [[nodiscard]] modbus::Twin& utility() { return run_->devices().server("loom-utility"); }
+    [[nodiscard]] loom::Plant& plant() { return run_->plant(); }
     [[nodiscard]] loom::Report report() { return plant().report(); }
     /// The machine's output line of this offset, as it is on the wire.
-    [[nodiscard]] bool output(unsigned offset) {
-        return (wires().lines().outputs() >> line_index(offset) & 1u) != 0;
-    }
+    [[nodiscard]] bool output(unsigned offset) { return (lines().outputs() >> line_index(offset) & 1u) != 0; }
     /// Of the twin's lines, by the wire's offset.
     [[nodiscard]] static std::size_t line_index(unsigned offset) {
         namespace line = wires::line;
@@ -118,7 +119,7 @@ public:
     }
 
 private:
-    std::unique_ptr<VirtualRun> run_;
+    std::unique_ptr<LoomRun> run_;
 };
 
 /// Every stop for a weft or a warp end within the tolerance of the stop angle.

@@ -208,14 +208,14 @@ TEST(LostParts, lines_that_are_driven_no_longer_are_an_emergency) {
 TEST(LostParts, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
-    rig.wires().lines().set_removed(true);
+    rig.lines().set_removed(true);
     ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
     EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "by the drive alone";
     rig.run_for(200ms);
     rig.acknowledge();
     EXPECT_EQ(rig.state(), "emergency");
-    rig.wires().lines().set_removed(false);
+    rig.lines().set_removed(false);
     rig.run_for(100ms);
     rig.acknowledge();
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
@@ -224,7 +224,7 @@ TEST(LostParts, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away
 TEST(LostParts, a_loom_without_a_brake_is_stopped_by_its_drive_though_the_machine_ends) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
-    rig.wires().lines().set_removed(true);
+    rig.lines().set_removed(true);
     ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
     rig.change("activity:logic", LifeChange::stop); // as the first of an orderly stop
     EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "it does not coast";

@@ -1,7 +1,7 @@
 // What the compiler derives from the loom's table is under version control: a change of it is seen in the
 // commit.
-#include "apps/carpet_loom/host/loom_on_host.hpp"
 #include "kernel/machine/plan_text.hpp"
+#include "tests/apps/carpet_loom/loom_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using Lines = std::vector<std::string>;
 
 TEST(LoomPlan, is_the_one_that_was_looked_at) {
     Lines derived, golden;
-    describe_plan(loom_on_host(), &derived,
+    describe_plan(on_host(), &derived,
                   [](void* to, std::string_view line) { static_cast<Lines*>(to)->emplace_back(line); });
     std::ifstream file{LOOM_PLAN};
     for (std::string line; std::getline(file, line);) golden.push_back(line);

@@ -28,7 +28,7 @@ struct Kept : testing::Test {
     }
     [[nodiscard]] std::string get(const char* name) const { return contents((directory / name).string()); }
     [[nodiscard]] Ended run(const std::string& seed = "4") const {
-        return run_loom({"--quiet", "--picks", "10", "--seed", seed, "--properties", directory.string()});
+        return run_loom({"--picks", "10", "--seed", seed, "--properties", directory.string()});
     }
     /// The line on the terminal when this file is refused.
     [[nodiscard]] std::string refusal(const char* name, const std::string& members) const {
@@ -39,7 +39,7 @@ struct Kept : testing::Test {
         return ended.text;
     }
     [[nodiscard]] std::string begin(const char* name, int line) const {
-        return "carpet_loom: " + (directory / name).string() + ":" + std::to_string(line) + ": component \"";
+        return "carpet-loom: " + (directory / name).string() + ":" + std::to_string(line) + ": component \"";
     }
 };
 
@@ -67,14 +67,14 @@ TEST_F(Kept, values_that_are_wrong_are_refused_with_their_file_their_line_and_a_
         refusal("main.cpf", R"(<simple name="speed_rpm" type="double"><value>100000</value></simple>)"),
         AllOf(StartsWith(begin("main.cpf", 2) + "main\""), HasSubstr("over its greatest value")));
     EXPECT_THAT(refusal("main.cpf", "<simple"),
-                AllOf(StartsWith("carpet_loom: "), HasSubstr("malformed XML")));
+                AllOf(StartsWith("carpet-loom: "), HasSubstr("malformed XML")));
 }
 
 TEST_F(Kept, values_that_do_not_go_together_are_refused_by_their_component) {
     EXPECT_THAT(
         refusal("warp.cpf", R"(<simple name="set_point_n" type="double"><value>60</value></simple>
 <simple name="band_n" type="double"><value>80</value></simple>)"),
-        AllOf(StartsWith("carpet_loom: component \"warp\" refuses its properties"), HasSubstr("band_n")));
+        AllOf(StartsWith("carpet-loom: component \"warp\" refuses its properties"), HasSubstr("band_n")));
 }
 
 } // namespace

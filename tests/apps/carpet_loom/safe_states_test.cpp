@@ -163,7 +163,7 @@ TEST_P(SafeStates, a_bus_that_went_off_stops_the_loom_by_its_lines_alone) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
     const Time off = rig.now();
-    rig.wires().bus().bus_off(rig.wires().machine_can());
+    rig.bus().bus_off(rig.machine_can());
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
     EXPECT_LE(rig.now() - off, 15ms);
     EXPECT_EQ(rig.reason(), "the CAN bus is off"); // not the silence that follows from it
@@ -174,7 +174,7 @@ TEST_P(SafeStates, a_bus_that_went_off_stops_the_loom_by_its_lines_alone) {
 TEST_P(SafeStates, a_bus_on_which_nobody_acknowledges_stops_the_loom) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().bus().set_acknowledged(false);
+    rig.bus().set_acknowledged(false);
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
     EXPECT_TRUE(rig.reason() == "the CAN bus is off" || rig.reason() == "the encoder is stale")
         << rig.reason();
@@ -185,10 +185,10 @@ TEST_P(SafeStates, a_bus_on_which_nobody_acknowledges_stops_the_loom) {
 TEST_P(SafeStates, the_loom_weaves_again_after_the_bus_was_restarted_and_the_fault_acknowledged) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().bus().bus_off(rig.wires().machine_can());
+    rig.bus().bus_off(rig.machine_can());
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
     rig.run_for(3s);
-    static_cast<void>(rig.wires().machine_can().restart()); // not needed where a restarter has restarted it
+    static_cast<void>(rig.machine_can().restart()); // not needed where a restarter has restarted it
     expect_weaves_again(rig);
 }
 
@@ -211,7 +211,7 @@ TEST_P(SafeStates, a_machine_that_is_stopped_leaves_safe_values_on_every_wire) {
     EXPECT_EQ(rig.state(), "safe");
     EXPECT_TRUE(rig.output(wires::line::brake));
     EXPECT_FALSE(rig.output(wires::line::weft_release));
-    for (Duration after = 0ms; after <= 200ms; after += 1ms) rig.wires().advance(rig.now() + after);
+    for (Duration after = 0ms; after <= 200ms; after += 1ms) rig.run().devices().advance(rig.now() + after);
     EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
     expect_no_damage(rig.report());
 }

@@ -36,31 +36,31 @@ void expect_woven(LoomRig& rig, std::uint64_t picks) {
 
 TEST_P(Wires, one_lost_frame_in_fifty_is_woven_through) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
-    rig.wires().bus().faults.lose.one_in = 50;
+    rig.bus().faults.lose.one_in = 50;
     expect_woven(rig, 60);
-    EXPECT_GT(rig.wires().bus().frames_lost(), 1000u);
+    EXPECT_GT(rig.bus().frames_lost(), 1000u);
     // What is lost on the wire reaches no counter of this machine: the kernel never had it.
-    EXPECT_EQ(rig.wires().machine_can().counters().lost_in_kernel, 0u);
+    EXPECT_EQ(rig.machine_can().counters().lost_in_kernel, 0u);
 }
 
 TEST_P(Wires, repeated_frames_are_woven_through) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
-    rig.wires().bus().faults.duplicate.one_in = 10;
+    rig.bus().faults.duplicate.one_in = 10;
     expect_woven(rig, 60);
 }
 
 TEST_P(Wires, frames_of_a_wrong_length_are_refused_and_counted_and_the_loom_weaves_on) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
-    rig.wires().bus().faults.corrupt_length.one_in = 50;
+    rig.bus().faults.corrupt_length.one_in = 50;
     expect_woven(rig, 60);
     EXPECT_GT(rig.component<CanBus>("can").decoding().wrong_lengths, 100u);
 }
 
 TEST_P(Wires, frames_that_come_late_are_woven_through) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
-    rig.wires().bus().faults.delay.one_in = 100;
-    rig.wires().bus().faults.delay_by = 1500us;
-    rig.wires().bus().faults.only = can::standard(cob::load_cell_tension);
+    rig.bus().faults.delay.one_in = 100;
+    rig.bus().faults.delay_by = 1500us;
+    rig.bus().faults.only = can::standard(cob::load_cell_tension);
     expect_woven(rig, 60);
 }
 
@@ -69,7 +69,7 @@ TEST_P(Wires, frames_of_unknown_identifiers_are_counted_and_nobodys_business) {
     can::Frame strange;
     strange.id = 0x333;
     strange.length = 8;
-    rig.wires().bus().babble(strange, 1ms, rig.now());
+    rig.bus().babble(strange, 1ms, rig.now());
     expect_woven(rig, 30);
 }
 
@@ -79,13 +79,13 @@ TEST_P(Wires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
     can::Frame lie; // the shaft stands at code 0, it says
     lie.id = cob::encoder_position;
     lie.length = wires::length::encoder_position;
-    rig.wires().bus().babble(lie, 300us, rig.now());
+    rig.bus().babble(lie, 300us, rig.now());
     EXPECT_TRUE(rig.run_until_state("fault", 50ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the encoder is stale");
     EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 500ms));
     rig.run_for(5s);
     EXPECT_NE(rig.state(), "weave"); // acknowledged by the operator, and still contradicted
-    rig.wires().bus().babble(lie, 0us, rig.now());
+    rig.bus().babble(lie, 0us, rig.now());
     EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
     expect_no_damage(rig.report());
 }
@@ -98,7 +98,7 @@ TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_saf
     frozen.length = wires::length::encoder_position;
     frozen.data[1] = 0x08; // half a turn
     rig.plant().inject({.fault = Fault::node_lost, .lasts = 500ms, .node = wires::node::encoder});
-    rig.wires().bus().babble(frozen, 1ms, rig.now());
+    rig.bus().babble(frozen, 1ms, rig.now());
     EXPECT_TRUE(rig.run_until_state("fault", 300ms)) << rig.state();
     EXPECT_TRUE(rig.reason() == "the encoder stands while the drive turns" ||
                 rig.reason() == "the encoder is stale")
@@ -110,12 +110,12 @@ TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_saf
 TEST_P(Wires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().bus().overflow(rig.wires().machine_can(), 3);
+    rig.bus().overflow(rig.machine_can(), 3);
     rig.run_for(200ms);
     EXPECT_EQ(rig.component<CanBus>("can").frames_lost.last(), 3);
-    EXPECT_EQ(rig.wires().machine_can().counters().lost_in_kernel, 3u);
+    EXPECT_EQ(rig.machine_can().counters().lost_in_kernel, 3u);
     EXPECT_EQ(rig.state(), "weave");
-    rig.wires().bus().overflow(rig.wires().machine_can(), 2);
+    rig.bus().overflow(rig.machine_can(), 2);
     rig.run_for(200ms);
     EXPECT_EQ(rig.component<CanBus>("can").frames_lost.last(), 5);
     expect_no_damage(rig.report());
@@ -124,8 +124,8 @@ TEST_P(Wires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
 TEST_P(Wires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().bus().faults.lose.next = 20;
-    rig.wires().bus().faults.only = can::standard(cob::encoder_position);
+    rig.bus().faults.lose.next = 20;
+    rig.bus().faults.only = can::standard(cob::encoder_position);
     ASSERT_TRUE(rig.run_until_state("fault", 30ms));
     EXPECT_EQ(rig.reason(), "the encoder is stale");
     EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
@@ -135,8 +135,8 @@ TEST_P(Wires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) {
 TEST_P(Wires, two_lost_encoder_frames_are_no_reason_to_stop) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().bus().faults.lose.next = 2;
-    rig.wires().bus().faults.only = can::standard(cob::encoder_position);
+    rig.bus().faults.lose.next = 2;
+    rig.bus().faults.only = can::standard(cob::encoder_position);
     rig.run_for(1s);
     EXPECT_EQ(rig.state(), "weave");
     EXPECT_LE(rig.report().cam_error_max_deg, 1.0);
@@ -144,15 +144,15 @@ TEST_P(Wires, two_lost_encoder_frames_are_no_reason_to_stop) {
 
 TEST_P(Wires, commands_that_are_lost_are_said_again) {
     LoomRig rig{GetParam(), breaks_of_yarn(40)};
-    rig.wires().bus().faults.lose.one_in = 4;
-    rig.wires().bus().faults.only = can::standard(cob::main_drive_command);
+    rig.bus().faults.lose.one_in = 4;
+    rig.bus().faults.only = can::standard(cob::main_drive_command);
     expect_woven(rig, 40);
 }
 
 TEST_P(Wires, a_start_command_to_a_node_that_is_lost_is_said_again) {
     LoomRig rig{GetParam()};
-    rig.wires().bus().faults.lose.next = 5;
-    rig.wires().bus().faults.only = can::standard(cob::nmt);
+    rig.bus().faults.lose.next = 5;
+    rig.bus().faults.only = can::standard(cob::nmt);
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state();
 }
 
@@ -162,14 +162,14 @@ TEST_P(Wires, bouncing_lines_are_one_edge_each) {
     LoomRig rig{GetParam(), breaks_of_yarn(40)};
     for (const unsigned each : {line::drop_wire, line::button_start, line::button_stop,
                                 line::button_acknowledge, line::emergency_stop})
-        rig.wires().lines().faults(LoomRig::line_index(each)).bounces = 4;
+        rig.lines().faults(LoomRig::line_index(each)).bounces = 4;
     expect_woven(rig, 40);
 }
 
 TEST_P(Wires, a_bouncing_emergency_stop_is_an_emergency_stop) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().lines().faults(LoomRig::line_index(line::emergency_stop)).bounces = 5;
+    rig.lines().faults(LoomRig::line_index(line::emergency_stop)).bounces = 5;
     rig.plant().inject({.fault = Fault::emergency_stop});
     ASSERT_TRUE(rig.run_until_state("emergency", 5ms));
     EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
@@ -180,18 +180,18 @@ TEST_P(Wires, lost_edges_are_counted_and_the_levels_read_anew) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
     // The edge of the emergency stop itself is lost; the next edge of any line shows the gap.
-    rig.wires().lines().faults(LoomRig::line_index(line::emergency_stop)).lose_next = 1;
+    rig.lines().faults(LoomRig::line_index(line::emergency_stop)).lose_next = 1;
     rig.plant().inject({.fault = Fault::emergency_stop});
     ASSERT_TRUE(rig.run_until_state("emergency", 150ms)) << rig.state();
     EXPECT_EQ(rig.component<LinePort>("io").edges_lost.last(), 1);
-    EXPECT_EQ(rig.wires().lines().counters().missed, 1u);
+    EXPECT_EQ(rig.lines().counters().missed, 1u);
     EXPECT_EQ(rig.report().damage.closed_shed_wefts, 0u);
 }
 
 TEST_P(Wires, a_lost_pulse_of_the_weft_detector_stops_the_loom_at_its_angle) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().lines().faults(LoomRig::line_index(line::weft_detector)).lose_next = 2;
+    rig.lines().faults(LoomRig::line_index(line::weft_detector)).lose_next = 2;
     ASSERT_TRUE(rig.run_until_state("stopped", 1s)) << rig.state();
     EXPECT_EQ(rig.cause(), StopCause::weft);
     const loom::Report report = rig.report();
@@ -205,11 +205,11 @@ TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
     for (const bool active : {false, true}) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
-        rig.wires().lines().stick(LoomRig::line_index(line::weft_detector), active, rig.now());
+        rig.lines().stick(LoomRig::line_index(line::weft_detector), active, rig.now());
         ASSERT_TRUE(rig.run_until_state("stopped", 1s))
             << (active ? "active" : "inactive") << ": " << rig.state();
         EXPECT_EQ(rig.cause(), StopCause::weft);
-        rig.wires().lines().release(LoomRig::line_index(line::weft_detector));
+        rig.lines().release(LoomRig::line_index(line::weft_detector));
         EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
     }
 }
@@ -217,13 +217,13 @@ TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
 TEST_P(Wires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().lines().stick(LoomRig::line_index(line::drop_wire), true, rig.now());
+    rig.lines().stick(LoomRig::line_index(line::drop_wire), true, rig.now());
     ASSERT_TRUE(rig.run_until_state("stopped", 1s));
     EXPECT_EQ(rig.cause(), StopCause::warp);
     rig.run_for(5s); // acknowledged again and again, in vain
     EXPECT_EQ(rig.state(), "stopped");
-    rig.wires().lines().release(LoomRig::line_index(line::drop_wire));
-    static_cast<void>(rig.wires().lines().drive(LoomRig::line_index(line::drop_wire), false, rig.now()));
+    rig.lines().release(LoomRig::line_index(line::drop_wire));
+    static_cast<void>(rig.lines().drive(LoomRig::line_index(line::drop_wire), false, rig.now()));
     EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
 }
 
@@ -233,12 +233,12 @@ TEST_P(Wires, an_outage_of_the_utility_unit_of_ten_seconds_is_survived) {
     for (const modbus::Fault fault : {modbus::Fault::down, modbus::Fault::silent}) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
-        rig.wires().utility().inject(fault);
+        rig.utility().inject(fault);
         rig.run_for(10s);
         EXPECT_EQ(rig.state(), "weave");
         EXPECT_EQ(rig.component<Utility>("utility").outages.last(), 1);
         EXPECT_FALSE(rig.component<Utility>("utility").connected.last() && fault == modbus::Fault::down);
-        rig.wires().utility().inject(modbus::Fault::none);
+        rig.utility().inject(modbus::Fault::none);
         rig.run_for(8s);
         EXPECT_EQ(rig.component<Utility>("utility").outages_survived.last(), 1);
         EXPECT_TRUE(rig.component<Utility>("utility").connected.last());
@@ -250,10 +250,10 @@ TEST_P(Wires, an_outage_of_the_utility_unit_of_ten_seconds_is_survived) {
 TEST_P(Wires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_knows_the_oil_pressure) {
     LoomRig rig{GetParam()};
     ASSERT_TRUE(rig.weave());
-    rig.wires().utility().inject(modbus::Fault::down);
+    rig.utility().inject(modbus::Fault::down);
     ASSERT_TRUE(rig.run_until_state("fault", 20s));
     EXPECT_EQ(rig.reason(), "the oil pressure is lost");
-    rig.wires().utility().inject(modbus::Fault::none);
+    rig.utility().inject(modbus::Fault::none);
     EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
 }
 
@@ -262,8 +262,8 @@ TEST_P(Wires, slow_answers_and_exceptions_of_the_utility_unit_are_woven_through)
                                       modbus::Fault::wrong_transaction, modbus::Fault::garbage_length}) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
-        rig.wires().utility().set_slow_by(700ms);
-        rig.wires().utility().inject(fault, 5);
+        rig.utility().set_slow_by(700ms);
+        rig.utility().inject(fault, 5);
         rig.run_for(8s);
         EXPECT_EQ(rig.state(), "weave") << "fault " << static_cast<int>(fault) << ": " << rig.reason();
         EXPECT_LT(rig.component<Utility>("utility").counters().outages, 6u);

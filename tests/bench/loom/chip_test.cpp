@@ -24,7 +24,7 @@ TEST(LoomChip, that_is_removed_while_it_weaves_is_an_emergency_and_spins_nothing
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();
     loom.forget();
     const WallTime removed = wall_now();
-    std::ofstream{"/sys/kernel/config/gpio-sim/loom-io/live"} << 0;
+    std::ofstream{"/sys/kernel/config/gpio-sim/io/live"} << 0;
     EXPECT_TRUE(loom.says("the loom goes to \"emergency\"")) << loom.since();
     EXPECT_TRUE(loom.says("state=emergency")) << loom.since();
 

@@ -41,13 +41,12 @@ inline std::string content_of(const std::string& path) {
 
 /// The level that stands on a line of the simulated chip, whoever drives it.
 inline bool level(unsigned line) {
-    return content_of("/sim/loom-io/sim_gpio" + std::to_string(line) + "/value").starts_with('1');
+    return content_of("/sim/io/sim_gpio" + std::to_string(line) + "/value").starts_with('1');
 }
 
 /// From the outside, as a button or a sensor would.
 inline void pull(unsigned line, bool high) {
-    std::ofstream{"/sim/loom-io/sim_gpio" + std::to_string(line) + "/pull"}
-        << (high ? "pull-up" : "pull-down");
+    std::ofstream{"/sim/io/sim_gpio" + std::to_string(line) + "/pull"} << (high ? "pull-up" : "pull-down");
 }
 
 /// A frame in a log of `candump -L`.
@@ -104,7 +103,7 @@ public:
     static constexpr const char* report_file = "/tmp/report.json";
 
     explicit Loom(const std::string& plant_options = {})
-        : plant{"carpet-loom-plant --can can0 --gpio-chip /sim/loom-io --period 1ms --fifo 1 "
+        : plant{"carpet-loom-plant --period 1ms --fifo 1 "
                 "--operator-reaction 1s --report " +
                 std::string{report_file} + " " + plant_options} {
         ::unlink(summary_file);

@@ -62,29 +62,28 @@ TEST(LoomSetUp, names_a_can_interface_that_is_not_there) {
 }
 
 TEST(LoomSetUp, names_a_gpio_chip_that_is_not_there) {
-    ASSERT_EQ(::rename("/dev/loom-io", "/dev/elsewhere"), 0);
+    ASSERT_EQ(::rename("/dev/io", "/dev/elsewhere"), 0);
     const Attempt attempt;
-    EXPECT_EQ(::rename("/dev/elsewhere", "/dev/loom-io"), 0);
+    EXPECT_EQ(::rename("/dev/elsewhere", "/dev/io"), 0);
     EXPECT_EQ(attempt.code, wrong_set_up);
-    EXPECT_NE(attempt.said.find("board \"bench\", device \"loom-io\" at \"/dev/loom-io\": "),
-              std::string::npos)
+    EXPECT_NE(attempt.said.find("board \"bench\", device \"loom-io\" at \"/dev/io\": "), std::string::npos)
         << attempt.said;
 }
 
 TEST(LoomSetUp, names_a_line_that_the_chip_does_not_have) {
-    ASSERT_EQ(::rename("/dev/loom-io", "/dev/elsewhere"), 0);
-    ASSERT_EQ(::symlink("/dev/small", "/dev/loom-io"), 0);
+    ASSERT_EQ(::rename("/dev/io", "/dev/elsewhere"), 0);
+    ASSERT_EQ(::symlink("/dev/small", "/dev/io"), 0);
     const Attempt attempt;
-    EXPECT_EQ(::rename("/dev/elsewhere", "/dev/loom-io"), 0);
+    EXPECT_EQ(::rename("/dev/elsewhere", "/dev/io"), 0);
     EXPECT_EQ(attempt.code, wrong_set_up);
     EXPECT_NE(
-        attempt.said.find("line 8 of chip \"/dev/loom-io\", does not exist: correct the offset in the board"),
+        attempt.said.find("line 8 of chip \"/dev/io\", does not exist: correct the offset in the board"),
         std::string::npos)
         << attempt.said;
 }
 
 TEST(LoomSetUp, names_lines_that_another_program_holds) {
-    Foreign holder{"gpiomon -c /dev/loom-io 3"};
+    Foreign holder{"gpiomon -c /dev/io 3"};
     std::this_thread::sleep_for(200ms);
     const Attempt attempt;
     EXPECT_EQ(attempt.code, wrong_set_up);

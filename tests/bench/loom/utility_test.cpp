@@ -6,7 +6,7 @@ namespace tappet::bench {
 namespace {
 
 TEST(LoomUtility, survives_seconds_without_its_modbus_device_and_counts_the_outage) {
-    Loom loom{"--stop-modbus-at 3s/3s"};
+    Loom loom{"--stop-servers-at 3s/3s"};
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();
     loom.forget();
     EXPECT_TRUE(loom.says("outages=1")) << "told when it begins:\n" << loom.since();
@@ -17,7 +17,7 @@ TEST(LoomUtility, survives_seconds_without_its_modbus_device_and_counts_the_outa
     EXPECT_EQ(loom.last("stops"), "0") << "not once did it stop";
     EXPECT_GT(loom.picks(), 20);
     EXPECT_EQ(loom.end(), 0);
-    EXPECT_EQ(number_in(loom.summary, "modbus_outages_survived"), 1);
+    EXPECT_EQ(number_in(loom.summary, "utility.outages_survived"), 1);
     expect_undisturbed(loom);
 }
 

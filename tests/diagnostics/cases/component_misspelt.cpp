@@ -9,4 +9,4 @@ constexpr auto table = loom(components(component<Encoder>("encodr", device("main
                                        component<Weft>("weft"), component<Climate>("climate", device("hall")),
                                        component<Lamps>("lamps", device("panel"))),
                             good_activities, good_connections, good_reactions, good_behaviours);
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

@@ -5,4 +5,4 @@
 using namespace small;
 
 constexpr auto table = loom(components(), activities(), connections(), reactions(), behaviours());
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

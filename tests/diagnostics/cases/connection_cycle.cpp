@@ -9,4 +9,4 @@ constexpr auto table =
          connections(data("encoder.angle", "shaft.measured", stale_after(4ms), hold),
                      data("shaft.speed", "tension.speed"), data("tension.torque", "shaft.reference")),
          good_reactions, good_behaviours);
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

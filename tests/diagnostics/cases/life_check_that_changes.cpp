@@ -16,4 +16,4 @@ constexpr auto table =
          activities(good_activities.rows[0], good_activities.rows[1], good_activities.rows[2],
                     good_activities.rows[3], activity("noise", every(10ms), budget(10us), runs("horn"))),
          good_connections, good_reactions, good_behaviours);
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

@@ -13,4 +13,4 @@ constexpr auto table =
                              runs("weft", "lamps")),
                     activity("hall", every(250ms), not_real_time, runs("climate"))),
          good_connections, good_reactions, good_behaviours);
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

@@ -11,4 +11,4 @@ constexpr auto table =
                     component<Weft>("weft"), component<Climate>("climate", device("hall")),
                     component<Lamps>("lamps", device("panel"))),
          good_activities, good_connections, good_reactions, good_behaviours);
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

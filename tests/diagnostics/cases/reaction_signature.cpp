@@ -8,4 +8,4 @@ constexpr auto table =
     loom(good_components, good_activities, good_connections,
          reactions(when("encoder.index", tell("shaft.on_index")), when("encoder.index", tell("shaft.clear"))),
          good_behaviours);
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

@@ -9,4 +9,4 @@ constexpr auto faulty_cycle = state_machine<Weft>(
 
 constexpr auto table = loom(good_components, good_activities, good_connections, good_reactions,
                             behaviours(behaviour("weft", faulty_cycle)));
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

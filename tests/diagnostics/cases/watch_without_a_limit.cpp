@@ -14,4 +14,4 @@ constexpr auto table =
                     good_activities.rows[3], activity("kennel", every(10ms), not_real_time, runs("dog"))),
          good_connections, good_reactions, good_behaviours);
 
-template struct tappet::Firmware<table, good_board>;
+template struct tappet::Firmware<table, good_board, good_binding>;

@@ -167,7 +167,7 @@ constexpr Fault device_faults[] = {
     {"device_unnamed", [](Table& m) { m.put(component<Encoder>("encoder")); },
      R"(loom: component "encoder" drives a can device but its row names none; add device("..."))"},
     {"device_kind", [](Table& m) { m.put(component<Encoder>("encoder", device("panel"))); },
-     R"(loom: component "encoder" drives a can device but "panel" of board "bench" is of kind gpio; name another)"},
+     R"(loom: component "encoder": binding to board "bench", wired("panel"): it drives a can device but "io" is of kind gpio; name another)"},
     {"device_shared",
      [](Table& m) {
          m.add(component<Encoder>("spare", device("main_encoder")));
@@ -179,32 +179,58 @@ constexpr Fault device_faults[] = {
 INSTANTIATE_TEST_SUITE_P(devices, Refusal, testing::ValuesIn(planted_into(small_loom, device_faults)),
                          name_of);
 
-/// The board is the one that the faults change.
+/// Board and binding are those that the faults change.
 Table loom_on_an_old_box() {
     Table m = small_loom();
     m.board.name = "old box";
     return m;
 }
 
+void rebind(Table& m, const BoundDevice& panel) {
+    m.binding = binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:502"), panel);
+}
+
 constexpr Fault board_faults[] = {
-    {"line_twice",
+    {"line_twice", [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("green", 4))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): lines "red" and "green" share a name or an offset; correct one)"},
+    {"line_unknown", [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("greeen", 5))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): it has no line "green"; did you mean "greeen"?)"},
+    {"line_of_no_driver",
+     [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("green", 5), line("blue", 6))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): line "blue" is not in the component's map; add it there or remove it here)"},
+    {"line_beyond_the_chip",
+     [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("green", 8))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): line "green" stands at 8 but device "io" has lines 0 to 7; correct it)"},
+    {"board_device_unknown",
+     [](Table& m) { rebind(m, wired("panel", "oi", line("red", 4), line("green", 5))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): the board has no device "oi"; did you mean "io"?)"},
+    {"board_device_kind",
+     [](Table& m) { rebind(m, wired("panel", "serial1", line("red", 4), line("green", 5))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): it drives a gpio device but "serial1" is of kind serial; name another)"},
+    {"server_address",
      [](Table& m) {
-         m.board.devices[2] =
-             board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("green", 4));
+         m.binding = binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2"),
+                             wired("panel", "io", line("red", 4), line("green", 5)));
      },
-     R"(loom: component "lamps": lines "red" and "green" of device "panel" of board "old box" share a name or an offset; correct one)"},
-    {"line_unknown",
+     R"(loom: component "climate": binding to board "old box", wired("hall"): the board has no device "192.168.7.2"; write a server's address as 192.168.7.2:502, or add a serial port to the board's devices)"},
+    {"device_bound_for_nobody",
+     [](Table& m) { static_cast<void>(m.binding.devices.push(wired("spare", "serial1"))); },
+     R"(loom: binding to board "old box", wired("spare"): no component of the machine drives it; correct the name or remove the row)"},
+    {"device_bound_twice",
      [](Table& m) {
-         m.board.devices[2] =
-             board_device("panel", "gpio", "/dev/gpiochip0", line("red", 4), line("greeen", 5));
+         m.binding = binding(wired("main_encoder", "can0"), wired("hall", "serial1"),
+                             wired("panel", "io", line("red", 4), line("green", 5)),
+                             wired("hall", "192.168.7.2:502"));
      },
-     R"(loom: component "lamps": device "panel" of board "old box" has no line "green"; did you mean "greeen"?)"},
-    {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("main_encoder", "can", "can0"); },
-     R"(loom: component "encoder": device "main_encoder" of board "old box" states no bit rate; add bit_rate(500'000), or what its bus runs at, to it)"},
-    {"placement_processor", [](Table& m) { m.board.placement = placements(place("motion", 2)); },
-     R"(loom: activity "motion": board "old box" places it on processor 2 but has processors 0 to 1; correct its placement)"},
-    {"placement_unknown", [](Table& m) { m.board.placement = placements(place("motoin", 0)); },
-     R"(loom: board "old box" places activity "motoin", which the table has not; did you mean "motion"?)"},
+     R"(loom: binding to board "old box", wired("hall"): wired("hall") has the same name or the same device of the board; correct one)"},
+    {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0"); },
+     R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): device "can0" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the board's row)"},
+    {"board_gpio_lines", [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0"); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): device "io" states no number of lines; add lines(32), or how many it has, to the board's row)"},
+    {"placement_processor", [](Table& m) { m.binding.placement[0] = place("motion", 2); },
+     R"(loom: activity "motion": its binding to board "old box" places it on processor 2 but the board has processors 0 to 1; correct place("motion"))"},
+    {"placement_unknown", [](Table& m) { m.binding.placement[0] = place("motoin", 0); },
+     R"(loom: binding to board "old box", place("motoin"): the table has no such activity; did you mean "motion"?)"},
 };
 INSTANTIATE_TEST_SUITE_P(boards, Refusal, testing::ValuesIn(planted_into(loom_on_an_old_box, board_faults)),
                          name_of);

@@ -15,13 +15,14 @@
 
 namespace tappet::diagnostics {
 
-/// The rows of a machine and its board, as a fault may change them.
+/// The rows of a machine, its board and the binding, as a fault may change them.
 struct Table : Copy {
     Board board;
+    Binding binding;
     std::vector<StateRow> states;           ///< of the first behaviour
     std::vector<TransitionRow> transitions; ///< likewise
 
-    Table(const MachineView& machine, const Board& on);
+    Table(const MachineView& machine, const Board& on, const Binding& bound);
     /// What the check says; empty: it is accepted.
     [[nodiscard]] std::string refusal() const;
 

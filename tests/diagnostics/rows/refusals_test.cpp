@@ -30,7 +30,8 @@ void Table::put(const ActivityRow& row) { put_in_place(activities, row, &Activit
 void Table::put(const ConnectionRow& row) { put_in_place(connections, row, &ConnectionRow::to); }
 void Table::put(const ReactionRow& row) { put_in_place(reactions, row, &ReactionRow::event); }
 
-Table::Table(const MachineView& machine, const Board& on) : Copy{machine}, board{on} {
+Table::Table(const MachineView& machine, const Board& on, const Binding& bound)
+    : Copy{machine}, board{on}, binding{bound} {
     if (behaviours.empty()) return;
     const StateMachineTable& cycle = behaviours[0].type.machine;
     states.assign(cycle.states.begin(), cycle.states.end());
@@ -43,20 +44,20 @@ std::string Table::refusal() const {
         copy.behaviours[0].type.machine.states = states;
         copy.behaviours[0].type.machine.transitions = transitions;
     }
-    return refusal_of(copy.view(), board);
+    return refusal_of(copy.view(), board, binding);
 }
 
 Table small_loom() {
     static constexpr auto machine =
         small::loom(small::good_components, small::good_activities, small::good_connections,
                     small::good_reactions, small::good_behaviours);
-    return {machine.view(), small::good_board};
+    return {machine.view(), small::good_board, small::good_binding};
 }
 
 Table mill() {
     static constexpr auto machine = small::pressing(
         reactions(small::spare_close, small::spare_force, small::desk_close, small::desk_force));
-    return {machine.view(), small::mill_board};
+    return {machine.view(), small::mill_board, unbound};
 }
 
 std::vector<Refused> planted_into(Table (*good)(), std::span<const Fault> faults) {

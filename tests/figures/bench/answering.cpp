@@ -2,6 +2,7 @@
 // chance, and writes a line for each pair: what was asked, and what each of them took in ns.
 #include "drivers/can/socket_can.hpp"
 #include "drivers/gpio/lines.hpp"
+#include "drivers/hardware/hardware.hpp"
 #include "kernel/base/random.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
@@ -104,23 +105,11 @@ int write_pairs(const char* path, const std::vector<Pair>& frames, const std::ve
 int run(int count, char** words) {
     if (count != 3) return fail("usage: answering PAIRS FILE");
     const std::size_t pairs = std::strtoul(words[1], nullptr, 10);
-    static can::SocketCan can;
-    static gpio::Lines io;
-    can::Settings on_bus;
-    on_bus.interface = board.devices[0].address;
-    on_bus.bit_rate = board.devices[0].bit_rate.bits_per_second;
-    on_bus.receive = signals.receives();
-    on_bus.transmit = signals.transmits();
-    if (const auto opened = can.open(on_bus); !opened) return fail(opened.error().characters);
-    static const auto placed = gpio::placed(
-        lines, [](std::string_view name) { return name == "in" ? int{wire::in} : int{wire::out}; });
-    if (!placed) return fail(placed.error().characters);
-    if (const auto opened = io.open({"/dev/panel", *placed}); !opened) return fail(opened.error().characters);
-    const std::array<ProvidedDevice, 2> devices{
-        {{type_id<can::Device>, "can", static_cast<can::Device*>(&can)},
-         {type_id<gpio::Device>, "io", static_cast<gpio::Device*>(&io)}}};
-    static MachineInstance instance{Firmware<table, board>::machine(), machine_clock};
-    if (const auto configured = instance.configure(devices); !configured)
+    static Hardware<table> hardware;
+    if (const auto opened = hardware.open(Firmware<table, board, bound>::machine()); !opened)
+        return fail(opened.error().characters);
+    static MachineInstance instance{Firmware<table, board, bound>::machine(), machine_clock};
+    if (const auto configured = instance.configure(hardware.provided()); !configured)
         return fail(configured.error().characters);
 
     const auto priority = [](std::size_t activity) {

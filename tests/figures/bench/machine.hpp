@@ -67,9 +67,10 @@ inline constexpr auto table = machine("answering",
 
 inline constexpr Board board{
     .name = "bench", .world = "bench", .memory_budget_bytes = 4 * 1024 * 1024, .processors = 1, .highest_priority = 80,
-    .devices = board_devices(board_device("can", "can", "can0", bit_rate(500'000)),
-                             board_device("io", "gpio", "/dev/panel", line("in", wire::in), line("out", wire::out))),
+    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(500'000)), board_device("panel", "gpio", "/dev/panel", tappet::lines(32))),
     .only_warned = warn_only("clock-source", "cpu-governor", "heap-sealed")};
+
+inline constexpr Binding bound = binding(wired("can", "can0"), wired("io", "panel", line("in", wire::in), line("out", wire::out)));
 // clang-format on
 
 } // namespace tappet::figures::bench

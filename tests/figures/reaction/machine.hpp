@@ -109,9 +109,9 @@ inline constexpr int here = 0, there = 1;                               ///< pro
 
 inline constexpr Board board{
     .name = "host", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .processors = 2, .highest_priority = 60,
-    .placement = placements(place("ticker", there), place("sender", here), place("near", here), place("far", there)),
     .only_warned = warn_only("realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency",
                              "memory-locked", "memory-lockable", "swap", "clock-resolution")};
+inline constexpr Binding bound = binding(place("ticker", there), place("sender", here), place("near", here), place("far", there));
 // clang-format on
 
 } // namespace tappet::figures::reaction

@@ -21,7 +21,7 @@ constexpr std::size_t warming = 4; ///< cycles of a block that are left out: bot
 constinit os::Clock machine_clock{os::Clock::Kind::real};
 
 struct Rig {
-    MachineInstance instance{Firmware<table, board>::machine(), machine_clock};
+    MachineInstance instance{Firmware<table, board, bound>::machine(), machine_clock};
     RealWorld world{instance};
     os::ArmingReport report{{board.only_warned.begin(), board.only_warned.end()}};
     BareTicker bare_ticker{};

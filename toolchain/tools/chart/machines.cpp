@@ -11,7 +11,7 @@ namespace tappet::chart {
 std::span<const KnownMachine> known_machines() {
     static const auto all = [] {
         std::array<KnownMachine, 2> rows;
-        rows[0].machine = carpet::carpet_loom.view();
+        rows[0].machine = carpet::table.view();
         rows[0].model = carpet::loom_model;
         rows[1].machine.name = "car-tracking";
         rows[1].script = &car_tracking::tracking_script;

@@ -17,9 +17,9 @@ using testing::HasSubstr;
 ordered_json machine() {
     return ordered_json::parse(
         R"({"machine": "carpet-loom", "board": "bench", "world": "bench", "kernel_release": "6.1-rt", "realtime": true,
-        "machine_seed": 0, "stop_reason": "asked for", "can_frames_lost": 1, "gpio_edges_lost": 2, "modbus_outages_survived": 3, "emissions_lost": 4,
+        "machine_seed": 0, "stop_reason": "asked for", "can_frames_lost": 1, "gpio_edges_lost": 2, "counters": {"utility.outages_survived": 3}, "emissions_lost": 4,
         "heap_allocations_after_arming": 5, "page_faults_after_arming": 6, "deadline_misses": 7, "binary_bytes": 8, "static_memory_bytes": 9,
-        "rss_bytes": 10, "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "most_processor_us": 0, "claim_us": 60, "over_claim": 0, "longest_response_us": 2.5, "deadline_misses": 0}]})");
+        "rss_bytes": 10, "slots": [{"component": "weft", "script": "", "loads": 0, "roll_backs": 0, "news": ""}], "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "most_processor_us": 0, "claim_us": 60, "over_claim": 0, "longest_response_us": 2.5, "deadline_misses": 0}]})");
 }
 
 ordered_json plant() {
@@ -97,13 +97,12 @@ TEST_P(MergeKey, is_named_when_it_is_missing_or_of_another_type) {
 
 INSTANTIATE_TEST_SUITE_P(required, MergeKey,
                          testing::Values("machine", "board", "world", "kernel_release", "realtime",
-                                         "stop_reason", "can_frames_lost", "gpio_edges_lost",
-                                         "modbus_outages_survived", "emissions_lost",
-                                         "heap_allocations_after_arming", "page_faults_after_arming",
-                                         "deadline_misses", "binary_bytes", "static_memory_bytes",
-                                         "rss_bytes", "activities", "seed", "picks", "picks_per_minute",
-                                         "weft_breaks_injected", "warp_breaks_injected", "stops",
-                                         "cam_error_deg", "damage", "stops_total", "time_s"));
+                                         "stop_reason", "can_frames_lost", "gpio_edges_lost", "counters",
+                                         "slots", "emissions_lost", "heap_allocations_after_arming",
+                                         "page_faults_after_arming", "deadline_misses", "binary_bytes",
+                                         "static_memory_bytes", "rss_bytes", "activities", "seed", "picks",
+                                         "picks_per_minute", "weft_breaks_injected", "warp_breaks_injected",
+                                         "stops", "cam_error_deg", "damage", "stops_total", "time_s"));
 
 TEST(Merge, looks_into_stops_cam_errors_activities_and_damage) {
     auto right = plant();

@@ -1,8 +1,8 @@
 // What the demo shows: a break of each kind, whatever its seed and however many picks it weaves.
 #include "apps/carpet_loom/demo/options.hpp"
 #include "apps/carpet_loom/demo/troubles.hpp"
-#include "apps/carpet_loom/host/virtual_run.hpp"
-#include "apps/carpet_loom/plant/bench/options.hpp"
+#include "apps/carpet_loom/plant/options.hpp"
+#include "tests/apps/carpet_loom/loom_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,16 +14,16 @@ namespace {
 /// The demo's plant at the host's loom.
 loom::Report report_of(std::int64_t picks, std::uint64_t seed) {
     const std::vector<std::string> words = troubles(picks);
-    std::vector<const char*> characters{"carpet-loom-plant"};
-    for (const std::string& word : words) characters.push_back(word.c_str());
-    const auto options = loom::parse_options(static_cast<int>(characters.size()), characters.data());
-    EXPECT_TRUE(options) << (options ? "" : options.error());
-    loom::Settings settings = options->settings;
+    loom::Settings settings;
+    for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
+        bool known = false;
+        EXPECT_TRUE(loom::read_option(words[i], words[i + 1], settings, known) || !known) << words[i];
+    }
     settings.last_pick = static_cast<std::uint64_t>(picks);
-    carpet::VirtualRun run{settings, seed};
+    carpet::LoomRun run{settings, seed};
     EXPECT_TRUE(run.start());
     EXPECT_TRUE(run.weave(static_cast<std::uint64_t>(picks), 400s)) << "seed " << seed;
-    const loom::Report report = run.loom().plant().report();
+    const loom::Report report = run.plant().report();
     run.stop();
     return report;
 }

@@ -20,12 +20,12 @@ using testing::IsEmpty;
 ordered_json good_run() {
     return ordered_json::parse(
         R"({"machine": "carpet-loom", "board": "bench", "kernel_release": "6.1-rt", "realtime": true, "can_frames_lost": 0,
-        "gpio_edges_lost": 0, "modbus_outages_survived": 1, "emissions_lost": 0, "heap_allocations_after_arming": 0, "page_faults_after_arming": 0,
+        "gpio_edges_lost": 0, "counters": {"utility.outages_survived": 1}, "emissions_lost": 0, "heap_allocations_after_arming": 0, "page_faults_after_arming": 0,
         "deadline_misses": 0, "binary_bytes": 1300000, "static_memory_bytes": 1100000, "rss_bytes": 2500000, "picks": 30, "picks_per_minute": 448.7,
         "weft_breaks_injected": 1, "warp_breaks_injected": 0, "stops": [{"cause": "weft", "angle_deg": 316.0, "error_deg": 6.0, "at_pick": 9},
         {"cause": "emergency", "angle_deg": 57.0, "error_deg": 107.0, "at_pick": 15}],
         "cam_error_deg": {"samples": 32, "p50": 0.14, "p99": 0.47, "max": 0.48}, "damage": {"total": 0},
-        "weave": {"script": "", "loads": 0, "roll_backs": 0, "news": ""}, "patterns": [{"pattern": 23130, "picks": 15, "first_at_pick": 1}],
+        "slots": [{"component": "weft", "script": "", "loads": 0, "roll_backs": 0, "news": ""}], "patterns": [{"pattern": 23130, "picks": 15, "first_at_pick": 1}],
         "activities": [{"name": "motion", "cycles": 11, "longest_busy_us": 1.5, "most_processor_us": 0, "claim_us": 60, "over_claim": 0, "longest_response_us": 2.5, "deadline_misses": 0}],
         "plant": {"stops_total": 2, "time_s": 7.5}})");
 }
@@ -85,12 +85,12 @@ TEST(Verdict, of_a_long_run_wants_the_new_weave_and_the_misbehaving_one_taken_ba
     run["picks"] = 60;
     const auto faults = [&] { return judge(run.dump(), 60).faults; };
     EXPECT_THAT(faults(), ElementsAre(HasSubstr("twill.osd"), HasSubstr("0 were taken back")));
-    run["weave"] = {{"script", "twill.osd"}, {"loads", 2}, {"roll_backs", 1}, {"news", "line 6"}};
+    run["slots"][0] = {{"script", "twill.osd"}, {"loads", 2}, {"roll_backs", 1}, {"news", "line 6"}};
     EXPECT_THAT(faults(), ElementsAre(HasSubstr("0 picks were woven with its pattern")));
     run["patterns"].push_back({{"pattern", pattern_of_new_weave}, {"picks", 9}, {"first_at_pick", 20}});
     EXPECT_THAT(faults(), IsEmpty());
     EXPECT_THAT(judge(run.dump(), 60).table, AllOf(HasSubstr("1111 from pick 20 on"), HasSubstr("line 6")));
-    run["weave"]["roll_backs"] = 2;
+    run["slots"][0]["roll_backs"] = 2;
     EXPECT_THAT(faults(), ElementsAre(HasSubstr("2 were taken back")));
 }
 

@@ -1,7 +1,8 @@
 // The check of a whole table, on mutated copies of two machines: the small one of the golden tests, and the
 // carpet loom.
+#include "apps/carpet_loom/bindings.hpp"
 #include "apps/carpet_loom/machine.hpp"
-#include "board/host/board.hpp"
+#include "board/bench/board.hpp"
 #include "tests/diagnostics/mutations.hpp"
 #include "tests/diagnostics/small_machine.hpp"
 
@@ -20,35 +21,36 @@ constexpr auto small_loom =
     small::loom(small::good_components, small::good_activities, small::good_connections,
                 small::good_reactions, small::good_behaviours);
 
-diagnostics::Tally mutate(const MachineView& table, const Board& board) {
-    const diagnostics::Tally tally = diagnostics::Mutations{table, board}.run();
+diagnostics::Tally mutate(const MachineView& table, const Board& board, const Binding& binding) {
+    const diagnostics::Tally tally = diagnostics::Mutations{table, board, binding}.run();
     std::cout << table.name << ": " << tally << '\n';
     return tally;
 }
 
 TEST(Check, accepts_the_machines_that_are_mutated) {
-    EXPECT_EQ(diagnostics::refusal_of(small_loom.view(), small::good_board), "");
-    EXPECT_EQ(diagnostics::refusal_of(carpet::carpet_loom.view(), board::host), "");
+    EXPECT_EQ(diagnostics::refusal_of(small_loom.view(), small::good_board, small::good_binding), "");
+    EXPECT_EQ(diagnostics::refusal_of(carpet::table.view(), board::bench, carpet::bindings::bench), "");
 }
 
 TEST(Check, refuses_every_mutation_of_the_small_machine_and_names_its_row) {
-    const diagnostics::Tally tally = mutate(small_loom.view(), small::good_board);
+    const diagnostics::Tally tally = mutate(small_loom.view(), small::good_board, small::good_binding);
     EXPECT_GT(tally.all(), 1000u);
     for (const auto& each : tally.wrong) ADD_FAILURE() << each;
 }
 
 TEST(Check, refuses_every_mutation_of_the_carpet_loom_and_names_its_row) {
-    const diagnostics::Tally tally = mutate(carpet::carpet_loom.view(), board::host);
+    const diagnostics::Tally tally = mutate(carpet::table.view(), board::bench, carpet::bindings::bench);
     EXPECT_GT(tally.all(), 5000u);
     for (const auto& each : tally.wrong) ADD_FAILURE() << each;
 }
 
 TEST(Check, lets_no_row_of_the_carpet_loom_be_dropped) {
-    EXPECT_THAT(mutate(carpet::carpet_loom.view(), board::host).may_be_dropped, testing::IsEmpty());
+    EXPECT_THAT(mutate(carpet::table.view(), board::bench, carpet::bindings::bench).may_be_dropped,
+                testing::IsEmpty());
 }
 
 TEST(Check, lets_only_these_rows_of_the_small_machine_be_dropped) {
-    EXPECT_THAT(mutate(small_loom.view(), small::good_board).may_be_dropped,
+    EXPECT_THAT(mutate(small_loom.view(), small::good_board, small::good_binding).may_be_dropped,
                 UnorderedElementsAreArray<std::string>({
                     R"(connection "weft.reference" -> "shaft.reference")", // the input is optional
                     // None of these operations is required.

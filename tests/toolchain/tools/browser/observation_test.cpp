@@ -1,6 +1,6 @@
 // Watching cannot disturb: a motion cycle's execution time while another process reads everything of the
 // machine in a loop, against the same cycle of the same run without it (thesis 4.8).
-#include "apps/carpet_loom/host/virtual_run.hpp"
+#include "tests/apps/carpet_loom/loom_run.hpp"
 #include "toolchain/tools/browser/link.hpp"
 #include "toolchain/tools/browser/observer.hpp"
 
@@ -86,7 +86,7 @@ public:
         control_.memory = -1;
         const pid_t watcher = ::fork(); // before the machine's memory is there: no page of it is copied later
         if (watcher == 0) watch(control_);
-        carpet::VirtualRun run{loom::Settings{}, 1};
+        carpet::LoomRun run{loom::Settings{}, 1};
         run.world().run_cycles_by({this, [](void* self, Engine& engine, bool woken) {
                                        static_cast<MeasuredRun*>(self)->cycle(engine, woken);
                                    }});
@@ -102,7 +102,7 @@ public:
         ::kill(watcher, SIGKILL);
         ::waitpid(watcher, &status, 0);
         run.stop();
-        EXPECT_GT(run.loom().plant().picks(), 50u) << "a machine that does not work is easily watched";
+        EXPECT_GT(run.plant().picks(), 50u) << "a machine that does not work is easily watched";
         ASSERT_GE(took.size(), cycles);
     }
 

@@ -1,6 +1,6 @@
 // The scope of a whole machine as a browser reads it: the carpet loom's own memory, and the same memory
 // damaged (thesis A.2.1).
-#include "apps/carpet_loom/host/virtual_run.hpp"
+#include "tests/apps/carpet_loom/loom_run.hpp"
 #include "toolchain/tools/browser/waves.hpp"
 
 #include "tests/toolchain/tools/browser/vcd_reader.hpp"
@@ -20,7 +20,7 @@ constexpr Duration between_looks = 20ms;
 
 /// A loom that has been started, and what reads its memory.
 struct Scope : testing::Test {
-    std::unique_ptr<carpet::VirtualRun> run = std::make_unique<carpet::VirtualRun>(loom::Settings{}, 7);
+    std::unique_ptr<carpet::LoomRun> run = std::make_unique<carpet::LoomRun>(loom::Settings{}, 7);
     std::optional<MapReader> map;
     std::optional<ScopeReader> scope;
 

@@ -16,7 +16,6 @@
 namespace tappet::chart {
 namespace {
 
-using carpet::carpet_loom;
 using carpet::loom_model;
 using testing::Contains;
 using testing::HasSubstr;
@@ -67,7 +66,7 @@ void expect_sound(const Chart& chart) {
 }
 
 TEST_F(Verification, of_the_loom_finds_no_deadlock_and_each_state_and_the_final_one_from_everywhere) {
-    expect_sound(charts_of(carpet_loom.view()).at(0));
+    expect_sound(charts_of(carpet::table.view()).at(0));
 }
 
 TEST_F(Verification, of_regions_history_and_choices_finds_the_same) { expect_sound(press()); }
@@ -110,7 +109,7 @@ TEST_F(Verification, finds_a_state_that_no_run_comes_to) {
 
 // ---- the loom: its states with the release of the weft, by its own reactions
 
-Composition loom() { return {charts_of(carpet_loom.view()), carpet_loom.view(), loom_model}; }
+Composition loom() { return {charts_of(carpet::table.view()), carpet::table.view(), loom_model}; }
 
 TEST_F(Verification, of_the_loom_with_its_weft_keeps_every_invariant) {
     const PromelaModel model = to_promela(loom());
@@ -127,7 +126,7 @@ TEST_F(Verification, of_the_loom_with_its_weft_comes_to_the_final_state_from_eve
 
 /// The loom with one reaction row changed.
 struct FaultyLoom {
-    std::vector<ReactionRow> rows{carpet_loom.reactions.begin(), carpet_loom.reactions.end()};
+    std::vector<ReactionRow> rows{carpet::table.reactions.begin(), carpet::table.reactions.end()};
 
     ReactionRow& row(std::string_view event, std::string_view operation) {
         const auto found = std::ranges::find_if(rows, [&](const ReactionRow& each) {

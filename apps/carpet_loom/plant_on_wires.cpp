@@ -1,0 +1,146 @@
+// Carries frames, levels and registers between the machine's wires and the loom.
+#include "apps/carpet_loom/plant.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace tappet::carpet {
+
+namespace {
+
+using Io = gpio::FarEnd<io_lines>;
+namespace line = loom::wires::line;
+
+struct Output {
+    Io::Output name;
+    unsigned offset;
+};
+constexpr Output outputs[] = {{"weft_release", line::weft_release}, {"brake", line::brake},
+                              {"lamp_run", line::lamp_run},         {"lamp_stop", line::lamp_stop},
+                              {"lamp_fault", line::lamp_fault},     {"yarn_cutter", line::yarn_cutter}};
+struct Input {
+    Io::Input name;
+    unsigned offset;
+};
+constexpr Input inputs[] = {
+    {"emergency_stop", line::emergency_stop}, {"drop_wire", line::drop_wire},
+    {"weft_detector", line::weft_detector},   {"button_start", line::button_start},
+    {"button_stop", line::button_stop},       {"button_acknowledge", line::button_acknowledge}};
+
+} // namespace
+
+void Plant::begin() {
+    if (settings_.picks_after_told != 0) loom().end_at(0); // weaves on until told
+    // What the unit has beyond what the machine reads and writes.
+    namespace at = loom::wires::modbus;
+    modbus::ServerTables& tables = utility_.tables();
+    tables.have(modbus::Table::discrete_inputs, at::discrete_input::count);
+    tables.have(modbus::Table::holding_registers, at::holding_register::count);
+    tables.accept_only([](modbus::Table table, std::size_t address, std::uint16_t value) noexcept {
+        return table != modbus::Table::holding_registers ||
+               loom::Climate::check_holding_register(static_cast<std::uint16_t>(address), value).has_value();
+    });
+    for (std::uint16_t i = 0; i < at::holding_register::count; ++i)
+        tables.set(modbus::Table::holding_registers, i, loom().climate().holding_register(i).value_or(0));
+}
+
+void Plant::told() {
+    if (settings_.picks_after_told == 0) return;
+    settings_.last_pick = std::max(settings_.last_pick, loom().picks() + settings_.picks_after_told);
+    settings_.picks_after_told = 0;
+    loom().end_at(settings_.last_pick);
+}
+
+Time Plant::move(Time now) {
+    if (!origin_) {
+        origin_ = now.time_since_epoch();
+        begin();
+    }
+    const Time own = now - *origin_;
+    take_wires(own);
+    loom().advance(own);
+    give_frames(now);
+    give_lines(now);
+    exchange_registers();
+    return loom().next_event() + *origin_;
+}
+
+void Plant::take_wires(Time own) {
+    for (const Output& each : outputs)
+        if (io_.changed(each.name))
+            loom().set_line(each.offset, io_.get(each.name), io_.changed_at() - *origin_);
+    can::Frame frame;
+    while (can_.receive(frame)) loom().receive({frame.id, frame.length, frame.data}, own);
+}
+
+void Plant::give_frames(Time now) {
+    const auto send = [this, now](const loom::CanFrame& frame) {
+        can::Frame out;
+        out.id = frame.id;
+        out.length = frame.length;
+        out.data = frame.data;
+        out.stamp = now;
+        static_cast<void>(can_.send(out)); // a full bus loses it, as a real node would; the end counts it
+    };
+    loom::CanFrame frame;
+    std::optional<loom::CanFrame> sample;
+    Time due;
+    while (loom().transmit(frame, due)) {
+        if (frame.id == loom::wires::cob::encoder_position)
+            sample = frame;
+        else
+            send(frame);
+    }
+    if (!sample) return;
+    // Who comes late sends the shaft as it is, once, not as it was.
+    const std::uint16_t code = loom().encoder_code();
+    sample->data[0] = static_cast<std::uint8_t>(code & 0xFFu);
+    sample->data[1] = static_cast<std::uint8_t>(code >> 8);
+    send(*sample);
+}
+
+void Plant::give_lines(Time now) {
+    loom::Edge edge;
+    while (loom().next_edge(edge))
+        for (const Input& each : inputs)
+            if (each.offset == edge.line) io_.set(each.name, edge.level, edge.at + *origin_);
+    if (now - *origin_ < Time{} + settings_.edge_burst_at) return;
+    settings_.edge_burst_at = Duration::max();
+    constexpr unsigned burst_edges = 400; // more than any buffer of events holds
+    for (unsigned i = 0; i < burst_edges; ++i) io_.set("weft_detector", i % 2 == 0, now);
+}
+
+void Plant::exchange_registers() {
+    namespace at = loom::wires::modbus;
+    using modbus::Table;
+    modbus::ServerTables& tables = utility_.tables();
+    loom::Climate& climate = loom().climate();
+    for (std::uint16_t i = 0; i < at::input_register::count; ++i)
+        if (const auto value = climate.input_register(i)) tables.set(Table::input_registers, i, *value);
+    tables.set(Table::discrete_inputs, 0, climate.discrete_input(0).value_or(false) ? 1 : 0);
+    for (std::uint16_t i = 0; i < at::holding_register::count; ++i)
+        static_cast<void>(climate.write_holding_register(i, tables.get(Table::holding_registers, i)));
+    static_cast<void>(climate.write_coil(at::coil::lubrication_pump, utility_.get("pump.on") != 0.0));
+}
+
+bool Plant::take_option(std::string_view option, std::string_view value, Sentence& fault) {
+    bool known = false;
+    if (!loom::read_option(option, value, settings_, known) && known)
+        fault = Sentence{"\"", value, "\" is not what it takes; see --help"};
+    return known;
+}
+
+Sentence Plant::fault() const {
+    if (settings_.last_pick == 0 || is_done()) return {};
+    return Sentence{"the picks were not woven in time"};
+}
+
+void Plant::report(JsonText& json) const {
+    std::string text(64 * 1024, '\0');
+    const std::size_t length = loom::write_json(loom().report(), text);
+    const std::string_view fields{text.data(), length};
+    const std::size_t begin = fields.find('{') + 1, end = fields.rfind('}');
+    if (length != 0) json.fragment(fields.substr(begin, end - begin));
+}
+
+} // namespace tappet::carpet

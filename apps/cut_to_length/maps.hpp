@@ -1,0 +1,32 @@
+// What stands on the wires of the cutter: a measuring wheel and a feed drive on CAN, buttons, knife and lamp
+// on lines.
+#pragma once
+
+#include "drivers/can/bus.hpp"
+#include "drivers/gpio/line_port.hpp"
+
+namespace cut_to_length {
+
+using namespace tappet;
+
+inline constexpr double codes_per_mm = 8.0; // of the measuring wheel
+
+// clang-format off
+inline constexpr auto can_signals = can::signal_map(
+    can::receive(can::standard(0x181), "wheel", can::bytes(2),
+        can::signal("position", 0, 16)),
+    can::receive(can::standard(0x182), "feed", can::bytes(2),
+        can::signal("statusword", 0, 16)),
+    can::transmit(can::standard(0x202), "feed_command", can::bytes(4), can::every(5ms),
+        can::signal("controlword", 0, 16),
+        can::signal("speed", 16, 16).times(0.001).in("m/s")));
+
+inline constexpr auto io_lines = gpio::line_map(
+    gpio::sensor("start", gpio::debounce(5ms)),
+    gpio::sensor("stop", gpio::debounce(5ms)),
+    gpio::sensor("emergency_stop"),
+    gpio::actuator("knife"), // one edge, one turn of the knife
+    gpio::output("lamp"));
+// clang-format on
+
+} // namespace cut_to_length

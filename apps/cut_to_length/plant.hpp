@@ -1,0 +1,119 @@
+// The web, its drive and its knife at the other end of the wires; it measures each piece that is cut.
+#pragma once
+
+#include "apps/cut_to_length/measuring.hpp"
+#include "drivers/can/far_end.hpp"
+#include "drivers/canopen/cia402.hpp"
+#include "drivers/gpio/far_end.hpp"
+#include "drivers/plant/plant.hpp"
+#include "kernel/base/random.hpp"
+#include "kernel/base/value_text.hpp"
+
+#include <cmath>
+
+namespace cut_to_length {
+
+/// An operator unlocks and starts the line, and stops it when enough pieces are cut.
+class Plant final : public tappet::Plant {
+public:
+    explicit Plant(std::uint64_t seed) : random_{seed} {
+        can.send_every("wheel", 1ms);
+        can.send_every("feed", 5ms);
+    }
+
+    Time move(Time now) override {
+        if (begun_ == never) begun_ = last_ = now;
+        const double dt = to_seconds(now - last_);
+        const double wanted = enabled_ ? can.get("feed_command.speed") : 0.0;
+        const double before = speed_;
+        const double change = acceleration * dt;
+        speed_ += std::clamp(wanted - speed_, -change, change);
+        web_mm_ += (before + speed_) / 2 * dt * 1000.0;
+        last_ = now;
+        lead_drive();
+        operate(now - begun_);
+        if (io.changed("knife") && io.get("knife"))
+            blade_at_ = io.changed_at() + knife_dead_time +
+                        Duration{static_cast<std::int64_t>((random_.unit() - 0.5) * 100'000.0)};
+        if (blade_at_ <= now) cut(web_mm_ - speed_ * 1000.0 * to_seconds(now - blade_at_));
+        can.set("wheel.position", std::fmod(std::floor(web_mm_ * codes_per_mm), 65536.0));
+        return std::min(now + 1ms, blade_at_);
+    }
+
+    [[nodiscard]] std::string_view usage() const override {
+        return "  --pieces N          stops the line when so many are cut (60)\n";
+    }
+    bool take_option(std::string_view option, std::string_view value, Sentence& fault) override {
+        if (option != "--pieces") return false;
+        if (!parse_value(*type_id<std::int64_t>, value, std::as_writable_bytes(std::span{&wanted_, 1}).data())
+                 .empty() ||
+            wanted_ < 1)
+            fault = Sentence{"\"", value, "\" is no number of pieces; write for example --pieces 60"};
+        return true;
+    }
+    [[nodiscard]] bool is_done() const override { return pieces_ >= wanted_ && web_stands(); }
+    [[nodiscard]] Duration usual_time() const override { return 30s; }
+    [[nodiscard]] Sentence fault() const override {
+        if (pieces_ < wanted_) return Sentence{"only ", pieces_, " pieces were cut"};
+        if (worst_mm_ > tolerance_mm) return Sentence{"a piece is wrong by more than 1 mm"};
+        return {};
+    }
+    [[nodiscard]] std::uint64_t digest() const override { return std::bit_cast<std::uint64_t>(web_mm_); }
+    void report(JsonText& json) const override {
+        json.field("pieces", pieces_).field("worst_error_mm", worst_mm_).field("web_m", web_mm_ / 1000.0);
+    }
+
+    // For tests: what people and faults do.
+    void press_emergency_stop(bool pressed) { emergency_ = pressed; }
+    void press_start(Time at) { start_at_ = at; }
+    void silence_drive() { can.send_every("feed", Duration::zero()); }
+    [[nodiscard]] bool web_stands() const { return speed_ == 0.0; }
+    [[nodiscard]] std::int64_t pieces() const { return pieces_; }
+    [[nodiscard]] double worst_mm() const { return worst_mm_; }
+
+    static constexpr double tolerance_mm = 1.0; // half a millisecond of the web at 2 m/s
+
+private:
+    can::FarEnd<can_signals> can{ends, "feed-can"};
+    gpio::FarEnd<io_lines> io{ends, "line-io"};
+
+    static constexpr double acceleration = 2.0; // m/s2
+    static constexpr double length_mm = 500.0;
+
+    /// As far as the CiA 402 automaton matters here: each controlword leads to its state.
+    void lead_drive() {
+        const auto word = static_cast<unsigned>(can.integer("feed_command.controlword"));
+        enabled_ = word == canopen::controlword::enable_operation && state_ >= 0x23;
+        state_ = enabled_                                                    ? 0x27
+                 : word == canopen::controlword::switch_on && state_ >= 0x21 ? 0x23
+                 : word == canopen::controlword::shutdown                    ? 0x21
+                                                                             : 0x40;
+        can.set_integer("feed.statusword", static_cast<std::uint64_t>(state_));
+    }
+    void operate(Duration t) {
+        const bool again = last_ >= start_at_ && last_ < start_at_ + 100ms;
+        io.set("start", again || (t > 300ms && t < 400ms) || (t > 800ms && t < 900ms));
+        io.set("emergency_stop", emergency_);
+        io.set("stop", pieces_ >= wanted_ && speed_ > 0.0);
+    }
+    void cut(double at_mm) {
+        blade_at_ = never;
+        if (cut_before_) {
+            ++pieces_;
+            worst_mm_ = std::max(worst_mm_, std::abs(at_mm - last_cut_mm_ - length_mm));
+        }
+        cut_before_ = true;
+        last_cut_mm_ = at_mm;
+    }
+
+    Random random_;
+    Time begun_ = never, last_{}, blade_at_ = never;
+    double web_mm_ = 0.0, speed_ = 0.0;
+    int state_ = 0x40;
+    bool enabled_ = false, cut_before_ = false, emergency_ = false;
+    Time start_at_ = never - 1s;
+    double last_cut_mm_ = 0.0, worst_mm_ = 0.0;
+    std::int64_t pieces_ = 0, wanted_ = 60;
+};
+
+} // namespace cut_to_length

@@ -1,0 +1,160 @@
+// The other end of a CAN bus: the nodes that a machine's signal map speaks of.
+#pragma once
+
+#include "drivers/can/device.hpp"
+#include "drivers/can/signal_store.hpp"
+#include "drivers/twin/far_end.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tappet::can {
+
+/// The frames themselves, for a plant that makes them itself.
+class RawFarEnd : public FarEnd {
+public:
+    RawFarEnd(FarEnds& of, std::string_view device) : FarEnd{of, device, "can"} {}
+
+    /// The next frame of the machine's; false: none is there.
+    bool receive(Frame& frame) noexcept {
+        for (Receive got = wire_->receive(frame); got.what != Received::none; got = wire_->receive(frame))
+            if (got.what == Received::frame) return true;
+        return false;
+    }
+    /// False, and counted: the bus does not take it.
+    bool send(const Frame& frame) noexcept {
+        const Send sent = wire_->send(frame, Keep::every);
+        const bool taken = sent == Send::queued || sent == Send::replaced;
+        refused_ += taken ? 0u : 1u;
+        return taken;
+    }
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+    [[nodiscard]] Device& wire() noexcept { return *wire_; }
+
+    void take(Time) override {}
+    void give(Time now) override { wire_->service(now); }
+    [[nodiscard]] Time next() const noexcept override { return wire_->next_service(); }
+
+protected:
+    bool take_wire(const ProvidedDevice& wire) noexcept override {
+        if (wire.type != type_id<Device>) return false;
+        wire_ = static_cast<Device*>(wire.device);
+        return true;
+    }
+
+private:
+    Device* wire_ = nullptr;
+    std::uint64_t refused_ = 0;
+};
+
+/// A machine's map as the nodes see it: what it receives they send.
+template <std::size_t F, std::size_t S>
+constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
+    for (FrameRow& row : map.frames)
+        row.direction = row.direction == Direction::receive ? Direction::transmit : Direction::receive;
+    std::swap(map.received, map.transmitted);
+    std::swap(map.received_count, map.transmitted_count);
+    return map;
+}
+
+/// By the names of the map, which the compiler checks:
+///     can.get("drive_command.speed")      as the machine sent it last, in the signal's unit; 0 before
+///     can.came("drive_command")           since the plant moved last
+///     can.set("drive.speed", 12.5)        goes out with the next frame "drive"
+///     can.send("drive")                   in this move
+///     can.send_every("encoder", 1ms)      from now on; 0: no more
+template <const auto& map>
+class FarEnd final : public RawFarEnd {
+    static_assert(map.fault.empty(), "the signal map is refused: its member `fault` says why");
+    static constexpr auto nodes = seen_from_the_nodes(map);
+
+    template <Direction direction>
+    struct FrameName {
+        std::size_t index;
+        consteval FrameName(const char* name) : index{nodes.frame(name)} {
+            if (index == no_such || nodes.frames[index].direction != direction)
+                tappet::FarEnd::this_name_is_not_in_the_map_or_goes_the_other_way();
+        }
+    };
+    template <Direction direction>
+    struct SignalName {
+        std::size_t index;
+        consteval SignalName(const char* path) : index{nodes.signal(path)} {
+            if (index == no_such || nodes.frames[nodes.frame_of[index]].direction != direction)
+                tappet::FarEnd::this_name_is_not_in_the_map_or_goes_the_other_way();
+        }
+    };
+
+public:
+    using Received = FrameName<Direction::receive>;
+    using Sent = FrameName<Direction::transmit>;
+    using ReceivedSignal = SignalName<Direction::receive>;
+    using SentSignal = SignalName<Direction::transmit>;
+
+    using RawFarEnd::RawFarEnd;
+
+    [[nodiscard]] double get(ReceivedSignal signal) const noexcept { return store_.physical(signal.index); }
+    /// A set of bits, or a counter: before factor and offset.
+    [[nodiscard]] std::int64_t integer(ReceivedSignal signal) const noexcept {
+        return store_.integer(signal.index);
+    }
+    [[nodiscard]] bool came(Received frame) const noexcept { return came_[frame.index]; }
+    /// When the frame came last; Time::min() before.
+    [[nodiscard]] Time came_at(Received frame) const noexcept { return came_at_[frame.index]; }
+
+    void set(SentSignal signal, double value) noexcept { store_.set_physical(signal.index, value); }
+    void set_integer(SentSignal signal, std::uint64_t bits) noexcept { store_.set_bits(signal.index, bits); }
+    using RawFarEnd::send;
+    void send(Sent frame) noexcept { wanted_[frame.index] = true; }
+    void send_every(Sent frame, Duration period) noexcept {
+        every_[frame.index] = period;
+        due_[frame.index] = period > Duration::zero() ? now_ : never;
+    }
+
+    void take(Time now) override {
+        now_ = now;
+        came_ = {};
+        Frame frame;
+        while (receive(frame)) {
+            std::size_t f = no_such;
+            if (store_.decode(frame, f) != Decoded::yes) continue;
+            came_[f] = true;
+            came_at_[f] = frame.stamp;
+        }
+    }
+    void give(Time now) override {
+        for (std::size_t f = 0; f < nodes.frames.size(); ++f) {
+            const bool is_due = every_[f] > Duration::zero() && due_[f] <= now;
+            if (wanted_[f] || is_due) static_cast<void>(RawFarEnd::send(store_.encode(f, now)));
+            wanted_[f] = false;
+            if (is_due) due_[f] += ((now - due_[f]) / every_[f] + 1) * every_[f];
+        }
+        RawFarEnd::give(now);
+    }
+    [[nodiscard]] Time next() const noexcept override {
+        Time next = RawFarEnd::next();
+        for (const Time due : due_) next = due < next ? due : next;
+        return next;
+    }
+
+private:
+    static constexpr auto never_due = [] {
+        std::array<Time, nodes.frames.size()> times{};
+        times.fill(never);
+        return times;
+    }();
+
+    SignalStore<nodes.frames.size(), nodes.signals.size()> store_{nodes};
+    std::array<bool, nodes.frames.size()> came_{};
+    std::array<Time, nodes.frames.size()> came_at_ = [] {
+        std::array<Time, nodes.frames.size()> times{};
+        times.fill(Time::min());
+        return times;
+    }();
+    std::array<bool, nodes.frames.size()> wanted_{};
+    std::array<Duration, nodes.frames.size()> every_{};
+    std::array<Time, nodes.frames.size()> due_ = never_due;
+    Time now_{};
+};
+
+} // namespace tappet::can

@@ -1,0 +1,91 @@
+// The other end of digital lines: the switches, valves and lamps that a machine's line map speaks of.
+#pragma once
+
+#include "drivers/gpio/line_map.hpp"
+#include "drivers/twin/far_end.hpp"
+
+#include <array>
+
+namespace tappet::gpio {
+
+/// Lines from outside of the chip. Levels are logical, lines counted as in the machine's map.
+class Wires {
+public:
+    Wires() = default;
+    Wires(const Wires&) = delete;
+    Wires& operator=(const Wires&) = delete;
+    virtual ~Wires() = default;
+
+    /// An input of the machine changes at `at`. False: it is no input, or the wire does not take it.
+    virtual bool drive(std::size_t line, bool active, Time at) noexcept = 0;
+    /// The outputs as the machine drives them, in their bits.
+    [[nodiscard]] virtual Mask outputs() const noexcept = 0;
+    /// When what outputs() shows at `now` changed, as well as this wire can tell.
+    [[nodiscard]] virtual Time changed_at(Time now) const noexcept { return now; }
+};
+
+/// By the names of the map, which the compiler checks:
+///     io.get("valve")                     as the machine drives it
+///     io.set("bottle_present", true)      at this move, or at a time not before it
+template <const auto& map>
+class FarEnd final : public tappet::FarEnd {
+    static_assert(map.fault.empty(), "the line map is refused: its member `fault` says why");
+
+    template <Role role>
+    struct LineName {
+        std::size_t index;
+        consteval LineName(const char* name) : index{map.index(name)} {
+            if (index == map.rows.size() || map.rows[index].line.role != role)
+                this_name_is_not_in_the_map_or_goes_the_other_way();
+        }
+    };
+
+public:
+    using Input = LineName<Role::input>; ///< of the machine
+    using Output = LineName<Role::output>;
+
+    FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "gpio"} {}
+
+    [[nodiscard]] bool get(Output line) const noexcept { return (outputs_ >> line.index & 1u) != 0; }
+    /// True when the machine changed it since the plant moved last.
+    [[nodiscard]] bool changed(Output line) const noexcept {
+        return ((outputs_ ^ before_) >> line.index & 1u) != 0;
+    }
+    /// Of what changed() tells.
+    [[nodiscard]] Time changed_at() const noexcept { return changed_at_; }
+    void set(Input line, bool active) noexcept { set(line, active, now_); }
+    void set(Input line, bool active, Time at) noexcept {
+        const Mask bit = Mask{1} << line.index;
+        if (((inputs_ & bit) != 0) == active) return;
+        inputs_ ^= bit;
+        refused_ += wires_->drive(line.index, active, at) ? 0u : 1u;
+    }
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+    [[nodiscard]] Wires& wire() noexcept { return *wires_; }
+
+    void take(Time now) override {
+        now_ = now;
+        before_ = outputs_;
+        outputs_ = wires_->outputs();
+        changed_at_ = wires_->changed_at(now);
+    }
+    void give(Time) override {}
+
+protected:
+    bool take_wire(const ProvidedDevice& wire) noexcept override {
+        if (wire.type != type_id<Wires>) return false;
+        wires_ = static_cast<Wires*>(wire.device);
+        return true;
+    }
+
+private:
+    Wires* wires_ = nullptr;
+    Mask inputs_ = 0;
+    Mask outputs_ = 0;
+    Mask before_ = 0;
+    Time now_{};
+    Time changed_at_{};
+    std::uint64_t refused_ = 0;
+};
+
+} // namespace tappet::gpio

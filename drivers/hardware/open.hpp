@@ -1,0 +1,36 @@
+// Opening one real device: where the binding says it stands, for what its driver's map says.
+#pragma once
+
+#include "drivers/can/socket_can.hpp"
+#include "drivers/gpio/line_map.hpp"
+#include "drivers/gpio/lines.hpp"
+#include "drivers/modbus/libmodbus_transport.hpp"
+#include "kernel/machine/table/binding.hpp"
+#include "kernel/machine/table/board.hpp"
+#include "kernel/machine/table/components.hpp"
+
+#include <array>
+#include <expected>
+
+namespace tappet {
+
+/// The lines of one chip as they are requested; they stay where they are while the chip is open.
+using PlacedLines = std::array<gpio::Line, gpio::most_lines>;
+
+/// What a driver's row is bound to; `device` is null for a server on Ethernet. The check of the table has
+/// found all of it.
+struct BoundTo {
+    const ComponentRow& row;
+    const BoundDevice& bound;
+    const BoardDevice* device;
+    [[nodiscard]] std::string_view address() const noexcept {
+        return device != nullptr ? device->address : bound.at;
+    }
+};
+
+/// Not real-time. An error says what is wrong and how to cure it, not which device it is.
+std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to);
+std::expected<void, Sentence> open_device(gpio::Lines& chip, PlacedLines& lines, const BoundTo& to);
+std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, const BoundTo& to);
+
+} // namespace tappet

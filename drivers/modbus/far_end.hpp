@@ -1,0 +1,113 @@
+// The other end of a Modbus client: the server that a machine's register map speaks of.
+#pragma once
+
+#include "drivers/modbus/register_map.hpp"
+#include "drivers/twin/far_end.hpp"
+
+#include <array>
+#include <atomic>
+
+namespace tappet::modbus {
+
+/// The tables of a server from inside it. Wait-free: a client's requests may come from another thread.
+class ServerTables {
+public:
+    static constexpr std::size_t size = 1024; ///< addresses 0 to 1023 have room in each table
+    /// Whether the server takes a value that a client writes.
+    using Accepts = bool (*)(Table table, std::size_t address, std::uint16_t value) noexcept;
+
+    ServerTables() = default;
+    ServerTables(const ServerTables&) = delete;
+    ServerTables& operator=(const ServerTables&) = delete;
+
+    /// Addresses are below `size`.
+    void set(Table table, std::size_t address, std::uint16_t value) noexcept {
+        words_[static_cast<std::size_t>(table)][address].store(value, std::memory_order_relaxed);
+    }
+    [[nodiscard]] std::uint16_t get(Table table, std::size_t address) const noexcept {
+        return words_[static_cast<std::size_t>(table)][address].load(std::memory_order_relaxed);
+    }
+    /// Before the server is asked: it has that many addresses of a table, at least; a map says what it has of
+    /// its own.
+    void have(Table table, std::size_t count) noexcept {
+        std::size_t& of = counts_[static_cast<std::size_t>(table)];
+        of = count > of ? count : of;
+    }
+    [[nodiscard]] std::size_t count(Table table) const noexcept {
+        return counts_[static_cast<std::size_t>(table)];
+    }
+    /// Before the server is asked. Another value is answered with the exception "illegal data value".
+    void accept_only(Accepts check) noexcept { accepts_ = check; }
+    [[nodiscard]] bool accepts(Table table, std::size_t address, std::uint16_t value) const noexcept {
+        return accepts_ == nullptr || accepts_(table, address, value);
+    }
+
+private:
+    std::array<std::array<std::atomic<std::uint16_t>, size>, 4> words_{};
+    std::array<std::size_t, 4> counts_{};
+    Accepts accepts_ = nullptr;
+};
+
+/// By the names of the map, which the compiler checks:
+///     server.get("pump.on")               as the machine wrote it last
+///     server.set("unit.oil_pressure", 2.5)
+template <const auto& map>
+class FarEnd final : public tappet::FarEnd {
+    static_assert(map.fault.empty(), "the register map is refused: its member `fault` says why");
+
+    template <bool write>
+    struct RegisterName {
+        std::size_t index;
+        consteval RegisterName(const char* path) : index{map.value(path)} {
+            if (index == no_such || map.rows[map.row_of[index]].write != write)
+                this_name_is_not_in_the_map_or_goes_the_other_way();
+        }
+    };
+
+public:
+    using Read = RegisterName<false>; ///< by the machine
+    using Written = RegisterName<true>;
+
+    FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "modbus"} {}
+
+    [[nodiscard]] double get(Written path) const noexcept {
+        const Place place{path.index};
+        Words words{tables_->get(place.table, place.address), 0};
+        if (place.of.width() == 2) words[1] = tables_->get(place.table, place.address + 1);
+        return to_physical(place.of, words);
+    }
+    void set(Read path, double value) noexcept {
+        const Place place{path.index};
+        const Encoded encoded = to_words(place.of, value);
+        if (encoded.refused) return; // not a number: the value before stays
+        for (std::size_t i = 0; i < place.of.width(); ++i)
+            tables_->set(place.table, place.address + i, encoded.words[i]);
+    }
+    [[nodiscard]] ServerTables& tables() noexcept { return *tables_; }
+
+    void take(Time) override {}
+    void give(Time) override {}
+
+protected:
+    bool take_wire(const ProvidedDevice& wire) noexcept override {
+        if (wire.type != type_id<ServerTables>) return false;
+        tables_ = static_cast<ServerTables*>(wire.device);
+        for (const Row& row : map.rows) tables_->have(row.run.table, row.run.address + row.run.count);
+        return true;
+    }
+
+private:
+    struct Place {
+        const Register& of;
+        Table table;
+        std::size_t address;
+        explicit Place(std::size_t v)
+            : of{map.registers[v]},
+              table{map.rows[map.row_of[v]].run.table},
+              address{map.rows[map.row_of[v]].run.address + map.registers[v].at} {}
+    };
+
+    ServerTables* tables_ = nullptr;
+};
+
+} // namespace tappet::modbus

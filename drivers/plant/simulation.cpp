@@ -1,0 +1,102 @@
+// Makes the twins that a table asks for, and carries frames, levels and registers between them and the plant.
+#include "drivers/plant/simulation.hpp"
+
+#include "drivers/can/signal_map.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+namespace {
+
+template <class All>
+auto& named(All& all, std::string_view device) {
+    const auto found = std::ranges::find_if(all, [device](const auto& each) { return each->name == device; });
+    TAPPET_CONTRACT(found != all.end(), Contract::index_out_of_range, 0,
+                    static_cast<std::int64_t>(all.size()));
+    return **found;
+}
+
+} // namespace
+
+std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& machine) {
+    buses_.clear();
+    chips_.clear();
+    servers_.clear();
+    const std::span<const ProvidedDevice> own = plant_.devices();
+    provided_.assign(own.begin(), own.end());
+    std::vector<ProvidedDevice> far;
+    for (const ComponentRow& row : machine.table.components) {
+        if (drives(row, "can")) {
+            if (auto added = add_bus(row); !added) return added;
+            far.push_back(
+                {type_id<can::Device>, row.device, static_cast<can::Device*>(&buses_.back()->plant)});
+        } else if (drives(row, "gpio")) {
+            if (auto added = add_chip(row); !added) return added;
+            far.push_back(
+                {type_id<gpio::Wires>, row.device, static_cast<gpio::Wires*>(&chips_.back()->twin)});
+        } else if (drives(row, "modbus")) {
+            servers_.push_back(std::make_unique<Server>(row.device, AnswerWithin{300ms}.time));
+            modbus::Twin& twin = servers_.back()->twin;
+            provided_.push_back(
+                {type_id<modbus::Transport>, row.device, static_cast<modbus::Transport*>(&twin)});
+            far.push_back(
+                {type_id<modbus::ServerTables>, row.device, static_cast<modbus::ServerTables*>(&twin)});
+        }
+    }
+    if (Sentence fault = plant_.connect(far); !fault.empty()) return std::unexpected(fault);
+    return {};
+}
+
+std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row) {
+    Bus& bus = *buses_.emplace_back(std::make_unique<Bus>(row.device, seed_));
+    const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
+    can::Settings settings;
+    settings.interface = row.device;
+    settings.receive = map.receive;
+    settings.transmit = map.transmit;
+    if (auto opened = bus.machine.open(settings); !opened) return opened;
+    std::swap(settings.receive, settings.transmit);
+    if (auto opened = bus.plant.open(settings); !opened) return opened;
+    if (!bus.bus.attach(bus.machine) || !bus.bus.attach(bus.plant))
+        return std::unexpected(Sentence{"twin bus: no room for two ends"});
+    provided_.push_back({type_id<can::Device>, row.device, static_cast<can::Device*>(&bus.machine)});
+    return {};
+}
+
+std::expected<void, Sentence> SimulatedDevices::add_chip(const ComponentRow& row) {
+    Chip& chip = *chips_.emplace_back(std::make_unique<Chip>(row.device, seed_));
+    const auto& map = *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map);
+    gpio::place(
+        map, [next = 0u](std::string_view) mutable { return next++; }, chip.lines); // a twin has no board
+    provided_.push_back({type_id<gpio::Device>, row.device, static_cast<gpio::Device*>(&chip.twin)});
+    return chip.twin.open({row.device, std::span{chip.lines}.first(map.size())});
+}
+
+WireCounters SimulatedDevices::counters() const noexcept {
+    WireCounters sum;
+    for (const auto& bus : buses_) {
+        const can::Counters seen = bus->machine.counters();
+        sum.can_frames_lost += seen.lost_in_kernel;
+        sum.can_faults += seen.faults;
+        sum.can_restarts += seen.restarts;
+        sum.can_impostors += seen.impostors;
+        sum.can_malformed += seen.malformed;
+    }
+    for (const auto& chip : chips_) sum.gpio_edges_lost += chip->twin.counters().missed;
+    return sum;
+}
+
+void SimulatedDevices::advance(Time now) {
+    for (const auto& bus : buses_) bus->bus.deliver_until(now);
+    next_ = plant_.advance(now);
+    for (const auto& bus : buses_) bus->bus.deliver_until(now);
+    for (const auto& chip : chips_) chip->twin.deliver_until(now);
+}
+
+can::TwinBus& SimulatedDevices::bus(std::string_view device) { return named(buses_, device).bus; }
+can::Twin& SimulatedDevices::controller(std::string_view device) { return named(buses_, device).machine; }
+gpio::Twin& SimulatedDevices::lines(std::string_view device) { return named(chips_, device).twin; }
+modbus::Twin& SimulatedDevices::server(std::string_view device) { return named(servers_, device).twin; }
+
+} // namespace tappet

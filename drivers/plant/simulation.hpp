@@ -1,0 +1,73 @@
+// The devices of one machine in the host world: a twin for each that its table names, and the wires between
+// it and the plant.
+#pragma once
+
+#include "drivers/can/twin.hpp"
+#include "drivers/can/twin_bus.hpp"
+#include "drivers/gpio/twin.hpp"
+#include "drivers/hardware/devices.hpp"
+#include "drivers/hardware/open.hpp"
+#include "drivers/modbus/twin.hpp"
+#include "drivers/plant/plant.hpp"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tappet {
+
+/// Not real-time. The machine's threads and the plant's meet in the twins only.
+class SimulatedDevices final : public Devices {
+public:
+    /// `seed` decides what the faults of the twins strike.
+    explicit SimulatedDevices(Plant& plant, std::uint64_t seed) : plant_{plant}, seed_{seed} {}
+
+    std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
+    [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return provided_; }
+    void report(os::ArmingReport&) const override {}
+    [[nodiscard]] WireCounters counters() const noexcept override;
+
+    /// Moves plant and wires to `now`. One thread, the plant's.
+    void advance(Time now);
+    /// When advance() has something to do.
+    [[nodiscard]] Time next() const noexcept { return next_; }
+
+    // ---- for tests: what goes wrong at one device. A name that the table has not is a broken contract.
+    [[nodiscard]] can::TwinBus& bus(std::string_view device);
+    [[nodiscard]] can::Twin& controller(std::string_view device);
+    [[nodiscard]] gpio::Twin& lines(std::string_view device);
+    [[nodiscard]] modbus::Twin& server(std::string_view device);
+
+private:
+    struct Bus {
+        std::string_view name;
+        can::TwinBus bus;
+        can::Twin machine{}, plant{};
+        Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
+    };
+    struct Chip {
+        std::string_view name;
+        PlacedLines lines{};
+        gpio::Twin twin;
+        Chip(std::string_view of, std::uint64_t seed) : name{of}, twin{seed} {}
+    };
+    struct Server {
+        std::string_view name;
+        modbus::Twin twin;
+        Server(std::string_view of, Duration answer_within) : name{of}, twin{answer_within} {}
+    };
+
+    std::expected<void, Sentence> add_bus(const ComponentRow& row);
+    std::expected<void, Sentence> add_chip(const ComponentRow& row);
+
+    Plant& plant_;
+    std::uint64_t seed_;
+    Time next_{};
+    // What a twin is given stays where it is.
+    std::vector<std::unique_ptr<Bus>> buses_{};
+    std::vector<std::unique_ptr<Chip>> chips_{};
+    std::vector<std::unique_ptr<Server>> servers_{};
+    std::vector<ProvidedDevice> provided_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,65 @@
+// The cutter with its plant under virtual time: each piece has its length, and nothing cuts that should not.
+#include "apps/cut_to_length/line.hpp"
+#include "apps/cut_to_length/plant.hpp"
+#include "toolchain/machine/host.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cut_to_length {
+
+AcceptedMachine on_host();
+
+namespace {
+
+struct Cutter : testing::TestWithParam<std::uint64_t> {
+    Plant plant{GetParam()};
+    VirtualRun run{on_host(), plant, GetParam()};
+
+    void SetUp() override {
+        const auto started = run.start();
+        ASSERT_TRUE(started) << started.error().view();
+    }
+    void TearDown() override { run.stop(); }
+    [[nodiscard]] std::string_view state() {
+        const auto path = run.instance().state_machine_of("line")->path();
+        return path.empty() ? std::string_view{} : path[0];
+    }
+};
+
+TEST_P(Cutter, cuts_each_piece_to_its_length_while_the_web_runs_up_runs_and_stops) {
+    ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s)) << plant.pieces() << " pieces";
+    EXPECT_GE(plant.pieces(), 60);
+    EXPECT_LT(plant.worst_mm(), 0.5);
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+    EXPECT_EQ(state(), "stopped");
+}
+
+TEST_P(Cutter, stands_after_an_emergency_stop_and_goes_on_when_it_is_released_and_started) {
+    ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 5; }, 20s));
+    plant.press_emergency_stop(true);
+    ASSERT_TRUE(run.run_until([this] { return plant.web_stands(); }, 3s));
+    EXPECT_EQ(state(), "emergency");
+    const std::int64_t pieces = plant.pieces();
+    plant.press_start(run.now() + 100ms);
+    run.run_for(2s);
+    EXPECT_EQ(state(), "emergency") << "it is still pressed";
+    EXPECT_EQ(plant.pieces(), pieces);
+    plant.press_emergency_stop(false);
+    plant.press_start(run.now() + 100ms);
+    ASSERT_TRUE(run.run_until([this] { return state() == "stopped"; }, 1s));
+    plant.press_start(run.now() + 300ms);
+    EXPECT_TRUE(run.run_until([&] { return plant.pieces() > pieces + 5; }, 20s));
+    EXPECT_LT(plant.worst_mm(), 0.5) << "the web was measured while it stood, too";
+}
+
+TEST_P(Cutter, does_not_follow_a_drive_that_has_fallen_silent) {
+    ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 2; }, 20s));
+    plant.silence_drive();
+    run.run_for(100ms);
+    EXPECT_EQ(run.instance().find<Line>("line")->target.last(), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(seeds, Cutter, testing::Values(1, 2, 3));
+
+} // namespace
+} // namespace cut_to_length

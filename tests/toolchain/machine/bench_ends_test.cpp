@@ -1,0 +1,157 @@
+// The plant's ends of the bench's wires on any machine: lines as files in a folder, Modbus over the loopback.
+#include "toolchain/machine/bench/can_end.hpp"
+#include "toolchain/machine/bench/line_end.hpp"
+#include "toolchain/machine/bench/server_end.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+constexpr auto lines = gpio::line_map(gpio::sensor("stop"), gpio::sensor("guard", gpio::active_low),
+                                      gpio::actuator("valve"), gpio::output("lamp", gpio::active_low));
+constexpr BoundDevice bound =
+    wired("io", "io", line("stop", 0), line("guard", 3), line("valve", 8), line("lamp", 9));
+
+struct Lines : testing::Test {
+    Lines() : chip(std::filesystem::temp_directory_path() / ("tappet-lines-" + std::to_string(getpid()))) {
+        for (unsigned i = 0; i < 10; ++i) {
+            std::filesystem::create_directories(file(i, "").parent_path());
+            std::ofstream(file(i, "pull")) << "pull-nowhere";
+            put(i, false);
+        }
+    }
+    ~Lines() override { std::filesystem::remove_all(chip); }
+    [[nodiscard]] std::filesystem::path file(unsigned offset, const char* name) const {
+        return chip / ("sim_gpio" + std::to_string(offset)) / name;
+    }
+    void put(unsigned offset, bool high) const {
+        std::ofstream(file(offset, "value")) << (high ? "1\n" : "0\n");
+    }
+    [[nodiscard]] bool is_pulled_up(unsigned offset) const {
+        std::string word;
+        std::ifstream(file(offset, "pull")) >> word;
+        return word.starts_with("pull-up");
+    }
+    std::filesystem::path chip;
+    LineEnd end;
+};
+
+TEST_F(Lines, carry_levels_both_ways_and_turn_over_what_is_active_low) {
+    ASSERT_TRUE(end.open(chip.string(), lines.rows, bound));
+    EXPECT_FALSE(is_pulled_up(0));
+    EXPECT_TRUE(is_pulled_up(3)) << "active low, and not active";
+    put(8, true);
+    end.look(at_ns(200'000));
+    EXPECT_EQ(end.outputs(), 0b1100u) << "the valve; and the lamp, whose line is low";
+    EXPECT_TRUE(end.drive(0, true, at_ns(200'000)));
+    EXPECT_TRUE(end.drive(1, true, at_ns(200'000)));
+    EXPECT_TRUE(is_pulled_up(0));
+    EXPECT_FALSE(is_pulled_up(3));
+    EXPECT_FALSE(end.drive(2, true, at_ns(200'000))) << "an output of the machine";
+    EXPECT_EQ(end.failures(), 0u);
+}
+
+TEST_F(Lines, drive_an_input_when_its_time_has_come) {
+    ASSERT_TRUE(end.open(chip.string(), lines.rows, bound));
+    end.look(at_ns(1'000'000));
+    EXPECT_TRUE(end.drive(0, true, at_ns(5'000'000)));
+    EXPECT_FALSE(is_pulled_up(0));
+    end.look(at_ns(5'000'000));
+    EXPECT_TRUE(is_pulled_up(0));
+}
+
+TEST_F(Lines, say_half_way_between_two_looks_when_an_output_changed) {
+    ASSERT_TRUE(end.open(chip.string(), lines.rows, bound));
+    end.look(at_ns(1'000'000));
+    put(8, true);
+    end.look(at_ns(1'400'000));
+    EXPECT_EQ(end.changed_at(at_ns(1'400'000)), at_ns(1'200'000));
+}
+
+TEST_F(Lines, that_are_missing_are_named_with_the_cure) {
+    std::filesystem::remove(file(9, "value"));
+    const auto opened = end.open(chip.string(), lines.rows, bound);
+    ASSERT_FALSE(opened);
+    const std::string said{opened.error().view()};
+    EXPECT_NE(said.find("line \"lamp\""), std::string::npos) << said;
+    EXPECT_NE(said.find("sim_gpio9/value"), std::string::npos) << said;
+    EXPECT_NE(said.find("more than 9 lines: --gpio-chip NAME:LINES"), std::string::npos) << said;
+}
+
+TEST(Can, names_an_interface_that_does_not_exist) {
+    CanEnd can;
+    const auto opened = can.open("no-such-can", {});
+    ASSERT_FALSE(opened);
+    EXPECT_NE(opened.error().view().find("\"no-such-can\" does not exist"), std::string_view::npos);
+}
+
+struct Server : testing::Test {
+    Server() {
+        end.have(modbus::Table::input_registers, 4);
+        end.have(modbus::Table::holding_registers, 2);
+        end.have(modbus::Table::coils, 1);
+        end.accept_only(
+            [](modbus::Table, std::size_t, std::uint16_t value) noexcept { return value >= 300; });
+        end.set(modbus::Table::input_registers, 0, 231);
+        end.set(modbus::Table::holding_registers, 0, 650);
+        for (port = 15'020; port < 15'060 && !listens; ++port)
+            listens = end.listen("127.0.0.1", port, 1).has_value();
+        --port;
+        client = modbus_new_tcp("127.0.0.1", port);
+        modbus_set_slave(client, 1);
+        modbus_set_response_timeout(client, 2, 0);
+    }
+    ~Server() override {
+        modbus_close(client);
+        modbus_free(client);
+    }
+    ServerEnd end;
+    bool listens = false;
+    modbus_t* client = nullptr;
+    int port = 0;
+};
+
+TEST_F(Server, answers_for_what_it_has_and_refuses_what_it_does_not_accept) {
+    ASSERT_TRUE(listens);
+    ASSERT_EQ(modbus_connect(client), 0);
+    std::uint16_t words[4] = {};
+    ASSERT_EQ(modbus_read_input_registers(client, 0, 4, words), 4);
+    EXPECT_EQ(words[0], 231);
+    ASSERT_EQ(modbus_read_registers(client, 0, 2, words), 2);
+    EXPECT_EQ(words[0], 650);
+    EXPECT_EQ(modbus_write_register(client, 0, 700), 1);
+    EXPECT_EQ(modbus_write_bit(client, 0, 1), 1);
+    EXPECT_EQ(modbus_read_registers(client, 0, 1, words), 1) << "the request after it: those before are done";
+    EXPECT_EQ(end.get(modbus::Table::holding_registers, 0), 700);
+    EXPECT_EQ(end.get(modbus::Table::coils, 0), 1);
+    EXPECT_EQ(modbus_write_register(client, 0, 100), -1);
+    EXPECT_EQ(errno, EMBXILVAL);
+    const std::uint16_t one_wrong[2] = {700, 5};
+    EXPECT_EQ(modbus_write_registers(client, 0, 2, one_wrong), -1);
+    EXPECT_EQ(errno, EMBXILVAL);
+    EXPECT_EQ(modbus_read_input_registers(client, 2, 3, words), -1);
+    EXPECT_EQ(errno, EMBXILADD);
+}
+
+TEST_F(Server, without_power_is_gone_and_comes_back) {
+    ASSERT_TRUE(listens);
+    ASSERT_EQ(modbus_connect(client), 0);
+    end.set_power(false);
+    std::uint16_t word = 0;
+    int tries = 0;
+    while (modbus_read_input_registers(client, 0, 1, &word) == 1 && ++tries < 500) usleep(10'000);
+    modbus_close(client);
+    EXPECT_EQ(modbus_connect(client), -1);
+    end.set_power(true);
+    for (tries = 0; modbus_connect(client) != 0 && tries < 500; ++tries) usleep(10'000);
+    EXPECT_EQ(modbus_read_input_registers(client, 0, 1, &word), 1);
+}
+
+} // namespace
+} // namespace tappet

@@ -1,0 +1,51 @@
+// The plant's end of digital lines on the bench: gpio-sim's files, kept open, written and read at offset 0.
+#pragma once
+
+#include "drivers/gpio/far_end.hpp"
+#include "kernel/machine/table/binding.hpp"
+
+#include <array>
+#include <expected>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tappet {
+
+/// Not real-time.
+class LineEnd final : public gpio::Wires {
+public:
+    LineEnd();
+    ~LineEnd() override;
+
+    /// `folder` is where sim_gpio<n>/pull and sim_gpio<n>/value lie; the lines stand where the binding says.
+    /// The error says what is wrong and how to cure it.
+    std::expected<void, Sentence> open(const std::string& folder, std::span<const gpio::LineRow> map,
+                                       const BoundDevice& bound);
+
+    bool drive(std::size_t line, bool active, Time at) noexcept override;
+    /// Actuators at each look, what follows a port each `slow_period`: looking takes an emulator some time.
+    void look(Time now);
+    [[nodiscard]] gpio::Mask outputs() const noexcept override { return outputs_; }
+    /// Somewhere between two looks: half-way is the best guess.
+    [[nodiscard]] Time changed_at(Time) const noexcept override { return last_ + (looked_ - last_) / 2; }
+    [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
+
+private:
+    struct Later {
+        std::size_t line;
+        bool active;
+        Time at;
+    };
+    static constexpr Duration slow_period = 5ms;
+    bool pull(std::size_t line, bool active) noexcept;
+
+    std::span<const gpio::LineRow> map_{};
+    std::array<int, gpio::most_lines> files_; ///< of an input its pull, of an output its value
+    std::vector<Later> later_{};
+    gpio::Mask outputs_ = 0;
+    Time last_{}, looked_{}, slow_at_{};
+    std::uint64_t failures_ = 0;
+};
+
+} // namespace tappet

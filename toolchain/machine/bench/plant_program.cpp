@@ -1,0 +1,325 @@
+// Opens the plant's ends where the machine's binding says, and moves the plant along.
+#include "toolchain/machine/bench/plant_program.hpp"
+
+#include "drivers/can/signal_map.hpp"
+#include "drivers/hardware/devices.hpp"
+#include "kernel/base/value_text.hpp"
+#include "kernel/machine/check/board.hpp"
+#include "kernel/os/clock.hpp"
+#include "toolchain/machine/bench/can_end.hpp"
+#include "toolchain/machine/bench/line_end.hpp"
+#include "toolchain/machine/bench/server_end.hpp"
+
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <time.h>
+
+namespace tappet {
+
+namespace {
+
+enum Ending : int { ended_well = 0, plant_at_fault = 1, wrong_set_up = 2 };
+
+volatile std::sig_atomic_t told_to_end = 0;
+volatile std::sig_atomic_t usr1_came = 0;
+
+/// Something that happens to the wires, not to the plant: at a time, for a while.
+struct Outage {
+    Duration at = Duration::max();
+    Duration lasts{};
+};
+
+struct Options {
+    std::uint64_t seed = 1;
+    std::string report{};    ///< a file; empty: standard output
+    Duration period = 200us; ///< of looking at the lines
+    int fifo_priority = 0;   ///< 0: not real-time
+    Outage server_stop{};    ///< every Modbus server is gone
+    Duration bus_off_at = Duration::max();
+    Duration die_at = Duration::max(); ///< killed, without a report
+    bool help = false;
+    std::vector<std::pair<std::string_view, std::string_view>> of_plant{};
+};
+
+constexpr const char* usage =
+    "  --seed N                which plant (1)\n"
+    "  --report FILE           where the JSON of what it measured goes (standard output)\n"
+    "  --period T              of looking at the lines, 50us to 10ms (200us)\n"
+    "  --fifo N                runs with SCHED_FIFO priority N (not)\n"
+    "  --help                  this text\n"
+    "the wires themselves: --stop-servers-at T/DURATION --bus-off-at T --die-at T\n";
+
+template <class T>
+bool read(std::string_view word, T& into, T least, T most) {
+    T value{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size() || value < least || value > most)
+        return false;
+    into = value;
+    return true;
+}
+bool read(std::string_view word, Duration& into) {
+    alignas(Duration) std::byte bytes[sizeof(Duration)];
+    if (!parse_value(*type_id<Duration>, word, bytes).empty()) return false;
+    std::memcpy(&into, bytes, sizeof into);
+    return into >= Duration::zero();
+}
+bool read(std::string_view word, Outage& into) {
+    const std::size_t slash = word.find('/');
+    return slash != word.npos && read(word.substr(0, slash), into.at) &&
+           read(word.substr(slash + 1), into.lasts);
+}
+
+/// Empty: all words are right; what is not of the wires or of the run goes to the plant.
+Sentence parse(int count, char** words, Options& to) {
+    for (int i = 1; i < count; ++i) {
+        const std::string_view word = words[i];
+        if (word == "--help") {
+            to.help = true;
+            continue;
+        }
+        if (i + 1 == count) return Sentence{"option ", word, " is unknown, or wants a value; see --help"};
+        const std::string_view value = words[++i];
+        bool right = true;
+        if (word == "--seed")
+            right = read(value, to.seed, std::uint64_t{0}, ~std::uint64_t{0});
+        else if (word == "--report")
+            to.report = value;
+        else if (word == "--period")
+            right = read(value, to.period) && to.period >= 50us && to.period <= 10ms;
+        else if (word == "--fifo")
+            right = read(value, to.fifo_priority, 0, 98);
+        else if (word == "--stop-servers-at")
+            right = read(value, to.server_stop);
+        else if (word == "--bus-off-at")
+            right = read(value, to.bus_off_at);
+        else if (word == "--die-at")
+            right = read(value, to.die_at);
+        else
+            to.of_plant.emplace_back(word, value);
+        if (!right) return Sentence{"option ", word, " does not take \"", value, "\"; see --help"};
+    }
+    return {};
+}
+
+/// The plant's ends of all wires of one machine on one board.
+class BenchWires {
+public:
+    Sentence open(const MachineView& machine, const Board& board, const Binding& binding) {
+        for (const ComponentRow& row : machine.components) {
+            if (row.type->device_map == nullptr) continue;
+            const BoundDevice& bound = *checks::find_named(binding.devices, row.device);
+            const BoardDevice* device = checks::find_named(board.devices, bound.at);
+            if (Sentence fault = open(row, bound, device); !fault.empty())
+                return Sentence{"device \"", row.device, "\": ", fault};
+        }
+        return {};
+    }
+    [[nodiscard]] std::span<const ProvidedDevice> all() const { return wires_; }
+    Sentence listen() {
+        for (const auto& server : servers_) {
+            const std::string_view address = server->bound.at;
+            if (auto listens = server->end.listen(std::string{address.substr(0, address.find(':'))},
+                                                  checks::tcp_port_of(address), server->bound.unit.number);
+                !listens)
+                return listens.error();
+        }
+        return {};
+    }
+    void look(Time now) {
+        for (const auto& chip : chips_) chip->look(now);
+    }
+    void announce_bus_off() {
+        for (const auto& bus : buses_) bus->announce_bus_off();
+    }
+    void set_servers(bool on) {
+        for (const auto& server : servers_) server->end.set_power(on);
+    }
+    [[nodiscard]] std::uint64_t unsent() const {
+        std::uint64_t sum = 0;
+        for (const auto& bus : buses_) sum += bus->counters().refused;
+        return sum;
+    }
+    [[nodiscard]] std::uint64_t failures() const {
+        std::uint64_t sum = 0;
+        for (const auto& chip : chips_) sum += chip->failures();
+        return sum;
+    }
+
+private:
+    Sentence open(const ComponentRow& row, const BoundDevice& bound, const BoardDevice* device) {
+        std::expected<void, Sentence> opened{};
+        if (drives(row, "can")) {
+            auto& end = *buses_.emplace_back(std::make_unique<CanEnd>());
+            wires_.push_back({type_id<can::Device>, row.device, static_cast<can::Device*>(&end)});
+            opened = end.open(device->address,
+                              static_cast<const can::Identifiers*>(row.type->device_map)->transmit);
+        } else if (drives(row, "gpio")) {
+            auto& end = *chips_.emplace_back(std::make_unique<LineEnd>());
+            wires_.push_back({type_id<gpio::Wires>, row.device, static_cast<gpio::Wires*>(&end)});
+            // The bench makes /dev/NAME for the machine and /sim/NAME for who stands at the other end.
+            const std::string name{device->address.substr(device->address.rfind('/') + 1)};
+            opened =
+                end.open("/sim/" + name,
+                         *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map), bound);
+        } else if (drives(row, "modbus")) {
+            if (device != nullptr)
+                return Sentence{"the bench has no serial lines; bind it to 127.0.0.1:1502"};
+            auto& server = *servers_.emplace_back(std::make_unique<Server>(bound));
+            wires_.push_back(
+                {type_id<modbus::ServerTables>, row.device, static_cast<modbus::ServerTables*>(&server.end)});
+        }
+        return opened ? Sentence{} : opened.error();
+    }
+
+    struct Server {
+        explicit Server(const BoundDevice& to) : bound{to} {}
+        const BoundDevice& bound;
+        ServerEnd end{};
+    };
+    std::vector<std::unique_ptr<CanEnd>> buses_{};
+    std::vector<std::unique_ptr<LineEnd>> chips_{};
+    std::vector<std::unique_ptr<Server>> servers_{};
+    std::vector<ProvidedDevice> wires_{};
+};
+
+class Program {
+public:
+    Program(const char* name, Plant& plant, BenchWires& wires, const Options& options)
+        : name_{name}, plant_{plant}, wires_{wires}, options_{options} {}
+
+    void run() {
+        const Time start = clock_.now();
+        Time last = start, next = start;
+        while (told_to_end == 0 && !rested(last)) {
+            if (std::exchange(usr1_came, 0) != 0) plant_.told();
+            const Time wake = std::min(last + options_.period, std::max(next, last + 20us));
+            sleep_until(wake);
+            const Time now = clock_.now();
+            latest_ = std::max(latest_, now - wake);
+            wires_.look(now);
+            next = plant_.advance(now);
+            trouble_the_wires(now - start);
+            last = now;
+        }
+        std::fprintf(stderr, "%s: latest wake-up %lld us, frames not sent %llu, line failures %llu\n", name_,
+                     static_cast<long long>(latest_ / 1us), static_cast<unsigned long long>(wires_.unsent()),
+                     static_cast<unsigned long long>(wires_.failures()));
+    }
+
+private:
+    /// The machine may still show how it stopped.
+    bool rested(Time now) {
+        if (!plant_.is_done())
+            done_since_ = never;
+        else if (done_since_ == never)
+            done_since_ = now;
+        return done_since_ != never && now - done_since_ > 500ms;
+    }
+    static void sleep_until(Time at) {
+        const std::int64_t ns = to_ns(at);
+        const timespec until{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    }
+    void trouble_the_wires(Duration since_start) {
+        if (since_start >= options_.die_at) std::raise(SIGKILL);
+        if (since_start >= options_.bus_off_at && !bus_off_told_) {
+            bus_off_told_ = true;
+            wires_.announce_bus_off();
+        }
+        const Outage& stop = options_.server_stop;
+        if (stop.at != Duration::max())
+            wires_.set_servers(since_start < stop.at || since_start >= stop.at + stop.lasts);
+    }
+
+    const char* name_;
+    Plant& plant_;
+    BenchWires& wires_;
+    const Options& options_;
+    os::Clock clock_{os::Clock::Kind::real};
+    bool bus_off_told_ = false;
+    Time done_since_ = never;
+    Duration latest_{};
+};
+
+void become_real_time(const char* name, int priority) {
+    sched_param parameter{};
+    parameter.sched_priority = priority;
+    if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0 || mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+        std::fprintf(stderr, "%s: --fifo %d: %s; running without\n", name, priority, std::strerror(errno));
+}
+
+void listen_to_signals() {
+    struct sigaction action{};
+    action.sa_handler = [](int) { told_to_end = 1; };
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGINT, &action, nullptr);
+    action.sa_handler = [](int) { usr1_came = 1; };
+    sigaction(SIGUSR1, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN); // a client that went away is no reason to die
+}
+
+bool write_report(const Plant& plant, const std::string& path) {
+    std::string text(64 * 1024, '\0');
+    JsonText json{text};
+    json.open('{');
+    plant.report(json);
+    json.close('}').raw("\n");
+    std::FILE* const file = path.empty() ? stdout : std::fopen(path.c_str(), "w");
+    if (file == nullptr || json.size() == 0) return false;
+    const bool written = std::fwrite(text.data(), 1, json.size(), file) == json.size();
+    return (file == stdout ? std::fflush(file) : std::fclose(file)) == 0 && written;
+}
+
+} // namespace
+
+int run_plant(const MachineView& machine, const Board& board, const Binding& binding,
+              const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant, int count,
+              char** words) {
+    const std::string name = std::string{machine.name} + "-plant";
+    const auto fail = [&name](const Sentence& why) {
+        std::fprintf(stderr, "%s: %s\n", name.c_str(), std::string{why.view()}.c_str());
+        return wrong_set_up;
+    };
+    Options options;
+    if (const Sentence fault = parse(count, words, options); !fault.empty()) return fail(fault);
+    const std::unique_ptr<Plant> plant = make_plant(options.seed);
+    if (options.help) {
+        std::fprintf(
+            stdout, "%s: the plant of the machine at the other end of the wires of board \"%s\"\n%s%s",
+            name.c_str(), std::string{board.name}.c_str(), usage, std::string{plant->usage()}.c_str());
+        return ended_well;
+    }
+    for (const auto& [option, value] : options.of_plant) {
+        Sentence fault;
+        if (!plant->take_option(option, value, fault))
+            return fail(Sentence{"option ", option, " is unknown; see --help"});
+        if (!fault.empty()) return fail(Sentence{"option ", option, ": ", fault});
+    }
+    listen_to_signals();
+    BenchWires wires;
+    if (const Sentence fault = wires.open(machine, board, binding); !fault.empty()) return fail(fault);
+    if (const Sentence fault = plant->connect(wires.all()); !fault.empty()) return fail(fault);
+    static_cast<void>(
+        plant->advance(os::Clock{os::Clock::Kind::real}.now())); // no client reads what is not set
+    if (const Sentence fault = wires.listen(); !fault.empty()) return fail(fault);
+    if (options.fifo_priority > 0) become_real_time(name.c_str(), options.fifo_priority);
+    Program{name.c_str(), *plant, wires, options}.run();
+    if (!write_report(*plant, options.report))
+        return fail(Sentence{"the report cannot be written to \"", std::string_view{options.report}, "\""});
+    if (const Sentence fault = plant->fault(); !fault.empty()) {
+        std::fprintf(stderr, "%s: %s\n", name.c_str(), std::string{fault.view()}.c_str());
+        return plant_at_fault;
+    }
+    return ended_well;
+}
+
+} // namespace tappet

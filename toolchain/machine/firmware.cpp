@@ -1,0 +1,247 @@
+// Runs a firmware from its command line to its exit code.
+#include "toolchain/machine/firmware.hpp"
+
+#include "kernel/machine/plan_text.hpp"
+#include "kernel/os/box.hpp"
+#include "kernel/os/terminal.hpp"
+#include "kernel/services/configuration/property_files.hpp"
+#include "toolchain/machine/summary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string_view>
+
+namespace tappet {
+
+namespace {
+
+// Large, and there once: in static memory, not on main's stack.
+constinit os::Clock machine_clock{os::Clock::Kind::real};
+std::array<char, 48 * 1024> summary_text;
+constexpr std::size_t most_own_words = 8;
+
+struct Options {
+    const char* summary = nullptr;
+    const char* properties = nullptr;
+    const char* browse = nullptr;
+    const char* seconds = nullptr;
+    Duration time = Duration::max();
+    bool help = false;
+    bool plan = false;
+    Bounded<char*, most_own_words> own{}; ///< words for the machine's hook
+    Sentence error{};
+};
+
+constexpr std::string_view usage =
+    "  --summary FILE     writes what it counted there when it ends, as JSON\n"
+    "  --properties DIR   reads the components' properties there and saves them at the end, instead of in "
+    "the "
+    "board's directory\n"
+    "  --browse DIR       opens the browsers' socket there instead of in the board's directory\n"
+    "  --for SECONDS      ends by itself after so long\n"
+    "  --plan             what the compiler derived from the table: priorities, order, mailboxes, memory\n"
+    "  --help             this text\n";
+
+Options parse(int count, char** words, bool has_own) {
+    Options options;
+    for (int i = 1; i < count && options.error.empty(); ++i) {
+        const std::string_view word = words[i];
+        const char** place = word == "--summary"      ? &options.summary
+                             : word == "--properties" ? &options.properties
+                             : word == "--browse"     ? &options.browse
+                             : word == "--for"        ? &options.seconds
+                                                      : nullptr;
+        if (word == "--help")
+            options.help = true;
+        else if (word == "--plan")
+            options.plan = true;
+        else if (place == nullptr && !(has_own && options.own.push(words[i])))
+            options.error =
+                Sentence{"option ", word,
+                         " is unknown; there are --summary FILE, --properties DIRECTORY, --browse "
+                         "DIRECTORY, --for SECONDS, --plan and --help"};
+        else if (place != nullptr && i + 1 == count)
+            options.error = Sentence{"option ", word, " needs a name after it"};
+        else if (place != nullptr)
+            *place = words[++i];
+    }
+    if (options.seconds != nullptr) {
+        const std::string_view digits = options.seconds;
+        std::uint32_t seconds = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+        if (error != std::errc{} || end != digits.data() + digits.size() || seconds == 0)
+            options.error =
+                Sentence{"option --for: \"", digits, "\" is no time; write whole seconds, as in --for 60"};
+        else
+            options.time = std::chrono::seconds{seconds};
+    }
+    return options;
+}
+
+/// One run of the firmware, with its name before whatever it says.
+class Run {
+public:
+    Run(const AcceptedMachine& machine, Devices& devices, const FirmwareHooks& hooks, const Options& options)
+        : name_{machine.table.name}, devices_{devices}, hooks_{hooks}, options_{options} {}
+
+    Ending fail(Ending ending, const Sentence& why) const {
+        static_cast<void>(os::write_all(2, Sentence{name_, ": ", why, "\n"}.view()));
+        return ending;
+    }
+    template <class... Words>
+    void say(const Words&... words) const {
+        os::print(Sentence{name_, ": ", words..., "\n"}.view());
+    }
+
+    Ending live(MachineInstance& instance, RealWorld& world, PropertyFiles& properties, Time begun) {
+        if (const auto opened = devices_.open(instance.machine()); !opened)
+            return fail(Ending::wrong_set_up, opened.error());
+        instance.read_properties_from(properties.store());
+        if (options_.browse != nullptr) instance.browse_in(options_.browse);
+        if (const auto configured = instance.configure(devices_.provided()); !configured)
+            return fail(Ending::wrong_set_up, configured.error());
+        if (hooks_.configured != nullptr) hooks_.configured(instance);
+
+        const Board& board = *instance.machine().board;
+        static os::ArmingReport arming{{board.only_warned.begin(), board.only_warned.end()}};
+        devices_.report(arming); // a device that is not fit was refused when it was opened
+        const auto armed = world.arm(arming, 2);
+        if (!armed) return Ending::refused_to_arm;
+        const Duration start_to_armed = machine_clock.now() - begun;
+        if (!world.start(*armed)) return fail(Ending::stopped_by_fault, world.refusal());
+        say("armed on board \"", board.name, "\", ", static_cast<std::int64_t>(arming.warnings()),
+            " warnings, ", start_to_armed.count() / 1000, " us after its start");
+        const bool time_is_over = supervise(instance, world);
+        return end(instance, world, properties, start_to_armed, time_is_over);
+    }
+
+private:
+    /// True when it ended because its time was over.
+    bool supervise(MachineInstance& instance, RealWorld& world) {
+        const Time begin = machine_clock.now();
+        std::array<StateMachineExecution::News, 16> told{};
+        for (int look = 1;; ++look) {
+            const Duration left = options_.time - (machine_clock.now() - begin);
+            if (left <= Duration::zero()) return true;
+            if (!world.supervise(std::min<Duration>(left, 100ms))) return false;
+            std::size_t n = 0;
+            for (const BehaviourRow& row : instance.machine().table.behaviours)
+                if (n < told.size()) tell_reason(instance, row.component, told[n++]);
+            if (look % 10 == 0) print_timing(instance);
+        }
+    }
+
+    Ending end(MachineInstance& instance, RealWorld& world, PropertyFiles& properties,
+               Duration start_to_armed, bool time_is_over) {
+        const int hung = world.stop();
+        const Sentence reason = !world.broken_contract().empty() ? world.broken_contract()
+                                : time_is_over                   ? Sentence{"its time is over"}
+                                                                 : instance.describe_stop();
+        say("stopped: ", reason);
+        for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
+            say("then: ", world.describe_breach(i));
+        tell_overruns(instance, name_);
+        if (properties.keeps())
+            if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
+                say(fault);
+        if (hooks_.ended != nullptr) hooks_.ended(instance, world);
+        if (options_.summary != nullptr)
+            if (const Ending written = write(instance, world, reason, start_to_armed);
+                written != Ending::well)
+                return written;
+        const bool as_asked = time_is_over || instance.stop_request().reason == StopReason::requested;
+        return as_asked && hung == 0 && world.breaches() == 0 ? Ending::well : Ending::stopped_by_fault;
+    }
+
+    Ending write(MachineInstance& instance, const RealWorld& world, const Sentence& reason,
+                 Duration start_to_armed) const {
+        RunFacts facts;
+        facts.realtime = os::kernel_is_realtime();
+        facts.page_faults_after_arming = world.page_faults_in_real_time_threads();
+        facts.wires = devices_.counters();
+        facts.stop_reason = reason;
+        facts.contracts_broken = world.breaches();
+        facts.start_to_armed = start_to_armed;
+        const std::size_t length = write_summary(instance, facts, summary_text);
+        if (length == 0 || length + 2 > summary_text.size())
+            return fail(Ending::wrong_set_up, Sentence{"the summary does not fit its buffer"});
+        summary_text[length] = '}';
+        summary_text[length + 1] = '\n';
+        if (!os::replace_file(options_.summary, {summary_text.data(), length + 2}))
+            return fail(Ending::wrong_set_up, Sentence{"the summary cannot be written to \"",
+                                                       std::string_view{options_.summary}, "\""});
+        return Ending::well;
+    }
+
+    /// One line: each real-time activity's worst response and its deadline, in us.
+    static void print_timing(const MachineInstance& instance) {
+        Sentence line{"timing"};
+        std::uint64_t misses = 0;
+        for (const Engine& engine : instance.engines()) {
+            if (!engine.plan().real_time) continue;
+            const EngineStatistics& seen = engine.statistics();
+            misses += seen.misses;
+            line.add(" ")
+                .add(engine.name())
+                .add("=")
+                .add(seen.longest_response.count() / 1000)
+                .add("/")
+                .add(engine.plan().deadline.count() / 1000)
+                .add("us");
+        }
+        line.add(" misses=").add(misses).add("\n");
+        os::print(line.view());
+    }
+
+    /// Says once why a state machine left its state, for each transition that gives a reason.
+    void tell_reason(const MachineInstance& instance, std::string_view component,
+                     StateMachineExecution::News& told) const {
+        const StateMachineExecution* machine = instance.state_machine_of(component);
+        if (machine == nullptr) return;
+        const StateMachineExecution::News news = machine->news();
+        if (news == told) return;
+        told = news;
+        const auto rows = machine->machine().table.transitions;
+        if (news.transition >= rows.size()) return; // to the final state: the machine's own stop says why
+        say("the ", component, " goes to \"", rows[news.transition].to,
+            "\": ", rows[news.transition].because);
+    }
+
+    std::string_view name_;
+    Devices& devices_;
+    const FirmwareHooks& hooks_;
+    const Options& options_;
+};
+
+} // namespace
+
+Ending run_firmware(const AcceptedMachine& machine, Devices& devices, int count, char** words,
+                    const FirmwareHooks& hooks) {
+    const Time begun = machine_clock.now() - os::own_processor_time(); // when the kernel began to load us
+    const Options options = parse(count, words, hooks.take != nullptr);
+    Run run{machine, devices, hooks, options};
+    if (!options.error.empty()) return run.fail(Ending::wrong_set_up, options.error);
+    if (hooks.take != nullptr)
+        if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())
+            return run.fail(Ending::wrong_set_up, refusal);
+    if (options.help) {
+        os::print(Sentence{"the firmware of the machine \"", machine.table.name, "\" for board \"",
+                           machine.board->name, "\"\n"}
+                      .view());
+        os::print(usage);
+        return Ending::well;
+    }
+    if (options.plan) {
+        describe_plan(machine, nullptr,
+                      [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
+        return Ending::well;
+    }
+    static MachineInstance instance{machine, machine_clock};
+    static PropertyFiles properties{options.properties != nullptr ? std::string_view{options.properties}
+                                                                  : machine.board->properties_directory};
+    static RealWorld world{instance};
+    return run.live(instance, world, properties, begun);
+}
+
+} // namespace tappet

@@ -1,0 +1,31 @@
+// The life of a firmware, the same for every machine: devices opened, armed, started, supervised, stopped,
+// summed up. What only one machine says stands in its table, its components, and, rarely, in hooks.
+#pragma once
+
+#include "drivers/hardware/devices.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/worlds/real_world.hpp"
+
+#include <span>
+
+namespace tappet {
+
+/// How a firmware ends.
+enum class Ending : int { well = 0, wrong_set_up = 2, refused_to_arm = 3, stopped_by_fault = 4 };
+
+/// What only one machine says. The supervisor's thread calls them: never between a fault and safe values.
+struct FirmwareHooks {
+    /// Words of the command line that the firmware does not know. The error is the refusal.
+    Sentence (*take)(std::span<char* const> words) = nullptr;
+    /// The machine is configured, nothing moves.
+    void (*configured)(MachineInstance& instance) = nullptr;
+    /// Everything stands, the summary is not written yet.
+    void (*ended)(MachineInstance& instance, const RealWorld& world) = nullptr;
+};
+
+/// Runs until it is told to end by a signal, or a fault ends it. `devices` and what the machine needs are in
+/// static memory; what it prints begins with the machine's name. Not real-time.
+[[nodiscard]] Ending run_firmware(const AcceptedMachine& machine, Devices& devices, int count, char** words,
+                                  const FirmwareHooks& hooks = {});
+
+} // namespace tappet

@@ -1,0 +1,10 @@
+// A machine's table, accepted for the host's board.
+#pragma once
+
+#include "kernel/machine/firmware.hpp"
+
+namespace TAPPET_NAMESPACE {
+
+tappet::AcceptedMachine on_host();
+
+} // namespace TAPPET_NAMESPACE

@@ -1,0 +1,101 @@
+// The two runs of a machine with its plant in one process.
+#include "kernel/base/digest.hpp"
+#include "kernel/os/sleep.hpp"
+#include "toolchain/machine/host.hpp"
+
+namespace tappet {
+
+std::uint64_t digest_of(const MachineInstance& instance, const Plant& plant) {
+    Digest digest;
+    digest.add(instance.observation().event_log_digest());
+    digest.add(plant.digest());
+    return digest.value();
+}
+
+VirtualRun::VirtualRun(const AcceptedMachine& machine, Plant& plant, std::uint64_t seed)
+    : accepted_{machine}, devices_{plant, seed} {
+    machine_.emplace(accepted_, clock_);
+}
+
+std::expected<void, Sentence> VirtualRun::start() {
+    if (auto opened = devices_.open(accepted_); !opened) return opened;
+    return start_machine();
+}
+
+std::expected<void, Sentence> VirtualRun::start_again() {
+    machine_.emplace(accepted_, clock_);
+    seen_steps_ = 0;
+    return start_machine();
+}
+
+std::expected<void, Sentence> VirtualRun::start_machine() {
+    instance().read_properties_from(files_.store());
+    if (auto configured = instance().configure(devices_.provided()); !configured)
+        return std::unexpected(configured.error());
+    machine_->world.add({this,
+                         [](void* self) {
+                             auto& run = *static_cast<VirtualRun*>(self);
+                             // Whenever the machine has run it may have put something on the wires: the plant
+                             // gets it at once.
+                             return run.seen_steps_ != run.world().steps() ? run.clock_.now()
+                                                                           : run.devices_.next();
+                         },
+                         [](void* self, Time now) {
+                             auto& run = *static_cast<VirtualRun*>(self);
+                             run.seen_steps_ = run.world().steps();
+                             run.devices_.advance(now);
+                         }});
+    if (const Sentence refusal = machine_->world.start(); !refusal.empty()) return std::unexpected(refusal);
+    return {};
+}
+
+bool VirtualRun::run_until(const std::function<bool()>& done, Duration limit) {
+    for (const Time end = clock_.now() + limit; !done();)
+        if (clock_.now() >= end || !run_for(1ms)) return false;
+    return true;
+}
+
+RealRun::RealRun(const AcceptedMachine& machine, Plant& plant, std::uint64_t seed)
+    : plant_{plant}, devices_{plant, seed}, instance_{machine, clock_}, world_{instance_} {}
+
+RealRun::~RealRun() { static_cast<void>(stop()); }
+
+std::expected<void, Sentence> RealRun::start(int file) {
+    if (auto opened = devices_.open(instance_.machine()); !opened) return opened;
+    instance_.read_properties_from(files_.store());
+    if (auto configured = instance_.configure(devices_.provided()); !configured)
+        return std::unexpected(configured.error());
+    const Board& board = *instance_.machine().board;
+    os::ArmingReport arming{{board.only_warned.begin(), board.only_warned.end()}};
+    const auto armed = world_.arm(arming, file);
+    if (!armed) return std::unexpected(Sentence{"the machine refuses to arm; the reasons stand above"});
+    plant_plan_ = {"plant", plant_priority, -1, plant_stack_, &RealRun::live, this};
+    if (auto started = plant_thread_.start(plant_plan_); !started) return started;
+    running_ = true;
+    if (!world_.start(*armed)) return std::unexpected(world_.refusal());
+    return {};
+}
+
+void RealRun::live(void* self) noexcept { static_cast<RealRun*>(self)->follow(); }
+
+void RealRun::follow() {
+    while (!plant_ends_.load(std::memory_order_acquire)) {
+        const Time now = clock_.now();
+        devices_.advance(now);
+        done_.store(plant_.is_done(), std::memory_order_release);
+        static_cast<void>(plant_waiter_.wait(now + plant_period));
+    }
+}
+
+int RealRun::stop() {
+    if (!running_) return 0;
+    running_ = false;
+    const int hung = world_.stop();
+    os::sleep_for(coming_to_rest);
+    plant_ends_.store(true, std::memory_order_release);
+    plant_waiter_.wake();
+    plant_thread_.join();
+    return hung;
+}
+
+} // namespace tappet

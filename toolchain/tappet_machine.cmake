@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+# tappet_machine(<name>
+#     TABLE machine.hpp            holds <namespace>::table
+#     BOARDS bench ipc-x86_64 ..   boards of Tappet by name, or headers of one's own: boards/my_box.hpp holds tappet::board::my_box
+#     [BINDINGS bindings.hpp]      holds <namespace>::bindings::<board> for each board that is not simulated
+#     [PLANT plant.hpp]            holds <namespace>::Plant, made from a seed: the other end of the wires
+#     [PLANT_SOURCES ..]           its own, and
+#     [PLANT_LIBRARIES ..]         what it stands on
+#     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks
+#     [NAMESPACE a::b]             where all of that stands; <name> unless said
+#     [LIBRARIES ..])              what its components need beyond Tappet
+#
+# makes <name>, the machine with its plant in one process on the host; <name>_host, the same as a library for tests, with
+# <namespace>::on_host(), the accepted machine; for each board, the static firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box;
+# and, for the bench, <name>-plant, the plant at the other end of its wires.
+include_guard(GLOBAL)
+
+# The linker's own: llvm-strip refuses the relocations of a static program.
+find_program(TAPPET_STRIP NAMES x86_64-linux-gnu-strip strip REQUIRED)
+set(TAPPET_MACHINE_SOURCES "${CMAKE_CURRENT_LIST_DIR}/machine")
+cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH TAPPET_ROOT)
+
+# A header as a program includes it: what lies in Tappet's own tree from its root, so that another clone compiles the same.
+function(tappet_header path result)
+    cmake_path(IS_PREFIX TAPPET_ROOT "${path}" NORMALIZE inside)
+    if(inside)
+        cmake_path(RELATIVE_PATH path BASE_DIRECTORY "${TAPPET_ROOT}" OUTPUT_VARIABLE path)
+    endif()
+    set(${result} "${path}" PARENT_SCOPE)
+endfunction()
+
+# The header and the name in C++ of a board.
+function(tappet_board board header symbol)
+    if(board MATCHES "\\.hpp$")
+        cmake_path(ABSOLUTE_PATH board NORMALIZE OUTPUT_VARIABLE path)
+        cmake_path(GET board STEM name)
+    else()
+        set(path "${TAPPET_ROOT}/board/${board}/board.hpp")
+        set(name "${board}")
+    endif()
+    if(NOT EXISTS "${path}")
+        message(FATAL_ERROR "tappet_machine: there is no board \"${board}\": no file ${path}; name one of Tappet's, or a header of your own")
+    endif()
+    string(REPLACE "-" "_" name "${name}")
+    tappet_header("${path}" path)
+    set(${header} "${path}" PARENT_SCOPE)
+    set(${symbol} "${name}" PARENT_SCOPE)
+endfunction()
+
+function(tappet_machine name)
+    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;NAMESPACE" "BOARDS;LIBRARIES;PLANT_SOURCES;PLANT_LIBRARIES")
+    if(machine_UNPARSED_ARGUMENTS OR NOT machine_TABLE OR NOT machine_BOARDS)
+        message(FATAL_ERROR "tappet_machine(${name} ..): say TABLE <header> and BOARDS <board>..; \"${machine_UNPARSED_ARGUMENTS}\" is unknown")
+    endif()
+    if(NOT machine_NAMESPACE)
+        set(machine_NAMESPACE "${name}")
+    endif()
+
+    # What its table stands on, for tests and for programs of its own.
+    add_library(${name}_table INTERFACE)
+    target_link_libraries(${name}_table INTERFACE tappet_framework ${machine_LIBRARIES})
+    set(definitions TAPPET_NAMESPACE=${machine_NAMESPACE}) # of each program: one that looks at two machines links two tables
+    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS)
+        if(machine_${part})
+            cmake_path(ABSOLUTE_PATH machine_${part} NORMALIZE OUTPUT_VARIABLE path)
+            if(NOT EXISTS "${path}")
+                message(FATAL_ERROR "tappet_machine(${name} ..): ${part} names ${path}, which does not exist")
+            endif()
+            tappet_header("${path}" path)
+            list(APPEND definitions "TAPPET_${part}_HEADER=\"${path}\"")
+        endif()
+    endforeach()
+
+    if(machine_PLANT)
+        add_library(${name}_host STATIC "${TAPPET_MACHINE_SOURCES}/on_host.cpp" ${machine_PLANT_SOURCES})
+        target_compile_definitions(${name}_host PRIVATE ${definitions})
+        target_link_libraries(
+            ${name}_host
+            PUBLIC ${name}_table tappet_host ${machine_PLANT_LIBRARIES}
+            PRIVATE tappet_warnings)
+        add_executable(${name} "${TAPPET_MACHINE_SOURCES}/host_main.cpp")
+        target_compile_definitions(${name} PRIVATE ${definitions})
+        target_link_libraries(${name} PRIVATE ${name}_host tappet_warnings)
+    endif()
+
+    foreach(board IN LISTS machine_BOARDS)
+        tappet_board("${board}" header symbol)
+        cmake_path(GET board STEM board_name)
+        set(firmware "${name}-${board_name}")
+        if(TARGET tappet_sealed_heap)
+            add_executable(${firmware} "${TAPPET_MACHINE_SOURCES}/firmware_main.cpp")
+            target_compile_options(${firmware} PRIVATE -ffunction-sections -fdata-sections)
+            target_link_libraries(${firmware} PRIVATE tappet_sealed_heap)
+            target_link_options(${firmware} PRIVATE -static -Wl,--gc-sections)
+            set(stripped "$<TARGET_FILE:${firmware}>.stripped")
+            add_custom_command(
+                TARGET ${firmware} POST_BUILD
+                COMMAND "${TAPPET_STRIP}" -o "${stripped}" "$<TARGET_FILE:${firmware}>"
+                COMMAND size "${stripped}"
+                COMMENT "${firmware}: static memory, without symbols"
+                VERBATIM)
+        else() # no static binary has a sanitizer, but the effects of its functions are looked at
+            string(APPEND firmware "-effects")
+            add_library(${firmware} OBJECT EXCLUDE_FROM_ALL "${TAPPET_MACHINE_SOURCES}/firmware_main.cpp")
+            if(TAPPET_SANITIZE STREQUAL realtime)
+                set_target_properties(${firmware} PROPERTIES EXCLUDE_FROM_ALL FALSE)
+            endif()
+        endif()
+        set(on_board ${definitions} TAPPET_BOARD=${symbol} "TAPPET_BOARD_HEADER=\"${header}\"")
+        if(machine_PLANT AND board_name STREQUAL bench AND TARGET tappet_sealed_heap)
+            add_executable(${name}-plant "${TAPPET_MACHINE_SOURCES}/plant_main.cpp" ${machine_PLANT_SOURCES})
+            target_compile_definitions(${name}-plant PRIVATE ${on_board})
+            target_link_libraries(${name}-plant PRIVATE ${name}_table tappet_bench_plant ${machine_PLANT_LIBRARIES} tappet_warnings)
+            target_link_options(${name}-plant PRIVATE -static)
+        endif()
+        target_compile_definitions(${firmware} PRIVATE ${on_board})
+        target_link_libraries(${firmware} PRIVATE ${name}_table tappet_firmware tappet_warnings)
+    endforeach()
+endfunction()
