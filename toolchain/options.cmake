@@ -8,6 +8,10 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 add_library(tappet_options INTERFACE)
+target_include_directories(tappet_options INTERFACE "${PROJECT_SOURCE_DIR}")
+target_compile_features(tappet_options INTERFACE cxx_std_23)
+# A running machine says which binary it is.
+target_link_options(tappet_options INTERFACE -Wl,--build-id=sha1)
 
 # One seed gives one run, bit for bit, with both compilers: the baseline instruction set, and no a*b+c folded into
 # one rounding where one compiler sees the chance and the other does not.

@@ -62,10 +62,11 @@ const std::vector<Row> house{
 
     {"toolchain/machine", {"board", "drivers/plant"}},
     {"toolchain/tools/bench", {}},
+    {"toolchain/tools/front", {"kernel/base"}},
     {"toolchain/tools",   {"apps"}},
     {"toolchain",         {}},
     {"apps/carpet_loom/demo", {"apps", "toolchain/tools/bench"}},
-    {"tests",             {"apps", "toolchain/machine", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools", "toolchain/tools/browser"}},
+    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools", "toolchain/tools/browser"}},
 };
 // clang-format on
 

@@ -16,11 +16,11 @@ TAPPET_HEAP_ARENA(tappet::board::TAPPET_BOARD.heap_bytes)
 
 int main(int count, char** words) {
     static tappet::Hardware<TAPPET_NAMESPACE::table> hardware;
-    constexpr tappet::FirmwareHooks hooks = {
 #ifdef TAPPET_HOOKS_HEADER
-        TAPPET_NAMESPACE::firmware_hooks
+    constexpr tappet::FirmwareHooks hooks = TAPPET_NAMESPACE::firmware_hooks;
+#else
+    constexpr tappet::FirmwareHooks hooks;
 #endif
-    };
     using Machine = tappet::Firmware<TAPPET_NAMESPACE::table, tappet::board::TAPPET_BOARD
 #ifdef TAPPET_BINDINGS_HEADER
                                      ,

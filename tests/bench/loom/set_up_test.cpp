@@ -108,7 +108,7 @@ TEST(LoomSetUp, refuses_to_arm_while_real_time_threads_are_throttled) {
 }
 
 TEST(LoomSetUp, arms_without_its_modbus_device_but_never_gets_ready_and_says_why) {
-    Loom loom{"--modbus-port 0"};
+    Loom loom{"--stop-servers-at 0s/1h"};
     EXPECT_TRUE(loom.says("waits_for=oil-pressure")) << loom.machine->output();
     std::this_thread::sleep_for(2s);
     EXPECT_EQ(loom.last("state"), "preparing");

@@ -7,7 +7,7 @@
 
 namespace tappet::probe {
 
-inline constexpr auto bench_probe =
+inline constexpr auto table =
     machine("bench-probe", components(component<Bystander>("bystander"), component<Culprit>("culprit")),
             activities(activity("work", every(1ms), runs("bystander", "culprit"), budget(100us))),
             connections(), reactions(), behaviours());

@@ -1,0 +1,77 @@
+// Projects from templates: what a choice leaves out is out, names that no tool takes are refused, and nothing
+// that is there is written over.
+#include "toolchain/tools/front/project.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace tappet::front {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+namespace fs = std::filesystem;
+
+struct Folder : testing::Test {
+    fs::path before = fs::current_path();
+    fs::path folder;
+    Folder() {
+        std::string pattern = testing::TempDir() + "tappet-front-XXXXXX";
+        folder = ::mkdtemp(pattern.data());
+        fs::current_path(folder);
+    }
+    ~Folder() override {
+        fs::current_path(before);
+        fs::remove_all(folder);
+    }
+};
+
+TEST(Template, keeps_the_lines_of_a_choice_and_fills_its_names_in) {
+    constexpr std::string_view text = "@can bus @NAME@\n@nocan no bus\n@modbus server\nalways \"@TITLE@\"\n";
+    EXPECT_EQ(filled(text, {"bottle_filler", true, false}), "bus bottle_filler\nalways \"bottle-filler\"\n");
+    EXPECT_EQ(filled(text, {"press", false, true}), "no bus\nserver\nalways \"press\"\n");
+}
+
+TEST_F(Folder, gets_a_project_of_about_a_hundred_and_twenty_lines_of_its_own_without_a_tag_left) {
+    ASSERT_THAT(write_project(TAPPET_TEMPLATE, {"press", true, true}), IsEmpty());
+    std::size_t lines = 0;
+    for (const auto& entry : fs::recursive_directory_iterator{"press"}) {
+        std::ifstream file{entry.path()};
+        for (std::string line; std::getline(file, line); ++lines) {
+            EXPECT_THAT(line, Not(HasSubstr("@"))) << entry.path();
+            EXPECT_LE(line.size(), 140u) << entry.path();
+        }
+    }
+    EXPECT_GT(lines, 100u);
+    EXPECT_EQ(machine_of("press/CMakeLists.txt"), "press");
+}
+
+TEST_F(Folder, that_is_there_is_not_written_over) {
+    fs::create_directory("press");
+    EXPECT_THAT(write_project(TAPPET_TEMPLATE, {"press"}), HasSubstr("\"press\" is there already"));
+}
+
+TEST_F(Folder, gets_no_project_of_a_name_that_no_tool_takes) {
+    for (const char* name : {"", "9lives", "Press", "a b", "a-b", "_a", "a__b", "../x", "tappet"})
+        EXPECT_THAT(write_project(TAPPET_TEMPLATE, {name}), Not(IsEmpty())) << name;
+    EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST_F(Folder, without_a_machine_says_where_to_go) {
+    EXPECT_THAT(machine_of("CMakeLists.txt").error(), HasSubstr("tappet new NAME"));
+    std::ofstream{"CMakeLists.txt"} << "project(x)\n";
+    EXPECT_THAT(machine_of("CMakeLists.txt").error(), HasSubstr("names no tappet_machine(..)"));
+}
+
+TEST(Suggestion, names_the_command_that_was_meant) {
+    EXPECT_EQ(suggestion("biuld", {"new", "build"}), "; did you mean build?");
+    EXPECT_EQ(suggestion("xyzzy", {"new", "build"}), "");
+}
+
+} // namespace
+} // namespace tappet::front

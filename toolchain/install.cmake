@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+# What a machine of one's own needs: the framework's sources, which are compiled with each machine, the foreign sources
+# that no package has, and the programs beside a machine. Found by find_package(Tappet), or by add_subdirectory(<clone>).
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
+
+set(tappet_share "${CMAKE_INSTALL_DATADIR}/tappet")
+install(FILES CMakeLists.txt LICENSE DESTINATION "${tappet_share}")
+install(DIRECTORY kernel drivers board DESTINATION "${tappet_share}" PATTERN "*.md" EXCLUDE)
+install(DIRECTORY toolchain DESTINATION "${tappet_share}" PATTERN "*.md" EXCLUDE PATTERN tools EXCLUDE)
+install(DIRECTORY toolchain/tools/front/template DESTINATION "${tappet_share}")
+foreach(library IN ITEMS libmodbus/src libmodbus/configure.ac pugixml/src)
+    cmake_path(GET library PARENT_PATH folder)
+    if(IS_DIRECTORY "${TAPPET_CACHE}/${library}")
+        install(DIRECTORY "${TAPPET_CACHE}/${library}" DESTINATION "${tappet_share}/foreign/${folder}")
+    else()
+        install(FILES "${TAPPET_CACHE}/${library}" DESTINATION "${tappet_share}/foreign/${folder}")
+    endif()
+endforeach()
+# The bench's kernels, unpacked: without them a machine runs on the host only.
+install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign")
+
+# They find each other beside themselves.
+install(TARGETS tappet tappet-bench tappet-browse bench-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
+install(CODE "
+    set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
+    file(MAKE_DIRECTORY \"\${bin}\")
+    foreach(program IN ITEMS tappet tappet-browse tappet-bench)
+        file(CREATE_LINK \"../${CMAKE_INSTALL_LIBDIR}/tappet/\${program}\" \"\${bin}/\${program}\" SYMBOLIC)
+    endforeach()")
+
+configure_package_config_file(
+    toolchain/TappetConfig.cmake.in "${PROJECT_BINARY_DIR}/TappetConfig.cmake"
+    INSTALL_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/Tappet"
+    PATH_VARS tappet_share CMAKE_INSTALL_LIBDIR)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/TappetConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/TappetConfig.cmake" "${PROJECT_BINARY_DIR}/TappetConfigVersion.cmake"
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/Tappet")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME tappet)
+set(CPACK_PACKAGE_CONTACT "the developers of Tappet <tappet@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "machine controllers on real-time Linux: one table, one static binary")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+# What compiles a machine, and what boots it on the bench.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS
+    "g++, cmake, ninja-build, libeigen3-dev, libgpiod-dev (>= 2), libdouble-conversion-dev, libedit-dev, libbsd-dev, musl-dev, libgtest-dev, libgmock-dev")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "qemu-system-x86")
+include(CPack)
