@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What a machine of one's own needs: the framework's sources, which are compiled with each machine, the foreign sources
 # that no package has, and the programs beside a machine. Found by find_package(Tappet), or by add_subdirectory(<clone>).
+set(CMAKE_INSTALL_LIBDIR lib) # not an architecture's own: the programs find each other and the sources from here
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")

@@ -7,6 +7,7 @@
 //     // refused: <the sentence, the same from both compilers; # stands for any number>
 //     // refused by clang: <a part of the first error, or of the line it points at: the function that is not
 //     real-time>
+//     // refused by name: <a name that both compilers show beside the faulty line>
 // --write prints the sentences instead of comparing them.
 #include <algorithm>
 #include <array>
@@ -46,6 +47,7 @@ struct Case {
     std::filesystem::path file;
     std::string expected;
     bool effects = false;
+    bool named = false;
     std::string fault; ///< empty: as expected
     std::string sentence;
 };
@@ -127,12 +129,15 @@ std::vector<Case> read_cases(const Options& options, std::string& fault) {
         std::string line;
         std::getline(file, line);
         std::getline(file, line);
-        constexpr std::string_view refused = "// refused: ", by_clang = "// refused by clang: ";
+        constexpr std::string_view refused = "// refused: ", by_clang = "// refused by clang: ",
+                                   by_name = "// refused by name: ";
         Case each;
         each.file = entry.path();
         each.effects = line.starts_with(by_clang);
         if (each.effects)
             each.expected = line.substr(by_clang.size());
+        else if ((each.named = line.starts_with(by_name)))
+            each.expected = line.substr(by_name.size());
         else if (line.starts_with(refused))
             each.expected = line.substr(refused.size());
         else
@@ -168,7 +173,14 @@ void judge(Case& each, const Options& options, const std::string& headers) {
     each.sentence = each.effects ? error : sentence_of(error);
     if (output.status == 0)
         each.fault = "it compiles";
-    else if (each.effects && (error + source).find(each.expected) == std::string::npos)
+    else if (each.named) {
+        const std::string place = each.file.filename().string() + ":";
+        if (output.text.find(each.expected) == std::string::npos ||
+            output.text.find(place) == std::string::npos)
+            each.fault = "the name or the faulty line is not shown";
+        else if (lines > most_script_lines)
+            each.fault = std::to_string(lines) + " lines of output";
+    } else if (each.effects && (error + source).find(each.expected) == std::string::npos)
         each.fault = "the first error does not name the function";
     else if (!each.effects && each.sentence.empty())
         each.fault = "the first error is no sentence of ours:\n" + output.text.substr(0, 4000);

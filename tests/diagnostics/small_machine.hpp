@@ -52,8 +52,8 @@ struct Shaft {
     void on_index(double) noexcept TAPPET_REALTIME {}
     void clear() noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
-        return facets(input<&Shaft::measured>("measured", "deg", "by the encoder"),
-                      input<&Shaft::reference>("reference", "deg", "where it shall be", optional),
+        return facets(input<&Shaft::measured>("measured", "", "by the encoder"),
+                      input<&Shaft::reference>("reference", "", "where it shall be", optional),
                       input<&Shaft::samples>("samples", "", "raw", optional),
                       output<&Shaft::speed>("speed", "rpm", "filtered"),
                       event<&Shaft::window>("window", "the weft may be released"),

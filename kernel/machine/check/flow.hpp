@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
+#include "kernel/machine/check/units.hpp"
 
 namespace tappet::checks {
 
@@ -33,6 +34,20 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
         return of_connection(row, ": \"", row.from, "\" is of type ", from.type->name, " but \"", row.to,
                              "\" is of type ", to.type->name, "; connect ports of one type");
     return {};
+}
+
+/// An end that states no unit takes any: a generic component cannot know.
+constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, const Facet& to) {
+    if (from.unit == to.unit || from.unit.empty() || to.unit.empty()) return {};
+    const Unit source = parse_unit(from.unit), target = parse_unit(to.unit);
+    const bool both_known = source.known && target.known;
+    if (both_known && source.same(target)) return {};
+    return of_connection(
+        row, ": \"", row.from, "\" is in ", from.unit, " but \"", row.to, "\" in ", to.unit,
+        both_known && source.same_kind(target)
+            ? ", of the same kind and another size; convert it in one of the two components, "
+              "or state the same unit in both maps"
+            : "; connect what is of one unit, or correct the unit of one of them");
 }
 
 /// A number must be one that the port's type can hold exactly, but for the rounding of a float.
@@ -136,6 +151,7 @@ constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
             return of_connection(row, ": ", fault);
         const Facet& to = facet_at(m, link.to);
         if (Sentence fault = check_direction(row, facet_at(m, link.from), to); !fault.empty()) return fault;
+        if (Sentence fault = check_units(row, facet_at(m, link.from), to); !fault.empty()) return fault;
         if (Sentence fault =
                 check_policies(m, row, to, r.activity[link.from.component], r.activity[link.to.component]);
             !fault.empty())

@@ -2,6 +2,8 @@
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/instance/builder.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
 std::expected<Standing, Sentence> MachineInstance::configure(std::span<const ProvidedDevice> devices) {
@@ -61,6 +63,8 @@ Sentence MachineInstance::describe_stop() const {
 }
 
 Sentence MachineInstance::save_properties(std::optional<Standing> standing) {
+    const auto in_a_file = [](const ComponentRow& row) { return row.has_properties_file; };
+    if (std::ranges::none_of(machine().table.components, in_a_file)) return {};
     if (!standing)
         return Sentence{"the properties are not saved: a thread that hangs may still change them; the files "
                         "are as they were"};

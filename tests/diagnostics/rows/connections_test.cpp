@@ -37,6 +37,8 @@ constexpr Fault end_faults[] = {
      R"(loom: connection "shaft.speed" -> "shaft.reference": a component's own output feeds its own input; add delayed, or keep the value in the component)"},
     {"connection_types", [](Table& m) { m.put(data("encoder.turns", "shaft.measured")); },
      R"(loom: connection "encoder.turns" -> "shaft.measured": "encoder.turns" is of type int but "shaft.measured" is of type double; connect ports of one type)"},
+    {"connection_units", [](Table& m) { m.put(data("encoder.angle", "tension.speed")); },
+     R"(loom: connection "encoder.angle" -> "tension.speed": "encoder.angle" is in deg but "tension.speed" in rpm; connect what is of one unit, or correct the unit of one of them)"},
     {"connection_two_writers",
      [](Table& m) { m.connections.insert(m.connections.begin(), data("tension.torque", "shaft.reference")); },
      R"(loom: connection "weft.reference" -> "shaft.reference": "shaft.reference" is written by "tension.torque" already; an input has one writer: remove one row, or use a buffer)"},

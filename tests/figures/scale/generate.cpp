@@ -42,7 +42,7 @@ struct Unit$ {
     static constexpr auto interface() {
         using namespace tappet;
         return facets(input<&Unit$::position>("position", "deg", "where the one before it is"),
-                      input<&Unit$::load>("load", "N", "of the one before that"),
+                      input<&Unit$::load>("load", "deg", "of the one before that"),
                       input<&Unit$::common>("common", "", "what all agree on"),
                       input<&Unit$::spare>("spare", "", "what another says of it"),
                       output<&Unit$::follow>("follow", "deg", "where it goes"),

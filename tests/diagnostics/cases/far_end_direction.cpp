@@ -1,0 +1,9 @@
+// A plant sets a line that the machine drives.
+// refused by name: this_name_is_not_in_the_map_or_goes_the_other_way
+#include "drivers/gpio/far_end.hpp"
+
+using namespace tappet;
+
+constexpr auto lines = gpio::line_map(gpio::sensor("start"), gpio::output("lamp"));
+
+void turn_on(gpio::FarEnd<lines>& far) { far.set("lamp", true); }

@@ -1,0 +1,45 @@
+// Units of measurement: which two mean the same, whichever way they are spelled, and which do not.
+#include "kernel/machine/check/units.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::checks {
+namespace {
+
+enum class Are { same, of_another_size, of_another_kind, unknown };
+
+constexpr Are compare(std::string_view a, std::string_view b) {
+    const Unit one = parse_unit(a), other = parse_unit(b);
+    if (!one.known || !other.known) return Are::unknown;
+    return one.same(other) ? Are::same : one.same_kind(other) ? Are::of_another_size : Are::of_another_kind;
+}
+
+TEST(Units, that_mean_the_same_are_the_same_however_they_are_spelled) {
+    EXPECT_EQ(compare("N m", "m.N"), Are::same);
+    EXPECT_EQ(compare("rpm", "rev/min"), Are::same);
+    EXPECT_EQ(compare("mm/s2", "mm/s/s"), Are::same);
+    EXPECT_EQ(compare("kPa", "N/m2/1"), Are::of_another_size);
+    EXPECT_EQ(compare("Pa", "N/m2"), Are::same);
+    EXPECT_EQ(compare("Hz", "1/s"), Are::same);
+    EXPECT_EQ(compare("W", "J/s"), Are::same);
+    EXPECT_EQ(compare("V.A", "W"), Are::same);
+}
+
+TEST(Units, of_another_size_are_told_from_those_of_another_kind) {
+    EXPECT_EQ(compare("l/min", "ml/s"), Are::of_another_size);
+    EXPECT_EQ(compare("deg", "rad"), Are::of_another_size);
+    EXPECT_EQ(compare("ms", "s"), Are::of_another_size);
+    EXPECT_EQ(compare("bar", "kPa"), Are::of_another_size);
+    EXPECT_EQ(compare("rpm", "deg/s"), Are::of_another_size);
+    EXPECT_EQ(compare("rpm", "mm/s"), Are::of_another_kind);
+    EXPECT_EQ(compare("degC", "K"), Are::of_another_kind) << "no factor leads from one to the other";
+    EXPECT_EQ(compare("min", "m"), Are::of_another_kind) << "a minute is no metre with a prefix";
+}
+
+TEST(Units, that_cannot_be_taken_apart_are_words) {
+    for (const std::string_view word : {"picks", "m/", "/s", "m//s", "m (s)", "xm", "m0", "2"})
+        EXPECT_FALSE(parse_unit(word).known) << word;
+}
+
+} // namespace
+} // namespace tappet::checks
