@@ -19,6 +19,9 @@ foreach(library IN ITEMS libmodbus/src libmodbus/configure.ac pugixml/src)
         install(FILES "${TAPPET_CACHE}/${library}" DESTINATION "${tappet_share}/foreign/${folder}")
     endif()
 endforeach()
+# What to read first: the framework's page and the smallest whole machine.
+install(FILES README.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
+install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet/examples")
 # The bench's kernels, unpacked: without them a machine runs on the host only.
 install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign")
 

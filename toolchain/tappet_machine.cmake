@@ -91,6 +91,12 @@ function(tappet_machine name)
     endif()
 
     foreach(board IN LISTS machine_BOARDS)
+        if(board STREQUAL host) # its program is the one above: the host's devices are simulated
+            if(NOT machine_PLANT)
+                message(FATAL_ERROR "tappet_machine(${name} ..): the host has no wires; say PLANT <header>, what stands at their other end")
+            endif()
+            continue()
+        endif()
         tappet_board("${board}" header symbol)
         cmake_path(GET board STEM board_name)
         set(firmware "${name}-${board_name}")
@@ -109,7 +115,7 @@ function(tappet_machine name)
         else() # no static binary has a sanitizer, but the effects of its functions are looked at
             string(APPEND firmware "-effects")
             add_library(${firmware} OBJECT EXCLUDE_FROM_ALL "${mains}/firmware_main.cpp")
-            if(TAPPET_SANITIZE STREQUAL realtime)
+            if(TAPPET_SANITIZE STREQUAL realtime AND board STREQUAL bench) # a board changes no function
                 set_target_properties(${firmware} PROPERTIES EXCLUDE_FROM_ALL FALSE)
             endif()
         endif()

@@ -21,6 +21,9 @@ public:
     Plant(const loom::Settings& settings, std::uint64_t seed) : settings_{settings}, seed_{seed} {}
 
     Time move(Time now) override;
+    [[nodiscard]] std::optional<Time> next_on_wires() const override {
+        return loom().next_timer() + origin_.value_or(Duration::zero());
+    }
     [[nodiscard]] std::string_view usage() const override { return loom::usage(); }
     bool take_option(std::string_view option, std::string_view value, Sentence& fault) override;
     [[nodiscard]] bool is_done() const override {

@@ -14,11 +14,12 @@ inline constexpr Duration knife_dead_time = 15ms; // from its line's edge to the
 inline constexpr auto cams = cam_table(600_rpm, cam("cut", at(0_deg), dead_time(knife_dead_time)));
 static_assert(check(cams.view()).empty(), "the cam table is refused: check(cams.view()) is the sentence");
 
-/// Real-time, in an activity that each sample of the wheel wakes.
+/// Real-time, in an activity that each sample of the wheel wakes, and its silence.
 struct Measuring {
     Input<std::int64_t> position;
+    Input<bool> knife_allowed;
     Output<std::int64_t> cuts;
-    Event<> cut_now, knife_turned;
+    Event<> cut_now, knife_turned, wheel_lost;
     Timer cam_timer, knife_timer;
     Property<double> length_mm{500.0};
 
@@ -29,22 +30,38 @@ struct Measuring {
         estimator_ = ShaftEstimator{wheel};
         return check(wheel);
     }
-    void start(const Cycle&) noexcept TAPPET_REALTIME { cuts.write(0); }
+    /// A length that was begun before is not known any more: the first piece is scrap.
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        known_ = false;
+        cuts.write(0);
+        knife_turned.emit();
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { knife_turned.emit(); }
+
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         std::int64_t code = 0;
-        if (position.read(code) == Flow::fresh) {
-            // The wheel counts in 16 bits, whatever the length is.
-            travelled_ += static_cast<std::int16_t>(code - (travelled_ + offset_));
-            if (!known_) offset_ = code - travelled_;
-            known_ = true;
-            const std::int64_t of_length = (travelled_ % codes_ + codes_) % codes_;
-            estimator_.sample(static_cast<std::uint32_t>(of_length), position.stamp());
+        const Flow flow = position.read(code);
+        if (flow == Flow::stale && known_) {
+            known_ = false;
+            cam_timer.cancel();
+            wheel_lost.emit();
         }
+        if (flow != Flow::fresh) return;
+        if (!known_) {
+            last_ = code;
+            travelled_ = 0; // the estimator begins anew after the gap
+        }
+        known_ = true;
+        travelled_ += static_cast<std::int16_t>(code - last_); // the wheel counts in 16 bits
+        last_ = code;
+        estimator_.sample(static_cast<std::uint32_t>((travelled_ % codes_ + codes_) % codes_),
+                          position.stamp());
         schedule_.update(estimator_, cycle.now);
         cam_timer.arm(schedule_.next_due());
     }
     void fire(const Cycle& cycle) noexcept TAPPET_REALTIME {
         schedule_.advance(cycle.now, [this, &cycle](const CamEvent&) noexcept TAPPET_REALTIME {
+            if (!knife_allowed.get()) return; // the web is moved by hand
             cut_now.emit();
             cuts.write(cuts.last() + 1);
             knife_timer.arm(cycle.now + 2 * knife_dead_time);
@@ -52,15 +69,20 @@ struct Measuring {
         cam_timer.arm(schedule_.next_due());
     }
     void release(const Cycle&) noexcept TAPPET_REALTIME { knife_turned.emit(); }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { known_ = false; }
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        if (codes_ == 0 || !proposal.changes(length_mm)) return {};
+        return Sentence{"the length is taken over at a start; write it into the table"};
+    }
 
     static constexpr auto interface() {
         return facets(
             input<&Measuring::position>("position", "", "of the wheel, in codes"),
+            input<&Measuring::knife_allowed>("knife_allowed", "", "the line moves the web itself"),
             output<&Measuring::cuts>("cuts", "", "since start"),
             event<&Measuring::cut_now>("cut_now", "the knife must be driven now to cut at the length",
                                        heard_by(1)),
             event<&Measuring::knife_turned>("knife_turned", "the knife has cut and may rest", heard_by(1)),
+            event<&Measuring::wheel_lost>("wheel_lost", "nobody knows where the web is"),
             timer<&Measuring::cam_timer, &Measuring::fire>("cam_timer", "the next cut"),
             timer<&Measuring::knife_timer, &Measuring::release>("knife_timer", "the end of the knife's turn"),
             property<&Measuring::length_mm>("length_mm", "mm", "from cut to cut", range(100, 2000)));
@@ -69,7 +91,7 @@ struct Measuring {
 private:
     ShaftEstimator estimator_{ShaftProperties{}};
     CamSchedule<cams.size()> schedule_{cams};
-    std::int64_t codes_ = 0, travelled_ = 0, offset_ = 0;
+    std::int64_t codes_ = 0, travelled_ = 0, last_ = 0;
     bool known_ = false;
 };
 

@@ -64,9 +64,14 @@ public:
     }
 
     // For tests: what people and faults do.
-    void press_emergency_stop(bool pressed) { emergency_ = pressed; }
+    void press_emergency_stop(bool pressed) {
+        emergency_ = pressed;
+        cut_before_ = false; // the piece that lies there is scrap
+    }
     void press_start(Time at) { start_at_ = at; }
     void silence_drive() { can.send_every("feed", Duration::zero()); }
+    void silence_wheel() { can.send_every("wheel", Duration::zero()); }
+    void pull_web(double mm) { web_mm_ += mm; }
     [[nodiscard]] bool web_stands() const { return speed_ == 0.0; }
     [[nodiscard]] std::int64_t pieces() const { return pieces_; }
     [[nodiscard]] double worst_mm() const { return worst_mm_; }
@@ -90,9 +95,11 @@ private:
                                                                              : 0x40;
         can.set_integer("feed.statusword", static_cast<std::uint64_t>(state_));
     }
+    /// Presses start until the line runs, once; and stop when enough is cut.
     void operate(Duration t) {
+        started_ |= io.get("lamp");
         const bool again = last_ >= start_at_ && last_ < start_at_ + 100ms;
-        io.set("start", again || (t > 300ms && t < 400ms) || (t > 800ms && t < 900ms));
+        io.set("start", again || (!started_ && t % 500ms > 300ms && t % 500ms < 400ms));
         io.set("emergency_stop", emergency_);
         io.set("stop", pieces_ >= wanted_ && speed_ > 0.0);
     }
@@ -110,7 +117,7 @@ private:
     Time begun_ = never, last_{}, blade_at_ = never;
     double web_mm_ = 0.0, speed_ = 0.0;
     int state_ = 0x40;
-    bool enabled_ = false, cut_before_ = false, emergency_ = false;
+    bool enabled_ = false, cut_before_ = false, emergency_ = false, started_ = false;
     Time start_at_ = never - 1s;
     double last_cut_mm_ = 0.0, worst_mm_ = 0.0;
     std::int64_t pieces_ = 0, wanted_ = 60;

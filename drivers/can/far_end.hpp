@@ -65,7 +65,7 @@ constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
 ///     can.send_every("encoder", 1ms)      from now on; 0: no more
 template <const auto& map>
 class FarEnd final : public RawFarEnd {
-    static_assert(map.fault.empty(), "the signal map is refused: its member `fault` says why");
+    TAPPET_ACCEPTED(map.fault);
     static constexpr auto nodes = seen_from_the_nodes(map);
 
     template <Direction direction>
@@ -119,7 +119,7 @@ public:
             std::size_t f = no_such;
             if (store_.decode(frame, f) != Decoded::yes) continue;
             came_[f] = true;
-            came_at_[f] = frame.stamp;
+            came_at_[f] = frame.stamp == Time{} ? now : frame.stamp; // a plain socket stamps nothing
         }
     }
     void give(Time now) override {

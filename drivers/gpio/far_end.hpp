@@ -29,7 +29,7 @@ public:
 ///     io.set("bottle_present", true)      at this move, or at a time not before it
 template <const auto& map>
 class FarEnd final : public tappet::FarEnd {
-    static_assert(map.fault.empty(), "the line map is refused: its member `fault` says why");
+    TAPPET_ACCEPTED(map.fault);
 
     template <Role role>
     struct LineName {
@@ -58,6 +58,7 @@ public:
         const Mask bit = Mask{1} << line.index;
         if (((inputs_ & bit) != 0) == active) return;
         inputs_ ^= bit;
+        if (wires_ == nullptr) return; // so it stands when the wires are there
         refused_ += wires_->drive(line.index, active, at) ? 0u : 1u;
     }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
@@ -75,6 +76,9 @@ protected:
     bool take_wire(const ProvidedDevice& wire) noexcept override {
         if (wire.type != type_id<Wires>) return false;
         wires_ = static_cast<Wires*>(wire.device);
+        outputs_ = before_ = 0;
+        for (std::size_t i = 0; i < map.rows.size(); ++i)
+            if ((inputs_ >> i & 1u) != 0) refused_ += wires_->drive(i, true, now_) ? 0u : 1u;
         return true;
     }
 

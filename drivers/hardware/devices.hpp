@@ -32,8 +32,8 @@ public:
     virtual std::expected<void, Sentence> open(const AcceptedMachine& machine) = 0;
     /// For MachineInstance::configure.
     [[nodiscard]] virtual std::span<const ProvidedDevice> provided() const noexcept = 0;
-    /// What open() found, for the report of arming.
-    virtual void report(os::ArmingReport& report) const = 0;
+    /// What open() found and who answers, for the report of arming. It may take each server's time-out.
+    virtual void report(os::ArmingReport& report) = 0;
     [[nodiscard]] virtual WireCounters counters() const noexcept = 0;
 };
 

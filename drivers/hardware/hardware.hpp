@@ -18,13 +18,13 @@ public:
 
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override {
         n_ = {};
+        if (machine.board->simulated && count.all() != 0)
+            return std::unexpected(Sentence{"board \"", machine.board->name,
+                                            "\" is simulated and has no real device; build the firmware for "
+                                            "another board"});
         for (const ComponentRow& row : machine.table.components) {
             if (row.type->device_map == nullptr) continue;
-            const BoundDevice* bound = checks::find_named(machine.binding->devices, row.device);
-            if (bound == nullptr)
-                return std::unexpected(Sentence{"board \"", machine.board->name,
-                                                "\" is simulated: it has no real device \"", row.device,
-                                                "\"; build the firmware for another board"});
+            const BoundDevice* bound = checks::find_named(machine.binding->devices, row.device); // as checked
             const BoundTo to{row, *bound, checks::find_named(machine.board->devices, bound->at)};
             if (auto opened = open(to); !opened)
                 return std::unexpected(Sentence{"board \"", machine.board->name, "\", device \"", row.device,
@@ -35,8 +35,19 @@ public:
     [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override {
         return std::span{provided_}.first(n_.all());
     }
-    void report(os::ArmingReport& report) const override {
+    void report(os::ArmingReport& report) override {
         for (const auto& bus : can_) report.passed("can-bus", bus.found());
+        for (std::size_t i = 0; i < n_.modbus; ++i) {
+            if (servers_[i].is_serial) continue; // a line opens, whoever is at its end
+            const Sentence who{"Modbus server \"", servers_[i].name, "\" at \"", servers_[i].at, "\""};
+            if (modbus_[i].connect().outcome == modbus::Outcome::ok)
+                report.passed("modbus-server", Sentence{who, " answers"});
+            else
+                report.warning("modbus-server", Sentence{who, " does not answer"},
+                               Sentence{"switch it on, or correct its address in the binding; the machine "
+                                        "goes on asking"});
+            modbus_[i].disconnect();
+        }
     }
     [[nodiscard]] WireCounters counters() const noexcept override {
         WireCounters sum;
@@ -72,6 +83,7 @@ private:
         if constexpr (count.modbus > 0)
             if (drives(to.row, "modbus")) {
                 provide<modbus::Transport>(to.bound.name, modbus_[n_.modbus]);
+                servers_[n_.modbus] = {to.bound.name, to.address(), to.device != nullptr};
                 return open_device(modbus_[n_.modbus++], to);
             }
         return {};
@@ -82,6 +94,11 @@ private:
     std::array<gpio::Lines, count.gpio> gpio_{};
     std::array<PlacedLines, count.gpio> lines_of_{};
     std::array<modbus::LibmodbusTransport, count.modbus> modbus_{};
+    struct Place {
+        std::string_view name, at;
+        bool is_serial = false;
+    };
+    std::array<Place, count.modbus> servers_{};
     std::array<ProvidedDevice, count.all()> provided_{};
 };
 

@@ -6,10 +6,12 @@
 
 #include <array>
 #include <atomic>
+#include <mutex>
 
 namespace tappet::modbus {
 
-/// The tables of a server from inside it. Wait-free: a client's requests may come from another thread.
+/// The tables of a server from inside it. A client's requests may come from another thread; none of them is
+/// real-time.
 class ServerTables {
 public:
     static constexpr std::size_t size = 1024; ///< addresses 0 to 1023 have room in each table
@@ -20,6 +22,8 @@ public:
     ServerTables(const ServerTables&) = delete;
     ServerTables& operator=(const ServerTables&) = delete;
 
+    /// Held by who answers a request, and by a plant that sets a value of two words: neither sees half of it.
+    [[nodiscard]] std::unique_lock<std::mutex> whole() const { return std::unique_lock{requests_}; }
     /// Addresses are below `size`.
     void set(Table table, std::size_t address, std::uint16_t value) noexcept {
         words_[static_cast<std::size_t>(table)][address].store(value, std::memory_order_relaxed);
@@ -46,6 +50,7 @@ private:
     std::array<std::array<std::atomic<std::uint16_t>, size>, 4> words_{};
     std::array<std::size_t, 4> counts_{};
     Accepts accepts_ = nullptr;
+    mutable std::mutex requests_{};
 };
 
 /// By the names of the map, which the compiler checks:
@@ -53,7 +58,20 @@ private:
 ///     server.set("unit.oil_pressure", 2.5)
 template <const auto& map>
 class FarEnd final : public tappet::FarEnd {
-    static_assert(map.fault.empty(), "the register map is refused: its member `fault` says why");
+    TAPPET_ACCEPTED(map.fault);
+    static constexpr Sentence out_of_reach = [] {
+        for (const Row& row : map.rows)
+            if (row.run.address + row.run.count > ServerTables::size)
+                return Sentence{"row \"",
+                                row.name,
+                                "\" ends at address ",
+                                row.run.address + row.run.count - 1,
+                                ": a simulated server ends at ",
+                                ServerTables::size - 1,
+                                "; raise ServerTables::size in drivers/modbus/far_end.hpp"};
+        return Sentence{};
+    }();
+    TAPPET_ACCEPTED(out_of_reach);
 
     template <bool write>
     struct RegisterName {
@@ -72,6 +90,7 @@ public:
 
     [[nodiscard]] double get(Written path) const noexcept {
         const Place place{path.index};
+        const auto whole = tables_->whole();
         Words words{tables_->get(place.table, place.address), 0};
         if (place.of.width() == 2) words[1] = tables_->get(place.table, place.address + 1);
         return to_physical(place.of, words);
@@ -80,6 +99,7 @@ public:
         const Place place{path.index};
         const Encoded encoded = to_words(place.of, value);
         if (encoded.refused) return; // not a number: the value before stays
+        const auto whole = tables_->whole();
         for (std::size_t i = 0; i < place.of.width(); ++i)
             tables_->set(place.table, place.address + i, encoded.words[i]);
     }

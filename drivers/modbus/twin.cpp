@@ -70,6 +70,7 @@ Answer Twin::read(Table table, std::uint16_t address, std::span<std::uint16_t> v
     belongs_to_.used();
     const Answer answer = admit(address, values.size());
     if (answer.outcome != Outcome::ok) return answer;
+    const auto all = whole();
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::uint16_t word = get(table, address + i);
         values[i] = holds_bits(table) && word != 0 ? std::uint16_t{1} : word;
@@ -84,6 +85,7 @@ Answer Twin::write(Table table, std::uint16_t address, std::span<const std::uint
         return {.outcome = Outcome::exception, .exception = illegal_function, .took = turnaround_};
     const Answer answer = admit(address, values.size());
     if (answer.outcome != Outcome::ok) return answer;
+    const auto all = whole();
     constexpr std::uint8_t illegal_data_value = 3;
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!accepts(table, address + i, values[i]))

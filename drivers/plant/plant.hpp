@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -29,6 +30,10 @@ public:
     /// Moves what it simulates to `now`; the ends have taken what the machine sent, and give afterwards what
     /// was set. The answer: when it wants to move again at the latest. The clock is the machine's.
     virtual Time move(Time now) = 0;
+
+    /// Under real time, where it is moved every so often anyway: when the wires want something of it, if that
+    /// is not what move() answered, such as the next step of its physics.
+    [[nodiscard]] virtual std::optional<Time> next_on_wires() const { return {}; }
 
     /// Options of its own, each with a value: a line each, for --help.
     [[nodiscard]] virtual std::string_view usage() const { return {}; }

@@ -24,7 +24,7 @@ public:
 
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
     [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return provided_; }
-    void report(os::ArmingReport&) const override {}
+    void report(os::ArmingReport&) override {}
     [[nodiscard]] WireCounters counters() const noexcept override;
 
     /// Moves plant and wires to `now`. One thread, the plant's.

@@ -68,4 +68,19 @@ struct text {
 template <std::size_t M>
 text(const char (&)[M]) -> text<M - 1>;
 
+/// Not defined: a compiler that prints no message objects prints the sentence as the argument of this name.
+template <text sentence>
+struct refused;
+/// Nothing to say.
+template <>
+struct refused<text<0>{}> {};
+
 } // namespace tappet
+
+/// Stops the compiler with a constant's sentence, unless that is empty.
+#if defined(__clang__)
+#define TAPPET_ACCEPTED(fault) static_assert((fault).empty(), fault)
+#else
+#define TAPPET_ACCEPTED(fault)                                                                               \
+    static_assert(sizeof(::tappet::refused<::tappet::text<(fault).size()>{(fault).view()}>) != 0)
+#endif

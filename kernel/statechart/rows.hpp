@@ -110,7 +110,11 @@ constexpr void give(Row& row, std::string_view part, Reference& place, const Bou
 enum StateRole : std::uint8_t { initial, final };
 
 template <auto Function> inline constexpr statechart::Entry entry{statechart::bind<Function, void>()};
-template <auto Function> inline constexpr statechart::Exit exit{statechart::bind<Function, void>()};
+/// A function, unlike its neighbours: beside the C library's exit a variable would be ambiguous for whoever
+/// says `using namespace tappet`.
+template <auto Function> constexpr statechart::Exit exit() noexcept {
+    return {statechart::bind<Function, void>()};
+}
 template <auto Function> inline constexpr statechart::Run run{statechart::bind<Function, void>()};
 /// Run after each run program that no transition followed, and when a guard refused an event.
 template <auto Function> inline constexpr statechart::Handle handles{statechart::bind<Function, void>()};
@@ -150,7 +154,7 @@ constexpr void apply(StateRow& row, In part) {
     row.parent = part.state;
 }
 constexpr void apply(StateRow& row, const Entry& part) { give(row, "entry", row.entry, part); }
-constexpr void apply(StateRow& row, const Exit& part) { give(row, "exit", row.exit, part); }
+constexpr void apply(StateRow& row, Exit (*part)() noexcept) { give(row, "exit", row.exit, part()); }
 constexpr void apply(StateRow& row, const Run& part) { give(row, "run", row.run, part); }
 constexpr void apply(StateRow& row, const Handle& part) { give(row, "handle", row.handle, part); }
 constexpr void apply(StateRow& row, const Precondition& part) {

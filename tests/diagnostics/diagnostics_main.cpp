@@ -28,8 +28,9 @@ namespace {
 
 /// Everything a compiler may print for one faulty table, the sentence and its surroundings included.
 constexpr std::size_t most_lines = 9;
-/// Of a script: the sentence comes first, the way through which it was compiled after it.
-constexpr std::size_t most_script_lines = 13;
+/// Of a script the sentence comes first, the way through which it was compiled after it; a map's check stands
+/// in a macro.
+constexpr std::size_t most_script_lines = 14;
 constexpr unsigned at_a_time = 2;
 constexpr std::size_t most_told = 10;
 
@@ -89,7 +90,8 @@ std::string sentence_of(const std::string& error) {
         const std::size_t end = close.empty() ? error.size() : error.rfind(close);
         return error.substr(begin + open.size(), end - begin - open.size());
     };
-    if (std::string plain = between("requirement 'accepted': ", ""); !plain.empty()) return plain;
+    for (const std::string_view open : {"requirement 'accepted': ", ".empty()': "})
+        if (std::string plain = between(open, ""); !plain.empty()) return plain;
     std::string sentence;
     const std::string literal = between(">{\"", "\"}>");
     for (std::size_t i = 0; i < literal.size(); ++i) {
@@ -168,7 +170,8 @@ void judge(Case& each, const Options& options, const std::string& headers) {
                               options.flags + " -fsyntax-only '" + each.file.string() + "'");
     const auto [error, source] = first_error(output.text);
     const auto lines = static_cast<std::size_t>(std::count(output.text.begin(), output.text.end(), '\n'));
-    const bool is_script = each.file.stem().string().starts_with("script_");
+    const bool is_script =
+        each.file.stem().string().starts_with("script_") || each.file.stem().string().starts_with("map_");
     const std::size_t most = is_script ? most_script_lines : most_lines;
     each.sentence = each.effects ? error : sentence_of(error);
     if (output.status == 0)

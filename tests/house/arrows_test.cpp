@@ -62,7 +62,7 @@ const std::vector<Row> house{
 
     {"toolchain/machine", {"board", "drivers/plant"}},
     {"toolchain/tools/bench", {}},
-    {"toolchain/tools/front", {"kernel/base"}},
+    {"toolchain/tools/front", {"kernel/base", "toolchain/machine/host_usage.hpp"}},
     {"toolchain/tools",   {"apps"}},
     {"toolchain",         {}},
     {"apps/carpet_loom/demo", {"apps", "toolchain/tools/bench"}},

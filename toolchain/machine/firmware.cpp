@@ -222,9 +222,6 @@ Ending run_firmware(const AcceptedMachine& machine, Devices& devices, int count,
     const Options options = parse(count, words, hooks.take != nullptr);
     Run run{machine, devices, hooks, options};
     if (!options.error.empty()) return run.fail(Ending::wrong_set_up, options.error);
-    if (hooks.take != nullptr)
-        if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())
-            return run.fail(Ending::wrong_set_up, refusal);
     if (options.help) {
         os::print(Sentence{"the firmware of the machine \"", machine.table.name, "\" for board \"",
                            machine.board->name, "\"\n"}
@@ -237,6 +234,9 @@ Ending run_firmware(const AcceptedMachine& machine, Devices& devices, int count,
                       [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
         return Ending::well;
     }
+    if (hooks.take != nullptr)
+        if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())
+            return run.fail(Ending::wrong_set_up, refusal);
     static MachineInstance instance{machine, machine_clock};
     static PropertyFiles properties{options.properties != nullptr ? std::string_view{options.properties}
                                                                   : machine.board->properties_directory};

@@ -6,14 +6,18 @@
 #include "kernel/os/box.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/json.hpp"
+#include "toolchain/machine/host_usage.hpp"
 #include "toolchain/machine/summary.hpp"
 
 #include <charconv>
+#include <cstdio>
 #include <string>
 
 namespace tappet {
 
 namespace {
+
+constexpr std::uint64_t most_seconds = 1'000'000'000; // some thirty years
 
 enum Ending : int { ended_well = 0, ended_otherwise = 1, wrong_set_up = 2 };
 
@@ -22,23 +26,11 @@ struct Options {
     std::uint64_t seed = 1;
     std::uint64_t seconds = 0; ///< 0: as long as the plant usually takes
     std::string_view summary, properties, browse;
+    bool quiet = false;
     bool plan = false;
     bool help = false;
     std::vector<std::pair<std::string_view, std::string_view>> of_plant{};
 };
-
-constexpr std::string_view usage =
-    "  --virtual | --real  virtual time, deterministic (default), or real time with SCHED_FIFO threads\n"
-    "  --seed N            of the plant and of the faults of its wires (default 1)\n"
-    "  --for SECONDS       ends after so long, unless the plant is done before (default: what the plant "
-    "says)\n"
-    "  --summary FILE      writes what machine and plant counted, as JSON\n"
-    "  --properties DIR    reads the components' properties there and saves them at the end\n"
-    "  --browse DIR        opens a socket for tappet-browse there (with --real: virtual time does not wait "
-    "for "
-    "it)\n"
-    "  --plan              what the compiler derived from the table: priorities, order, mailboxes, memory\n"
-    "  --help              this text\n";
 
 std::expected<std::uint64_t, Sentence> whole_number(std::string_view option, std::string_view word) {
     std::uint64_t value = 0;
@@ -52,7 +44,7 @@ std::expected<std::uint64_t, Sentence> whole_number(std::string_view option, std
 Sentence unknown(std::string_view option) {
     Nearest nearest{option};
     for (const std::string_view each : {"--virtual", "--real", "--seed", "--for", "--summary", "--properties",
-                                        "--browse", "--plan", "--help"})
+                                        "--browse", "--quiet", "--plan", "--help"})
         nearest.consider(each);
     Sentence text{"option ", option, " is unknown"};
     text.add(nearest.best().empty() ? "; see --help" : "; did you mean ").add(nearest.best());
@@ -67,6 +59,10 @@ std::expected<Options, Sentence> parse(int count, char** words) {
         const std::string_view option = words[i];
         if (option == "--virtual" || option == "--real") {
             options.virtual_time = option == "--virtual";
+            continue;
+        }
+        if (option == "--quiet") {
+            options.quiet = true;
             continue;
         }
         if (option == "--help" || option == "--plan") {
@@ -90,8 +86,9 @@ std::expected<Options, Sentence> parse(int count, char** words) {
             const auto value = whole_number(option, word);
             if (!value) return std::unexpected(value.error());
             (option == "--seed" ? options.seed : options.seconds) = *value;
-            if (option == "--for" && *value == 0)
-                return std::unexpected(Sentence{"option --for: a run takes 1 s at least"});
+            if (option == "--for" && (*value == 0 || *value > most_seconds))
+                return std::unexpected(
+                    Sentence{"option --for: a run takes 1 s at least, and ", most_seconds, " at most"});
         } else {
             options.of_plant.emplace_back(option, word);
         }
@@ -209,7 +206,11 @@ private:
         plant.close('}');
         if (plant.size() == 0) return 0;
         measured.resize(plant.size());
-        if (measured != "{}") os::print(Sentence{name_, ": the plant measured ", measured, "\n"}.view());
+        if (measured != "{}") {
+            os::print(Sentence{name_, ": the plant measured "}.view());
+            os::print(measured);
+            os::print("\n");
+        }
         const std::size_t machine = write_summary(instance, facts, text);
         JsonText ending{text.subspan(machine)};
         if (options_.virtual_time) {
@@ -242,7 +243,7 @@ int run_host(const AcceptedMachine& machine,
     if (options->help) {
         os::print(
             Sentence{"the machine \"", machine.table.name, "\" with its plant in one process\n"}.view());
-        os::print(usage);
+        os::print(host_usage);
         os::print(plant->usage());
         return ended_well;
     }
@@ -251,6 +252,7 @@ int run_host(const AcceptedMachine& machine,
                       [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
         return ended_well;
     }
+    if (options->quiet && std::freopen("/dev/null", "w", stdout) == nullptr) return wrong_set_up;
     const auto host = std::make_unique<Host>(machine, *plant, *options);
     return host->run();
 }

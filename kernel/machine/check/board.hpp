@@ -42,8 +42,29 @@ constexpr Sentence of_binding(const Board& board, std::string_view device, const
     return Sentence{"binding to board \"", board.name, "\", wired(\"", device, "\"): ", words...};
 }
 
+/// What only one kind of device is told.
+constexpr Sentence check_bound_facts(const ComponentRow& row, const Board& board, const BoundDevice& bound) {
+    const std::string_view kind = row.type->device_kind;
+    if (kind != "gpio" && bound.lines.size() != 0)
+        return of_binding(board, bound.name, "line(\"", bound.lines[0].name,
+                          "\") is for a gpio device, and this is a ", kind, " device; remove it");
+    if (kind == "modbus" && (bound.unit.number < 1 || bound.unit.number > 255))
+        return of_binding(board, bound.name, "unit(", bound.unit.number,
+                          ") is no server; write 1 to 247, over TCP also 255");
+    if (bound.answer.time <= Duration::zero())
+        return of_binding(board, bound.name,
+                          "answer_within is not above 0; write for example answer_within(300ms)");
+    const SerialLine& serial = bound.serial;
+    if ((serial.parity != 'N' && serial.parity != 'E' && serial.parity != 'O') || serial.baud < 300 ||
+        serial.stop_bits < 1 || serial.stop_bits > 2)
+        return of_binding(board, bound.name,
+                          "no serial line is set so; write for example serial_line(19'200, 'E', 1)");
+    return {};
+}
+
 constexpr Sentence check_bound_lines(const ComponentRow& row, const Board& board, const BoundDevice& bound,
                                      const BoardDevice& device) {
+    if (row.type->shares_device) return {}; // its driver has the lines
     for (const auto& wanted : row.type->device_lines) {
         if (find_named(bound.lines, wanted) != nullptr) continue;
         Nearest nearest{wanted};
@@ -75,7 +96,8 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
     const std::string_view wants = board_kind_of(row.type->device_kind);
     const BoardDevice* device = find_named(board.devices, bound.at);
     if (device == nullptr) {
-        if (row.type->device_kind == "modbus" && tcp_port_of(bound.at) != 0) return {};
+        if (row.type->device_kind == "modbus" && tcp_port_of(bound.at) != 0)
+            return check_bound_facts(row, board, bound);
         Nearest nearest{bound.at};
         for (const auto& each : board.devices)
             if (each.kind == wants) nearest.consider(each.name);
@@ -90,6 +112,7 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
     if (device->kind != wants)
         return of_binding(board, bound.name, "it drives a ", row.type->device_kind, " device but \"",
                           device->name, "\" is of kind ", device->kind, "; name another");
+    if (Sentence fault = check_bound_facts(row, board, bound); !fault.empty()) return fault;
     if (device->kind == "can" && device->bit_rate.bits_per_second == 0)
         return of_binding(board, bound.name, "device \"", device->name,
                           "\" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the "
@@ -98,7 +121,7 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
         return of_binding(board, bound.name, "device \"", device->name,
                           "\" states no number of lines; add lines(32), or how many it has, to the board's "
                           "row");
-    return check_bound_lines(row, board, bound, *device);
+    return device->kind == "gpio" ? check_bound_lines(row, board, bound, *device) : Sentence{};
 }
 
 constexpr Sentence check_devices(const MachineView& m, const Board& board, const Binding& binding) {

@@ -55,11 +55,24 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
             detail::add_suggestion(text, nearest, "remove the placement");
             return text;
         }
+        for (const Placement& other : binding.placement)
+            if (&other != &place && other.activity == place.activity)
+                return Sentence{"binding to board \"", board.name, "\": place(\"", place.activity,
+                                "\") stands there twice; remove one"};
         if (place.processor < 0 || place.processor >= board.processors)
             return of_activity(place.activity, ": its binding to board \"", board.name,
                                "\" places it on processor ", place.processor,
                                " but the board has processors 0 to ", board.processors - 1,
                                "; correct place(\"", place.activity, "\")");
+    }
+    for (const ActivityRow& row : m.activities) {
+        const std::int64_t wakes_together = row.trigger == Trigger::every ? 1 : row.at_most_n;
+        const std::int64_t needs = row.budget_each.count() * wakes_together;
+        if (row.real_time && needs > row.deadline().count())
+            return of_activity(row.name, ": its budget",
+                               wakes_together > 1 ? ", for all wakes that may come together," : "", " is ",
+                               in_us(needs), " but its deadline ", in_us(row.deadline().count()),
+                               "; lower the budget or lengthen the deadline or the period");
     }
     rank_activities(m, r);
     std::array<int, max_activities> processors{};

@@ -31,7 +31,7 @@ TEST_P(Cutter, cuts_each_piece_to_its_length_while_the_web_runs_up_runs_and_stop
     EXPECT_GE(plant.pieces(), 60);
     EXPECT_LT(plant.worst_mm(), 0.5);
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
-    EXPECT_EQ(state(), "stopped");
+    EXPECT_EQ(state(), "ready");
 }
 
 TEST_P(Cutter, stands_after_an_emergency_stop_and_goes_on_when_it_is_released_and_started) {
@@ -46,17 +46,37 @@ TEST_P(Cutter, stands_after_an_emergency_stop_and_goes_on_when_it_is_released_an
     EXPECT_EQ(plant.pieces(), pieces);
     plant.press_emergency_stop(false);
     plant.press_start(run.now() + 100ms);
-    ASSERT_TRUE(run.run_until([this] { return state() == "stopped"; }, 1s));
+    ASSERT_TRUE(run.run_until([this] { return state() == "ready"; }, 1s));
     plant.press_start(run.now() + 300ms);
     EXPECT_TRUE(run.run_until([&] { return plant.pieces() > pieces + 5; }, 20s));
     EXPECT_LT(plant.worst_mm(), 0.5) << "the web was measured while it stood, too";
 }
 
-TEST_P(Cutter, does_not_follow_a_drive_that_has_fallen_silent) {
+TEST_P(Cutter, goes_to_emergency_when_the_drive_falls_silent_and_does_not_start_again_by_itself) {
     ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 2; }, 20s));
     plant.silence_drive();
     run.run_for(100ms);
     EXPECT_EQ(run.instance().find<Line>("line")->target.last(), 0.0);
+    EXPECT_EQ(state(), "emergency");
+}
+
+TEST_P(Cutter, goes_to_emergency_when_the_wheel_falls_silent) {
+    ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 2; }, 20s));
+    plant.silence_wheel();
+    ASSERT_TRUE(run.run_until([this] { return plant.web_stands(); }, 3s));
+    EXPECT_EQ(state(), "emergency");
+}
+
+TEST_P(Cutter, does_not_cut_a_web_that_somebody_pulls_by_hand) {
+    ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 2; }, 20s));
+    plant.press_emergency_stop(true);
+    ASSERT_TRUE(run.run_until([this] { return plant.web_stands(); }, 3s));
+    const std::int64_t cuts = run.instance().find<Measuring>("measuring")->cuts.last();
+    for (int i = 0; i < 2000; ++i) {
+        plant.pull_web(1.0);
+        run.run_for(2ms);
+    }
+    EXPECT_EQ(run.instance().find<Measuring>("measuring")->cuts.last(), cuts);
 }
 
 INSTANTIATE_TEST_SUITE_P(seeds, Cutter, testing::Values(1, 2, 3));

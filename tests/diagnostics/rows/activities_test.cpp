@@ -123,7 +123,7 @@ constexpr Fault schedule_faults[] = {
          m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(20us), budget(30us),
                         runs("encoder")));
      },
-     R"(loom: activity "field" is not schedulable on processor 1 of board "bench": its worst response is 30 us, its deadline 20 us; lower the budget of it or of a more urgent activity, lengthen its deadline, or place it elsewhere)"},
+     R"(loom: activity "field": its budget is 30 us but its deadline 20 us; lower the budget or lengthen the deadline or the period)"},
     {"activity_not_schedulable",
      [](Table& m) {
          m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(340us), budget(80us),

@@ -223,6 +223,20 @@ constexpr Fault board_faults[] = {
                              wired("hall", "192.168.7.2:502"));
      },
      R"(loom: binding to board "old box", wired("hall"): wired("hall") has the same name or the same device of the board; correct one)"},
+    {"lines_of_a_bus",
+     [](Table& m) {
+         m.binding = binding(wired("main_encoder", "can0", line("red", 4)), wired("hall", "192.168.7.2:502"),
+                             wired("panel", "io", line("red", 4), line("green", 5)));
+     },
+     R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): line("red") is for a gpio device, and this is a can device; remove it)"},
+    {"server_unit",
+     [](Table& m) {
+         m.binding = binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:502", unit(300)),
+                             wired("panel", "io", line("red", 4), line("green", 5)));
+     },
+     R"(loom: component "climate": binding to board "old box", wired("hall"): unit(300) is no server; write 1 to 247, over TCP also 255)"},
+    {"placement_twice", [](Table& m) { static_cast<void>(m.binding.placement.push(place("hall", 1))); },
+     R"(loom: binding to board "old box": place("hall") stands there twice; remove one)"},
     {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0"); },
      R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): device "can0" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the board's row)"},
     {"board_gpio_lines", [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0"); },

@@ -5,8 +5,24 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib> // exit
 #include <string>
 #include <vector>
+
+/// A machine's own namespace, as its author writes it.
+namespace of_ones_own {
+
+using namespace tappet;
+
+struct Gate {
+    void go() noexcept TAPPET_REALTIME {}
+};
+inline constexpr auto gate = state_machine<Gate>(
+    "gate", states(state("open", initial, entry<&Gate::go>, exit<&Gate::go>), state("closed", final)),
+    transitions(transition("open", "closed", after(1s))));
+static_assert(check(gate.view()).empty(), "no word of a state machine is ambiguous beside the C library's");
+
+} // namespace of_ones_own
 
 namespace tappet {
 namespace {

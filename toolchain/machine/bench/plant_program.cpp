@@ -200,13 +200,17 @@ public:
         const Time start = clock_.now();
         Time last = start, next = start;
         while (told_to_end == 0 && !rested(last)) {
-            if (std::exchange(usr1_came, 0) != 0) plant_.told();
+            if (usr1_came != 0) {
+                usr1_came = 0;
+                plant_.told();
+            }
             const Time wake = std::min(last + options_.period, std::max(next, last + 20us));
             sleep_until(wake);
             const Time now = clock_.now();
             latest_ = std::max(latest_, now - wake);
             wires_.look(now);
-            next = plant_.advance(now);
+            const Time wanted = plant_.advance(now);
+            next = plant_.next_on_wires().value_or(wanted);
             trouble_the_wires(now - start);
             last = now;
         }

@@ -42,6 +42,8 @@ Writes writes_of(const std::uint8_t* body, int length) {
 
 } // namespace
 
+ServerEnd::ServerEnd() { clients_.fill(-1); }
+
 ServerEnd::~ServerEnd() {
     ending_.store(true);
     if (thread_.joinable()) thread_.join();
@@ -49,7 +51,6 @@ ServerEnd::~ServerEnd() {
 }
 
 std::expected<void, Sentence> ServerEnd::listen(const std::string& address, int port, int unit) {
-    clients_.fill(-1);
     unit_ = unit;
     context_.reset(modbus_new_tcp(address.c_str(), port));
     const auto entries = [this](Table table) { return static_cast<int>(count(table)); };
@@ -122,6 +123,7 @@ void ServerEnd::answer(int client) {
     if (length <= header) return;
     const int unit = query[header - 1];
     if (unit != unit_ && unit != MODBUS_TCP_SLAVE) return; // another unit behind the same address
+    const auto all = whole();
     to_mapping();
     if (refuses(query + header, length - header)) {
         modbus_reply_exception(context_.get(), query, MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE);

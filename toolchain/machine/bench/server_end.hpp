@@ -18,7 +18,7 @@ namespace tappet {
 /// Not real-time.
 class ServerEnd final : public modbus::ServerTables {
 public:
-    ServerEnd() = default;
+    ServerEnd();
     ~ServerEnd();
 
     /// Answers from now on, for the addresses that it was said to have. The error says what is wrong and how

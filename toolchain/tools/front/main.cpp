@@ -1,5 +1,6 @@
 // tappet: the front door. Writes a new machine's project, builds it, runs it, tests it, boots it on the bench
 // and looks into it; each by a program that also stands for itself.
+#include "toolchain/machine/host_usage.hpp"
 #include "toolchain/tools/front/project.hpp"
 
 #include <cerrno>
@@ -108,6 +109,14 @@ int make(const Words& words) {
 int build(const Words& words) { return built_machine(words).empty() ? 1 : 0; }
 
 int run_host(const Words& words) {
+    // Who asks what there is does not want to wait for a build.
+    const auto named = machine_of("CMakeLists.txt");
+    if (words == Words{"--help"} && named && !fs::exists("build/" + *named)) {
+        std::cout << "the machine \"" << *named
+                  << "\" with its plant in one process; its plant's own options are shown once it is built\n"
+                  << host_usage;
+        return 0;
+    }
     const std::string machine = built_machine({"-"});
     return machine.empty() ? 1 : become(with({"build/" + machine}, words));
 }
@@ -118,15 +127,15 @@ int test(const Words& words) {
 }
 
 int bench(const Words& words) {
-    const std::string machine = built_machine({"--bench", "--plant"});
-    if (machine.empty()) return 1;
-    if (is_installed() && std::getenv("TAPPET_CACHE") == nullptr)
-        ::setenv("TAPPET_CACHE", (beside_us() / "../../share/tappet/foreign").c_str(), 1);
     std::string seconds = "10";
     if (words.size() == 2 && words[0] == "--for")
         seconds = words[1];
     else if (!words.empty())
         return fail("bench takes --for SECONDS, of the box's own time");
+    const std::string machine = built_machine({"--bench", "--plant"});
+    if (machine.empty()) return 1;
+    if (is_installed() && std::getenv("TAPPET_CACHE") == nullptr)
+        ::setenv("TAPPET_CACHE", (beside_us() / "../../share/tappet/foreign").c_str(), 1);
     // All that the bench's board has: what the machine is not bound to lies idle.
     return become({(beside_us() / "tappet-bench").string(),
                    "--timeout",
