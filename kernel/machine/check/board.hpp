@@ -45,7 +45,7 @@ constexpr Sentence of_binding(const Board& board, std::string_view device, const
 /// What only one kind of device is told.
 constexpr Sentence check_bound_facts(const ComponentRow& row, const Board& board, const BoundDevice& bound) {
     const std::string_view kind = row.type->device_kind;
-    if (kind != "gpio" && bound.lines.size() != 0)
+    if (kind != "gpio" && !bound.lines.empty())
         return of_binding(board, bound.name, "line(\"", bound.lines[0].name,
                           "\") is for a gpio device, and this is a ", kind, " device; remove it");
     if (kind == "modbus" && (bound.unit.number < 1 || bound.unit.number > 255))
