@@ -1,6 +1,8 @@
 // The devices of one machine, whatever world they are of: opened together, given to its drivers, counted.
 #pragma once
 
+#include "drivers/can/device.hpp"
+#include "drivers/gpio/device.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/os/arming.hpp"
 
@@ -18,6 +20,15 @@ struct WireCounters {
     std::uint64_t can_impostors = 0;
     std::uint64_t can_malformed = 0;
     std::uint64_t gpio_edges_lost = 0;
+
+    void add(const can::Counters& seen) noexcept {
+        can_frames_lost += seen.lost_in_kernel;
+        can_faults += seen.faults;
+        can_restarts += seen.restarts;
+        can_impostors += seen.impostors;
+        can_malformed += seen.malformed;
+    }
+    void add(const gpio::Counters& seen) noexcept { gpio_edges_lost += seen.missed; }
 };
 
 /// Not real-time but for the devices themselves.

@@ -51,15 +51,8 @@ public:
     }
     [[nodiscard]] WireCounters counters() const noexcept override {
         WireCounters sum;
-        for (const auto& bus : can_) {
-            const can::Counters seen = bus.counters();
-            sum.can_frames_lost += seen.lost_in_kernel;
-            sum.can_faults += seen.faults;
-            sum.can_restarts += seen.restarts;
-            sum.can_impostors += seen.impostors;
-            sum.can_malformed += seen.malformed;
-        }
-        for (const auto& chip : gpio_) sum.gpio_edges_lost += chip.counters().missed;
+        for (const auto& bus : can_) sum.add(bus.counters());
+        for (const auto& chip : gpio_) sum.add(chip.counters());
         return sum;
     }
 

@@ -75,15 +75,8 @@ std::expected<void, Sentence> SimulatedDevices::add_chip(const ComponentRow& row
 
 WireCounters SimulatedDevices::counters() const noexcept {
     WireCounters sum;
-    for (const auto& bus : buses_) {
-        const can::Counters seen = bus->machine.counters();
-        sum.can_frames_lost += seen.lost_in_kernel;
-        sum.can_faults += seen.faults;
-        sum.can_restarts += seen.restarts;
-        sum.can_impostors += seen.impostors;
-        sum.can_malformed += seen.malformed;
-    }
-    for (const auto& chip : chips_) sum.gpio_edges_lost += chip->twin.counters().missed;
+    for (const auto& bus : buses_) sum.add(bus->machine.counters());
+    for (const auto& chip : chips_) sum.add(chip->twin.counters());
     return sum;
 }
 

@@ -1,9 +1,5 @@
-// main of every firmware: one table on one board, as tappet_machine() of CMake named them.
-#include TAPPET_TABLE_HEADER
-#include TAPPET_BOARD_HEADER
-#ifdef TAPPET_BINDINGS_HEADER
-#include TAPPET_BINDINGS_HEADER
-#endif
+// main of every firmware: one table on one board.
+#include "toolchain/machine/on_board.hpp"
 #ifdef TAPPET_HOOKS_HEADER
 #include TAPPET_HOOKS_HEADER
 #endif
@@ -21,11 +17,6 @@ int main(int count, char** words) {
 #else
     constexpr tappet::FirmwareHooks hooks;
 #endif
-    using Machine = tappet::Firmware<TAPPET_NAMESPACE::table, tappet::board::TAPPET_BOARD
-#ifdef TAPPET_BINDINGS_HEADER
-                                     ,
-                                     TAPPET_NAMESPACE::bindings::TAPPET_BOARD
-#endif
-                                     >;
-    return static_cast<int>(tappet::run_firmware(Machine::machine(), hardware, count, words, hooks));
+    return static_cast<int>(
+        tappet::run_firmware(TAPPET_NAMESPACE::OnBoard::machine(), hardware, count, words, hooks));
 }
