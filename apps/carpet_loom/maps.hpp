@@ -3,6 +3,7 @@
 
 #include "apps/carpet_loom/wires.hpp"
 #include "drivers/can/bus.hpp"
+#include "drivers/canopen/cia402.hpp"
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/modbus/client.hpp"
 
@@ -42,20 +43,20 @@ inline constexpr auto can_signals = can::signal_map(
     detail::heartbeat("heartbeat_1", 1), detail::heartbeat("heartbeat_2", 2), detail::heartbeat("heartbeat_3", 3),
     detail::heartbeat("heartbeat_4", 4), detail::heartbeat("heartbeat_5", 5), detail::heartbeat("heartbeat_6", 6),
     can::transmit(can::standard(wires::cob::nmt), "nmt", can::bytes(2), can::on_demand,
-        can::signal("command", 0, 8),
-        can::signal("node", 8, 8)),
+        can::signal("command", 0, 8).safe(wires::nmt_command::pre_operational),
+        can::signal("node", 8, 8).safe(0)), // all
     can::transmit(can::standard(wires::cob::main_drive_command), "main_drive_command", can::bytes(6), can::every(2ms),
-        can::signal("controlword", 0, 16),
-        can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+        can::signal("controlword", 0, 16).safe(canopen::controlword::quick_stop),
+        can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)),
     can::transmit(can::standard(wires::cob::let_off_drive_command), "let_off_command", can::bytes(6), can::every(2ms),
-        can::signal("controlword", 0, 16),
-        can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm")),
+        can::signal("controlword", 0, 16).safe(canopen::controlword::quick_stop),
+        can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm").safe(0)),
     can::transmit(can::standard(wires::cob::feeder_command), "feeder_command", can::bytes(3), can::every(100ms),
-        can::signal("colour", 0, 8),
-        can::signal("speed", 8, 16)),
+        can::signal("colour", 0, 8).safe(0),
+        can::signal("speed", 8, 16).safe(0)),
     can::transmit(can::standard(wires::cob::dobby_command), "dobby_command", can::bytes(6), can::every(10ms),
         can::signal("pick", 0, 32),
-        can::signal("pattern", 32, 16)));
+        can::signal("pattern", 32, 16)).safe_by_silence()); // it holds its shed
 
 inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("emergency_stop"),
@@ -64,12 +65,12 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("button_start", gpio::debounce(5ms)),
     gpio::sensor("button_stop", gpio::debounce(5ms)),
     gpio::sensor("button_acknowledge", gpio::debounce(5ms)),
-    gpio::actuator("weft_release"),
-    gpio::actuator("brake", gpio::safe_high),
-    gpio::output("lamp_run"),
-    gpio::output("lamp_stop"),
-    gpio::output("lamp_fault"),
-    gpio::output("yarn_cutter"));
+    gpio::actuator("weft_release", gpio::safe(false)),
+    gpio::actuator("brake", gpio::safe(true)),
+    gpio::output("lamp_run", gpio::safe(false)),
+    gpio::output("lamp_stop", gpio::safe(false)),
+    gpio::output("lamp_fault", gpio::safe(false)),
+    gpio::output("yarn_cutter", gpio::safe(false)));
 
 inline constexpr auto utility_registers = modbus::register_map(
     modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms),
@@ -78,7 +79,7 @@ inline constexpr auto utility_registers = modbus::register_map(
         modbus::word("oil_pressure", wires::modbus::input_register::oil_pressure).times(0.01).in("bar"),
         modbus::word("oil_temperature", wires::modbus::input_register::oil_temperature).as_signed().times(0.1).in("degC")),
     modbus::write("pump", modbus::coils(wires::modbus::coil::lubrication_pump, 1), modbus::every(1s), modbus::stale_after(5s),
-        modbus::bit("on", 0)));
+        modbus::bit("on", 0).safe(false)));
 // clang-format on
 
 } // namespace tappet::carpet

@@ -18,15 +18,15 @@ inline constexpr auto can_signals = can::signal_map(
     can::receive(can::standard(0x182), "feed", can::bytes(2),
         can::signal("statusword", 0, 16)),
     can::transmit(can::standard(0x202), "feed_command", can::bytes(4), can::every(5ms),
-        can::signal("controlword", 0, 16),
-        can::signal("speed", 16, 16).times(0.001).in("m/s")));
+        can::signal("controlword", 0, 16).safe(0),
+        can::signal("speed", 16, 16).times(0.001).in("m/s").safe(0)));
 
 inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("start", gpio::debounce(5ms)),
     gpio::sensor("stop", gpio::debounce(5ms)),
     gpio::sensor("emergency_stop"),
-    gpio::actuator("knife"), // one edge, one turn of the knife
-    gpio::output("lamp"));
+    gpio::actuator("knife", gpio::safe(false)), // one edge, one turn of the knife
+    gpio::output("lamp", gpio::safe(false)));
 // clang-format on
 
 } // namespace cut_to_length

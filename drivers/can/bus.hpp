@@ -31,7 +31,7 @@ template <const auto& map> struct Bus {
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
     static constexpr std::string_view device_kind = "can";
-    static constexpr Identifiers device_map{map.receives(), map.transmits()};
+    static constexpr Identifiers device_map{map.receives(), map.transmits(), map.safe_frames()};
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
     static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through

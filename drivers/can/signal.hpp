@@ -28,8 +28,10 @@ struct Signal {
     double factor = 1;
     double offset = 0;
     std::string_view unit{};
+    double safe_value = 0; ///< of what is transmitted: sent when the machine's process is no more
+    bool says_safe = false;
 
-    // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm")
+    // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm").safe(0)
     constexpr Signal as_signed() const noexcept {
         Signal copy = *this;
         copy.kind = Kind::signed_integer;
@@ -58,6 +60,12 @@ struct Signal {
     constexpr Signal in(std::string_view new_unit) const noexcept {
         Signal copy = *this;
         copy.unit = new_unit;
+        return copy;
+    }
+    constexpr Signal safe(double value) const noexcept {
+        Signal copy = *this;
+        copy.safe_value = value;
+        copy.says_safe = true;
         return copy;
     }
 };

@@ -21,12 +21,20 @@ struct FrameRow {
     Duration every{};      ///< transmit: the period; 0: sent on demand, and all of them in order
     std::size_t first = 0; ///< its signals in the map's array
     std::size_t signals = 0;
+    bool silence_is_safe = false; ///< transmit: it is not sent when the machine's process is no more
 };
 
 /// A row together with its signals, before the map flattens them.
 template <std::size_t N> struct FrameWithSignals {
     FrameRow row{};
     std::array<Signal, N> signals{};
+
+    /// Instead of safe values: whoever receives this frame is safe without it, by a time-out of its own.
+    constexpr FrameWithSignals safe_by_silence() const noexcept {
+        FrameWithSignals copy = *this;
+        copy.row.silence_is_safe = true;
+        return copy;
+    }
 };
 
 /// The identifier of a row: standard(0x181), extended(0x18FF0102).
@@ -51,7 +59,8 @@ constexpr auto receive(Identifier id, std::string_view name, Bytes length,
     return FrameWithSignals<sizeof...(Signals)>{
         {id, name, Direction::receive, length.count, {}, 0, sizeof...(Signals)}, {signals...}};
 }
-/// transmit(standard(0x201), "main_drive_command", bytes(6), every(1ms), signal("controlword", 0, 16), ...)
+/// transmit(standard(0x201), "main_drive_command", bytes(6), every(1ms), signal("controlword", 0,
+/// 16).safe(2), ...)
 template <class... Signals>
 constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Every period,
                         const Signals&... signals) noexcept {
@@ -61,9 +70,10 @@ constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Ever
 
 inline constexpr std::size_t no_such = ~std::size_t{0};
 
-/// What one end of a bus takes and sends.
+/// What one end of a bus takes and sends, and what it sends last.
 struct Identifiers {
     std::span<const Identifier> receive{}, transmit{};
+    std::span<const Frame> safe{}; ///< see SignalMap::safe_frames
 };
 
 template <std::size_t F, std::size_t S> struct SignalMap {
@@ -72,8 +82,12 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<std::size_t, S> frame_of{}; ///< the frame that holds a signal
     std::array<Identifier, F> received{};  ///< the first `received_count` are valid
     std::array<Identifier, F> transmitted{};
+    /// What makes the receivers safe when the machine's process is no more: the cyclic ones first, whose
+    /// receivers are told what to do before those on demand tell them what to be.
+    std::array<Frame, F> safe{};
     std::size_t received_count = 0;
     std::size_t transmitted_count = 0;
+    std::size_t safe_count = 0;
     Sentence fault{}; ///< empty when the table is right
 
     /// What Settings::receive and Settings::transmit take; the map must outlive them.
@@ -82,6 +96,9 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     }
     [[nodiscard]] constexpr std::span<const Identifier> transmits() const noexcept {
         return std::span{transmitted}.first(transmitted_count);
+    }
+    [[nodiscard]] constexpr std::span<const Frame> safe_frames() const noexcept {
+        return std::span{safe}.first(safe_count);
     }
     [[nodiscard]] constexpr std::size_t frame(Identifier id) const noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < F; ++f)
@@ -131,6 +148,21 @@ constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept
     return {};
 }
 
+constexpr Sentence safe_fault(const FrameRow& frame, const Signal& s) noexcept {
+    const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
+    if (frame.direction == Direction::receive)
+        return s.says_safe ? Sentence{who, " is received and has a safe value: only what is sent has one"}
+                           : Sentence{};
+    if (s.says_safe == frame.silence_is_safe)
+        return s.says_safe
+                   ? Sentence{who, " has a safe value, but its frame is safe by silence: keep one of the two"}
+                   : Sentence{who, " does not say its safe value: write .safe(..) behind it, or "
+                                   ".safe_by_silence() behind the frame"};
+    if (const Raw raw = to_raw(s, s.safe_value); s.says_safe && (raw.saturated || raw.refused))
+        return Sentence{who, " cannot hold its safe value: it is outside of the signal's range"};
+    return {};
+}
+
 template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const SignalMap<F, S>& map) noexcept {
     for (std::size_t f = 0; f < F; ++f) {
         const FrameRow& row = map.frames[f];
@@ -152,6 +184,7 @@ template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const Signa
         owner.fill(no_such);
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
             if (const Sentence fault = signal_fault(row, map.signals[s]); !fault.empty()) return fault;
+            if (const Sentence fault = safe_fault(row, map.signals[s]); !fault.empty()) return fault;
             for (std::size_t other = row.first; other < s; ++other)
                 if (map.signals[other].name == map.signals[s].name)
                     return Sentence{who, " has two signals \"", map.signals[s].name,
@@ -198,6 +231,18 @@ template <std::size_t... N> constexpr auto signal_map(const FrameWithSignals<N>&
     };
     (flatten(rows), ...);
     map.fault = detail::map_fault(map);
+    for (const bool cyclic : {true, false})
+        for (const FrameRow& row : map.frames) {
+            if (!map.fault.empty() || row.direction == Direction::receive || row.silence_is_safe ||
+                (row.every > Duration::zero()) != cyclic)
+                continue;
+            Frame& frame = map.safe[map.safe_count++];
+            frame.id = row.identifier.id;
+            frame.extended = row.identifier.extended;
+            frame.length = row.length;
+            for (const Signal& one : std::span{map.signals}.subspan(row.first, row.signals))
+                insert(frame.data, one, to_raw(one, one.safe_value).bits);
+        }
     return map;
 }
 

@@ -19,6 +19,7 @@ enum class Driven : std::uint8_t { by_port, by_events };
 struct LineRow {
     Line line{};
     Driven driven = Driven::by_port;
+    bool says_safe = false;
 };
 
 struct Debounce {
@@ -27,16 +28,22 @@ struct Debounce {
 constexpr Debounce debounce(Duration time) noexcept { return {time}; }
 struct ActiveLow {};
 inline constexpr ActiveLow active_low{};
-struct SafeHigh {};
-/// The output's safe value is active: a brake that must hold when the machine is gone.
-inline constexpr SafeHigh safe_high{};
+struct Safe {
+    bool active = false;
+};
+/// What an output is set to before the machine arms, when it stops, and when its process is no more: true for
+/// a brake that must hold then. Each output says it.
+constexpr Safe safe(bool active) noexcept { return {active}; }
 
 namespace detail {
 
-constexpr void apply(Line& line, Debounce option) noexcept { line.debounce = option.time; }
-constexpr void apply(Line& line, ActiveLow) noexcept { line.active_low = true; }
-constexpr void apply(Line& line, SafeHigh) noexcept { line.safe_value = true; }
-constexpr void apply(Line& line, Bias option) noexcept { line.bias = option; }
+constexpr void apply(LineRow& row, Debounce option) noexcept { row.line.debounce = option.time; }
+constexpr void apply(LineRow& row, ActiveLow) noexcept { row.line.active_low = true; }
+constexpr void apply(LineRow& row, Bias option) noexcept { row.line.bias = option; }
+constexpr void apply(LineRow& row, Safe option) noexcept {
+    row.line.safe_value = option.active;
+    row.says_safe = true;
+}
 
 template <class... Options>
 constexpr LineRow row(std::string_view name, Role role, Driven driven, Options... options) {
@@ -44,7 +51,7 @@ constexpr LineRow row(std::string_view name, Role role, Driven driven, Options..
     row.line.name = name;
     row.line.role = role;
     row.driven = driven;
-    (apply(row.line, options), ...);
+    (apply(row, options), ...);
     return row;
 }
 
@@ -79,11 +86,19 @@ template <class... Rows> constexpr LineMap<sizeof...(Rows)> line_map(const Rows&
     static_assert(sizeof...(Rows) >= 2,
                   "with one line alone in a request the kernel hides the edges it lost: take two");
     static_assert(sizeof...(Rows) <= most_lines, "one request of the kernel holds at most 64 lines");
-    for (std::size_t i = 0; i < map.rows.size(); ++i)
+    for (std::size_t i = 0; i < map.rows.size(); ++i) {
+        const Line& line = map.rows[i].line;
+        const bool driven = line.role == Role::output;
+        if (driven && !map.rows[i].says_safe)
+            map.fault =
+                Sentence{"output \"", line.name,
+                         "\" does not say its safe value: write gpio::safe(false) or gpio::safe(true)"};
+        if (!driven && map.rows[i].says_safe)
+            map.fault = Sentence{"sensor \"", line.name, "\" has a safe value: only outputs have one"};
         for (std::size_t j = 0; j < i; ++j)
-            if (map.rows[i].line.name == map.rows[j].line.name)
-                map.fault = Sentence{"line \"", map.rows[i].line.name,
-                                     "\" stands in the map twice: rename one of them"};
+            if (line.name == map.rows[j].line.name)
+                map.fault = Sentence{"line \"", line.name, "\" stands in the map twice: rename one of them"};
+    }
     return map;
 }
 

@@ -48,6 +48,24 @@ public:
     [[nodiscard]] virtual WireCounters counters() const noexcept = 0;
 };
 
+/// Devices whose wires lead to a machine of steel: what makes them safe when the machine's process is no
+/// more. All of it is the guardian's, whose process is a copy of the machine's from before it armed. Not
+/// real-time.
+class GuardedDevices : public Devices {
+public:
+    /// Descriptors that the guardian needs of those that were opened.
+    [[nodiscard]] virtual Bounded<int, 16> kept_by_guardian() const noexcept = 0;
+    /// Opens what the guardian needs for itself, and rehearses: nothing has moved, and every line has its
+    /// safe value. No frame and no request leaves. The error names the device and the cure.
+    virtual std::expected<void, Sentence> prepare_safe_ending() = 0;
+    /// Writes the safe values of all output lines. Chips that did not take them.
+    virtual std::size_t write_safe_lines() noexcept = 0;
+    /// Sends the safe frames of all buses until each is confirmed, for so long at most. Frames that are not.
+    virtual std::size_t send_safe_frames(Duration within) noexcept = 0;
+    /// Each server gets its safe values over a connection of its own. Servers that did not confirm them.
+    virtual std::size_t write_safe_registers() noexcept = 0;
+};
+
 /// How many devices of each kind the drivers of a machine name.
 struct DeviceCounts {
     std::size_t can = 0, gpio = 0, modbus = 0;

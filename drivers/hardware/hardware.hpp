@@ -2,6 +2,7 @@
 // that its table does not name cost nothing: neither memory nor their library.
 #pragma once
 
+#include "drivers/can/signal_map.hpp"
 #include "drivers/hardware/devices.hpp"
 #include "drivers/hardware/open.hpp"
 #include "kernel/machine/check/board.hpp"
@@ -12,7 +13,7 @@ namespace tappet {
 
 /// Of the machine's own kinds, those that no driver here knows, it opens none.
 template <const auto& table>
-class Hardware final : public Devices {
+class Hardware final : public GuardedDevices {
 public:
     static constexpr DeviceCounts count = count_devices(table.view());
 
@@ -56,6 +57,36 @@ public:
         return sum;
     }
 
+    [[nodiscard]] Bounded<int, 16> kept_by_guardian() const noexcept override {
+        Bounded<int, 16> kept;
+        for (const auto& chip : gpio_) static_cast<void>(kept.push(chip.wait_handle()));
+        return kept;
+    }
+    std::expected<void, Sentence> prepare_safe_ending() override {
+        for (std::size_t i = 0; i < n_.can; ++i)
+            if (auto opened = safe_can_[i].open(buses_[i].at, buses_[i].map->safe); !opened) return opened;
+        rehearse(safe_can_);
+        if (write_safe_lines() != 0)
+            return std::unexpected(
+                Sentence{"a GPIO chip does not take the safe values of its lines; see that it is "
+                         "still there"});
+        return {};
+    }
+    std::size_t write_safe_lines() noexcept override {
+        std::size_t failed = 0;
+        for (auto& chip : gpio_) failed += chip.make_safe() ? 0u : 1u;
+        return failed;
+    }
+    std::size_t send_safe_frames(Duration within) noexcept override {
+        return count.can == 0 ? 0 : tappet::send_safe_frames(safe_can_, within);
+    }
+    std::size_t write_safe_registers() noexcept override {
+        std::size_t failed = 0;
+        for (std::size_t i = 0; i < n_.modbus; ++i)
+            failed += tappet::write_safe_registers(modbus_[i], *servers_[i].safe) ? 0u : 1u;
+        return failed;
+    }
+
 private:
     template <class Device>
     void provide(std::string_view name, Device& device) {
@@ -65,6 +96,8 @@ private:
         if constexpr (count.can > 0)
             if (drives(to.row, "can")) {
                 provide<can::Device>(to.bound.name, can_[n_.can]);
+                buses_[n_.can] = {to.address(),
+                                  static_cast<const can::Identifiers*>(to.row.type->device_map)};
                 return open_device(can_[n_.can++], to);
             }
         if constexpr (count.gpio > 0)
@@ -76,7 +109,8 @@ private:
         if constexpr (count.modbus > 0)
             if (drives(to.row, "modbus")) {
                 provide<modbus::Transport>(to.bound.name, modbus_[n_.modbus]);
-                servers_[n_.modbus] = {to.bound.name, to.address(), to.device != nullptr};
+                servers_[n_.modbus] = {to.bound.name, to.address(), to.device != nullptr,
+                                       static_cast<const modbus::SafeWrites*>(to.row.type->device_map)};
                 return open_device(modbus_[n_.modbus++], to);
             }
         return {};
@@ -84,14 +118,21 @@ private:
 
     DeviceCounts n_{}; // opened so far
     std::array<can::SocketCan, count.can> can_{};
+    std::array<can::SafeSender, count.can> safe_can_{}; // open in the guardian's process only
     std::array<gpio::Lines, count.gpio> gpio_{};
     std::array<PlacedLines, count.gpio> lines_of_{};
     std::array<modbus::LibmodbusTransport, count.modbus> modbus_{};
-    struct Place {
+    struct Bus {
+        std::string_view at;
+        const can::Identifiers* map;
+    };
+    std::array<Bus, count.can> buses_{};
+    struct Server {
         std::string_view name, at;
         bool is_serial = false;
+        const modbus::SafeWrites* safe = nullptr;
     };
-    std::array<Place, count.modbus> servers_{};
+    std::array<Server, count.modbus> servers_{};
     std::array<ProvidedDevice, count.all()> provided_{};
 };
 

@@ -1,10 +1,12 @@
 // Opening one real device: where the binding says it stands, for what its driver's map says.
 #pragma once
 
+#include "drivers/can/safe_sender.hpp"
 #include "drivers/can/socket_can.hpp"
 #include "drivers/gpio/line_map.hpp"
 #include "drivers/gpio/lines.hpp"
 #include "drivers/modbus/libmodbus_transport.hpp"
+#include "drivers/modbus/register_map.hpp"
 #include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 #include "kernel/machine/table/components.hpp"
@@ -32,5 +34,11 @@ struct BoundTo {
 std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to);
 std::expected<void, Sentence> open_device(gpio::Lines& chip, PlacedLines& lines, const BoundTo& to);
 std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, const BoundTo& to);
+
+/// Sends the frames in turns until all are confirmed, for so long at most; how many are not.
+std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept;
+void rehearse(std::span<can::SafeSender> buses) noexcept;
+/// True when the server confirmed each.
+bool write_safe_registers(modbus::LibmodbusTransport& server, const modbus::SafeWrites& writes) noexcept;
 
 } // namespace tappet

@@ -1,6 +1,8 @@
 // A CAN interface, opened for the identifiers of its driver's signal map.
 #include "drivers/can/signal_map.hpp"
 #include "drivers/hardware/open.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/sleep.hpp"
 
 namespace tappet {
 
@@ -12,6 +14,23 @@ std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to
     settings.receive = map.receive;
     settings.transmit = map.transmit;
     return bus.open(settings);
+}
+
+void rehearse(std::span<can::SafeSender> buses) noexcept {
+    for (can::SafeSender& bus : buses) {
+        bus.send(can::SafeSender::Purpose::rehearsal);
+        static_cast<void>(bus.left());
+    }
+}
+
+std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept {
+    for (const Time end = os::Clock::monotonic() + within;;) {
+        for (can::SafeSender& bus : buses) bus.send(can::SafeSender::Purpose::earnest);
+        os::sleep_for(can::SafeSender::repeat_after);
+        std::size_t left = 0;
+        for (can::SafeSender& bus : buses) left += bus.left();
+        if (left == 0 || os::Clock::monotonic() >= end) return left;
+    }
 }
 
 } // namespace tappet

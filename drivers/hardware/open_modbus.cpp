@@ -19,4 +19,15 @@ std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, co
     return server.open(settings);
 }
 
+bool write_safe_registers(modbus::LibmodbusTransport& server, const modbus::SafeWrites& writes) noexcept {
+    if (writes.requests.empty()) return true;
+    bool good = server.connect().outcome == modbus::Outcome::ok;
+    for (const modbus::SafeWrite& each : writes.requests)
+        good = good && server.write(each.run.table, static_cast<std::uint16_t>(each.run.address),
+                                    writes.words.subspan(each.first, each.run.count))
+                               .outcome == modbus::Outcome::ok;
+    server.disconnect();
+    return good;
+}
+
 } // namespace tappet

@@ -42,7 +42,7 @@ template <const auto& map> struct Client {
     TAPPET_ACCEPTED(map.fault);
     static constexpr std::size_t count = map.registers.size();
     static constexpr std::string_view device_kind = "modbus";
-    static constexpr const auto& device_map = map;
+    static constexpr SafeWrites device_map = map.safe_writes();
 
     std::array<Output<double>, count> read{};
     std::array<Input<double>, count> wanted{};

@@ -7,6 +7,7 @@
 #include "kernel/base/time.hpp"
 
 #include <cstddef>
+#include <span>
 
 namespace tappet::modbus {
 
@@ -44,11 +45,19 @@ struct Row {
     Duration stale_after{}; ///< write: older values are not sent any more; 0: never
     std::size_t first = 0;  ///< its registers in the map's array
     std::size_t registers = 0;
+    bool silence_is_safe = false; ///< write: it is not sent when the machine's process is no more
 };
 
 template <std::size_t N> struct RowWithRegisters {
     Row row{};
     std::array<Register, N> registers{};
+
+    /// Instead of safe values: the server is safe without this row, by a time-out of its own.
+    constexpr RowWithRegisters safe_by_silence() const noexcept {
+        RowWithRegisters copy = *this;
+        copy.row.silence_is_safe = true;
+        return copy;
+    }
 };
 
 struct Every {
@@ -67,7 +76,8 @@ constexpr auto read(std::string_view name, Run run, Every period, const Register
     return RowWithRegisters<sizeof...(Registers)>{
         {name, run, false, period.period, {}, 0, sizeof...(Registers)}, {registers...}};
 }
-/// write("setpoints", holding_registers(8, 2), every(1s), stale_after(3s), word("temperature", 0), ...)
+/// write("setpoints", holding_registers(8, 2), every(1s), stale_after(3s), word("temperature", 0).safe(20),
+/// ...)
 template <class... Registers>
 constexpr auto write(std::string_view name, Run run, Every period, StaleAfter age,
                      const Registers&... registers) noexcept {
@@ -77,11 +87,29 @@ constexpr auto write(std::string_view name, Run run, Every period, StaleAfter ag
 
 inline constexpr std::size_t no_such = ~std::size_t{0};
 
+/// One request that makes what it writes safe: `count` words, from `first` on in the map's.
+struct SafeWrite {
+    Run run{};
+    std::size_t first = 0;
+};
+struct SafeWrites {
+    std::span<const SafeWrite> requests{};
+    std::span<const std::uint16_t> words{};
+};
+
 template <std::size_t R, std::size_t V> struct RegisterMap {
     std::array<Row, R> rows{};
     std::array<Register, V> registers{};
     std::array<std::size_t, V> row_of{};
+    std::array<SafeWrite, R> safe{};
+    std::array<std::uint16_t, 2 * V> safe_words{};
+    std::size_t safe_count = 0;
     Sentence fault{}; ///< empty when the table is right
+
+    /// What is sent when the machine's process is no more.
+    [[nodiscard]] constexpr SafeWrites safe_writes() const noexcept {
+        return {std::span{safe}.first(safe_count), safe_words};
+    }
 
     [[nodiscard]] constexpr std::size_t row(std::string_view name) const noexcept {
         for (std::size_t r = 0; r < R; ++r)
@@ -140,6 +168,21 @@ constexpr Sentence register_fault(const Row& row, const Register& r) noexcept {
     return {};
 }
 
+constexpr Sentence safe_fault(const Row& row, const Register& r) noexcept {
+    const Sentence who{"register \"", row.name, ".", r.name, "\""};
+    if (!row.write)
+        return r.says_safe ? Sentence{who, " is read and has a safe value: only what is written has one"}
+                           : Sentence{};
+    if (r.says_safe == row.silence_is_safe)
+        return r.says_safe
+                   ? Sentence{who, " has a safe value, but its row is safe by silence: keep one of the two"}
+                   : Sentence{who, " does not say its safe value: write .safe(..) behind it, or "
+                                   ".safe_by_silence() behind the row"};
+    if (const Encoded raw = to_words(r, r.safe_value); r.says_safe && (raw.saturated || raw.refused))
+        return Sentence{who, " cannot hold its safe value: it is outside of the register's range"};
+    return {};
+}
+
 template <std::size_t R, std::size_t V> constexpr Sentence map_fault(const RegisterMap<R, V>& map) noexcept {
     for (std::size_t i = 0; i < R; ++i) {
         const Row& row = map.rows[i];
@@ -151,6 +194,7 @@ template <std::size_t R, std::size_t V> constexpr Sentence map_fault(const Regis
         for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
             const Register& r = map.registers[v];
             if (const Sentence fault = register_fault(row, r); !fault.empty()) return fault;
+            if (const Sentence fault = safe_fault(row, r); !fault.empty()) return fault;
             covered += r.width();
             for (std::size_t other = row.first; other < v; ++other) {
                 const Register& o = map.registers[other];
@@ -190,6 +234,16 @@ template <std::size_t... N> constexpr auto register_map(const RowWithRegisters<N
     };
     (flatten(rows), ...);
     map.fault = detail::map_fault(map);
+    std::size_t used = 0;
+    for (const Row& row : map.rows) {
+        if (!map.fault.empty() || !row.write || row.silence_is_safe) continue;
+        map.safe[map.safe_count++] = {row.run, used};
+        for (const Register& one : std::span{map.registers}.subspan(row.first, row.registers)) {
+            const Encoded value = to_words(one, one.safe_value);
+            for (unsigned w = 0; w < one.width(); ++w) map.safe_words[used + one.at + w] = value.words[w];
+        }
+        used += row.run.count;
+    }
     return map;
 }
 

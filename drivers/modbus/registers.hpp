@@ -39,6 +39,8 @@ struct Register {
     double factor = 1;
     double offset = 0;
     std::string_view unit{};
+    double safe_value = 0; ///< of what is written: sent when the machine's process is no more
+    bool says_safe = false;
 
     [[nodiscard]] constexpr unsigned width() const noexcept { return kind >= Kind::unsigned_double ? 2 : 1; }
 
@@ -66,6 +68,12 @@ struct Register {
     constexpr Register in(std::string_view new_unit) const noexcept {
         Register copy = *this;
         copy.unit = new_unit;
+        return copy;
+    }
+    constexpr Register safe(double value) const noexcept {
+        Register copy = *this;
+        copy.safe_value = value;
+        copy.says_safe = true;
         return copy;
     }
 };

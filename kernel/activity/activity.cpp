@@ -99,6 +99,7 @@ void Activity::run_once() noexcept {
 }
 
 bool Activity::sleep_until(Time time) noexcept TAPPET_REALTIME {
+    engine_->sleeps_until(time);
     const bool woken = engine_->heeds_devices() ? engine_->waiter().wait(time)
                                                 : engine_->waiter().wait_without_devices(time);
     if (!woken) engine_->stamps().renew(); // a stamp that lags the clock would take the time for not come

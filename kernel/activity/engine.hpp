@@ -220,6 +220,13 @@ public:
     [[nodiscard]] std::string_view name() const noexcept TAPPET_REALTIME { return plan_.name; }
     [[nodiscard]] const EnginePlan& plan() const noexcept TAPPET_REALTIME { return plan_; }
     [[nodiscard]] os::Waiter& waiter() noexcept TAPPET_REALTIME { return waiter_; }
+    /// Its thread wants to be awake at that time. For whoever watches that it is.
+    void sleeps_until(Time time) noexcept TAPPET_REALTIME {
+        wakes_at_ns_.store(to_ns(time), std::memory_order_relaxed); // no step: looked at again and again
+    }
+    [[nodiscard]] Time wakes_at() const noexcept TAPPET_REALTIME {
+        return at_ns(wakes_at_ns_.load(std::memory_order_relaxed)); // no step: looked at again and again
+    }
     /// Somebody woke it, and it has not begun the cycle for that.
     [[nodiscard]] bool is_woken() const noexcept TAPPET_REALTIME { return waiter_.is_woken(); }
     [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
@@ -374,6 +381,7 @@ private:
     EngineStatistics statistics_{};
     Digest digest_{};
     std::atomic<std::uint64_t> generation_{0};
+    std::atomic<std::int64_t> wakes_at_ns_{0};
     os::Waiter waiter_{};
     Inbox inbox_{};
     CommandProcessor commands_{};

@@ -2,6 +2,7 @@
 #include "kernel/os/thread.hpp"
 
 #include "kernel/os/clock.hpp"
+#include "kernel/os/crash.hpp"
 #include "kernel/os/sleep.hpp"
 
 #include <cerrno>
@@ -19,6 +20,7 @@ void* enter(void* context) noexcept {
     char name[16] = {};
     std::memcpy(name, plan.name.data(), std::min<std::size_t>(plan.name.size(), sizeof name - 1));
     pthread_setname_np(pthread_self(), name);
+    take_crashes_on_own_stack();
     plan.body(plan.context);
     return nullptr;
 }

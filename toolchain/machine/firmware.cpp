@@ -5,6 +5,7 @@
 #include "kernel/os/box.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/configuration/property_files.hpp"
+#include "toolchain/machine/guardian.hpp"
 #include "toolchain/machine/summary.hpp"
 
 #include <algorithm>
@@ -21,6 +22,15 @@ constinit os::Clock machine_clock{os::Clock::Kind::real};
 std::array<char, 48 * 1024> summary_text;
 constexpr std::size_t most_own_words = 8;
 
+// How long the supervisor may be away from its guardian: while the machine runs it starts or stops an
+// activity for somebody at most; initialising and finalising a component may take what the machine's maker
+// likes.
+constexpr Duration away_while_running = 2s;
+static_assert(away_while_running > 2 * RealWorld::patience_ms * 1ms,
+              "an activity may be restarted meanwhile");
+constexpr Duration away_while_starting = 30s;
+constexpr Duration away_while_stopping = 10s;
+
 struct Options {
     const char* summary = nullptr;
     const char* properties = nullptr;
@@ -29,6 +39,7 @@ struct Options {
     Duration time = Duration::max();
     bool help = false;
     bool plan = false;
+    bool guarded = true;
     Bounded<char*, most_own_words> own{}; ///< words for the machine's hook
     Sentence error{};
 };
@@ -40,6 +51,7 @@ constexpr std::string_view usage =
     "board's directory\n"
     "  --browse DIR       opens the browsers' socket there instead of in the board's directory\n"
     "  --for SECONDS      ends by itself after so long\n"
+    "  --no-guardian      for tests: what a crash leaves on the outputs stays there\n"
     "  --plan             what the compiler derived from the table: priorities, order, mailboxes, memory\n"
     "  --help             this text\n";
 
@@ -56,11 +68,13 @@ Options parse(int count, char** words, bool has_own) {
             options.help = true;
         else if (word == "--plan")
             options.plan = true;
+        else if (word == "--no-guardian")
+            options.guarded = false;
         else if (place == nullptr && !(has_own && options.own.push(words[i])))
             options.error =
                 Sentence{"option ", word,
                          " is unknown; there are --summary FILE, --properties DIRECTORY, --browse "
-                         "DIRECTORY, --for SECONDS, --plan and --help"};
+                         "DIRECTORY, --for SECONDS, --no-guardian, --plan and --help"};
         else if (place != nullptr && i + 1 == count)
             options.error = Sentence{"option ", word, " needs a name after it"};
         else if (place != nullptr)
@@ -82,7 +96,8 @@ Options parse(int count, char** words, bool has_own) {
 /// One run of the firmware, with its name before whatever it says.
 class Run {
 public:
-    Run(const AcceptedMachine& machine, Devices& devices, const FirmwareHooks& hooks, const Options& options)
+    Run(const AcceptedMachine& machine, GuardedDevices& devices, const FirmwareHooks& hooks,
+        const Options& options)
         : name_{machine.table.name}, devices_{devices}, hooks_{hooks}, options_{options} {}
 
     Ending fail(Ending ending, const Sentence& why) const {
@@ -94,7 +109,22 @@ public:
         os::print(Sentence{name_, ": ", words..., "\n"}.view());
     }
 
-    Ending live(MachineInstance& instance, RealWorld& world, PropertyFiles& properties, Time begun) {
+    int live(MachineInstance& instance, RealWorld& world, PropertyFiles& properties, Time begun) {
+        if (options_.guarded) instance.be_guarded();
+        if (const Ending prepared = prepare(instance, properties); prepared != Ending::well)
+            return static_cast<int>(prepared);
+        if (options_.guarded) {
+            const auto side = guard_.split();
+            if (!side) return static_cast<int>(fail(Ending::wrong_set_up, side.error()));
+            if (*side == os::Guard::Side::guardian) be_guardian(guard_, devices_, instance);
+            instance.observation().be_this_process();
+        }
+        return static_cast<int>(run(instance, world, properties, begun));
+    }
+
+private:
+    /// Until the machine could arm. Its guardian is a copy of this.
+    Ending prepare(MachineInstance& instance, PropertyFiles& properties) {
         if (const auto opened = devices_.open(instance.machine()); !opened)
             return fail(Ending::wrong_set_up, opened.error());
         instance.read_properties_from(properties.store());
@@ -102,21 +132,41 @@ public:
         if (const auto configured = instance.configure(devices_.provided()); !configured)
             return fail(Ending::wrong_set_up, configured.error());
         if (hooks_.configured != nullptr) hooks_.configured(instance);
+        return Ending::well;
+    }
 
+    Ending run(MachineInstance& instance, RealWorld& world, PropertyFiles& properties, Time begun) {
         const Board& board = *instance.machine().board;
         static os::ArmingReport arming{{board.only_warned.begin(), board.only_warned.end()}};
         devices_.report(arming); // a device that is not fit was refused when it was opened
+        report_guardian(arming);
         const auto armed = world.arm(arming, 2);
-        if (!armed) return Ending::refused_to_arm;
+        if (!armed) {
+            guard_.end_well();
+            return Ending::refused_to_arm;
+        }
         const Duration start_to_armed = machine_clock.now() - begun;
-        if (!world.start(*armed)) return fail(Ending::stopped_by_fault, world.refusal());
+        guard_.be_back_within(away_while_starting);
+        guard_.let_activities_be_watched(true);
+        if (!world.start(*armed)) {
+            guard_.end_well(); // it was stopped again
+            return fail(Ending::stopped_by_fault, world.refusal());
+        }
         say("armed on board \"", board.name, "\", ", static_cast<std::int64_t>(arming.warnings()),
             " warnings, ", start_to_armed.count() / 1000, " us after its start");
         const bool time_is_over = supervise(instance, world);
         return end(instance, world, properties, start_to_armed, time_is_over);
     }
 
-private:
+    void report_guardian(os::ArmingReport& report) const {
+        if (!guard_.is_split())
+            report.warning("guardian", Sentence{"the machine has none"}, Sentence{"leave out --no-guardian"});
+        else if (const Sentence why = guard_.wait_for_guardian(); !why.empty())
+            report.fault("guardian", why, Sentence{"see the reason"});
+        else
+            report.passed("guardian", Sentence{"it could act now"});
+    }
+
     /// True when it ended because its time was over.
     bool supervise(MachineInstance& instance, RealWorld& world) {
         const Time begin = machine_clock.now();
@@ -124,6 +174,8 @@ private:
         for (int look = 1;; ++look) {
             const Duration left = options_.time - (machine_clock.now() - begin);
             if (left <= Duration::zero()) return true;
+            guard_.be_back_within(away_while_running);
+            if (guard_.guardian_is_lost()) return false;
             if (!world.supervise(std::min<Duration>(left, 100ms))) return false;
             std::size_t n = 0;
             for (const BehaviourRow& row : instance.machine().table.behaviours)
@@ -134,10 +186,15 @@ private:
 
     Ending end(MachineInstance& instance, RealWorld& world, PropertyFiles& properties,
                Duration start_to_armed, bool time_is_over) {
+        const bool unguarded = guard_.guardian_is_lost();
+        guard_.let_activities_be_watched(false);
+        guard_.be_back_within(away_while_stopping);
         const int hung = world.stop();
-        const Sentence reason = !world.broken_contract().empty() ? world.broken_contract()
-                                : time_is_over                   ? Sentence{"its time is over"}
-                                                                 : instance.describe_stop();
+        if (hung == 0) guard_.end_well(); // else the guardian makes sure of the outputs
+        const Sentence reason = unguarded ? Sentence{"its guardian is gone, or hangs"}
+                                : !world.broken_contract().empty() ? world.broken_contract()
+                                : time_is_over                     ? Sentence{"its time is over"}
+                                                                   : instance.describe_stop();
         say("stopped: ", reason);
         for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
             say("then: ", world.describe_breach(i));
@@ -150,7 +207,8 @@ private:
             if (const Ending written = write(instance, world, reason, start_to_armed);
                 written != Ending::well)
                 return written;
-        const bool as_asked = time_is_over || instance.stop_request().reason == StopReason::requested;
+        const bool as_asked =
+            !unguarded && (time_is_over || instance.stop_request().reason == StopReason::requested);
         return as_asked && hung == 0 && world.breaches() == 0 ? Ending::well : Ending::stopped_by_fault;
     }
 
@@ -209,34 +267,35 @@ private:
     }
 
     std::string_view name_;
-    Devices& devices_;
+    GuardedDevices& devices_;
     const FirmwareHooks& hooks_;
     const Options& options_;
+    os::Guard guard_{};
 };
 
 } // namespace
 
-Ending run_firmware(const AcceptedMachine& machine, Devices& devices, int count, char** words,
-                    const FirmwareHooks& hooks) {
+int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int count, char** words,
+                 const FirmwareHooks& hooks) {
     const Time begun = machine_clock.now() - os::own_processor_time(); // when the kernel began to load us
     const Options options = parse(count, words, hooks.take != nullptr);
     Run run{machine, devices, hooks, options};
-    if (!options.error.empty()) return run.fail(Ending::wrong_set_up, options.error);
+    if (!options.error.empty()) return static_cast<int>(run.fail(Ending::wrong_set_up, options.error));
     if (options.help) {
         os::print(Sentence{"the firmware of the machine \"", machine.table.name, "\" for board \"",
                            machine.board->name, "\"\n"}
                       .view());
         os::print(usage);
-        return Ending::well;
+        return 0;
     }
     if (options.plan) {
         describe_plan(machine, nullptr,
                       [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
-        return Ending::well;
+        return 0;
     }
     if (hooks.take != nullptr)
         if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())
-            return run.fail(Ending::wrong_set_up, refusal);
+            return static_cast<int>(run.fail(Ending::wrong_set_up, refusal));
     static MachineInstance instance{machine, machine_clock};
     static PropertyFiles properties{options.properties != nullptr ? std::string_view{options.properties}
                                                                   : machine.board->properties_directory};

@@ -10,7 +10,8 @@
 
 namespace tappet {
 
-/// How a firmware ends.
+/// How a firmware ends. Where its guardian had to end it: 128 and the number of the signal, as a shell tells
+/// it.
 enum class Ending : int { well = 0, wrong_set_up = 2, refused_to_arm = 3, stopped_by_fault = 4 };
 
 /// What only one machine says. The supervisor's thread calls them: never between a fault and safe values.
@@ -23,9 +24,10 @@ struct FirmwareHooks {
     void (*ended)(MachineInstance& instance, const RealWorld& world) = nullptr;
 };
 
-/// Runs until it is told to end by a signal, or a fault ends it. `devices` and what the machine needs are in
-/// static memory; what it prints begins with the machine's name. Not real-time.
-[[nodiscard]] Ending run_firmware(const AcceptedMachine& machine, Devices& devices, int count, char** words,
-                                  const FirmwareHooks& hooks = {});
+/// Runs until it is told to end by a signal, or a fault ends it; returns its exit code, in two processes: the
+/// machine's and its guardian's. `devices` and what the machine needs are in static memory; what it prints
+/// begins with the machine's name. Not real-time.
+[[nodiscard]] int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int count,
+                               char** words, const FirmwareHooks& hooks = {});
 
 } // namespace tappet

@@ -17,6 +17,5 @@ int main(int count, char** words) {
 #else
     constexpr tappet::FirmwareHooks hooks;
 #endif
-    return static_cast<int>(
-        tappet::run_firmware(TAPPET_NAMESPACE::OnBoard::machine(), hardware, count, words, hooks));
+    return tappet::run_firmware(TAPPET_NAMESPACE::OnBoard::machine(), hardware, count, words, hooks);
 }

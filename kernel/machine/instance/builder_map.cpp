@@ -29,7 +29,7 @@ static_assert(sizeof(map::Times) == sizeof(ReactionTimes) &&
 } // namespace
 
 std::expected<void, Sentence> MachineBuilder::share_memory() {
-    if (machine_.map.empty()) return {};
+    if (machine_.map.empty() && !instance_.is_guarded_) return {};
     return instance_.observation().shared_.lay_under(machine_.memory.first(machine_.plan.shared_bytes),
                                                      "tappet-machine");
 }

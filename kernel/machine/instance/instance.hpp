@@ -43,6 +43,13 @@ public:
         browsing_directory_ = directory;
     }
 
+    /// Another process will watch its engines: they lie in memory that both have, whether a component sees
+    /// the machine or not.
+    void be_guarded() noexcept {
+        expect_unconfigured();
+        is_guarded_ = true;
+    }
+
     /// Constructs, wires and configures. Again while the machine stands: all is built anew. An error is the
     /// first component's refusal.
     std::expected<Standing, Sentence> configure(std::span<const ProvidedDevice> devices);
@@ -91,11 +98,14 @@ public:
     [[nodiscard]] Sentence save_properties(std::optional<Standing> standing);
 
 private:
+    friend class MachineBuilder;
+
     void expect_unconfigured() const noexcept { TAPPET_CONTRACT(!is_configured_, Contract::wrong_phase); }
 
     PropertyStore store_{};
     std::string_view browsing_directory_{};
     bool is_configured_ = false;
+    bool is_guarded_ = false;
     os::Waiter supervisor_{};
     MachineLife life_{*this, supervisor_};
     MachineRequests requests_{*this};

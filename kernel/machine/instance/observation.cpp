@@ -1,9 +1,15 @@
 // What a machine tells about itself while it runs.
 #include "kernel/machine/instance/observation.hpp"
 
+#include "kernel/machine/map/layout.hpp"
+#include "kernel/os/local_socket.hpp"
 #include "kernel/os/memory.hpp"
 
 namespace tappet {
+
+void MachineObservation::be_this_process() noexcept {
+    if (!machine_.map.empty()) placed_.at<map::Header>(0)->process = os::own_process();
+}
 
 EventHandle MachineObservation::observe_event(std::size_t component, std::size_t facet_index) noexcept {
     const std::size_t s = observed_index({component, facet_index});

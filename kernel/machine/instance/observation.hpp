@@ -25,6 +25,8 @@ public:
     }
     /// The same as a descriptor to give away; -1 when there is none.
     [[nodiscard]] int shared_descriptor() const noexcept { return shared_.descriptor(); }
+    /// The machine went on in another process (a fork): its memory says which.
+    void be_this_process() noexcept;
     /// How many ports of it are forced now, of a machine that a component sees. Real-time.
     [[nodiscard]] std::atomic<std::uint32_t>& forced_ports() const noexcept TAPPET_REALTIME {
         return placed_.at<Observed>(machine_.plan.observed_at)->forced;

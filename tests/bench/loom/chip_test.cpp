@@ -8,9 +8,9 @@
 namespace tappet::bench {
 namespace {
 
-/// Ticks of processor time that the process has used, of all its threads.
-long processor_ticks(const Foreign& process) {
-    std::ifstream stat{"/proc/" + std::to_string(process.number()) + "/stat"};
+/// Ticks of processor time that the machine's process has used, of all its threads.
+long processor_ticks(const Foreign& firmware) {
+    std::ifstream stat{"/proc/" + std::to_string(machine_of(firmware)) + "/stat"};
     std::string word;
     std::array<long, 2> used{};
     for (int field = 1; stat >> word && field <= 15; ++field)

@@ -4,6 +4,6 @@
 
 using namespace tappet;
 
-constexpr auto io = gpio::line_map(gpio::sensor("start"), gpio::output("lamp"));
+constexpr auto io = gpio::line_map(gpio::sensor("start"), gpio::output("lamp", gpio::safe(false)));
 
 void turn_on(gpio::FarEnd<io>& far) { far.set("lamp", true); }

@@ -121,19 +121,54 @@ TEST(Signals, round_to_the_nearest) {
     EXPECT_EQ(to_raw(s, 2.4).bits, 2u);
 }
 
-constexpr auto map =
-    signal_map(receive(standard(0x181), "drive", bytes(6), signal("statusword", 0, 16),
-                       signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-               receive(extended(0x18FF0102), "climate", bytes(2),
-                       signal("temperature", 7, 16).big_endian().times(0.01).plus(-40)),
-               transmit(standard(0x201), "command", bytes(6), every(1ms), signal("controlword", 0, 16),
-                        signal("target", 16, 32).as_signed().times(0.1)));
+constexpr auto map = signal_map(receive(standard(0x181), "drive", bytes(6), signal("statusword", 0, 16),
+                                        signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+                                receive(extended(0x18FF0102), "climate", bytes(2),
+                                        signal("temperature", 7, 16).big_endian().times(0.01).plus(-40)),
+                                transmit(standard(0x201), "command", bytes(6), every(1ms),
+                                         signal("controlword", 0, 16).safe(6),
+                                         signal("target", 16, 32).as_signed().times(0.1).safe(-12.3)));
 static_assert(map.fault.empty());
 static_assert(map.receives().size() == 2 && map.receives()[1] == extended(0x18FF0102));
 static_assert(map.transmits().size() == 1 && map.transmits()[0] == standard(0x201));
 static_assert(map.signal("drive.velocity") == 1 && map.signal("drive.torque") == no_such);
 static_assert(map.frame("command") == 2 && map.frame(standard(0x201)) == 2 &&
               map.frame(extended(0x201)) == no_such);
+
+static_assert(map.safe_frames().size() == 1 && map.safe_frames()[0].id == 0x201 &&
+              map.safe_frames()[0].data == Payload{0x06, 0x00, 0x85, 0xFF, 0xFF, 0xFF});
+
+template <class... Rows> std::string_view fault(const Rows&... rows) {
+    static Sentence kept;
+    kept = signal_map(rows...).fault;
+    return kept.view();
+}
+
+TEST(SignalMap, sends_cyclic_safe_frames_first_and_leaves_out_what_is_safe_by_silence) {
+    static constexpr auto all = signal_map(
+        transmit(standard(0x000), "nmt", bytes(2), on_demand, signal("command", 0, 8).safe(128),
+                 signal("node", 8, 8).safe(0)),
+        transmit(standard(0x201), "command", bytes(2), every(1ms), signal("controlword", 0, 16).safe(2)),
+        transmit(standard(0x301), "dobby", bytes(1), every(1ms), signal("pattern", 0, 8)).safe_by_silence());
+    static_assert(all.fault.empty());
+    ASSERT_EQ(all.safe_frames().size(), 2u);
+    EXPECT_EQ(all.safe_frames()[0].id, 0x201u);
+    EXPECT_EQ(all.safe_frames()[1].data, (Payload{128, 0}));
+}
+
+TEST(SignalMap, refuses_what_is_sent_and_says_no_safe_value) {
+    EXPECT_EQ(
+        fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16))),
+        "signal \"f.speed\" does not say its safe value: write .safe(..) behind it, or .safe_by_silence() "
+        "behind the frame");
+    EXPECT_EQ(fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(0))
+                        .safe_by_silence()),
+              "signal \"f.speed\" has a safe value, but its frame is safe by silence: keep one of the two");
+    EXPECT_EQ(fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(70000))),
+              "signal \"f.speed\" cannot hold its safe value: it is outside of the signal's range");
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), signal("speed", 0, 16).safe(0))),
+              "signal \"f.speed\" is received and has a safe value: only what is sent has one");
+}
 
 Frame drive_frame(std::uint8_t length = 6) {
     Frame f;
@@ -209,12 +244,6 @@ TEST(SignalStore, survives_random_frames) {
         store.decode(f);
     }
     EXPECT_EQ(store.count.decoded + store.count.unknown_identifiers + store.count.wrong_lengths, 20000u);
-}
-
-template <class... Rows> std::string_view fault(const Rows&... rows) {
-    static Sentence kept;
-    kept = signal_map(rows...).fault;
-    return kept.view();
 }
 
 TEST(SignalMap, refuses_overlapping_signals) {

@@ -12,8 +12,12 @@ namespace tappet::test {
 namespace {
 
 inline constexpr auto lines =
-    gpio::line_map(gpio::sensor("stop_button"), gpio::sensor("weft"), gpio::output("lamp"),
-                   gpio::actuator("valve"), gpio::actuator("brake", gpio::safe_high));
+    gpio::line_map(gpio::sensor("stop_button"), gpio::sensor("weft"), gpio::output("lamp", gpio::safe(false)),
+                   gpio::actuator("valve", gpio::safe(false)), gpio::actuator("brake", gpio::safe(true)));
+static_assert(gpio::line_map(gpio::sensor("a"), gpio::output("b")).fault.view() ==
+              "output \"b\" does not say its safe value: write gpio::safe(false) or gpio::safe(true)");
+static_assert(gpio::line_map(gpio::sensor("a", gpio::safe(true)), gpio::sensor("b")).fault.view() ==
+              "sensor \"a\" has a safe value: only outputs have one");
 constexpr std::size_t stop_button = 0, weft = 1, lamp = 2, valve = 3, brake = 4;
 constexpr gpio::Mask at(std::size_t line) { return gpio::Mask{1} << line; }
 

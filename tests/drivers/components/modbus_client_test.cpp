@@ -14,7 +14,7 @@ inline constexpr auto registers =
                                       modbus::word("temperature", 0).as_signed().times(0.1).in("degC"),
                                       modbus::word("pressure", 1).times(0.01).in("bar")),
                          modbus::write("pump", modbus::coils(0, 1), modbus::every(1s),
-                                       modbus::stale_after(5s), modbus::bit("on", 0)));
+                                       modbus::stale_after(5s), modbus::bit("on", 0).safe(false)));
 
 struct Reader {
     Input<double> temperature{};

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 namespace tappet::modbus {
@@ -39,10 +41,11 @@ TEST(Registers, saturate_and_refuse_what_is_no_number) {
     EXPECT_TRUE(to_words(word("w", 0), std::numeric_limits<double>::quiet_NaN()).refused);
 }
 
-constexpr auto map = register_map(
-    read("climate", input_registers(0, 4), every(250ms),
-         word("temperature", 0).as_signed().times(0.1).in("degC"), double_word("hours", 2)),
-    write("setpoints", holding_registers(10, 1), every(1s), stale_after(5s), word("temperature", 0)));
+constexpr auto map =
+    register_map(read("climate", input_registers(0, 4), every(250ms),
+                      word("temperature", 0).as_signed().times(0.1).in("degC"), double_word("hours", 2)),
+                 write("setpoints", holding_registers(10, 1), every(1s), stale_after(5s),
+                       word("temperature", 0).safe(17)));
 static_assert(map.fault.empty());
 static_assert(map.value("climate.hours") == 1 && map.value("setpoints.temperature") == 2);
 static_assert(map.value("climate.pressure") == no_such && map.row("setpoints") == 1);
@@ -53,6 +56,35 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
     return kept.view();
 }
 auto row(Run run, Register r) { return read("r", run, every(1s), r); }
+
+TEST(RegisterMap, holds_the_words_that_make_each_written_row_safe) {
+    static constexpr auto all =
+        register_map(write("a", holding_registers(10, 3), every(1s), stale_after(5s),
+                           double_word("both", 1).safe(65537), word("one", 0).times(0.5).safe(17)),
+                     write("b", coils(4, 1), every(1s), stale_after(5s), bit("on", 0)).safe_by_silence(),
+                     write("c", coils(7, 1), every(1s), stale_after(5s), bit("on", 0).safe(1)));
+    static_assert(all.fault.empty());
+    const SafeWrites writes = all.safe_writes();
+    ASSERT_EQ(writes.requests.size(), 2u);
+    EXPECT_EQ(writes.requests[1].run.address, 7u);
+    const std::array<std::uint16_t, 4> words{34, 1, 1, 1};
+    EXPECT_TRUE(std::ranges::equal(writes.words.first(4), words));
+    EXPECT_EQ(writes.requests[1].first, 3u);
+}
+
+TEST(RegisterMap, refuses_what_is_written_and_says_no_safe_value) {
+    EXPECT_EQ(fault(write("r", coils(0, 1), every(1s), stale_after(5s), bit("b", 0))),
+              "register \"r.b\" does not say its safe value: write .safe(..) behind it, or "
+              ".safe_by_silence() behind "
+              "the row");
+    EXPECT_EQ(
+        fault(write("r", coils(0, 1), every(1s), stale_after(5s), bit("b", 0).safe(1)).safe_by_silence()),
+        "register \"r.b\" has a safe value, but its row is safe by silence: keep one of the two");
+    EXPECT_EQ(fault(row(holding_registers(0, 1), word("w", 0).safe(0))),
+              "register \"r.w\" is read and has a safe value: only what is written has one");
+    EXPECT_EQ(fault(write("r", holding_registers(0, 1), every(1s), stale_after(5s), word("w", 0).safe(-1))),
+              "register \"r.w\" cannot hold its safe value: it is outside of the register's range");
+}
 
 TEST(RegisterMap, refuses_runs_that_no_request_carries) {
     EXPECT_EQ(fault(row(holding_registers(0, 126), word("w", 0))),
@@ -71,7 +103,7 @@ TEST(RegisterMap, refuses_to_write_what_can_only_be_read) {
 }
 
 TEST(RegisterMap, refuses_to_overwrite_unnamed_registers) {
-    EXPECT_EQ(fault(write("r", holding_registers(0, 3), every(1s), stale_after(5s), word("w", 0))),
+    EXPECT_EQ(fault(write("r", holding_registers(0, 3), every(1s), stale_after(5s), word("w", 0).safe(0))),
               "row \"r\" writes 3 holding registers and names 1: name all, or what is not named would be "
               "overwritten with 0");
 }

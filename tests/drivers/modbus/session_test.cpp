@@ -13,7 +13,7 @@ constexpr auto map = register_map(read("climate", input_registers(0, 2), every(1
                                        word("temperature", 0).as_signed().times(0.1), word("humidity", 1)),
                                   read("pump", discrete_inputs(4, 1), every(200ms), bit("running", 0)),
                                   write("setpoints", holding_registers(8, 2), every(1s), stale_after(3s),
-                                        word("temperature", 0), word("humidity", 1)));
+                                        word("temperature", 0).safe(0), word("humidity", 1).safe(0)));
 static_assert(map.fault.empty());
 constexpr std::size_t temperature = map.value("climate.temperature");
 constexpr std::size_t running = map.value("pump.running");

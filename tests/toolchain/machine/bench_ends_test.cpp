@@ -14,7 +14,8 @@ namespace tappet {
 namespace {
 
 constexpr auto lines = gpio::line_map(gpio::sensor("stop"), gpio::sensor("guard", gpio::active_low),
-                                      gpio::actuator("valve"), gpio::output("lamp", gpio::active_low));
+                                      gpio::actuator("valve", gpio::safe(false)),
+                                      gpio::output("lamp", gpio::active_low, gpio::safe(false)));
 constexpr BoundDevice bound =
     wired("io", "io", line("stop", 0), line("guard", 3), line("valve", 8), line("lamp", 9));
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A raw socket that hears nothing but the confirmations of its own frames.
+#include "drivers/can/safe_sender.hpp"
+
+#include "drivers/can/link.hpp"
+#include "drivers/can/wire.hpp"
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+
+#include <linux/can/raw.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace tappet::can {
+
+std::expected<void, Sentence> SafeSender::open(std::string_view interface, std::span<const Frame> frames) {
+    close();
+    frames_ = frames;
+    if (frames.empty()) return {};
+    const auto refused = [&](std::string_view why) {
+        close();
+        return std::unexpected(
+            Sentence{"CAN interface \"", interface, "\": the guardian cannot send there: ", why});
+    };
+    if (frames.size() > 64)
+        return refused("its map has more than 64 frames with safe values; use a second bus");
+    const auto link = find_link(interface);
+    if (!link) return std::unexpected{link.error()};
+    fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
+    can_filter filters[64];
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        filters[i] = wire::exactly({frames[i].id, frames[i].extended});
+    const int yes = 1;
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = link->index;
+    const bool good = fd_ >= 0 &&
+                      ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
+                                   static_cast<socklen_t>(frames.size() * sizeof filters[0])) == 0 &&
+                      ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &yes, sizeof yes) == 0 &&
+                      ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    if (!good) return refused(strerrordesc_np(errno));
+    return {};
+}
+
+void SafeSender::close() noexcept {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+    confirmed_ = 0;
+}
+
+void SafeSender::send(Purpose purpose) noexcept {
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+        if ((confirmed_ >> i & 1u) != 0) continue;
+        const can_frame raw = wire::encode(frames_[i]);
+        // What the kernel does not take now goes out at the next repetition.
+        [[maybe_unused]] const auto n = ::write(fd_, &raw, purpose == Purpose::earnest ? sizeof raw : 0);
+    }
+}
+
+std::size_t SafeSender::left() noexcept {
+    // Frames of the machine that waited in the kernel may come first: they are bounded by its queue.
+    for (int n = 0; n < 256; ++n) {
+        can_frame raw{};
+        iovec part{&raw, sizeof raw};
+        msghdr message{};
+        message.msg_iov = &part;
+        message.msg_iovlen = 1;
+        if (::recvmsg(fd_, &message, MSG_DONTWAIT) != static_cast<ssize_t>(sizeof raw)) break;
+        if ((message.msg_flags & MSG_CONFIRM) == 0) continue; // of the machine, while it lived
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            const can_frame ours = wire::encode(frames_[i]);
+            if (raw.can_id == ours.can_id) confirmed_ |= std::uint64_t{1} << i;
+        }
+    }
+    return frames_.size() - static_cast<std::size_t>(std::popcount(confirmed_));
+}
+
+} // namespace tappet::can

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frames that make a bus's receivers safe, sent by who is left when the machine's process is no more.
+#pragma once
+
+#include "drivers/can/frame.hpp"
+#include "kernel/base/text.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <span>
+#include <string_view>
+
+namespace tappet::can {
+
+/// A socket of its own: the machine's has little room, which may be full of what it sent last. Not real-time.
+class SafeSender {
+public:
+    static constexpr Duration repeat_after = 5ms;
+
+    SafeSender() = default;
+    SafeSender(const SafeSender&) = delete;
+    SafeSender& operator=(const SafeSender&) = delete;
+    ~SafeSender() { close(); }
+
+    /// `frames`, 64 at most, outlive it. The error names the cure.
+    std::expected<void, Sentence> open(std::string_view interface, std::span<const Frame> frames);
+    void close() noexcept;
+
+    /// Hands over each frame that is not confirmed, in order. A rehearsal does the same with frames that the
+    /// kernel refuses: nothing reaches the bus.
+    enum class Purpose : std::uint8_t { rehearsal, earnest };
+    void send(Purpose purpose) noexcept;
+    /// Takes what was confirmed since; how many frames are not.
+    std::size_t left() noexcept;
+
+private:
+    std::span<const Frame> frames_{};
+    std::uint64_t confirmed_ = 0; // a bit for each
+    int fd_ = -1;
+};
+
+} // namespace tappet::can

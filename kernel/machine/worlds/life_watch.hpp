@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the activities of a machine show life, seen from outside: by whoever has the machine's memory, to
+// read.
+#pragma once
+
+#include "kernel/machine/instance/placed.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tappet {
+
+/// An activity owes a sign while it is in a cycle, was woken, or is past the time it wanted to wake at. It
+/// shows life by beginning or ending a cycle. One that sleeps and is due for nothing owes none, however long.
+/// Those that are not real-time may block, and are not watched.
+class LifeWatch {
+public:
+    LifeWatch(PlacedMachine& machine, Duration within) noexcept : machine_{machine}, within_{within} {}
+
+    static constexpr std::size_t all_live = ~std::size_t{0};
+    /// The first activity that owed a sign for longer than it may, or all_live. To be asked every so often;
+    /// what it asks of an engine is read in one piece and leads nowhere: an engine that is damaged damages
+    /// nobody here.
+    [[nodiscard]] std::size_t look(Time now) noexcept {
+        const auto engines = machine_.engines();
+        for (std::size_t a = 0; a < engines.size(); ++a) {
+            const Engine& engine = engines[a];
+            Seen& seen = seen_[a];
+            const std::uint64_t generation = engine.generation();
+            const bool in_cycle = generation % 2 != 0;
+            const bool owes = machine_.machine().table.activities[a].real_time && engine.is_active() &&
+                              (in_cycle || engine.is_woken() || engine.wakes_at() <= now);
+            if (!owes || !seen.owed || generation != seen.generation)
+                seen = {generation, owes, now};
+            else if (now - seen.since > within_)
+                return a;
+        }
+        return all_live;
+    }
+
+private:
+    struct Seen {
+        std::uint64_t generation = 0;
+        bool owed = false;
+        Time since{};
+    };
+    PlacedMachine& machine_;
+    Duration within_;
+    std::array<Seen, checks::max_activities> seen_{};
+};
+
+} // namespace tappet

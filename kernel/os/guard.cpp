@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// fork, a page of memory that both have, and what a parent learns of its child.
+#include "kernel/os/guard.hpp"
+
+#include "kernel/os/clock.hpp"
+#include "kernel/os/signals.hpp"
+#include "kernel/os/sleep.hpp"
+#include "kernel/os/terminal.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <new>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/eventfd.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tappet::os {
+
+namespace {
+
+// How long a crashed thread waits for the guardian before its signal ends the process all the same.
+constexpr int crash_patience_ms = 1000;
+
+void write_to(const char* path, std::string_view text) noexcept {
+    const int file = open(path, O_WRONLY | O_CLOEXEC);
+    if (file < 0) return;
+    [[maybe_unused]] const auto n = write(file, text.data(), text.size());
+    close(file);
+}
+
+} // namespace
+
+std::expected<Guard::Side, Sentence> Guard::split() noexcept {
+    const auto refused = [](std::string_view what, std::string_view cure) {
+        return std::unexpected(
+            Sentence{"the machine has no guardian: ", what, " (", std::strerror(errno), "); ", cure});
+    };
+    void* shared =
+        mmap(nullptr, sizeof(GuardBlock), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED)
+        return refused("no memory that two processes share", "give the box more memory");
+    crash_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    if (crash_ < 0) return refused("no eventfd", "raise the limit of open files");
+    auto* block = new (shared) GuardBlock;
+    pthread_mutexattr_t robust;
+    pthread_mutexattr_init(&robust);
+    pthread_mutexattr_setpshared(&robust, PTHREAD_PROCESS_SHARED);
+    pthread_mutexattr_setrobust(&robust, PTHREAD_MUTEX_ROBUST);
+    pthread_mutex_init(&block->machine_lives, &robust);
+    guardian_ = getpid();
+    const pid_t child = fork();
+    if (child < 0)
+        return refused("no second process", "give the box more memory, or raise the limit of processes");
+    block_ = block;
+    if (child != 0) {
+        machine_ = child;
+        machine_descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+        return Side::guardian;
+    }
+    pthread_mutex_lock(&block->machine_lives); // for ever
+    // The end of the guardian asks for the orderly stop, as every signal does; the supervisor then sees who
+    // is gone.
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    const rlimit none{0, 0}; // a core dump would hold the end up, by as long as its file takes
+    setrlimit(RLIMIT_CORE, &none);
+    on_crash(block->crash, crash_, crash_patience_ms);
+    return Side::machine;
+}
+
+Sentence Guard::wait_for_guardian() const noexcept {
+    for (int waited = 0; waited < 1000 && !guardian_is_lost(); ++waited) {
+        if (block_->is_ready.load(std::memory_order_acquire)) return {};
+        if (block_->has_refused.load(std::memory_order_acquire)) return block_->refusal;
+        sleep_for(1ms);
+    }
+    return Sentence{"the guardian did not come to be ready"};
+}
+
+void Guard::be_back_within(Duration time) noexcept {
+    if (block_ != nullptr)
+        block_->back_by_ns.store(to_ns(Clock::monotonic() + time), std::memory_order_release);
+}
+
+void Guard::let_activities_be_watched(bool watched) noexcept {
+    if (block_ != nullptr) block_->activities_run.store(watched, std::memory_order_release);
+}
+
+void Guard::end_well() noexcept {
+    if (block_ != nullptr) block_->ended_well.store(true, std::memory_order_release);
+}
+
+bool Guard::guardian_is_lost() const noexcept {
+    if (block_ == nullptr) return false;
+    if (getppid() != guardian_) return true;
+    const std::int64_t looked = block_->looked_ns.load(std::memory_order_acquire);
+    return looked != 0 && Clock::monotonic() - at_ns(looked) > guardian_within;
+}
+
+bool Guard::become_guardian(std::span<const int> kept) noexcept {
+    const int all_kept[] = {0, 1, 2, machine_descriptor_, crash_};
+    const auto keeps = [&](int file) {
+        for (const int each : all_kept)
+            if (file == each) return true;
+        for (const int each : kept)
+            if (file == each) return true;
+        return false;
+    };
+    // What the machine opened would otherwise stay open beyond its end: a browser would wait at a socket of
+    // nobody.
+    for (int file = 3; file < 256; ++file)
+        if (!keeps(file)) close(file);
+    on_termination(nullptr);
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, nullptr);
+    signals_ = signalfd(-1, &all, SFD_NONBLOCK | SFD_CLOEXEC);
+    never_wait();
+    prctl(PR_SET_NAME, "guardian");
+    prctl(PR_SET_TIMERSLACK, 1);
+    write_to("/proc/self/oom_score_adj", "-1000");
+    sched_param above{};
+    above.sched_priority = sched_get_priority_max(SCHED_FIFO);
+    return sched_setscheduler(0, SCHED_FIFO, &above) == 0;
+}
+
+// Not what may be touched later: the machine's memory is in this process as well, where nothing of it is
+// there.
+void Guard::stay_in_memory() noexcept { static_cast<void>(mlockall(MCL_CURRENT | MCL_ONFAULT)); }
+
+void Guard::refuse(const Sentence& why) noexcept {
+    block_->refusal = why;
+    block_->has_refused.store(true, std::memory_order_release);
+}
+
+Guard::Seen Guard::look(Duration time) noexcept {
+    block_->looked_ns.store(to_ns(Clock::monotonic()), std::memory_order_release);
+    pollfd told[] = {{machine_descriptor_, POLLIN, 0}, {crash_, POLLIN, 0}, {signals_, POLLIN, 0}};
+    const timespec limit{static_cast<time_t>(time / 1s), static_cast<long>((time % 1s).count())};
+    if (ppoll(told, 3, &limit, nullptr) > 0) {
+        if (told[0].revents != 0) return await_end(0ms) ? Seen::end : Seen::nothing;
+        if (told[1].revents != 0) return Seen::crash;
+        signalfd_siginfo facts{};
+        if (read(signals_, &facts, sizeof facts) == sizeof facts && facts.ssi_signo != SIGCHLD)
+            ::kill(machine_, static_cast<int>(facts.ssi_signo));
+    }
+    if (!is_owned_) is_owned_ = block_->back_by_ns.load(std::memory_order_acquire) != 0;
+    // Its memory is freed before its descriptor tells the end, which takes some milliseconds.
+    if (is_owned_ && pthread_mutex_trylock(&block_->machine_lives) == EOWNERDEAD) return Seen::dying;
+    block_->looked_ns.store(to_ns(Clock::monotonic()), std::memory_order_release);
+    return Seen::nothing;
+}
+
+void Guard::kill() const noexcept { ::kill(machine_, SIGKILL); }
+
+bool Guard::await_end(Duration time) noexcept {
+    pollfd end{machine_descriptor_, POLLIN, 0};
+    const timespec limit{static_cast<time_t>(time / 1s), static_cast<long>((time % 1s).count())};
+    static_cast<void>(ppoll(&end, 1, &limit, nullptr));
+    int status = 0;
+    if (has_ended_ || waitpid(machine_, &status, WNOHANG) != machine_) return has_ended_;
+    has_ended_ = true;
+    exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    return true;
+}
+
+} // namespace tappet::os

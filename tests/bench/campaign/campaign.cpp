@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+// While the loom weaves, at a random moment, something ends it or a part of it, or nearly; the wires are
+// judged.
+//
+//   loom_campaign [--runs N] [--seed S] [--only FAULT] [--no-guardian]
+//
+// The lines are pulled to what is not safe: whoever lets go of them shows. Times are the guest's. Exit 1: a
+// run was not safe in time, or the loom did not weave again.
+#include "tests/bench/loom/loom_rig.hpp"
+
+#include <array>
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <net/if.h>
+#include <random>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+
+namespace tappet::bench {
+namespace {
+
+// Of what hangs: the board's life_sign_within. Of a bus that is down: the drives' time-out.
+constexpr auto death = 10ms, hang = 210ms, silence = 110ms, orderly = 110ms, guardian_hangs = 1310ms,
+               exhausted = 1500ms;
+
+/// Brake on, valve closed: read from files that stay open, so that looking costs the machine little.
+class SafeLines {
+public:
+    [[nodiscard]] bool now() const { return is_high(brake_) && !is_high(valve_); }
+
+private:
+    static int open_level(unsigned line) {
+        return ::open(("/sim/io/sim_gpio" + std::to_string(line) + "/value").c_str(), O_RDONLY | O_CLOEXEC);
+    }
+    static bool is_high(int file) {
+        char level = 0;
+        return ::pread(file, &level, 1, 0) == 1 && level == '1';
+    }
+    int brake_ = open_level(wires::line::brake), valve_ = open_level(wires::line::weft_release);
+};
+
+bool be_fifo(int priority) {
+    sched_param parameter{};
+    parameter.sched_priority = priority;
+    return ::sched_setscheduler(0, priority == 0 ? SCHED_OTHER : SCHED_FIFO, &parameter) == 0;
+}
+
+/// Above every activity, below the guardian.
+void spin(std::chrono::milliseconds time) {
+    if (::fork() != 0) return;
+    be_fifo(90);
+    for (const auto end = std::chrono::steady_clock::now() + time; std::chrono::steady_clock::now() < end;) {
+    }
+    ::_exit(0);
+}
+
+/// Takes what memory there is, until the kernel ends it.
+void exhaust_memory() {
+    if (::fork() != 0) return;
+    constexpr std::size_t piece = 4 << 20;
+    for (;;)
+        if (void* memory = ::mmap(nullptr, piece, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+            memory != MAP_FAILED)
+            std::memset(memory, 1, piece);
+}
+
+void take_bus_down() {
+    const int file = ::socket(AF_INET, SOCK_DGRAM, 0);
+    ifreq request{};
+    std::strncpy(request.ifr_name, "can0", sizeof request.ifr_name - 1);
+    ::ioctl(file, SIOCGIFFLAGS, &request);
+    request.ifr_flags = static_cast<short>(request.ifr_flags & ~IFF_UP);
+    ::ioctl(file, SIOCSIFFLAGS, &request);
+    ::close(file);
+}
+
+enum class After : std::uint8_t {
+    dead,      ///< the guardian acted and handed the code on
+    stopped,   ///< the machine stopped itself
+    goes_on,   ///< it waits for the operator
+    untouched, ///< it weaves on
+    either,    ///< untouched or dead: who asks the kernel for memory waits, in real time too
+};
+
+struct Fault {
+    std::string_view name;
+    void (*commit)(pid_t guardian, pid_t machine);
+    std::chrono::milliseconds within;
+    After after;
+    int code = 0; ///< dead: the exit code
+};
+
+// clang-format off
+constexpr Fault faults[] = {
+    {"KILL",              [](pid_t, pid_t m) { ::kill(m, SIGKILL); },  death,          After::dead, 137},
+    {"SEGV",              [](pid_t, pid_t m) { ::kill(m, SIGSEGV); },  death,          After::dead, 139},
+    {"ABRT",              [](pid_t, pid_t m) { ::kill(m, SIGABRT); },  death,          After::dead, 134},
+    {"BUS",               [](pid_t, pid_t m) { ::kill(m, SIGBUS); },   death,          After::dead, 135},
+    {"FPE",               [](pid_t, pid_t m) { ::kill(m, SIGFPE); },   death,          After::dead, 136},
+    {"STOP",              [](pid_t, pid_t m) { ::kill(m, SIGSTOP); },  hang,           After::dead, 137},
+    {"spin",    [](pid_t, pid_t) { spin(600ms); },           hang,           After::dead, 137},
+    {"guardian-killed",   [](pid_t g, pid_t) { ::kill(g, SIGKILL); },  orderly,        After::stopped},
+    {"guardian-stopped",  [](pid_t g, pid_t) { ::kill(g, SIGSTOP); },  guardian_hangs, After::stopped},
+    {"can-down",          [](pid_t, pid_t) { take_bus_down(); },       silence,        After::goes_on},
+    {"memory-exhausted",  [](pid_t, pid_t) { exhaust_memory(); },      exhausted,      After::either, 137},
+};
+// clang-format on
+
+const Fault* find_fault(std::string_view name) {
+    const auto* found = std::find_if(std::begin(faults), std::end(faults),
+                                     [&](const Fault& each) { return each.name == name; });
+    return found == std::end(faults) ? nullptr : found;
+}
+
+bool drives_stand(const Logged& f) { return !f.enables_operation() && f.target() == 0; }
+bool is_drive_command(const Logged& f) {
+    return f.id == wires::cob::main_drive_command || f.id == wires::cob::let_off_drive_command;
+}
+
+struct Verdict {
+    WallDuration lines{};  ///< until brake and valve were safe
+    WallDuration drives{}; ///< until the last command that lets a drive turn
+    std::string fault;     ///< empty: it was safe, in time, and stayed so
+};
+
+class Campaign {
+public:
+    Campaign(std::uint32_t seed, bool guarded)
+        : random_{seed},
+          options_{guarded ? "" : "--no-guardian"},
+          plant_{"carpet-loom-plant --period 1ms --fifo 1 --operator-reaction 200ms"} {
+        std::this_thread::sleep_for(100ms); // the plant's Modbus server listens
+    }
+
+    Verdict run(const Fault& fault) {
+        if (!machine_) machine_.emplace("carpet_loom " + options_);
+        const std::size_t told = seen_;
+        if (!says("state=weave"))
+            return {{}, {}, "the loom does not weave: " + machine_->output().substr(told)};
+        Foreign listener{listen_to_the_machine};
+        std::this_thread::sleep_for(std::chrono::microseconds{100'000 + random_() % 400'000});
+
+        pull(wires::line::brake, false);
+        pull(wires::line::weft_release, true);
+        const pid_t machine = machine_of(*machine_), guardian = machine_->number();
+        be_fifo(95); // the judge must see what a thread that spins keeps from everybody else
+        const WallTime committed = wall_now();
+        fault.commit(guardian, machine == 0 ? guardian : machine);
+        Verdict verdict = judge_lines(fault, committed, machine);
+        be_fifo(0);
+        After after = fault.after;
+        if (after == After::either && machine_->runs() && verdict.lines == WallDuration{}) {
+            after = After::untouched;
+            verdict = {};
+        }
+        const std::string end = judge_end(fault, after, machine);
+        if (verdict.fault.empty()) verdict.fault = end;
+        pull(wires::line::brake, true);
+        pull(wires::line::weft_release, false);
+        if (after != After::untouched) judge_drives(fault, committed, listener, verdict);
+        return verdict;
+    }
+
+private:
+    bool says(std::string_view text) {
+        return soon(
+            [&] {
+                const std::size_t at = machine_->output().find(text, seen_);
+                if (at == std::string::npos) return false;
+                seen_ = at + text.size();
+                return true;
+            },
+            20s, 20ms);
+    }
+    static bool lives(pid_t process) {
+        return ::kill(process, 0) == 0 &&
+               !content_of("/proc/" + std::to_string(process) + "/status").contains("State:\tZ");
+    }
+
+    /// Of who drives the lines: the guardian, or, when that is the victim, the machine.
+    Verdict judge_lines(const Fault& fault, WallTime committed, pid_t machine) {
+        Verdict verdict;
+        const pid_t holder = fault.after == After::stopped && machine != 0 ? machine : machine_->number();
+        bool safe = false;
+        while (wall_now() - committed < fault.within + 60ms) {
+            const bool now_safe = lines_.now();
+            // Nobody holds them any more once the holder has ended, which takes a while.
+            if (!now_safe && !lives(holder)) break;
+            if (!now_safe && safe && soon([&] { return !lives(holder); }, 20ms)) break;
+            if (now_safe && !safe)
+                verdict.lines = std::chrono::duration_cast<WallDuration>(wall_now() - committed);
+            if (!now_safe && safe) verdict.fault = "the lines did not stay safe";
+            safe = safe || now_safe;
+            std::this_thread::sleep_for(200us);
+        }
+        if (!safe)
+            verdict.fault = "brake and valve never became safe";
+        else if (verdict.lines > fault.within)
+            verdict.fault = "the lines were safe too late";
+        return verdict;
+    }
+
+    std::string judge_end(const Fault& fault, After after, pid_t machine) {
+        switch (after) {
+        case After::either:
+        case After::dead: {
+            const int code = machine_->wait();
+            const std::string said = machine_->output();
+            machine_.reset(), seen_ = 0;
+            if (code != fault.code) return "its exit code is " + std::to_string(code);
+            if (!said.contains("the guardian wrote the lines"))
+                return "the guardian does not say what it did";
+            return {};
+        }
+        case After::stopped: {
+            const bool ended = soon([&] { return !lives(machine); });
+            machine_->signal(SIGKILL);
+            const std::string said = (machine_->wait(), machine_->output());
+            machine_.reset(), seen_ = 0;
+            if (!ended) return "the machine goes on without a guardian";
+            if (!said.contains("stopped: its guardian is gone"))
+                return "the machine does not say why it stopped";
+            return {};
+        }
+        case After::goes_on:
+        case After::untouched: break;
+        }
+        if (!machine_->runs()) {
+            const std::string said = machine_->output();
+            machine_.reset(), seen_ = 0;
+            return "the machine ended: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 400));
+        }
+        seen_ = machine_->output().size();
+        return after == After::goes_on || says("state=weave") ? "" : "it does not weave on";
+    }
+
+    void judge_drives(const Fault& fault, WallTime committed, Foreign& listener, Verdict& verdict) {
+        int told = 0;
+        // What comes after is another start, whose first command that turns a drive follows an
+        // acknowledgement.
+        const WallTime end = committed + fault.within + 100ms;
+        soon([&] { return wall_now() > end; });
+        listener.signal(SIGINT); // it writes what it kept back
+        listener.wait();
+        for (const Logged& f : frames_of(listener.output())) {
+            if (!is_drive_command(f) || f.at < committed || f.at > end) continue;
+            ++told;
+            if (!drives_stand(f)) verdict.drives = std::chrono::duration_cast<WallDuration>(f.at - committed);
+        }
+        if (!verdict.fault.empty()) return;
+        if (verdict.drives > fault.within) verdict.fault = "a drive was still told to turn";
+        if (told == 0 && fault.after == After::dead) verdict.fault = "the drives were told nothing";
+    }
+
+    SafeLines lines_;
+    std::mt19937 random_;
+    std::string options_;
+    Foreign plant_;
+    std::optional<Foreign> machine_;
+    std::size_t seen_ = 0;
+};
+
+struct Times {
+    int runs = 0, unsafe = 0;
+    WallDuration lines{}, drives{};
+};
+
+int campaign(int runs, std::uint32_t seed, std::string_view only, bool guarded) {
+    std::mt19937 random{seed};
+    Campaign machine{seed, guarded};
+    std::map<std::string_view, Times> times;
+    int unsafe = 0;
+    for (int i = 0; i < runs; ++i) {
+        const Fault* chosen = &faults[random() % std::size(faults)];
+        const Fault* fault = only.empty() ? chosen : find_fault(only);
+        const Verdict verdict = machine.run(*fault);
+        Times& all = times[fault->name];
+        ++all.runs;
+        all.unsafe += !verdict.fault.empty();
+        all.lines = std::max(all.lines, verdict.lines);
+        all.drives = std::max(all.drives, verdict.drives);
+        unsafe += !verdict.fault.empty();
+        std::cout << "run " << i + 1 << ": " << fault->name << ": lines safe after " << verdict.lines.count()
+                  << " us, drives after " << verdict.drives.count() << " us"
+                  << (verdict.fault.empty() ? "" : "; UNSAFE: " + verdict.fault) << std::endl;
+    }
+    for (const auto& [name, all] : times)
+        std::cout << name << ": " << all.runs << " runs, worst lines " << all.lines.count()
+                  << " us, worst drives " << all.drives.count() << " us, " << all.unsafe << " unsafe"
+                  << std::endl;
+    std::cout << "campaign of seed " << seed << ": " << runs << " runs, " << unsafe << " unsafe" << std::endl;
+    return unsafe == 0 ? 0 : 1;
+}
+
+} // namespace
+} // namespace tappet::bench
+
+int main(int count, char** words) {
+    int runs = 10;
+    std::uint32_t seed = 1;
+    std::string_view only;
+    bool guarded = true;
+    bool good = true;
+    for (int i = 1; i < count && good; ++i) {
+        const std::string_view word = words[i];
+        const char* value = i + 1 < count ? words[i + 1] : nullptr;
+        if (word == "--no-guardian") {
+            guarded = false;
+            continue;
+        }
+        good = value != nullptr && (word == "--runs" || word == "--seed" || word == "--only");
+        if (!good) break;
+        if (word == "--runs") good = (runs = std::atoi(value)) > 0;
+        if (word == "--seed") seed = static_cast<std::uint32_t>(std::atoi(value));
+        if (word == "--only") good = tappet::bench::find_fault(only = value) != nullptr;
+        ++i;
+    }
+    if (good) return tappet::bench::campaign(runs, seed, only, guarded);
+    std::cerr << "loom_campaign [--runs N] [--seed S] [--no-guardian] [--only FAULT], which is one of";
+    for (const auto& each : tappet::bench::faults) std::cerr << ' ' << each.name;
+    std::cerr << std::endl;
+    return 2;
+}

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two processes of one program: what the guardian learns of the other, and the other of the guardian.
+#include "kernel/os/guard.hpp"
+
+#include "kernel/os/sleep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tappet::os {
+namespace {
+
+using Seen = Guard::Seen;
+
+/// A process of its own splits; it ends with what `guardian` answers, or the machine's side with what
+/// `machine` does.
+template <class Machine, class Guardian>
+int split(Machine machine, Guardian guardian, std::string_view refusal = {}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        Guard guard;
+        const auto side = guard.split();
+        if (!side) std::_Exit(99);
+        if (*side == Guard::Side::machine) std::_Exit(machine(guard));
+        static_cast<void>(guard.become_guardian({})); // where FIFO is not granted, the rest is
+        if (refusal.empty())
+            guard.be_ready();
+        else
+            guard.refuse(Sentence{refusal});
+        std::_Exit(guardian(guard));
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+/// What is seen first, other than nothing.
+Seen next(Guard& guard) {
+    for (;;)
+        if (const Seen seen = guard.look(20ms); seen != Seen::nothing) return seen;
+}
+int arm(Guard& guard) {
+    if (!guard.wait_for_guardian().empty()) return 98;
+    guard.be_back_within(1h);
+    guard.let_activities_be_watched(true);
+    return 0;
+}
+
+TEST(Guard, hands_on_the_code_of_a_machine_that_ended_well) {
+    const int code = split(
+        [](Guard& guard) {
+            if (arm(guard) != 0) return 98;
+            guard.end_well();
+            return 4;
+        },
+        [](Guard& guard) {
+            while (next(guard) != Seen::end) {
+            }
+            return guard.block().ended_well && guard.block().activities_run ? guard.exit_code() : 97;
+        });
+    EXPECT_EQ(code, 4);
+}
+
+TEST(Guard, tells_a_death_without_a_word_and_its_signal) {
+    const int code = split(
+        [](Guard& guard) {
+            static_cast<void>(arm(guard));
+            ::kill(::getpid(), SIGKILL);
+            return 0;
+        },
+        [](Guard& guard) {
+            const Seen first = next(guard);
+            if (first != Seen::dying && first != Seen::end) return 96;
+            if (!guard.await_end(1h) || guard.block().ended_well) return 95;
+            return guard.exit_code();
+        });
+    EXPECT_EQ(code, 128 + SIGKILL);
+}
+
+TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
+    const int code = split(
+        [](Guard& guard) {
+            static_cast<void>(arm(guard));
+            ::raise(SIGSEGV);
+            return 0;
+        },
+        [](Guard& guard) {
+            if (next(guard) != Seen::crash) return 94;
+            const CrashNote& note = guard.block().crash;
+            if (!note.is_complete() || note.signal != SIGSEGV || note.instruction == 0) return 93;
+            if (note.describe().view().find("SEGV at instruction 0x") != 0) return 92;
+            guard.kill();
+            return guard.await_end(1h) ? guard.exit_code() : 91;
+        });
+    EXPECT_EQ(code, 128 + SIGKILL) << "the crashed thread sleeps until the guardian ends it";
+}
+
+TEST(Guard, a_crash_that_nobody_acts_on_ends_the_process_all_the_same) {
+    const int code = split(
+        [](Guard& guard) {
+            static_cast<void>(arm(guard));
+            ::raise(SIGFPE);
+            return 0;
+        },
+        [](Guard& guard) { return guard.await_end(1h) ? guard.exit_code() : 90; });
+    EXPECT_EQ(code, 128 + SIGFPE);
+}
+
+TEST(Guard, hands_on_what_is_signalled_to_it) {
+    const int code = split(
+        [](Guard& guard) {
+            static sig_atomic_t volatile asked = 0;
+            ::signal(SIGTERM, [](int) { asked = 1; });
+            static_cast<void>(arm(guard));
+            while (asked == 0) sleep_for(1ms);
+            guard.end_well();
+            return 7;
+        },
+        [](Guard& guard) {
+            ::kill(::getpid(), SIGTERM);
+            while (next(guard) != Seen::end) {
+            }
+            return guard.exit_code();
+        });
+    EXPECT_EQ(code, 7);
+}
+
+TEST(Guard, the_machine_sees_that_its_guardian_is_gone) {
+    int told[2];
+    ASSERT_EQ(::pipe(told), 0);
+    const int code = split(
+        [&](Guard& guard) {
+            ::signal(SIGTERM, SIG_IGN); // which asks for the orderly stop
+            static_cast<void>(arm(guard));
+            while (!guard.guardian_is_lost()) sleep_for(1ms);
+            return static_cast<int>(::write(told[1], "gone", 4)) - 4;
+        },
+        [](Guard& guard) {
+            while (!guard.block().activities_run) static_cast<void>(guard.look(1ms));
+            return 42;
+        });
+    EXPECT_EQ(code, 42);
+    char text[4] = {};
+    EXPECT_EQ(::read(told[0], text, sizeof text), 4);
+    ::close(told[0]);
+    ::close(told[1]);
+}
+
+TEST(Guard, the_machine_sees_that_its_guardian_looks_at_nothing) {
+    const int code = split(
+        [](Guard& guard) {
+            static_cast<void>(arm(guard));
+            while (!guard.guardian_is_lost()) sleep_for(1ms);
+            guard.end_well();
+            return 5;
+        },
+        [](Guard& guard) {
+            static_cast<void>(guard.look(1ms));
+            while (!guard.await_end(1s)) {
+            }
+            return guard.exit_code();
+        });
+    EXPECT_EQ(code, 5);
+}
+
+TEST(Guard, a_guardian_that_cannot_act_says_why) {
+    const int code =
+        split([](Guard& guard) { return guard.wait_for_guardian().view() == "no wires" ? 3 : 89; },
+              [](Guard& guard) {
+                  while (next(guard) != Seen::end) {
+                  }
+                  return guard.exit_code();
+              },
+              "no wires");
+    EXPECT_EQ(code, 3);
+}
+
+} // namespace
+} // namespace tappet::os

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks, decides, acts, says what it did.
+#include "toolchain/machine/guardian.hpp"
+
+#include "kernel/machine/worlds/life_watch.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/terminal.hpp"
+
+#include <cstdlib>
+
+namespace tappet {
+
+namespace {
+
+// Between two looks an activity may have hung for so long already: the limit is exceeded by no more.
+constexpr Duration look_every = 2ms;
+constexpr Duration killed_within = 100ms; // a thread in the kernel ends when its call does
+constexpr Duration confirmed_within = 500ms;
+
+class Guardian {
+public:
+    Guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance)
+        : guard_{guard},
+          devices_{devices},
+          instance_{instance},
+          watch_{instance, instance.machine().board->life_sign_within} {}
+
+    bool get_ready() {
+        const auto kept = devices_.kept_by_guardian();
+        if (!guard_.become_guardian({kept.begin(), kept.size()}))
+            return refuse(
+                Sentence{"it may not stand above the machine's threads; run as root or grant CAP_SYS_NICE"});
+        if (auto prepared = devices_.prepare_safe_ending(); !prepared) return refuse(prepared.error());
+        static_cast<void>(watch_.look(os::Clock::monotonic()));
+        guard_.stay_in_memory();
+        guard_.be_ready();
+        return true;
+    }
+
+    int live() {
+        for (;;) {
+            const Look look = watch();
+            if (look.must_act) {
+                act(look.reason);
+                const os::CrashNote& crash = guard_.block().crash;
+                return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
+            }
+            if (look.ended) return guard_.exit_code();
+        }
+    }
+
+private:
+    struct Look {
+        bool must_act = false;
+        bool ended = false;
+        Sentence reason{}; ///< empty: how it ended says why
+    };
+
+    bool refuse(const Sentence& why) {
+        guard_.refuse(why);
+        return false;
+    }
+
+    Look watch() {
+        const os::GuardBlock& block = guard_.block();
+        const bool runs = block.activities_run.load(std::memory_order_acquire);
+        const auto seen = guard_.look(runs ? look_every : 50ms);
+        if (seen == os::Guard::Seen::crash) return {true, false, {}};
+        if (seen == os::Guard::Seen::dying || seen == os::Guard::Seen::end)
+            return {!block.ended_well.load(std::memory_order_acquire), seen == os::Guard::Seen::end, {}};
+        const Time now = os::Clock::monotonic();
+        const std::int64_t back_by = block.back_by_ns.load(std::memory_order_acquire);
+        if (back_by != 0 && to_ns(now) > back_by)
+            return {true, false, Sentence{"its supervisor shows no life"}};
+        if (!block.activities_run.load(std::memory_order_acquire)) return {};
+        if (const std::size_t a = watch_.look(now); a != LifeWatch::all_live)
+            return {true, false,
+                    Sentence{"activity \"", instance_.machine().table.activities[a].name,
+                             "\" shows no life for ",
+                             instance_.machine().board->life_sign_within.count() / 1'000'000, " ms"}};
+        return {};
+    }
+
+    Sentence why_it_ended() const {
+        const int code = guard_.exit_code();
+        return code > 128 ? Sentence{os::signal_name(code - 128), " ended it (signal ", code - 128, ")"}
+                          : Sentence{"it ended with code ", code, " in the middle of its work"};
+    }
+
+    void act(Sentence reason) {
+        const Time begin = os::Clock::monotonic();
+        // Of a dead one too: the signal meets nobody.
+        guard_.kill();
+        static_cast<void>(devices_.write_safe_lines());
+        const Duration written = os::Clock::monotonic() - begin;
+        const bool ended = guard_.await_end(killed_within);
+        const std::size_t chips = devices_.write_safe_lines();
+        const std::size_t frames = devices_.send_safe_frames(confirmed_within);
+        const Duration confirmed = os::Clock::monotonic() - begin;
+        const std::size_t servers = devices_.write_safe_registers();
+        if (guard_.block().crash.is_complete()) reason = guard_.block().crash.describe();
+        if (reason.empty()) reason = why_it_ended();
+        Sentence said{instance_.machine().table.name,
+                      ": ",
+                      reason,
+                      "; the guardian wrote the lines in ",
+                      written.count() / 1000,
+                      " us and sent the frames in ",
+                      confirmed.count() / 1000,
+                      " us"};
+        if (!ended) said.add("; the process does not end");
+        if (chips != 0) said.add("; chips that took nothing: ").add(chips);
+        if (frames != 0) said.add("; frames that nobody confirmed: ").add(frames);
+        if (servers != 0) said.add("; servers that did not answer: ").add(servers);
+        static_cast<void>(os::write_all(2, said.add("\n").view()));
+    }
+
+    os::Guard& guard_;
+    GuardedDevices& devices_;
+    MachineInstance& instance_;
+    LifeWatch watch_;
+};
+
+} // namespace
+
+void be_guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance) {
+    static Guardian guardian{guard, devices, instance};
+    // Without one the machine refuses to arm, which its end then tells.
+    static_cast<void>(guardian.get_ready());
+    // Not by main's return: what it would destroy is a copy of what the machine's process has destroyed or
+    // still needs.
+    std::_Exit(guardian.live());
+}
+
+} // namespace tappet

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guardian of a firmware: it watches the machine's process and, however that ends or hangs, leaves the
+// outputs safe.
+#pragma once
+
+#include "drivers/hardware/devices.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/os/guard.hpp"
+
+namespace tappet {
+
+/// In the guardian's process, from the split to its end, with the exit code of the machine's. The machine is
+/// its copy, configured, with the engines in memory of both. It acts when the machine's process ends without
+/// having said that all is safe, when a thread of it crashes, and when its supervisor or a real-time activity
+/// shows no life for too long: it kills the process, writes lines, awaits the end, writes lines again
+/// (another thread may have come in between), sends frames until they are confirmed, and writes registers.
+/// Not real-time.
+[[noreturn]] void be_guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance);
+
+} // namespace tappet
