@@ -12,6 +12,12 @@ function(tappet_script target file)
         DEPENDS "${from}" "${generator}"
         COMMENT "${place} as a constant"
         VERBATIM)
-    target_sources(${target} PRIVATE "${header}")
-    target_include_directories(${target} PUBLIC "${CMAKE_BINARY_DIR}/scripts")
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL INTERFACE_LIBRARY) # such as <machine>_table: whoever is linked with it waits for the header
+        target_sources(${target} INTERFACE "${header}")
+        target_include_directories(${target} INTERFACE "${CMAKE_BINARY_DIR}/scripts")
+    else()
+        target_sources(${target} PRIVATE "${header}")
+        target_include_directories(${target} PUBLIC "${CMAKE_BINARY_DIR}/scripts")
+    endif()
 endfunction()

@@ -6,12 +6,13 @@
 #     [PLANT plant.hpp]            holds <namespace>::Plant, made from a seed: the other end of the wires
 #     [PLANT_SOURCES ..]           its own, and
 #     [PLANT_LIBRARIES ..]         what it stands on
-#     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks
+#     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks for its boards, and host_hooks for its program with the PLANT
+#     [MODEL model.hpp]            holds <namespace>::model: what spin is to know and to prove beside the table
 #     [NAMESPACE a::b]             where all of that stands; <name> unless said
 #     [LIBRARIES ..])              what its components need beyond Tappet
 #
 # makes <name>, the machine with its plant in one process on the host; <name>_host, the same as a library for tests, with
-# <namespace>::on_host(), the accepted machine; for each board, the static firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box;
+# <namespace>::on_host(), the accepted machine; <name>-chart, which draws it, when it is asked for; for each board, the static firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box;
 # and, for the bench, <name>-plant, the plant at the other end of its wires.
 include_guard(GLOBAL)
 
@@ -53,7 +54,7 @@ function(tappet_language)
 endfunction()
 
 function(tappet_machine name)
-    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;NAMESPACE" "BOARDS;LIBRARIES;PLANT_SOURCES;PLANT_LIBRARIES")
+    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;MODEL;NAMESPACE" "BOARDS;LIBRARIES;PLANT_SOURCES;PLANT_LIBRARIES")
     if(machine_UNPARSED_ARGUMENTS OR NOT machine_TABLE OR NOT machine_BOARDS)
         message(FATAL_ERROR "tappet_machine(${name} ..): say TABLE <header> and BOARDS <board>..; \"${machine_UNPARSED_ARGUMENTS}\" is unknown")
     endif()
@@ -66,7 +67,7 @@ function(tappet_machine name)
     add_library(${name}_table INTERFACE)
     target_link_libraries(${name}_table INTERFACE tappet_framework ${machine_LIBRARIES})
     set(definitions TAPPET_NAMESPACE=${machine_NAMESPACE}) # of each program: one that looks at two machines links two tables
-    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS)
+    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS MODEL)
         if(machine_${part})
             cmake_path(ABSOLUTE_PATH machine_${part} NORMALIZE OUTPUT_VARIABLE path)
             if(NOT EXISTS "${path}")
@@ -89,6 +90,14 @@ function(tappet_machine name)
         target_link_libraries(${name} PRIVATE ${name}_host tappet_warnings)
         tappet_language(${name}_host ${name})
     endif()
+
+    # Its charts: nobody waits for them who does not ask. It reads scripts back from their instructions and finds the
+    # names of C++ programs among its symbols.
+    add_executable(${name}-chart EXCLUDE_FROM_ALL "${mains}/chart_main.cpp" "${mains}/on_host.cpp")
+    target_compile_definitions(${name}-chart PRIVATE ${definitions} TAPPET_KEEPS_INSTRUCTIONS)
+    target_link_libraries(${name}-chart PRIVATE ${name}_table tappet_chart tappet_warnings)
+    set_target_properties(${name}-chart PROPERTIES ENABLE_EXPORTS ON)
+    tappet_language(${name}-chart)
 
     foreach(board IN LISTS machine_BOARDS)
         if(board STREQUAL host) # its program is the one above: the host's devices are simulated

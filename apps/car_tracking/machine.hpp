@@ -9,7 +9,7 @@
 namespace tappet::car_tracking {
 
 // clang-format off
-inline constexpr auto car_tracking = machine("car-tracking",
+inline constexpr auto table = machine("car-tracking",
     components(
         component<Camera>("camera", device("tracking-camera")),
         component<ImageRecognition>("recognition"),  // where in the room is the car

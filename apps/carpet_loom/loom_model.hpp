@@ -14,7 +14,7 @@ static_assert(loom::wires::nominal::weft_release_deg >= loom::wires::nominal::sh
               "the weft's angles lie where the shed is open");
 
 // clang-format off
-inline constexpr auto loom_model = chart::verification(
+inline constexpr auto model = chart::verification(
     // of the weft: as in WeftInsertion
     chart::remembers("allowed", 0, 1),
     chart::remembers("ready", 0, 1),

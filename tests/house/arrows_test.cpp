@@ -60,13 +60,13 @@ const std::vector<Row> house{
                            "kernel/machine/plan/scope_layout.hpp", "kernel/activity/cycle_tape.hpp",
                            "kernel/services/browsing/protocol.hpp"}},
 
-    {"toolchain/machine", {"board", "drivers/plant"}},
+    {"toolchain",         {"kernel/base"}},
+    {"toolchain/machine", {"board", "drivers/plant", "toolchain/tools/chart"}},
+    {"toolchain/tools/chart", {"kernel/machine", "toolchain"}},
     {"toolchain/tools/bench", {}},
-    {"toolchain/tools/front", {"kernel/base", "toolchain/machine/host_usage.hpp"}},
-    {"toolchain/tools",   {"apps"}},
-    {"toolchain",         {}},
+    {"toolchain/tools/front", {"toolchain", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp"}},
     {"apps/carpet_loom/demo", {"apps", "toolchain/tools/bench"}},
-    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools", "toolchain/tools/browser"}},
+    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser"}},
 };
 // clang-format on
 

@@ -112,10 +112,19 @@ private:
     os::Thread plant_thread_{};
 };
 
+/// What only one machine's host program does: it looks into machine and plant. Then it has virtual time only.
+struct HostHooks {
+    Duration look_every{};
+    /// Between two moments of the machine, and once when everything stands.
+    void (*look)(MachineInstance& machine, Plant& plant, Time now) = nullptr;
+    /// At the end. The error is what it could not leave behind.
+    Sentence (*ended)(const Plant& plant) = nullptr;
+};
+
 /// The host's program of a machine. Makes the plant for the seed of its command line. The exit code: 0 well,
 /// 1 it ended otherwise, 2 a wrong set-up.
 [[nodiscard]] int run_host(const AcceptedMachine& machine,
                            const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant,
-                           int count, char** words);
+                           int count, char** words, const HostHooks& hooks = {});
 
 } // namespace tappet

@@ -2,7 +2,7 @@
 // looked, and below it the states over time.
 #pragma once
 
-#include "apps/car_tracking/host/virtual_run.hpp"
+#include "apps/car_tracking/host/record.hpp"
 
 #include <span>
 #include <string>

@@ -33,8 +33,10 @@ template <const auto& source> struct CompiledUnit {
 
     template <std::size_t type> static constexpr BehaviourType type_without_code() {
         BehaviourType row = source.types[type];
+#ifndef TAPPET_KEEPS_INSTRUCTIONS // of a program that draws the machine
         row.tables = native_tables<source, type>;
         row.machine.programs = &native_tables<source, type>;
+#endif
         return row;
     }
     template <std::size_t type> static constexpr BehaviourCode code_of() {

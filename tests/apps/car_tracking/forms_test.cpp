@@ -1,8 +1,8 @@
 // Thesis 5.1.4, 5.4: the tracker's script is the same machine in both forms: native code made by the C++
 // compiler, and tables walked in memory, as a script that is loaded is executed.
-#include "apps/car_tracking/host/virtual_run.hpp"
 #include "apps/car_tracking/machine.hpp"
 #include "board/host/board.hpp"
+#include "tests/apps/car_tracking/car_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@ namespace tappet::car_tracking {
 namespace {
 
 constexpr auto with_tables_walked = [] {
-    auto machine = car_tracking;
+    auto machine = table;
     machine.behaviours[0] = behaviour("tracking", tracking_script, {});
     return machine;
 }();
 
-std::uint64_t digest_of(VirtualRun& run) {
+std::uint64_t digest_of(CarRun& run) {
     EXPECT_TRUE(run.start());
     EXPECT_TRUE(run.run_for(30s));
     run.stop();
@@ -25,15 +25,15 @@ std::uint64_t digest_of(VirtualRun& run) {
 
 TEST(CarTrackingForms, native_and_walked_are_the_same_day) {
     for (const std::uint64_t seed : {1u, 8u}) {
-        VirtualRun native{seed};
-        VirtualRun walked{seed, Firmware<with_tables_walked, board::host>::machine()};
+        CarRun native{seed};
+        CarRun walked{seed, Firmware<with_tables_walked, board::host>::machine()};
         EXPECT_EQ(digest_of(native), digest_of(walked)) << "seed " << seed;
     }
 }
 
 TEST(CarTrackingForms, the_machine_has_native_code_for_each_type_of_its_script) {
-    ASSERT_NE(car_tracking.behaviours[0].script, nullptr);
-    EXPECT_EQ(car_tracking.behaviours[0].code.size(), car_tracking.behaviours[0].script->types.size());
+    ASSERT_NE(table.behaviours[0].script, nullptr);
+    EXPECT_EQ(table.behaviours[0].code.size(), table.behaviours[0].script->types.size());
 }
 
 } // namespace

@@ -1,10 +1,14 @@
-// Thesis 5.4: the picture of a run shows its track, its states and what was seen; the command line says what
-// it does not take.
-#include "apps/car_tracking/host/options.hpp"
+// Thesis 5.4: the picture of a run shows its track, its states and what was seen; the program draws it
+// or says why not.
 #include "apps/car_tracking/host/picture.hpp"
+#include "tests/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
 
 namespace tappet::car_tracking {
 namespace {
@@ -34,27 +38,25 @@ TEST(Picture, shows_every_located_car_and_every_image) {
 
 TEST(Picture, of_nothing_is_a_picture_of_the_room) { EXPECT_THAT(picture_of({}, {}), HasSubstr("tunnel")); }
 
-TEST(Options, take_a_seed_a_time_and_a_file) {
-    const std::array words{"car_tracking", "--virtual", "--seed",    "7",
-                           "--seconds",    "20",        "--picture", "a.svg"};
-    const auto options = parse_options(static_cast<int>(words.size()), words.data());
-    ASSERT_TRUE(options) << options.error().view();
-    EXPECT_EQ(options->seed, 7u);
-    EXPECT_EQ(options->seconds, 20u);
-    EXPECT_EQ(options->picture, "a.svg");
+TEST(Program, draws_its_picture_or_says_why_not) {
+    const std::string folder = testing::TempDir();
+    const Ended drawn =
+        run_line(CAR_TRACKING " --virtual --seed 1 --for 2 --picture '" + folder + "car_tracking_test.svg'");
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.text;
+    EXPECT_THAT(drawn.text, HasSubstr("the plant measured {\"images\": 0"));
+    std::ifstream file{folder + "car_tracking_test.svg"};
+    EXPECT_THAT((std::string{std::istreambuf_iterator<char>{file}, {}}), HasSubstr("</svg>"));
+    std::remove((folder + "car_tracking_test.svg").c_str());
+
+    const Ended nowhere = run_line(CAR_TRACKING " --for 1 --picture /nowhere/at/all.svg");
+    EXPECT_EQ(nowhere.exit_code, 2);
+    EXPECT_THAT(nowhere.text, HasSubstr("the picture cannot be written to \"/nowhere/at/all.svg\"; name a"));
 }
 
-TEST(Options, refuse_with_the_cure) {
-    const auto refusal = [](std::vector<const char*> words) {
-        words.insert(words.begin(), "car_tracking");
-        const auto options = parse_options(static_cast<int>(words.size()), words.data());
-        return options ? std::string{} : std::string{options.error().view()};
-    };
-    EXPECT_EQ(refusal({"--sed", "1"}), "option --sed is unknown; did you mean --seed");
-    EXPECT_EQ(refusal({"--seed"}), "option --seed needs a value after it; see --help");
-    EXPECT_EQ(refusal({"--seed", "1x"}),
-              "option --seed: \"1x\" is not a whole number; write for example --seed 60");
-    EXPECT_EQ(refusal({"--seconds", "0"}), "option --seconds: a run takes from 1 to 3600 s");
+TEST(Program, that_looks_into_its_machine_has_no_real_time) {
+    const Ended ended = run_line(CAR_TRACKING " --real --for 1");
+    EXPECT_EQ(ended.exit_code, 2);
+    EXPECT_THAT(ended.text, HasSubstr("option --real: this program looks into its machine"));
 }
 
 } // namespace

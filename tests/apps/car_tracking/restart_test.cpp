@@ -1,8 +1,8 @@
 // Parts of the car tracker that are stopped and started again while the rest goes on. Who commands is started
 // after those whom it commands: it switches them on.
 #include "apps/car_tracking/camera.hpp"
-#include "apps/car_tracking/host/virtual_run.hpp"
 #include "apps/car_tracking/image_recognition.hpp"
+#include "tests/apps/car_tracking/car_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr Duration to_follow_again = 14s; ///< from the panel's start until it f
 constexpr Duration in_between = 41s;      ///< it has followed the car and is ready to do so again
 
 struct Restarted : testing::Test {
-    VirtualRun run{2};
+    CarRun run{2};
     Restarted() { EXPECT_TRUE(run.start()); }
     ~Restarted() override { run.stop(); }
 

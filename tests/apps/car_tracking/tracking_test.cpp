@@ -1,7 +1,7 @@
 // Thesis 5.4: the tracker calibrates, follows the car, loses it and finds it again; its states are those of
 // figure 5.24. The figures hold for any seed.
 #include "apps/car_tracking/camera.hpp"
-#include "apps/car_tracking/host/virtual_run.hpp"
+#include "tests/apps/car_tracking/car_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ struct Day {
 };
 
 Day run_day(std::uint64_t seed) {
-    VirtualRun run{seed};
+    CarRun run{seed};
     const auto started = run.start();
     EXPECT_TRUE(started) << started.error().view();
     EXPECT_TRUE(run.run_for(60s)) << run.instance().describe_stop().view();
@@ -143,7 +143,7 @@ TEST(CarTracking, loses_the_car_and_finds_it_again) {
 }
 
 TEST(CarTracking, waits_again_when_the_calibration_fails) {
-    VirtualRun run{5};
+    CarRun run{5};
     ASSERT_TRUE(run.start());
     run.instance().find<Camera>("camera")->mark_pan.set(39.0); // there is no mark
     EXPECT_TRUE(run.run_for(20s)) << "a command that failed was caught";
@@ -155,7 +155,7 @@ TEST(CarTracking, waits_again_when_the_calibration_fails) {
 }
 
 TEST(CarTracking, is_stopped_when_a_command_of_its_program_fails) {
-    VirtualRun run{6};
+    CarRun run{6};
     ASSERT_TRUE(run.start());
     ASSERT_TRUE(run.run_for(20s));
     EXPECT_EQ(run.state(), "LocaliseCar");

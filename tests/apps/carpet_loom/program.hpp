@@ -1,9 +1,10 @@
 // The host's carpet loom as a program of its own: what it is started with, what it answers.
 #pragma once
 
+#include "tests/program.hpp"
+
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,29 +12,14 @@
 #include <string>
 #include <vector>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tappet::carpet {
 
-struct Ended {
-    int exit_code = -1;
-    std::string text; ///< of both its outputs
-};
-
 inline Ended run_loom(const std::vector<std::string>& words) {
     std::string line = LOOM_PROGRAM;
     for (const std::string& word : words) line += " '" + word + "'";
-    line += " 2>&1";
-    Ended ended;
-    std::FILE* output = popen(line.c_str(), "r");
-    if (output == nullptr) return ended;
-    char characters[4096];
-    for (std::size_t n = 0; (n = std::fread(characters, 1, sizeof characters, output)) != 0;)
-        ended.text.append(characters, n);
-    const int status = pclose(output);
-    ended.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return ended;
+    return run_line(line);
 }
 
 /// It is gone with the program of the tests.

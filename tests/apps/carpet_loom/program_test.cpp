@@ -33,7 +33,7 @@ TEST(Program, refuses_what_is_no_whole_number) {
                     HasSubstr("is not a whole number; write for example --seed 60"));
         EXPECT_THAT(refusal({"--picks", word}), StartsWith("carpet-loom: option --picks: \""));
     }
-    EXPECT_THAT(refusal({"--for", "0"}), HasSubstr("a run takes 1 s at least"));
+    EXPECT_THAT(refusal({"--for", "0"}), HasSubstr("option --for: \"0\" is not from 1 to 1000000000"));
     EXPECT_THAT(refusal({"--picks", "0"}), HasSubstr("\"0\" is not what it takes; see --help"));
 }
 

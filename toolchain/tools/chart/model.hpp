@@ -2,7 +2,7 @@
 // operations do to them, what the world may do, and what must never happen. Plain rows; the Promela export
 // puts them together with the machine table and its state machines.
 //
-//     inline constexpr auto loom_model = verification(
+//     inline constexpr auto model = verification(
 //         remembers("ready", 0, 1),
 //         program<&Loom::enter_run_up>(emits("loom.allow_weft")),
 //         operation("weft.on_release_angle", when_true("ready"), sets("ready = 0"),

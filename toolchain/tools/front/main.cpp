@@ -1,6 +1,6 @@
 // tappet: the front door. Writes a new machine's project, builds it, runs it, tests it, boots it on the bench
 // and looks into it; each by a program that also stands for itself.
-#include "toolchain/machine/host_usage.hpp"
+#include "toolchain/machine/host_options.hpp"
 #include "toolchain/tools/front/project.hpp"
 
 #include <cerrno>
@@ -114,7 +114,7 @@ int run_host(const Words& words) {
     if (words == Words{"--help"} && named && !fs::exists("build/" + *named)) {
         std::cout << "the machine \"" << *named
                   << "\" with its plant in one process; its plant's own options are shown once it is built\n"
-                  << host_usage;
+                  << usage_of(host_options);
         return 0;
     }
     const std::string machine = built_machine({"-"});

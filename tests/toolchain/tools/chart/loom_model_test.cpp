@@ -51,7 +51,7 @@ private:
 
 std::vector<std::string> said_of(StateProgram program) {
     std::vector<std::string> events;
-    for (const ModelRow& row : carpet::loom_model)
+    for (const ModelRow& row : carpet::model)
         if (row.kind == ModelKind::program && row.program == program)
             for (const std::string_view event : row.emits) events.emplace_back(event);
     return events;

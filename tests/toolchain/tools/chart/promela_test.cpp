@@ -1,9 +1,10 @@
 // State machines searched by spin, from the tables that run (thesis 5.2, 6.2.5): no deadlock, each state
 // reachable, the final state reached from everywhere, invariants kept; and seeded faults, each of which must
 // be found.
+#include "apps/car_tracking/behaviour.hpp"
 #include "apps/carpet_loom/loom_model.hpp"
 #include "tests/toolchain/tools/chart/sample.hpp"
-#include "toolchain/tools/chart/machines.hpp"
+#include "toolchain/tools/chart/promela.hpp"
 #include "toolchain/tools/chart/spin.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +17,6 @@
 namespace tappet::chart {
 namespace {
 
-using carpet::loom_model;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -72,11 +72,7 @@ TEST_F(Verification, of_the_loom_finds_no_deadlock_and_each_state_and_the_final_
 TEST_F(Verification, of_regions_history_and_choices_finds_the_same) { expect_sound(press()); }
 
 TEST_F(Verification, of_the_car_tracker_s_script_finds_the_same_from_its_flat_form) {
-    const auto known = known_machines();
-    const auto found =
-        std::ranges::find_if(known, [](const KnownMachine& each) { return each.script != nullptr; });
-    ASSERT_NE(found, known.end());
-    const Chart chart = found->charts().at(0);
+    const Chart chart = charts_of(car_tracking::tracking_script, "tracking").at(0);
     expect_sound(chart);
     // The program runs until stopProgram, which only an event sets: the model follows that variable.
     EXPECT_THAT(to_promela(chart).text, HasSubstr("tracking_v_stopProgram = 1;"));
@@ -109,7 +105,7 @@ TEST_F(Verification, finds_a_state_that_no_run_comes_to) {
 
 // ---- the loom: its states with the release of the weft, by its own reactions
 
-Composition loom() { return {charts_of(carpet::table.view()), carpet::table.view(), loom_model}; }
+Composition loom() { return {charts_of(carpet::table.view()), carpet::table.view(), carpet::model}; }
 
 TEST_F(Verification, of_the_loom_with_its_weft_keeps_every_invariant) {
     const PromelaModel model = to_promela(loom());

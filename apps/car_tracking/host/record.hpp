@@ -1,0 +1,53 @@
+// What was true and what was believed in a run.
+#pragma once
+
+#include "apps/car_tracking/scene/scene.hpp"
+#include "kernel/base/digest.hpp"
+#include "kernel/machine/instance/instance.hpp"
+
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+namespace tappet::car_tracking {
+
+/// One look at the run.
+struct Moment {
+    double at_s = 0.0;
+    double car_x = 0.0, car_y = 0.0; ///< true
+    bool car_hidden = false;
+    double looks_x = 0.0, looks_y = 0.0; ///< where the camera's axis meets the floor, truly
+    std::string_view state{};            ///< of the tracking component, its outermost one
+};
+
+/// One image that was processed.
+struct Look {
+    double at_s = 0.0; ///< when it was taken
+    bool located = false;
+    bool whole = false; ///< no part of the car lay outside the image
+    double x = 0.0, y = 0.0;
+    double car_x = 0.0, car_y = 0.0; ///< true then
+    bool car_hidden = false;
+    [[nodiscard]] double error_m() const { return std::hypot(x - car_x, y - car_y); }
+};
+
+/// Of the tracking component, its outermost one; empty: none.
+[[nodiscard]] std::string_view state_of(const MachineInstance& machine);
+
+class Record {
+public:
+    void look(MachineInstance& machine, const Scene& scene, Time now);
+
+    [[nodiscard]] const std::vector<Moment>& moments() const { return moments_; }
+    [[nodiscard]] const std::vector<Look>& looks() const { return looks_; }
+    void add_to(Digest& digest) const;
+
+    static constexpr Duration every = 10ms;
+
+private:
+    std::vector<Moment> moments_{};
+    std::vector<Look> looks_{};
+    std::int64_t images_seen_ = 0;
+};
+
+} // namespace tappet::car_tracking

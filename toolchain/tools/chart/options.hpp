@@ -1,0 +1,23 @@
+// What a machine's chart program takes, which the front door reads before it builds that program.
+#pragma once
+
+#include "toolchain/command_line.hpp"
+
+#include <array>
+
+namespace tappet::chart {
+
+inline constexpr std::array chart_options{
+    Option{"--to", "DIR", "where the files go (default .; of tappet chart: build/charts)"},
+    Option{"--help", "", "this text"}};
+
+/// Its words; none: svg.
+inline constexpr std::array chart_words{
+    Option{"svg", "", "the table, each state machine and each program, drawn by the tools dot and plantuml"},
+    Option{"dot", "", "the table as text for dot"},
+    Option{"plantuml", "", "a UML state chart of each state machine and each program, as text for plantuml"},
+    Option{"scxml", "", "each state machine"},
+    Option{"promela", "", "each state machine alone and the machine's state machines together"},
+    Option{"verify", "", "searches those models with spin"}};
+
+} // namespace tappet::chart
