@@ -4,7 +4,7 @@
 #include "apps/car_tracking/host/picture.hpp"
 #include "apps/car_tracking/plant.hpp"
 #include "kernel/os/terminal.hpp"
-#include "toolchain/machine/host.hpp"
+#include "toolchain/machine/host_hooks.hpp"
 
 namespace tappet::car_tracking {
 

@@ -50,8 +50,8 @@ const std::vector<Row> house{
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
     {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
-    // A machine may say what spin is to prove of it.
-    {"apps",              {"board", "drivers/plant", "toolchain/tools/chart/model.hpp"}},
+    // A machine may say what spin is to prove of it, and what its host's program is to look at.
+    {"apps",              {"board", "drivers/plant", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
 

@@ -6,6 +6,7 @@
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/configuration/property_files.hpp"
+#include "toolchain/machine/host_hooks.hpp"
 
 #include <atomic>
 #include <expected>
@@ -110,15 +111,6 @@ private:
     std::atomic<bool> plant_ends_{false};
     std::atomic<bool> done_{false};
     os::Thread plant_thread_{};
-};
-
-/// What only one machine's host program does: it looks into machine and plant. Then it has virtual time only.
-struct HostHooks {
-    Duration look_every{};
-    /// Between two moments of the machine, and once when everything stands.
-    void (*look)(MachineInstance& machine, Plant& plant, Time now) = nullptr;
-    /// At the end. The error is what it could not leave behind.
-    Sentence (*ended)(const Plant& plant) = nullptr;
 };
 
 /// The host's program of a machine. Makes the plant for the seed of its command line. The exit code: 0 well,

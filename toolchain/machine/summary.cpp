@@ -22,6 +22,7 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
             .field("cycles", seen.cycles)
             .field("longest_busy_us", static_cast<double>(seen.longest_busy.count()) * 1e-3);
         json.field("longest_response_us", static_cast<double>(seen.longest_response.count()) * 1e-3)
+            .field("deadline_us", static_cast<double>(engine.plan().deadline.count()) * 1e-3)
             .field("deadline_misses", seen.misses)
             .field("skipped_periods", seen.skipped_periods);
         json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3)

@@ -1,7 +1,7 @@
 // Thesis 5.4: the picture of a run shows its track, its states and what was seen; the program draws it
 // or says why not.
 #include "apps/car_tracking/host/picture.hpp"
-#include "tests/program.hpp"
+#include "tests/toolchain/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The host's carpet loom as a program of its own: what it is started with, what it answers.
 #pragma once
 
-#include "tests/program.hpp"
+#include "tests/toolchain/program.hpp"
 
 #include <gtest/gtest.h>
 

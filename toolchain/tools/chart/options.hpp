@@ -8,7 +8,7 @@
 namespace tappet::chart {
 
 inline constexpr std::array chart_options{
-    Option{"--to", "DIR", "where the files go (default .; of tappet chart: build/charts)"},
+    Option{"--to", "DIR", "where the files go (default: here; of tappet chart: build/charts)"},
     Option{"--help", "", "this text"}};
 
 /// Its words; none: svg.

@@ -1,13 +1,17 @@
-// tappet: the front door. Writes a new machine's project, builds it, runs it, tests it, boots it on the bench
-// and looks into it; each by a program that also stands for itself.
+// tappet: the front door. Writes a new machine's project, builds it, runs it, tests it, measures it, draws
+// it, boots it on the bench and looks into it; each by a program that also stands for itself.
 #include "toolchain/machine/host_options.hpp"
+#include "toolchain/tools/chart/options.hpp"
+#include "toolchain/tools/front/commands.hpp"
+#include "toolchain/tools/front/figures.hpp"
 #include "toolchain/tools/front/project.hpp"
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <string>
@@ -20,7 +24,6 @@ namespace tappet::front {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
 
 constexpr int wrong_use = 2;
 
@@ -35,14 +38,20 @@ fs::path beside_us() { return fs::read_symlink("/proc/self/exe").parent_path(); 
 /// Installed at <prefix>/lib/tappet; else the tools of a clone's build tree.
 bool is_installed() { return fs::exists(beside_us() / "../cmake/Tappet/TappetConfig.cmake"); }
 
-int run(const Words& words) {
+int become(const Words& words) {
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
+    std::cout.flush();
+    ::execvp(arguments[0], arguments.data());
+    return fail("cannot run " + words[0] + ": " + std::strerror(errno));
+}
+
+int run(const Words& words) {
+    std::cout.flush();
     const pid_t child = ::fork();
     if (child == 0) {
-        ::execvp(arguments[0], arguments.data());
-        std::cerr << "tappet: cannot run " << words[0] << ": " << std::strerror(errno) << "\n";
+        static_cast<void>(become(words));
         ::_exit(127);
     }
     int status = 0;
@@ -51,54 +60,44 @@ int run(const Words& words) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-int become(const Words& words) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    ::execvp(arguments[0], arguments.data());
-    return fail("cannot run " + words[0] + ": " + std::strerror(errno));
-}
-
 Words with(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
 
-/// The project of this folder, configured and built: all of it, or these targets; "-" stands for the
-/// machine's host program, "--bench" for <machine>-bench. Empty: why was said.
-std::string built_machine(const Words& targets) {
-    const auto machine = machine_of("CMakeLists.txt");
-    if (!machine) {
-        fail(machine.error());
+/// Of this folder: the one that --machine names, or the first. Empty: why was said.
+std::string machine_here(const Given& given) {
+    const auto machines = machines_of("CMakeLists.txt");
+    if (!machines) {
+        fail(machines.error());
         return {};
     }
+    const std::string wanted{given.line.text("--machine", machines->front())};
+    if (std::ranges::find(*machines, wanted) != machines->end()) return wanted;
+    const std::vector<std::string_view> names(machines->begin(), machines->end());
+    fail("there is no machine \"" + wanted + "\" here" + did_you_mean(wanted, names));
+    return {};
+}
+
+/// The project of this folder, configured and built: all of it, or these targets. False: why was said.
+bool is_built(const Words& targets) {
     if (!fs::exists("build/build.ninja")) {
         Words configure{"cmake", "-S", ".", "-B", "build", "-G", "Ninja"};
         if (is_installed())
             configure.push_back("-DTappet_DIR=" + fs::canonical(beside_us() / "../cmake/Tappet").string());
-        if (run(configure) != 0) return {};
+        if (run(configure) != 0) return false;
     }
     Words build{"cmake", "--build", "build"};
-    for (const std::string& target : targets)
-        build = with(std::move(build), {"--target", target == "-"              ? *machine
-                                                    : target.starts_with("--") ? *machine + target.substr(1)
-                                                                               : target});
-    return run(build) == 0 ? *machine : std::string{};
+    for (const std::string& target : targets) build = with(std::move(build), {"--target", target});
+    return run(build) == 0;
 }
 
-int make(const Words& words) {
-    Choice choice;
-    for (const std::string& word : words)
-        if (word == "--can")
-            choice.can = true;
-        else if (word == "--modbus")
-            choice.modbus = true;
-        else if (word == "--gpio")
-            continue; // every machine has its lines
-        else if (word.starts_with("-") || !choice.name.empty())
-            return fail("\"" + word + "\" is too much: tappet new NAME [--can] [--gpio] [--modbus]");
-        else
-            choice.name = word;
+int make(const Given& given) {
+    if (given.line.words.size() > 1)
+        return fail("\"" + std::string{given.line.words[1]} + "\" is too much: a machine has one name");
+    Choice choice{
+        .can = given.line.has("--can"), .modbus = given.line.has("--modbus"), .cam = given.line.has("--cam")};
+    if (!given.line.words.empty()) choice.name = given.line.words[0];
     const fs::path templates =
         is_installed() ? beside_us() / "../../share/tappet/template" : fs::path{TAPPET_TEMPLATE};
     if (const std::string fault = write_project(templates, choice); !fault.empty()) return fail(fault);
@@ -106,34 +105,53 @@ int make(const Words& words) {
     return 0;
 }
 
-int build(const Words& words) { return built_machine(words).empty() ? 1 : 0; }
+int build(const Given& given) {
+    if (machine_here(given).empty()) return wrong_use;
+    return is_built({given.line.words.begin(), given.line.words.end()}) ? 0 : 1;
+}
 
-int run_host(const Words& words) {
-    // Who asks what there is does not want to wait for a build.
-    const auto named = machine_of("CMakeLists.txt");
-    if (words == Words{"--help"} && named && !fs::exists("build/" + *named)) {
-        std::cout << "the machine \"" << *named
-                  << "\" with its plant in one process; its plant's own options are shown once it is built\n"
+int run_host(const Given& given) {
+    const auto machines = machines_of("CMakeLists.txt");
+    if (given.line.has("--help")) { // who asks what there is does not want to wait for a build
+        const std::string program = machines ? "build/" + machines->front() : "";
+        if (fs::exists(program)) return become({program, "--help"});
+        std::cout << "tappet run: a machine with its plant in one process; the plant's own options are shown "
+                     "once it is built\n"
                   << usage_of(host_options);
         return 0;
     }
-    const std::string machine = built_machine({"-"});
-    return machine.empty() ? 1 : become(with({"build/" + machine}, words));
+    const std::string machine = machine_here(given);
+    if (machine.empty()) return wrong_use;
+    Words program{"build/" + machine};
+    for (const auto& [option, value] : given.line.of_others) {
+        if (!has_option(".", option)) {
+            std::vector<std::string_view> names;
+            for (const Option& each : host_options) names.push_back(each.name);
+            return fail("run: option " + std::string{option} + " is unknown, and no source here names it" +
+                        did_you_mean(option, names, "; see --help;") +
+                        " what stands after -- goes to the machine unread");
+        }
+        program = with(program, {std::string{option}, std::string{value}});
+    }
+    for (const auto& [option, value] : given.line.options)
+        if (option->name != "--machine") {
+            program.emplace_back(option->name);
+            if (!option->value.empty()) program.emplace_back(value);
+        }
+    return is_built({machine}) ? become(with(program, given.behind)) : 1;
 }
 
-int test(const Words& words) {
-    if (built_machine({}).empty()) return 1;
-    return become(with({"ctest", "--test-dir", "build", "--output-on-failure"}, words));
+int test(const Given& given) {
+    if (machine_here(given).empty()) return wrong_use;
+    Words ctest{"ctest", "--test-dir", "build", "--output-on-failure"};
+    if (given.line.has("--only")) ctest = with(ctest, {"-R", std::string{given.line.text("--only")}});
+    return is_built({}) ? become(with(ctest, given.behind)) : 1;
 }
 
-int bench(const Words& words) {
-    std::string seconds = "10";
-    if (words.size() == 2 && words[0] == "--for")
-        seconds = words[1];
-    else if (!words.empty())
-        return fail("bench takes --for SECONDS, of the box's own time");
-    const std::string machine = built_machine({"--bench", "--plant"});
-    if (machine.empty()) return 1;
+int bench(const Given& given) {
+    const std::string machine = machine_here(given);
+    if (machine.empty()) return wrong_use;
+    if (!is_built({machine + "-bench", machine + "-plant"})) return 1;
     if (is_installed() && std::getenv("TAPPET_CACHE") == nullptr)
         ::setenv("TAPPET_CACHE", (beside_us() / "../../share/tappet/foreign").c_str(), 1);
     // All that the bench's board has: what the machine is not bound to lies idle.
@@ -159,39 +177,173 @@ int bench(const Words& words) {
                    "--run",
                    "@sleep 0.3",
                    "--run",
-                   "firmware --for " + seconds,
+                   "firmware --for " + std::string{given.line.text("--for", "10")},
                    "--run",
                    "@signal plant TERM",
                    "--run",
                    "@wait plant"});
 }
 
-int browse(const Words& words) { return become(with({(beside_us() / "tappet-browse").string()}, words)); }
-int scope(const Words& words) { return browse(with({"scope"}, words)); }
+int chart(const Given& given) {
+    const std::string machine = machine_here(given);
+    if (machine.empty()) return wrong_use;
+    if (!is_built({machine + "-chart"})) return 1;
+    Words program{"build/" + machine + "-chart", "--to",
+                  std::string{given.line.text("--to", "build/charts")}};
+    for (const std::string_view word : given.line.words) program.emplace_back(word);
+    return become(program);
+}
 
-struct Command {
-    const char* name;
-    const char* usage;
-    const char* help;
-    int (*run)(const Words&);
-};
+/// In a clone they are those of the framework.
+int figures(const Given& given) {
+    if (fs::exists("ci/figures")) return become(with({"ci/figures"}, given.words));
+    const std::string machine = machine_here(given);
+    if (machine.empty()) return wrong_use;
+    if (!is_built({machine})) return 1;
+    const std::string summary = "build/figures.json";
+    const int ending = run({"build/" + machine, "--real", "--quiet", "--summary", summary, "--for",
+                            std::string{given.line.text("--for", "10")}});
+    if (ending != 0 && ending != 1) return ending; // 1: the plant had not seen enough, which is no figure
+    std::ifstream file{summary};
+    const auto text = figures_of({std::istreambuf_iterator<char>{file}, {}});
+    if (!text) return fail(text.error());
+    std::cout << *text << "all of it is in " << summary << "\n";
+    return 0;
+}
+
+int browse(const Given& given) {
+    return become(with({(beside_us() / "tappet-browse").string()}, given.words));
+}
+int scope(const Given& given) {
+    return become(with({(beside_us() / "tappet-browse").string(), "scope"}, given.words));
+}
+
+constexpr Option machine_option{"--machine", "NAME", "of several in this folder; else the first"};
+constexpr Option time_option{.name = "--for",
+                             .value = "SECONDS",
+                             .help = "how long (default 10)",
+                             .is_number = true,
+                             .least = 1,
+                             .most = 86'400};
+
+template <std::size_t n>
+constexpr std::array<Option, n + 1> for_a_machine(const std::array<Option, n>& options) {
+    std::array<Option, n + 1> all{machine_option};
+    std::ranges::copy(options, all.begin() + 1);
+    return all;
+}
+constexpr std::array new_options{Option{"--can", "", "a drive on a CAN bus"},
+                                 Option{"--gpio", "", "digital lines, which every machine has"},
+                                 Option{"--modbus", "", "a unit behind Modbus TCP"},
+                                 Option{"--cam", "", "a shaft with its encoder on CAN, and a cam of it"}};
+constexpr auto run_options = for_a_machine(host_options);
+constexpr std::array test_options{Option{"--only", "REGEX", "tests whose names fit"}};
+constexpr auto timed_options = for_a_machine(std::array{time_option});
+constexpr auto chart_options = for_a_machine(chart::chart_options);
+
 constexpr Command commands[] = {
-    {"new", "new NAME [--can] [--gpio] [--modbus]", "writes a machine's project into the folder NAME", &make},
-    {"build", "build [TARGET...]", "builds the machine of this folder: host program, firmware, bench plant",
-     &build},
-    {"run", "run [OPTION...]", "runs machine and plant in one process; run --help lists its options",
-     &run_host},
-    {"test", "test [OPTION...]", "builds and runs the machine's tests; options are those of ctest", &test},
-    {"bench", "bench [--for SECONDS]", "boots the firmware on an emulated box with a real-time kernel",
-     &bench},
-    {"browse", "browse [WORD...]", "looks into a running machine; browse help lists its words", &browse},
-    {"scope", "scope [WORD...]", "which cycles of a running machine were the worst, and why", &scope},
+    {.name = "new",
+     .takes = "NAME",
+     .help = "writes a machine's project into the folder NAME",
+     .options = new_options,
+     .others = Others::words,
+     .run = &make},
+    {.name = "build",
+     .takes = "[TARGET...]",
+     .help = "builds the machine of this folder: host program, firmware, bench plant",
+     .others = Others::words,
+     .run = &build},
+    {.name = "run",
+     .takes = "",
+     .help = "runs machine and plant in one process",
+     .options = run_options,
+     .others = Others::options,
+     .run = &run_host},
+    {.name = "test",
+     .takes = "[-- OPTION...]",
+     .help = "builds and runs the machine's tests; what stands after -- is for ctest",
+     .options = test_options,
+     .run = &test},
+    {.name = "chart",
+     .takes = "[WHAT...]",
+     .help = "draws the machine's table and behaviours into build/charts",
+     .options = chart_options,
+     .others = Others::words,
+     .kinds = chart::chart_words,
+     .run = &chart},
+    {.name = "figures",
+     .takes = "",
+     .help = "what each activity takes in real time on this host; in a clone of Tappet: ci/figures",
+     .options = timed_options,
+     .run = &figures},
+    {.name = "bench",
+     .takes = "",
+     .help = "boots the firmware on an emulated box with a real-time kernel, for so long of its own time",
+     .options = timed_options,
+     .run = &bench},
+    {.name = "browse",
+     .takes = "[WORD...]",
+     .help = "looks into a running machine",
+     .passes_on = true,
+     .run = &browse},
+    {.name = "scope",
+     .takes = "[WORD...]",
+     .help = "which cycles of a running machine were the worst, and why",
+     .passes_on = true,
+     .run = &scope},
 };
+
+std::string usage_line(const Command& command, std::size_t column) {
+    std::string text = "tappet " + std::string{command.name};
+    if (!command.options.empty()) text += " [OPTION...]";
+    if (!command.takes.empty()) text += " " + std::string{command.takes};
+    if (text.size() < column) text.resize(column, ' ');
+    return text + "  " + std::string{command.help} + "\n";
+}
 
 int help() {
-    std::cout << "tappet: machine controllers on real-time Linux\n";
-    for (const Command& each : commands) std::printf("  tappet %-38s %s\n", each.usage, each.help);
+    std::cout << "tappet: machine controllers on real-time Linux; --help after a word tells its options\n";
+    for (const Command& each : commands) std::cout << "  " << usage_line(each, 36);
     return 0;
+}
+
+/// Whose option one of the words is that is none of this command. A plant may have options of any name.
+std::string owner_of(const Command& command, const Words& words) {
+    for (const std::string& word : words)
+        for (const Command& each : commands) {
+            const auto has = [&](const Command& of) {
+                return std::ranges::find(of.options, word, &Option::name) != of.options.end();
+            };
+            const bool is_plants = command.others == Others::options && has_option(".", word);
+            if (!has(command) && has(each) && !is_plants)
+                return "option " + word + " belongs to tappet " + std::string{each.name} +
+                       ", not to tappet " + std::string{command.name};
+        }
+    return {};
+}
+
+int obey(const Command& command, Words words) {
+    Given given;
+    if (!command.passes_on && !(command.run == &figures && fs::exists("ci/figures"))) {
+        if (const auto end = std::ranges::find(words, "--"); end != words.end()) {
+            given.behind.assign(end + 1, words.end());
+            words.erase(end, words.end());
+        }
+        given.words = std::move(words);
+        const bool asks = std::ranges::find(given.words, "--help") != given.words.end();
+        if (asks && command.run != &run_host) {
+            std::cout << usage_line(command, 0) << usage_of(command.options) << usage_of(command.kinds);
+            return 0;
+        }
+        const std::vector<std::string_view> views(given.words.begin(), given.words.end());
+        auto line = read_command_line(command.options, views, command.others, command.kinds);
+        if (std::string owner = owner_of(command, given.words); !owner.empty()) return fail(owner);
+        if (!line) return fail(std::string{command.name} + ": " + line.error());
+        given.line = std::move(*line);
+    } else {
+        given.words = std::move(words);
+    }
+    return command.run(given);
 }
 
 } // namespace
@@ -199,19 +351,16 @@ int help() {
 int main(int count, char** words) {
     const Words all(words + 1, words + count);
     if (all.empty() || all[0] == "--help" || all[0] == "help") return help();
-    for (const Command& each : commands) {
-        if (all[0] != each.name) continue;
-        const Words rest(all.begin() + 1, all.end());
-        const bool own_help = each.run == &run_host || each.run == &browse || each.run == &scope;
-        if (!own_help && rest.size() == 1 && rest[0] == "--help") {
-            std::printf("tappet %s\n  %s\n", each.usage, each.help);
-            return 0;
-        }
-        return each.run(rest);
+    if (all[0] == "--complete") {
+        for (const std::string& each : completions(commands, {all.begin() + 1, all.end()}))
+            std::cout << each << "\n";
+        return 0;
     }
-    Words names;
-    for (const Command& each : commands) names.emplace_back(each.name);
-    return fail("\"" + all[0] + "\" is no command" + suggestion(all[0], names) +
+    const auto command = std::ranges::find(commands, all[0], &Command::name);
+    if (command != std::end(commands)) return obey(*command, {all.begin() + 1, all.end()});
+    std::vector<std::string_view> names;
+    for (const Command& each : commands) names.push_back(each.name);
+    return fail("\"" + all[0] + "\" is no command" + did_you_mean(all[0], names) +
                 "; tappet --help lists them");
 }
 

@@ -1,8 +1,6 @@
 // Writing projects from templates.
 #include "toolchain/tools/front/project.hpp"
 
-#include "kernel/base/nearest.hpp"
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -37,22 +35,25 @@ std::string filled(std::string_view text, const Choice& choice) {
         std::string_view word;
         bool stays;
     };
-    const Tag tags[] = {{"@can ", choice.can},
-                        {"@nocan ", !choice.can},
-                        {"@modbus ", choice.modbus},
-                        {"@nomodbus ", !choice.modbus}};
+    const bool bus = choice.can || choice.cam; // the shaft's encoder is on CAN
+    const Tag tags[] = {{"@bus ", bus},           {"@nobus ", !bus},           {"@can ", choice.can},
+                        {"@nocan ", !choice.can}, {"@modbus ", choice.modbus}, {"@nomodbus ", !choice.modbus},
+                        {"@cam ", choice.cam},    {"@nocam ", !choice.cam}};
     std::string result;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
         std::string_view line = text.substr(0, end);
         text.remove_prefix(end);
         bool stays = true;
-        for (const Tag& tag : tags)
-            if (line.starts_with(tag.word)) {
-                stays = tag.stays;
-                line.remove_prefix(tag.word.size());
-                break;
-            }
+        for (bool more = true; more;) {
+            more = false;
+            for (const Tag& tag : tags)
+                if (line.starts_with(tag.word)) {
+                    stays &= tag.stays;
+                    line.remove_prefix(tag.word.size());
+                    more = true;
+                }
+        }
         if (stays) result += line;
     }
     std::string title = choice.name;
@@ -77,30 +78,45 @@ std::string write_project(const fs::path& templates, const Choice& choice) {
     for (const auto& entry : fs::recursive_directory_iterator{templates}) {
         if (entry.path().extension() != ".in") continue;
         const fs::path to = fs::path{choice.name} / fs::relative(entry.path(), templates).replace_extension();
+        const std::string text = filled(contents_of(entry.path()), choice);
+        if (text.empty()) continue; // of something that was not chosen
         fs::create_directories(to.parent_path(), error);
         std::ofstream file{to, std::ios::binary};
-        file << filled(contents_of(entry.path()), choice);
+        file << text;
         if (!file.flush()) return "cannot write " + to.string() + "; check the folder's rights and the disk";
     }
     return {};
 }
 
-std::expected<std::string, std::string> machine_of(const fs::path& cmake) {
+std::expected<std::vector<std::string>, std::string> machines_of(const fs::path& cmake) {
     const std::string text = contents_of(cmake);
     if (text.empty())
         return std::unexpected(
             "there is no CMakeLists.txt here; go to a machine's folder, or begin with tappet new NAME");
     static const std::regex machine{"(^|\n)\\s*tappet_machine\\(\\s*([A-Za-z0-9_-]+)"};
-    std::smatch found;
-    if (!std::regex_search(text, found, machine))
+    std::vector<std::string> names;
+    for (std::sregex_iterator at(text.begin(), text.end(), machine), end; at != end; ++at)
+        names.push_back((*at)[2].str());
+    if (names.empty())
         return std::unexpected("CMakeLists.txt here names no tappet_machine(..); go to a machine's folder");
-    return found[2].str();
+    return names;
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
-    Nearest nearest{word};
-    for (const std::string& name : names) nearest.consider(name);
-    return nearest.best().empty() ? "" : "; did you mean " + std::string{nearest.best()} + "?";
+bool has_option(const fs::path& folder, std::string_view option) {
+    constexpr std::string_view of_a_name = "abcdefghijklmnopqrstuvwxyz0123456789-_";
+    std::error_code error;
+    for (fs::recursive_directory_iterator at{folder, error}, end; !error && at != end; at.increment(error)) {
+        if (at->is_directory() && fs::exists(at->path() / "CMakeCache.txt")) at.disable_recursion_pending();
+        const std::string extension = at->path().extension().string();
+        if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
+        const std::string text = contents_of(at->path());
+        for (std::size_t found = text.find(option); found != text.npos;
+             found = text.find(option, found + 1)) {
+            const std::size_t after = found + option.size();
+            if (after == text.size() || of_a_name.find(text[after]) == of_a_name.npos) return true;
+        }
+    }
+    return false;
 }
 
 } // namespace tappet::front

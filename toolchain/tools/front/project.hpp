@@ -13,19 +13,23 @@ struct Choice {
     std::string name{}; ///< of the folder, the namespace and the programs
     bool can = false;
     bool modbus = false;
+    bool cam = false;
 };
 
-/// Into a folder of that name, which is not there yet. Empty: it is written; else what is wrong and the cure.
+/// Into a folder of that name, which is not there yet; files without a line are left out. Empty: it is
+/// written; else what is wrong and the cure.
 [[nodiscard]] std::string write_project(const std::filesystem::path& templates, const Choice& choice);
 
-/// A template's text for a choice: @NAME@ and @TITLE@ stand for its names; a line that begins with @can or
-/// @modbus is there with it, one with @nocan or @nomodbus without it.
+/// A template's text for a choice: @NAME@ and @TITLE@ stand for its names; a line that begins with @can,
+/// @modbus, @cam or @bus (of CAN, for one of the two) is there with it, one with @nocan and so on without it;
+/// with several when all are so.
 [[nodiscard]] std::string filled(std::string_view text, const Choice& choice);
 
-/// Of the first tappet_machine(..) of a project. The error names the cure.
-[[nodiscard]] std::expected<std::string, std::string> machine_of(const std::filesystem::path& cmake);
+/// Of each tappet_machine(..) of a project, one at least. The error names the cure.
+[[nodiscard]] std::expected<std::vector<std::string>, std::string>
+machines_of(const std::filesystem::path& cmake);
 
-/// ", did you mean ...": empty when none is near.
-[[nodiscard]] std::string suggestion(std::string_view word, const std::vector<std::string>& names);
+/// Whether a source in the folder names an option, as a plant of its own does. What was built is passed over.
+[[nodiscard]] bool has_option(const std::filesystem::path& folder, std::string_view option);
 
 } // namespace tappet::front

@@ -1,5 +1,5 @@
 // A machine's chart program as a user runs it: the chart of its table, its behaviours, and what it refuses.
-#include "tests/program.hpp"
+#include "tests/toolchain/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -37,8 +37,16 @@ TEST(Template, keeps_the_lines_of_a_choice_and_fills_its_names_in) {
     EXPECT_EQ(filled(text, {"press", false, true}), "no bus\nserver\nalways \"press\"\n");
 }
 
-TEST_F(Folder, gets_a_project_of_about_a_hundred_and_twenty_lines_of_its_own_without_a_tag_left) {
-    ASSERT_THAT(write_project(TAPPET_TEMPLATE, {"press", true, true}), IsEmpty());
+TEST(Template, keeps_the_lines_for_which_all_was_chosen) {
+    constexpr std::string_view text = "@can @cam both\n@can @nocam drive\n@bus wire\n@nobus none\n";
+    EXPECT_EQ(filled(text, {.name = "a", .can = true, .cam = true}), "both\nwire\n");
+    EXPECT_EQ(filled(text, {.name = "a", .can = true}), "drive\nwire\n");
+    EXPECT_EQ(filled(text, {.name = "a", .cam = true}), "wire\n") << "a shaft's encoder is on the bus";
+    EXPECT_EQ(filled(text, {.name = "a"}), "none\n");
+}
+
+TEST_F(Folder, gets_a_project_that_can_be_read_at_once_without_a_tag_left) {
+    ASSERT_THAT(write_project(TAPPET_TEMPLATE, {"press", true, true, true}), IsEmpty());
     std::size_t lines = 0;
     for (const auto& entry : fs::recursive_directory_iterator{"press"}) {
         std::ifstream file{entry.path()};
@@ -48,7 +56,15 @@ TEST_F(Folder, gets_a_project_of_about_a_hundred_and_twenty_lines_of_its_own_wit
         }
     }
     EXPECT_GT(lines, 100u);
-    EXPECT_EQ(machine_of("press/CMakeLists.txt"), "press");
+    EXPECT_LE(lines, 310u);
+    EXPECT_EQ(machines_of("press/CMakeLists.txt"), std::vector<std::string>{"press"});
+    EXPECT_TRUE(fs::exists("press/shaft.hpp"));
+}
+
+TEST_F(Folder, gets_no_file_of_what_was_not_chosen) {
+    ASSERT_THAT(write_project(TAPPET_TEMPLATE, {"press"}), IsEmpty());
+    EXPECT_FALSE(fs::exists("press/shaft.hpp"));
+    EXPECT_TRUE(fs::exists("press/cell.hpp"));
 }
 
 TEST_F(Folder, that_is_there_is_not_written_over) {
@@ -63,14 +79,19 @@ TEST_F(Folder, gets_no_project_of_a_name_that_no_tool_takes) {
 }
 
 TEST_F(Folder, without_a_machine_says_where_to_go) {
-    EXPECT_THAT(machine_of("CMakeLists.txt").error(), HasSubstr("tappet new NAME"));
+    EXPECT_THAT(machines_of("CMakeLists.txt").error(), HasSubstr("tappet new NAME"));
     std::ofstream{"CMakeLists.txt"} << "project(x)\n";
-    EXPECT_THAT(machine_of("CMakeLists.txt").error(), HasSubstr("names no tappet_machine(..)"));
+    EXPECT_THAT(machines_of("CMakeLists.txt").error(), HasSubstr("names no tappet_machine(..)"));
 }
 
-TEST(Suggestion, names_the_command_that_was_meant) {
-    EXPECT_EQ(suggestion("biuld", {"new", "build"}), "; did you mean build?");
-    EXPECT_EQ(suggestion("xyzzy", {"new", "build"}), "");
+TEST_F(Folder, knows_the_options_that_its_sources_name_and_no_other) {
+    fs::create_directories("build");
+    std::ofstream{"build/CMakeCache.txt"} << "\n";
+    std::ofstream{"build/old.hpp"} << "\"--runs\"";
+    std::ofstream{"plant.hpp"} << "if (option != \"--pieces\") return false;";
+    EXPECT_TRUE(has_option(".", "--pieces"));
+    EXPECT_FALSE(has_option(".", "--piece"));
+    EXPECT_FALSE(has_option(".", "--runs")) << "what was built says nothing";
 }
 
 } // namespace
