@@ -228,7 +228,7 @@ int main(int count, const char* const* words) {
         return wrong_command_line;
     }
     if (options->help) {
-        std::fputs(usage(), stdout);
+        std::fputs(usage().c_str(), stdout);
         return all_well;
     }
     struct sigaction action{};

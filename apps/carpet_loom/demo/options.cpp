@@ -1,74 +1,58 @@
 // Reading the command line.
 #include "apps/carpet_loom/demo/options.hpp"
 
-#include <charconv>
-#include <string_view>
+#include "toolchain/command_line.hpp"
+
+#include <array>
+#include <vector>
 
 namespace tappet::demo {
 
 namespace {
 
-template <class Number> bool take(Number& to, std::string_view text, Number least, Number most) {
-    Number value{};
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, value);
-    if (text.empty() || error != std::errc{} || at != end || value < least || value > most) return false;
-    to = value;
-    return true;
-}
-
-std::string* text_option(Options& options, std::string_view word) {
-    if (word == "--firmware") return &options.firmware;
-    if (word == "--plant") return &options.plant;
-    if (word == "--browser") return &options.browser;
-    if (word == "--behaviours") return &options.behaviours;
-    if (word == "--init") return &options.init;
-    if (word == "--summary") return &options.summary;
-    return nullptr;
-}
-
-constexpr std::int64_t most_picks = 100'000;
+// The first ones name what is built: ci/demo gives them.
+constexpr std::size_t built = 6;
+constexpr std::array table{
+    Option{"--firmware", "FILE", "stripped, as it is flashed"},
+    Option{"--plant", "FILE", "the plant's program for the bench"},
+    Option{"--browser", "FILE", "tappet-browse"},
+    Option{"--behaviours", "DIR", "of the scripts that are loaded on the way"},
+    Option{"--init", "FILE", "PID 1 of the bench"},
+    Option{"--summary", "FILE", "where the JSON goes"},
+    Option{.name = "--picks",
+           .value = "N",
+           .help = "ends when they are woven",
+           .is_number = true,
+           .least = 1,
+           .most = 100'000},
+    Option{.name = "--seed", .value = "N", .help = "which loom, and which breaks", .is_number = true},
+    Option{"--plain", "", "one line per second, without colours"},
+    Option{"--help", "", "this text"}};
 
 } // namespace
 
 std::expected<Options, std::string> parse_options(int count, const char* const* words) {
-    const auto error = [](const std::string& text) { return std::unexpected(text); };
+    const std::vector<std::string_view> all(words + 1, words + count);
+    const auto line = read_command_line(table, all, Others::refused);
+    if (!line) return std::unexpected(line.error());
     Options options;
-    for (int i = 1; i < count; ++i) {
-        const std::string word = words[i];
-        if (word == "--help") {
-            options.help = true;
-            return options;
-        }
-        if (word == "--plain") {
-            options.plain = true;
-            continue;
-        }
-        std::string* const to = text_option(options, word);
-        if (to == nullptr && word != "--picks" && word != "--seed")
-            return error("'" + word + "' is no option; --help lists them");
-        if (i + 1 == count) return error("'" + word + "' wants a value; --help shows which");
-        const std::string_view value = words[++i];
-        if (to != nullptr) *to = value;
-        if (word == "--picks" && !take<std::int64_t>(options.picks, value, 1, most_picks))
-            return error("--picks takes a number from 1 to 100000, not '" + std::string{value} + "'");
-        if (word == "--seed" && !take<std::uint64_t>(options.seed, value, 0, UINT64_MAX))
-            return error("--seed takes a whole number from 0, not '" + std::string{value} + "'");
+    options.help = line->has("--help");
+    options.plain = line->has("--plain");
+    options.picks =
+        static_cast<std::int64_t>(line->number("--picks", static_cast<std::uint64_t>(options.picks)));
+    options.seed = line->number("--seed", options.seed);
+    std::string* const files[built] = {&options.firmware,   &options.plant, &options.browser,
+                                       &options.behaviours, &options.init,  &options.summary};
+    for (std::size_t i = 0; i < built && !options.help; ++i) {
+        *files[i] = line->text(table[i].name);
+        if (files[i]->empty())
+            return std::unexpected(std::string{table[i].name} + " is missing; ci/demo gives it");
     }
-    for (const auto& [name, path] : {std::pair{"--firmware", &options.firmware},
-                                     {"--plant", &options.plant},
-                                     {"--browser", &options.browser},
-                                     {"--behaviours", &options.behaviours},
-                                     {"--init", &options.init},
-                                     {"--summary", &options.summary}})
-        if (path->empty()) return error(std::string{name} + " is missing; ci/demo gives it");
     return options;
 }
 
-const char* usage() {
-    return "carpet-loom-demo --firmware FILE --plant FILE --browser FILE --behaviours FOLDER --init FILE "
-           "--summary FILE [--picks N] [--seed N] [--plain]\n"
-           "ci/demo builds the programs and names them; ci/demo --help explains the rest\n";
+std::string usage() {
+    return "carpet-loom-demo, whose programs ci/demo builds and names\n" + usage_of(table);
 }
 
 } // namespace tappet::demo

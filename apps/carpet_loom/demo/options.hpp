@@ -22,6 +22,6 @@ struct Options {
 
 /// The error says which word is wrong and how to put it right.
 [[nodiscard]] std::expected<Options, std::string> parse_options(int count, const char* const* words);
-[[nodiscard]] const char* usage();
+[[nodiscard]] std::string usage();
 
 } // namespace tappet::demo

@@ -138,7 +138,7 @@ TEST(DemoOptions, refuse_bad_words_with_their_name) {
              {{"--seed", "-1"}, "--seed"},
              {{"--seed", "18446744073709551616"}, "--seed"},
              {{"--sead", "1"}, "--sead"},
-             {{"30"}, "'30'"}}) {
+             {{"30"}, "option 30 is"}}) {
         const auto options = options_of(with(words));
         ASSERT_FALSE(options) << named;
         EXPECT_THAT(options.error(), HasSubstr(named));
