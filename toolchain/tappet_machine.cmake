@@ -12,9 +12,9 @@
 #     [LIBRARIES ..])              what its components need beyond Tappet
 #
 # makes <name>, the machine with its plant in one process on the host; <name>_host, the same as a library for tests, with
-# <namespace>::on_host(), the accepted machine; <name>-chart, which draws it, when it is asked for; for each board, the static firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box;
-# and, for the bench, <name>-plant, the plant at the other end of its wires. After it tappet_script(<name>_table <file>.osd), see
-# script.cmake, gives its table a script.
+# <namespace>::on_host(), the accepted machine; <name>-chart, when it is asked for, which draws it; for each board, the static
+# firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box; and, for the bench, <name>-plant, the
+# plant at the other end of its wires. After it tappet_script(<name>_table <file>.osd) gives its table a script: see script.cmake.
 include_guard(GLOBAL)
 
 # The linker's own: llvm-strip refuses the relocations of a static program.

@@ -39,7 +39,7 @@ bool draw(const char* tool, const std::string& options, const Paths& paths) {
     for (const std::string& path : paths) command += " '" + path + "'";
     const bool good = std::system(command.c_str()) == 0; // NOLINT: a tool of the host, and names of tables
     if (!good) std::cerr << tool << " did not draw; is it installed? apt-get install plantuml graphviz\n";
-    for (std::string path : paths)
+    for (const std::string& path : paths)
         if (good) std::cout << fs::path{path}.replace_extension("svg").string() << "\n";
     return good;
 }
