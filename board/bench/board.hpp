@@ -26,6 +26,7 @@ inline constexpr Board bench{
     .browsing = {.directory = "/run/tappet",
                  .mode = 0666,
                  .roles = roles(user(1001, Role::machine_operator), user(1002, Role::engineer))},
+    .black_box_directory = "/run",
 };
 
 } // namespace tappet::board

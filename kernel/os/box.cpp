@@ -70,6 +70,12 @@ BuildId build_id() noexcept {
     return id;
 }
 
+std::int64_t wall_clock_ns() noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
 Duration own_processor_time() noexcept {
     timespec used{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);

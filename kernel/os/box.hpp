@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace tappet::os {
@@ -20,6 +21,9 @@ namespace tappet::os {
 /// Processor time of this process so far. Called first in main it tells what the kernel took to load the
 /// program.
 [[nodiscard]] Duration own_processor_time() noexcept;
+
+/// Since 1970, UTC, as the box believes: for dates, not for intervals, since it may be set.
+[[nodiscard]] std::int64_t wall_clock_ns() noexcept;
 
 /// The linker's mark of this program (--build-id), in hexadecimal; empty when it was linked without.
 struct BuildId {

@@ -95,7 +95,8 @@ void Guard::let_activities_be_watched(bool watched) noexcept {
     if (block_ != nullptr) block_->activities_run.store(watched, std::memory_order_release);
 }
 
-void Guard::end_well() noexcept {
+void Guard::end_well(const Sentence& fault) noexcept {
+    if (block_ != nullptr) block_->fault = fault;
     if (block_ != nullptr) block_->ended_well.store(true, std::memory_order_release);
 }
 

@@ -28,6 +28,7 @@ struct GuardBlock {
     std::atomic<bool> has_refused{false};    ///< it never can; `refusal` says why
     std::atomic<std::int64_t> looked_ns{0};  ///< when the guardian looked last
     Sentence refusal{};
+    Sentence fault{}; ///< that stopped the machine in order; before ended_well
     CrashNote crash{};
 };
 
@@ -54,7 +55,9 @@ public:
     /// The supervisor shows life, and will again within `time`; at each call anew.
     void be_back_within(Duration time) noexcept;
     void let_activities_be_watched(bool watched) noexcept;
-    void end_well() noexcept;
+    /// Every output is safe. `fault`: what stopped the machine, though nobody asked for it; empty: somebody
+    /// did.
+    void end_well(const Sentence& fault = {}) noexcept;
     /// It ended, or it hangs.
     [[nodiscard]] bool guardian_is_lost() const noexcept;
 

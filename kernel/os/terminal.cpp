@@ -179,7 +179,7 @@ bool sync_directory(const char* path) noexcept {
 
 } // namespace
 
-bool replace_file(const char* path, std::string_view text) noexcept {
+bool replace_file(const char* path, std::span<const std::string_view> pieces) noexcept {
     char beside[4096];
     const std::size_t length = std::strlen(path);
     if (length + 5 > sizeof beside) return false;
@@ -187,7 +187,9 @@ bool replace_file(const char* path, std::string_view text) noexcept {
     std::memcpy(beside + length, ".new", 5);
     const int file = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file < 0) return false;
-    const bool written = write_all(file, text) && fsync(file) == 0;
+    bool written = true;
+    for (const std::string_view piece : pieces) written = written && write_all(file, piece);
+    written = written && fsync(file) == 0;
     if (close(file) == 0 && written && rename(beside, path) == 0) return sync_directory(path);
     unlink(beside);
     return false;

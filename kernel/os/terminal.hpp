@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace tappet::os {
@@ -24,6 +25,9 @@ void never_wait() noexcept;
 /// Replaces a file's contents at once and for good: an old or a new file is there, never half of one, and
 /// after true the new one, though the power fails. False: `path` cannot be written; nothing else stays
 /// behind.
-bool replace_file(const char* path, std::string_view text) noexcept;
+bool replace_file(const char* path, std::span<const std::string_view> pieces) noexcept;
+inline bool replace_file(const char* path, std::string_view text) noexcept {
+    return replace_file(path, std::span{&text, 1});
+}
 
 } // namespace tappet::os

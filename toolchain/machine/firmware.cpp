@@ -36,6 +36,7 @@ struct Options {
     const char* properties = nullptr;
     const char* browse = nullptr;
     const char* seconds = nullptr;
+    const char* black_box = nullptr;
     Duration time = Duration::max();
     bool help = false;
     bool plan = false;
@@ -50,6 +51,8 @@ constexpr std::string_view usage =
     "the "
     "board's directory\n"
     "  --browse DIR       opens the browsers' socket there instead of in the board's directory\n"
+    "  --black-box DIR    keeps there what is left of an ending that nobody asked for, instead of in the "
+    "board's directory\n"
     "  --for SECONDS      ends by itself after so long\n"
     "  --no-guardian      for tests: what a crash leaves on the outputs stays there\n"
     "  --plan             what the compiler derived from the table: priorities, order, mailboxes, memory\n"
@@ -63,6 +66,7 @@ Options parse(int count, char** words, bool has_own) {
                              : word == "--properties" ? &options.properties
                              : word == "--browse"     ? &options.browse
                              : word == "--for"        ? &options.seconds
+                             : word == "--black-box"  ? &options.black_box
                                                       : nullptr;
         if (word == "--help")
             options.help = true;
@@ -74,7 +78,7 @@ Options parse(int count, char** words, bool has_own) {
             options.error =
                 Sentence{"option ", word,
                          " is unknown; there are --summary FILE, --properties DIRECTORY, --browse "
-                         "DIRECTORY, --for SECONDS, --no-guardian, --plan and --help"};
+                         "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --no-guardian, --plan and --help"};
         else if (place != nullptr && i + 1 == count)
             options.error = Sentence{"option ", word, " needs a name after it"};
         else if (place != nullptr)
@@ -116,7 +120,10 @@ public:
         if (options_.guarded) {
             const auto side = guard_.split();
             if (!side) return static_cast<int>(fail(Ending::wrong_set_up, side.error()));
-            if (*side == os::Guard::Side::guardian) be_guardian(guard_, devices_, instance);
+            if (*side == os::Guard::Side::guardian)
+                be_guardian(guard_, devices_, instance,
+                            options_.black_box != nullptr ? std::string_view{options_.black_box}
+                                                          : instance.machine().board->black_box_directory);
             instance.observation().be_this_process();
         }
         return static_cast<int>(run(instance, world, properties, begun));
@@ -149,7 +156,7 @@ private:
         guard_.be_back_within(away_while_starting);
         guard_.let_activities_be_watched(true);
         if (!world.start(*armed)) {
-            guard_.end_well(); // it was stopped again
+            guard_.end_well(world.refusal()); // it was stopped again
             return fail(Ending::stopped_by_fault, world.refusal());
         }
         say("armed on board \"", board.name, "\", ", static_cast<std::int64_t>(arming.warnings()),
@@ -190,11 +197,15 @@ private:
         guard_.let_activities_be_watched(false);
         guard_.be_back_within(away_while_stopping);
         const int hung = world.stop();
-        if (hung == 0) guard_.end_well(); // else the guardian makes sure of the outputs
         const Sentence reason = unguarded ? Sentence{"its guardian is gone, or hangs"}
                                 : !world.broken_contract().empty() ? world.broken_contract()
                                 : time_is_over                     ? Sentence{"its time is over"}
                                                                    : instance.describe_stop();
+        const bool as_asked = !unguarded &&
+                              (time_is_over || instance.stop_request().reason == StopReason::requested) &&
+                              world.breaches() == 0;
+        // Of one that hung the guardian makes sure.
+        if (hung == 0) guard_.end_well(as_asked ? Sentence{} : reason);
         say("stopped: ", reason);
         for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
             say("then: ", world.describe_breach(i));
@@ -207,9 +218,7 @@ private:
             if (const Ending written = write(instance, world, reason, start_to_armed);
                 written != Ending::well)
                 return written;
-        const bool as_asked =
-            !unguarded && (time_is_over || instance.stop_request().reason == StopReason::requested);
-        return as_asked && hung == 0 && world.breaches() == 0 ? Ending::well : Ending::stopped_by_fault;
+        return as_asked && hung == 0 ? Ending::well : Ending::stopped_by_fault;
     }
 
     Ending write(MachineInstance& instance, const RealWorld& world, const Sentence& reason,

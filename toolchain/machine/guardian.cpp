@@ -3,9 +3,12 @@
 #include "toolchain/machine/guardian.hpp"
 
 #include "kernel/machine/worlds/life_watch.hpp"
+#include "kernel/os/box.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/terminal.hpp"
+#include "toolchain/machine/black_box.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace tappet {
@@ -19,8 +22,10 @@ constexpr Duration confirmed_within = 500ms;
 
 class Guardian {
 public:
-    Guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance)
-        : guard_{guard},
+    Guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance,
+             std::string_view black_boxes)
+        : black_boxes_{black_boxes},
+          guard_{guard},
           devices_{devices},
           instance_{instance},
           watch_{instance, instance.machine().board->life_sign_within} {}
@@ -45,7 +50,9 @@ public:
                 const os::CrashNote& crash = guard_.block().crash;
                 return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
             }
-            if (look.ended) return guard_.exit_code();
+            if (!look.ended) continue;
+            if (const Sentence& fault = guard_.block().fault; !fault.empty()) keep(fault, {});
+            return guard_.exit_code();
         }
     }
 
@@ -112,9 +119,47 @@ private:
         if (chips != 0) said.add("; chips that took nothing: ").add(chips);
         if (frames != 0) said.add("; frames that nobody confirmed: ").add(frames);
         if (servers != 0) said.add("; servers that did not answer: ").add(servers);
-        static_cast<void>(os::write_all(2, said.add("\n").view()));
+        static_cast<void>(os::write_all(2, Sentence{said, "\n"}.view()));
+        keep(reason, said);
     }
 
+    void keep(const Sentence& reason, const Sentence& done) {
+        const AcceptedMachine& machine = instance_.machine();
+        const os::CrashNote& crash = guard_.block().crash;
+        const auto memory = instance_.observation().shared_memory();
+        map::black_box::Record record;
+        record.magic = map::black_box::magic;
+        record.version = map::black_box::version;
+        record.exit_code = guard_.exit_code();
+        record.memory_bytes = memory.size();
+        record.wall_ns = os::wall_clock_ns();
+        record.machine_ns = to_ns(os::Clock::monotonic());
+        if (crash.is_complete()) {
+            record.signal = crash.signal;
+            record.thread = crash.thread;
+            record.instruction = crash.instruction;
+            record.address = crash.address;
+            record.thread_name = crash.thread_name;
+        }
+        const auto put = [](std::string_view text, std::span<char> into) {
+            std::copy_n(text.data(), std::min(text.size(), into.size() - 1), into.data());
+        };
+        put(machine.table.name, record.machine);
+        put(machine.board->name, record.board);
+        put(os::build_id().view(), record.build_id);
+        put(reason.view(), record.reason);
+        put(done.view(), record.done);
+        const Sentence file = keep_black_box(black_boxes_, record, memory);
+        if (!file.empty())
+            static_cast<void>(
+                os::write_all(2, Sentence{machine.table.name, ": the black box is ", file, "\n"}.view()));
+        else if (!black_boxes_.empty())
+            static_cast<void>(os::write_all(
+                2, Sentence{machine.table.name, ": no black box can be written in \"", black_boxes_, "\"\n"}
+                       .view()));
+    }
+
+    std::string_view black_boxes_;
     os::Guard& guard_;
     GuardedDevices& devices_;
     MachineInstance& instance_;
@@ -123,8 +168,9 @@ private:
 
 } // namespace
 
-void be_guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance) {
-    static Guardian guardian{guard, devices, instance};
+void be_guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance,
+                 std::string_view black_boxes) {
+    static Guardian guardian{guard, devices, instance, black_boxes};
     // Without one the machine refuses to arm, which its end then tells.
     static_cast<void>(guardian.get_ready());
     // Not by main's return: what it would destroy is a copy of what the machine's process has destroyed or

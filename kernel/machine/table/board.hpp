@@ -62,6 +62,7 @@ struct Board {
     std::string_view kernel_command_line{};
     std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
     BoardBrowsing browsing{};
+    std::string_view black_box_directory{}; ///< of what is kept of an ending that nobody asked for; "": nothing
     /// A real-time activity that is due, or in a cycle, and gets no further for so long, ends the machine:
     /// see kernel/machine/worlds/life_watch.hpp. Longer than any deadline.
     Duration life_sign_within = 200ms;
