@@ -35,7 +35,14 @@ struct InputPolicy {
     WhenStale when_stale = WhenStale::hold;
     RowValue substitute{};
     RowValue before_first{};
+    double scale = 1; ///< of a floating number that comes from another data object
 };
+
+/// Of an input: what each new value is multiplied by. What is no floating number has none.
+struct Scale {
+    double factor = 1;
+};
+struct NoScale {};
 
 /// A value and the time it was true.
 template <class T>
@@ -188,6 +195,11 @@ public:
         seen_ = seen;
         return now;
     }
+    /// There is a value, and it is not stale: what get() gives may be relied on.
+    [[nodiscard]] bool good() noexcept TAPPET_REALTIME {
+        const Flow now = flow();
+        return now == Flow::fresh || now == Flow::old;
+    }
     /// When what was read last becomes stale if nothing comes, or nothing came for as long; never: it does
     /// not.
     [[nodiscard]] Time expires() const noexcept TAPPET_REALTIME {
@@ -221,7 +233,10 @@ private:
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
     /// writer leaves the last good value, which is then old.
     bool fetch() noexcept TAPPET_REALTIME {
-        return shared_ != nullptr && !forced_ && shared_->read(cache_, cached_generation_);
+        if (shared_ == nullptr || forced_ || !shared_->read(cache_, cached_generation_)) return false;
+        if constexpr (std::is_floating_point_v<T>)
+            cache_.value = static_cast<T>(cache_.value * scale_.factor);
+        return true;
     }
     Flow judge() noexcept TAPPET_REALTIME {
         if (forced_) [[unlikely]] {
@@ -266,6 +281,7 @@ private:
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0;
     const DataObject<Sample<T>>* shared_ = nullptr;
+    [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
     bool forced_ = false;
     WhenStale when_stale_ = WhenStale::hold;

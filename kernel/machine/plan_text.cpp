@@ -60,6 +60,20 @@ struct Writer {
         }
         say(Sentence{"connections: ", copied, " within an activity, ", shared, " across, ", buffered,
                      " buffered; ", waking, " wake their reader"});
+        for (std::size_t x = 0; x < machine.table.connections.size(); ++x) units(x);
+    }
+
+    /// What no check could compare, and what is scaled on its way.
+    void units(std::size_t x) const {
+        const ConnectionRow& row = machine.table.connections[x];
+        const Facet& from = facet_at(machine.table, machine.index.connections[x].from);
+        const Facet& into = facet_at(machine.table, machine.index.connections[x].to);
+        if (is_scaled(row))
+            say(Sentence{"scaled: ", row.from, " -> ", row.to, ", from ", checks::in_unit(from), " to ",
+                         checks::in_unit(into)});
+        else if (from.unit.empty() != into.unit.empty())
+            say(Sentence{"unit at one end only: ", row.from, " (", checks::in_unit(from), ") -> ", row.to,
+                         " (", checks::in_unit(into), ")"});
     }
 
     void memory() const {

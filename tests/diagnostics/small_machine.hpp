@@ -72,13 +72,14 @@ struct Shaft {
 };
 
 struct Tension {
-    Input<double> speed;
+    Input<double> speed, rate;
     Output<double> torque;
     Property<double> wanted_n{80.0};
     void pre_tension() noexcept TAPPET_REALTIME {}
     void relax() noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      input<&Tension::rate>("rate", "deg/s", "of the shaft", optional),
                       output<&Tension::torque>("torque", "N m", "of the let-off"),
                       operation<&Tension::pre_tension>("pre_tension", "tightens before the beat-up"),
                       operation<&Tension::relax>("relax", "lets go", any_thread),

@@ -36,18 +36,41 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
     return {};
 }
 
-/// An end that states no unit takes any: a generic component cannot know.
+constexpr std::string_view in_unit(const Facet& facet) { return facet.unit.empty() ? "no unit" : facet.unit; }
+
+/// Of a row that scales: the ends are numbers with a fraction, and the factor fits what their units say.
+constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, const Facet& to) {
+    if (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic)
+        return of_connection(row, ": ", row.buffered ? "a buffer" : to.type->name,
+                             " is not scaled, a port of double or float is; convert it in a component");
+    if (row.scale != 0 && row.converted) return of_connection(row, " says scaled and converted; keep one");
+    const Unit source = parse_unit(from.unit), target = parse_unit(to.unit);
+    if (!converts(source, target) || (row.converted && (from.unit.empty() || to.unit.empty())))
+        return row.converted
+                   ? of_connection(row, ": no factor leads from ", in_unit(from), " to ", in_unit(to),
+                                   "; write scaled(factor) if you know one, or correct a unit")
+                   : Sentence{};
+    if (row.converted) return {};
+    const double ratio = row.scale * target.size / source.size;
+    if (from.unit.empty() || to.unit.empty() || (ratio > 1 - 1e-6 && ratio < 1 + 1e-6)) return {};
+    return of_connection(row, ": its factor does not lead from ", in_unit(from), " to ", in_unit(to),
+                         "; write converted, and the compiler knows it");
+}
+
+/// An end that states no unit takes any: a generic component and a raw signal cannot know; --plan lists them.
+/// "1" is the unit of what has none and must not meet one.
 constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, const Facet& to) {
+    if (is_scaled(row)) return check_scale(row, from, to);
     if (from.unit == to.unit || from.unit.empty() || to.unit.empty()) return {};
     const Unit source = parse_unit(from.unit), target = parse_unit(to.unit);
-    const bool both_known = source.known && target.known;
-    if (both_known && source.same(target)) return {};
+    const bool one_kind = converts(source, target);
+    if (one_kind && source.same(target)) return {};
     return of_connection(
         row, ": \"", row.from, "\" is in ", from.unit, " but \"", row.to, "\" in ", to.unit,
-        both_known && source.same_kind(target)
-            ? ", of the same kind and another size; convert it in one of the two components, "
-              "or state the same unit in both maps"
-            : "; connect what is of one unit, or correct the unit of one of them");
+        !one_kind ? "; connect what is of one unit, or correct the unit of one of them"
+        : !row.buffered && to.type->kind == ValueKind::real && to.type->arithmetic
+            ? ", of the same kind and another size; add converted to the row"
+            : ", of the same kind and another size; convert it in one of the two components");
 }
 
 /// A number must be one that the port's type can hold exactly, but for the rounding of a float.

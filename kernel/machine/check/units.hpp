@@ -2,6 +2,9 @@
 // hands litres a minute to whoever reads millilitres a second (ISO 80000-1; symbols of the SI brochure).
 #pragma once
 
+#include "kernel/component/facet.hpp"
+#include "kernel/machine/table/connections.hpp"
+
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -86,6 +89,16 @@ constexpr Unit parse_unit(std::string_view text) noexcept {
         if (text[end] == '/') sign = -1;
         text.remove_prefix(end + 1);
     }
+}
+
+/// Whether a factor leads from one unit to the other.
+constexpr bool converts(const Unit& from, const Unit& to) noexcept {
+    return from.known && to.known && from.same_kind(to);
+}
+/// What a value is multiplied by on its way along a row that was accepted.
+constexpr double factor_of(const ConnectionRow& row, const Facet& from, const Facet& to) noexcept {
+    if (row.scale != 0) return row.scale;
+    return row.converted ? parse_unit(from.unit).size / parse_unit(to.unit).size : 1.0;
 }
 
 } // namespace tappet::checks

@@ -58,7 +58,8 @@ void MachineBuilder::connect_row(std::size_t x) {
     else
         from.port->link_local(instance_.facet(link.to), instance_.facet(link.from));
     from.port->set_policy(instance_.facet(link.to),
-                          {row.max_age, row.when_stale, row.substitute, row.before_first});
+                          {row.max_age, row.when_stale, row.substitute, row.before_first,
+                           checks::factor_of(row, from, facet_at(machine_.table, link.to))});
 }
 
 void MachineBuilder::add_waker(std::size_t x) {

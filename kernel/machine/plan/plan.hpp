@@ -45,7 +45,7 @@ struct ActivityPlan {
 /// A connection row's memory: a shared data object, a ring, or nothing; and what it takes to wake the reader.
 struct ConnectionPlan {
     std::size_t memory_at = nowhere;
-    bool shared = false;         ///< across activities
+    bool shared = false;         ///< across activities, or scaled on its way
     bool first_of_output = true; ///< the row that places the shared data object
     std::size_t waker_at = nowhere;
 };
@@ -191,7 +191,7 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
         const std::size_t writer = r.activity[link.from.component];
         const std::size_t reader = r.activity[link.to.component];
         ConnectionPlan& plan = p.connections[x];
-        plan.shared = writer != reader;
+        plan.shared = writer != reader || is_scaled(row);
         const Facet& from = facet_at(m, link.from);
         if (row.buffered) {
             const auto& buffer = *from.buffer;

@@ -26,6 +26,8 @@ struct ConnectionRow {
     std::uint8_t stale_answers = 0; ///< options that say what a stale value means: one at most
     bool wakes_reader = false;
     bool delayed_step = false;
+    double scale = 0; ///< 0: none is given
+    bool converted = false;
 };
 
 namespace detail {
@@ -75,6 +77,15 @@ inline constexpr Wakes wakes{};
 struct Delayed {};
 /// The reader sees the value of the previous cycle: breaks a data-flow cycle inside one activity.
 inline constexpr Delayed delayed{};
+struct Scaled {
+    double factor;
+};
+/// The reader gets each value times `factor`. Ports of floating numbers; in real time one multiplication for
+/// each value.
+constexpr Scaled scaled(double factor) noexcept { return {factor}; }
+struct Converted {};
+/// Likewise, and the factor leads from the unit of the output to the unit of the input.
+inline constexpr Converted converted{};
 inline constexpr Overflow reject_newest = Overflow::reject;
 inline constexpr Overflow drop_oldest = Overflow::drop_oldest;
 
@@ -83,8 +94,12 @@ constexpr bool is_guarded(const ConnectionRow& row) noexcept {
     return row.max_age > Duration::zero() && (row.when_stale == WhenStale::stop || row.wakes_reader);
 }
 
+constexpr bool is_scaled(const ConnectionRow& row) noexcept { return row.scale != 0 || row.converted; }
+
 namespace detail {
 
+constexpr void apply(ConnectionRow& row, Scaled option) noexcept { row.scale = option.factor; }
+constexpr void apply(ConnectionRow& row, Converted) noexcept { row.converted = true; }
 constexpr void apply(ConnectionRow& row, StaleAfter option) noexcept { row.max_age = option.age; }
 constexpr void apply(ConnectionRow& row, WhenStale option) noexcept {
     row.when_stale = option;

@@ -41,5 +41,21 @@ TEST(Units, that_cannot_be_taken_apart_are_words) {
         EXPECT_FALSE(parse_unit(word).known) << word;
 }
 
+TEST(Units, of_one_kind_are_converted_by_a_factor_and_no_others) {
+    const auto factor = [](std::string_view from, std::string_view to) {
+        const Facet source{.unit = from}, target{.unit = to};
+        return factor_of(data("a", "b", converted), source, target);
+    };
+    EXPECT_TRUE(converts(parse_unit("l/min"), parse_unit("ml/s")));
+    EXPECT_DOUBLE_EQ(factor("l/min", "ml/s"), 1000.0 / 60.0);
+    EXPECT_DOUBLE_EQ(factor("rpm", "deg/s"), 6.0);
+    EXPECT_DOUBLE_EQ(factor("bar", "kPa"), 100.0);
+    EXPECT_FALSE(converts(parse_unit("degC"), parse_unit("K"))) << "no factor leads there";
+    EXPECT_FALSE(converts(parse_unit("1"), parse_unit("mm"))) << "1 is the unit of what has none";
+    EXPECT_FALSE(converts(parse_unit("picks"), parse_unit("picks"))) << "a word is no unit";
+    EXPECT_EQ(factor_of(data("a", "b", scaled(0.5)), Facet{}, Facet{}), 0.5);
+    EXPECT_EQ(factor_of(data("a", "b"), Facet{}, Facet{}), 1.0);
+}
+
 } // namespace
 } // namespace tappet::checks

@@ -1,0 +1,107 @@
+// Values that are scaled on their way: one multiplication between two units, inside an activity and across.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+struct Pump {
+    Output<double> flow;
+    Output<float> pressure;
+    double litres = 0;
+    bool stands = false;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (stands) return;
+        flow.write(litres);
+        pressure.write(static_cast<float>(litres));
+    }
+    static constexpr auto interface() {
+        return facets(output<&Pump::flow>("flow", "l/min", "delivered"),
+                      output<&Pump::pressure>("pressure", "", "raw, of the sensor"));
+    }
+};
+
+struct Dosing {
+    Input<double> flow;
+    Input<float> pressure;
+    double seen = -1;
+    float bar = -1;
+    Flow how = Flow::stale;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        how = flow.read(seen);
+        bar = pressure.get();
+    }
+    static constexpr auto interface() {
+        return facets(input<&Dosing::flow>("flow", "ml/s", "arriving"),
+                      input<&Dosing::pressure>("pressure", "bar", "of the pump"));
+    }
+};
+
+inline constexpr Board board{.name = "host",
+                             .world = "host",
+                             .memory_budget_bytes = 4'000'000,
+                             .processors = 1,
+                             .highest_priority = 40};
+
+// clang-format off
+inline constexpr auto table = machine("pumps",
+    components(component<Pump>("pump"), component<Dosing>("near"), component<Dosing>("far")),
+    activities(activity("fast", every(1ms), budget(50us), runs("pump", "near")),
+               activity("slow", every(4ms), budget(50us), runs("far"))),
+    connections(
+        data("pump.flow",     "near.flow",     converted),
+        data("pump.flow",     "far.flow",      converted, stale_after(20ms), substitute(5.0), initially(7.0)),
+        data("pump.pressure", "near.pressure", scaled(0.25)),
+        data("pump.pressure", "far.pressure",  scaled(0.5))),
+    reactions(), behaviours());
+// clang-format on
+
+struct Scaling : testing::Test {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    Pump& pump = *instance.find<Pump>("pump");
+    Dosing& near = *instance.find<Dosing>("near");
+    Dosing& far = *instance.find<Dosing>("far");
+
+    void SetUp() override {
+        ASSERT_TRUE(instance.configure({}));
+        world.start();
+    }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+};
+
+TEST_F(Scaling, the_reader_gets_the_value_in_its_own_unit_inside_an_activity_and_across) {
+    pump.litres = 6;
+    run(20ms);
+    EXPECT_DOUBLE_EQ(near.seen, 100.0) << "6 l/min are 100 ml/s, in the writer's own cycle";
+    EXPECT_EQ(near.how, Flow::fresh);
+    EXPECT_DOUBLE_EQ(far.seen, 100.0);
+    EXPECT_EQ(near.bar, 1.5F);
+    EXPECT_EQ(far.bar, 3.0F) << "each row has its own factor";
+    EXPECT_EQ(pump.flow.last(), 6.0) << "the writer's value is its own";
+    pump.litres = -12;
+    run(20ms);
+    EXPECT_DOUBLE_EQ(near.seen, -200.0);
+    EXPECT_DOUBLE_EQ(far.seen, -200.0);
+}
+
+TEST_F(Scaling, what_the_row_gives_instead_of_a_value_is_in_the_readers_unit_already) {
+    pump.stands = true;
+    run(8ms);
+    EXPECT_EQ(far.seen, 7.0) << "before the first value";
+    pump.stands = false;
+    pump.litres = 6;
+    run(8ms);
+    EXPECT_DOUBLE_EQ(far.seen, 100.0);
+    pump.stands = true;
+    run(40ms);
+    EXPECT_EQ(far.how, Flow::stale);
+    EXPECT_EQ(far.seen, 5.0) << "the substitute";
+    EXPECT_DOUBLE_EQ(near.seen, 100.0) << "the old value is scaled once, however often it is read";
+}
+
+} // namespace
+} // namespace tappet
