@@ -23,7 +23,7 @@ struct Console {
         Sentence line{"loom t=",
                       to_ns(cycle.now) / 1'000'000,
                       "ms state=",
-                      name(state.get()),
+                      name_of(state.get()),
                       " speed=",
                       whole(speed_rpm.get()),
                       "rpm angle=",
@@ -37,7 +37,7 @@ struct Console {
                       "cbar stops=",
                       stops.get(),
                       " cause=",
-                      name(cause.get()),
+                      name_of(cause.get()),
                       " stop_error=",
                       whole(stop_error_deg.get() * 10.0),
                       "ddeg bus=",
@@ -51,7 +51,7 @@ struct Console {
                       " restarts=",
                       bus_restarts.get(),
                       " waits_for=",
-                      name(waits_for.get()),
+                      name_of(waits_for.get()),
                       "\n"};
         os::print(line.view());
     }
@@ -79,11 +79,6 @@ struct Console {
 private:
     static std::int64_t whole(double value) {
         return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5));
-    }
-    template <class E>
-    static std::string_view name(E value) {
-        const auto index = static_cast<std::size_t>(value);
-        return index < names_of<E>.size() ? names_of<E>[index] : "?";
     }
 };
 

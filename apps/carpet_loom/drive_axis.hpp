@@ -2,9 +2,9 @@
 // change.
 #pragma once
 
-#include "apps/carpet_loom/change.hpp"
 #include "drivers/canopen/cia402.hpp"
 #include "kernel/component/port.hpp"
+#include "kernel/pieces/changed.hpp"
 
 namespace tappet::carpet {
 
@@ -21,10 +21,8 @@ public:
     /// One cycle: from the statusword to the controlword. True when the drive follows its target.
     bool lead(Input<std::int64_t>& statusword, Output<std::int64_t>& controlword, Output<bool>& enabled,
               Output<bool>& fault) noexcept TAPPET_REALTIME {
-        std::int64_t word = 0;
-        const Flow flow = statusword.read(word);
-        const bool heard = flow == Flow::fresh || flow == Flow::old;
-        const auto status = static_cast<std::uint16_t>(word);
+        const bool heard = statusword.good();
+        const auto status = static_cast<std::uint16_t>(statusword.get());
         const canopen::DriveState state = canopen::drive_state(status);
         const bool follows = heard && state == canopen::DriveState::operation_enabled;
         controlword.write(heard ? control_.controlword(status) : canopen::controlword::disable_voltage);
@@ -50,7 +48,7 @@ public:
 
 private:
     canopen::DriveControl control_{};
-    Change<bool> enabled_, fault_;
+    Changed<bool> enabled_, fault_;
 };
 
 } // namespace tappet::carpet

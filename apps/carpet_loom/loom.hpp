@@ -1,11 +1,11 @@
 // The loom as a whole: what its state machine asks of the other components, and what it must know to decide.
 #pragma once
 
-#include "apps/carpet_loom/change.hpp"
 #include "apps/carpet_loom/loom_state.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/operation_interface.hpp"
+#include "kernel/pieces/changed.hpp"
 
 namespace tappet::carpet {
 
@@ -42,6 +42,11 @@ struct Loom {
         return missing == WaitsFor::nothing || missing == WaitsFor::drop_wire;
     }
     [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return first_missing() == WaitsFor::nothing; }
+    /// What these guards lack.
+    [[nodiscard]] std::string_view missing() noexcept TAPPET_REALTIME { return name_of(first_missing()); }
+    [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
+        return name_of(emergency_stop.get() ? WaitsFor::emergency_stop : before_acknowledgement());
+    }
     [[nodiscard]] bool at_speed() noexcept TAPPET_REALTIME { return main_at_speed.get(); }
     /// The brake may be released: it does not hold a shaft that turns, and nothing sets it again at once.
     [[nodiscard]] bool may_prepare() noexcept TAPPET_REALTIME {
@@ -182,9 +187,7 @@ private:
     static constexpr std::int64_t feeder_windings_per_minute = 1500; // 1.25 times what 600 picks/min take
 
     [[nodiscard]] bool oil_good() noexcept TAPPET_REALTIME {
-        double bar = 0.0;
-        const Flow flow = oil_pressure.read(bar);
-        return (flow == Flow::fresh || flow == Flow::old) && bar >= least_oil_bar.get();
+        return oil_pressure.good() && oil_pressure.get() >= least_oil_bar.get();
     }
     [[nodiscard]] WaitsFor first_missing() noexcept TAPPET_REALTIME {
         if (emergency_stop.get()) return WaitsFor::emergency_stop;
@@ -220,9 +223,8 @@ private:
     }
     /// By the encoder, which a drive that says it turns puts in the wrong; without one by the drive alone.
     [[nodiscard]] bool stands() noexcept TAPPET_REALTIME {
-        double rpm = 0.0;
-        const Flow flow = main_velocity.read(rpm);
-        const bool known = flow == Flow::fresh || flow == Flow::old;
+        const bool known = main_velocity.good();
+        const double rpm = main_velocity.get();
         const bool slow = rpm < standing_rpm && -rpm < standing_rpm;
         if (known && !slow) return false;
         return shaft_valid.get() ? shaft_standing.get() : known;
@@ -257,7 +259,7 @@ private:
 
     std::uint32_t had_ = 0; // of there(), since it began to prepare
     StopCause cause_ = StopCause::none;
-    Change<WaitsFor> waits_for_;
+    Changed<WaitsFor> waits_for_;
 };
 
 } // namespace tappet::carpet

@@ -57,3 +57,12 @@ inline constexpr auto tappet::names_of<tappet::carpet::WaitsFor> =
                                      "main-drive",   "let-off-drive",   "oil-pressure", "warp-tension",
                                      "drop-wire",    "acknowledgement", "bus",          "lines",
                                      "machine-part", "shaft-to-stand"};
+
+namespace tappet::carpet {
+
+template <class E> constexpr std::string_view name_of(E value) noexcept {
+    const auto index = static_cast<std::size_t>(value);
+    return index < names_of<E>.size() ? names_of<E>[index] : "?";
+}
+
+} // namespace tappet::carpet

@@ -1,10 +1,10 @@
 // The main drive: leads the CiA 402 velocity drive to enabled, runs and halts the loom.
 #pragma once
 
-#include "apps/carpet_loom/change.hpp"
 #include "apps/carpet_loom/drive_axis.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/pieces/changed.hpp"
 
 namespace tappet::carpet {
 
@@ -102,7 +102,7 @@ private:
     Time run_from_{};
     double kept_rpm_ = 0.0; // reached since it runs; 0: not yet
     Time kept_at_{};
-    Change<bool> at_speed_, slips_;
+    Changed<bool> at_speed_, slips_;
 };
 
 } // namespace tappet::carpet

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "apps/carpet_loom/cams.hpp"
-#include "apps/carpet_loom/change.hpp"
 #include "kernel/cam/estimator.hpp"
 #include "kernel/cam/schedule.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/operation_interface.hpp"
+#include "kernel/pieces/changed.hpp"
 
 #include <algorithm>
 
@@ -350,7 +350,7 @@ private:
     Time jumps_since_{};
     Time distrusted_until_{};
     bool resting_ = true;
-    Change<bool> valid_, standing_;
+    Changed<bool> valid_, standing_;
 };
 
 } // namespace tappet::carpet

@@ -1,9 +1,9 @@
 // The CANopen network of the loom: starts nodes that report for duty, and tells when one is silent (CiA 301).
 #pragma once
 
-#include "apps/carpet_loom/change.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/pieces/changed.hpp"
 
 #include <array>
 
@@ -86,8 +86,8 @@ private:
 
     std::uint32_t to_start_ = 0;
     Time next_command_{};
-    Change<bool> operational_;
-    Change<std::int64_t> silent_;
+    Changed<bool> operational_;
+    Changed<std::int64_t> silent_;
 };
 
 } // namespace tappet::carpet

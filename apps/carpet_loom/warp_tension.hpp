@@ -2,10 +2,10 @@
 // the take-up of the main shaft fed forward, thesis 3.3; US4827985).
 #pragma once
 
-#include "apps/carpet_loom/change.hpp"
 #include "apps/carpet_loom/drive_axis.hpp"
 #include "apps/carpet_loom/wires.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/pieces/changed.hpp"
 
 #include <algorithm>
 
@@ -108,15 +108,13 @@ private:
     }
 
     [[nodiscard]] double known_speed() noexcept TAPPET_REALTIME {
-        double rpm = 0.0;
-        const Flow flow = shaft_speed.read(rpm);
-        return flow == Flow::fresh || flow == Flow::old ? rpm : 0.0;
+        return shaft_speed.good() ? shaft_speed.get() : 0.0;
     }
 
     DriveAxis axis_{};
     bool held_ = false;
     double integral_rpm_ = 0.0;
-    Change<bool> in_band_;
+    Changed<bool> in_band_;
 };
 
 } // namespace tappet::carpet

@@ -26,6 +26,7 @@ const std::vector<Row> house{
     {"kernel/exchange",   {"kernel/base"}},
     {"kernel/cam",        {"kernel/base"}},
     {"kernel/component",  {"kernel/os", "kernel/exchange"}},
+    {"kernel/pieces",     {"kernel/component"}},
     {"kernel/activity",   {"kernel/component"}},
     {"kernel/program",    {"kernel/activity"}},
     {"kernel/statechart", {"kernel/program"}},
@@ -51,7 +52,7 @@ const std::vector<Row> house{
 
     {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
     // A machine may say what spin is to prove of it, and what its host's program is to look at.
-    {"apps",              {"board", "drivers/plant", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp"}},
+    {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
 

@@ -4,11 +4,11 @@
 
 #include "kernel/component/port.hpp"
 
-namespace tappet::carpet {
+namespace tappet {
 
-/// The first call always writes.
+/// The first call always writes. Real-time.
 template <class T>
-class Change {
+class Changed {
 public:
     void write(Output<T>& output, const T& value) noexcept TAPPET_REALTIME {
         if (written_ && output.last() == value) return;
@@ -20,4 +20,4 @@ private:
     bool written_ = false;
 };
 
-} // namespace tappet::carpet
+} // namespace tappet

@@ -1,0 +1,46 @@
+// The integral over time of a value that is sampled: litres from litres a second.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <limits>
+
+namespace tappet {
+
+/// By trapezia between samples, held between its limits. Real-time.
+class Integrator {
+public:
+    constexpr Integrator() noexcept = default;
+    constexpr Integrator(double low, double high) noexcept : low_{low}, high_{high} {}
+
+    /// A value a second that was true at `at`. The first one, one that is no number and one that is older
+    /// than the last one begin anew and add nothing.
+    constexpr double operator()(double per_s, Time at) noexcept TAPPET_REALTIME {
+        const bool is_number = per_s - per_s == 0.0;
+        if (known_ && is_number && at > at_) {
+            value_ += 0.5 * (per_s + before_) * to_seconds(at - at_);
+            value_ = value_ < low_ ? low_ : value_ > high_ ? high_ : value_;
+        }
+        known_ = is_number;
+        before_ = per_s;
+        at_ = at;
+        return value_;
+    }
+    /// What is missing between two samples is left out: call it when the value was not good.
+    constexpr void pause() noexcept TAPPET_REALTIME { known_ = false; }
+    constexpr void reset(double value = 0.0) noexcept TAPPET_REALTIME {
+        value_ = value;
+        known_ = false;
+    }
+    [[nodiscard]] constexpr double value() const noexcept TAPPET_REALTIME { return value_; }
+
+private:
+    double low_ = -std::numeric_limits<double>::infinity();
+    double high_ = std::numeric_limits<double>::infinity();
+    double value_ = 0.0, before_ = 0.0;
+    Time at_{};
+    bool known_ = false;
+};
+
+} // namespace tappet

@@ -1,0 +1,55 @@
+// Dead time compensated: where something that moves will be when an actuator acts, and when the actuator has
+// to be driven so that it acts at a place. For a shaft's angles there is kernel/cam.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+namespace tappet {
+
+/// Straight on from the last two samples, and no further than `farthest` from the last one. Real-time.
+class Lead {
+public:
+    constexpr explicit Lead(Duration farthest) noexcept : farthest_{farthest} {}
+
+    /// A value that was true at `at`. One that is no number, or older than the last one, begins anew.
+    constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
+        const bool is_number = value - value == 0.0;
+        if (samples_ > 0 && is_number && at > at_) {
+            per_s_ = (value - value_) / to_seconds(at - at_);
+            samples_ = 2;
+        } else if (samples_ == 0 || !is_number || at < at_) {
+            samples_ = is_number ? 1 : 0;
+            per_s_ = 0.0;
+        }
+        value_ = value;
+        at_ = at;
+    }
+    constexpr void reset() noexcept TAPPET_REALTIME { samples_ = 0; }
+    /// Two samples are there, and they do not lie too far back.
+    [[nodiscard]] constexpr bool good(Time when) const noexcept TAPPET_REALTIME {
+        return samples_ == 2 && when - at_ <= farthest_;
+    }
+    /// What the value will be, or was. Beyond `farthest` it is what it will be there.
+    [[nodiscard]] constexpr double at(Time when) const noexcept TAPPET_REALTIME {
+        const Duration ahead = when - at_;
+        return value_ + per_s_ * to_seconds(ahead < farthest_ ? ahead : farthest_);
+    }
+    /// When an actuator with that dead time is to be driven to act at `place`; it may be past. never: it does
+    /// not come there, or not within `farthest`.
+    [[nodiscard]] constexpr Time drive_at(double place, Duration dead_time) const noexcept TAPPET_REALTIME {
+        const double way = place - value_;
+        const double limit = to_seconds(farthest_);
+        if (samples_ != 2 || per_s_ == 0.0 || !(way / per_s_ >= 0.0) || way / per_s_ > limit) return never;
+        return at_ + Duration{static_cast<std::int64_t>(way / per_s_ * 1e9 + 0.5)} - dead_time;
+    }
+    [[nodiscard]] constexpr double per_s() const noexcept TAPPET_REALTIME { return per_s_; }
+
+private:
+    Duration farthest_;
+    double value_ = 0.0, per_s_ = 0.0;
+    Time at_{};
+    int samples_ = 0;
+};
+
+} // namespace tappet

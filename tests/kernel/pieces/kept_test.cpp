@@ -1,0 +1,128 @@
+// Totals that survive the main switch, with files below them, over two lives of a machine.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "kernel/pieces/kept.hpp"
+#include "kernel/services/configuration/property_files.hpp"
+#include "kernel/services/configuration/property_keeper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+struct Press {
+    Output<bool> runs;
+    Output<std::int64_t> strokes;
+    bool turns = false;
+    std::int64_t count = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        runs.write(turns);
+        strokes.write(count);
+    }
+    static constexpr auto interface() {
+        return facets(output<&Press::runs>("runs", "", "it turns"),
+                      output<&Press::strokes>("strokes", "", "since start"));
+    }
+};
+
+inline constexpr Board board{.name = "host",
+                             .world = "host",
+                             .memory_budget_bytes = 4'000'000,
+                             .processors = 1,
+                             .highest_priority = 40};
+
+// clang-format off
+inline constexpr auto table = machine("press",
+    components(component<Press>("press"), component<HourMeter>("hours", properties_file("hours.cpf", optional)),
+               component<Total>("strokes", properties_file("strokes.cpf", optional)),
+               component<PropertyKeeper>("keeper", set("every", 60s))),
+    activities(activity("main", every(10ms), budget(50us), runs("press", "hours", "strokes")),
+               activity("keeper", every(100ms), not_real_time, runs("keeper"))),
+    connections(data("press.runs", "hours.runs", stale_after(1s), hold),
+                data("press.strokes", "strokes.count")),
+    reactions(), behaviours());
+// clang-format on
+
+/// One life of the machine, which ends without a word, as by the main switch.
+struct Life {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    PropertyFiles files;
+
+    explicit Life(const std::string& directory) : files{directory} {
+        instance.read_properties_from(files.store());
+        const auto configured = instance.configure({});
+        EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
+        world.start();
+    }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    template <class T>
+    T& part(std::string_view name) {
+        return *instance.find<T>(name);
+    }
+};
+
+struct Kept : testing::Test {
+    std::string directory = testing::TempDir() + "tappet-kept-" + std::to_string(getpid());
+    void SetUp() override { std::filesystem::create_directory(directory); }
+    void TearDown() override { std::filesystem::remove_all(directory); }
+};
+
+TEST_F(Kept, hours_and_totals_go_on_where_the_keeper_last_saved_them) {
+    {
+        Life life{directory};
+        life.part<Press>("press").turns = true;
+        life.part<Press>("press").count = 7;
+        life.run(61s);
+        EXPECT_NEAR(life.part<HourMeter>("hours").hours.last() * 3600, 61.0, 0.1);
+        EXPECT_EQ(life.part<Total>("strokes").sum.last(), 7);
+        life.part<Press>("press").count = 9;
+        life.run(10s);
+        EXPECT_EQ(life.part<Total>("strokes").sum.last(), 9);
+        EXPECT_EQ(life.part<PropertyKeeper>("keeper").saved.last(), 1);
+        EXPECT_EQ(life.part<PropertyKeeper>("keeper").failed.last(), 0);
+    }
+    Life life{directory};
+    life.run(1s);
+    EXPECT_NEAR(life.part<HourMeter>("hours").hours.last() * 3600, 60.0, 0.2) << "it did not run since";
+    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 7) << "two were lost with the last seconds";
+    life.part<Press>("press").count = 2;
+    life.run(1s);
+    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 9);
+    life.part<Press>("press").count = 1;
+    life.run(1s);
+    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 10) << "a smaller count began anew";
+}
+
+TEST_F(Kept, time_is_counted_only_while_it_runs) {
+    Life life{directory};
+    Press& press = life.part<Press>("press");
+    const auto seconds = [&] { return life.part<HourMeter>("hours").hours.last() * 3600; };
+    life.run(5s);
+    EXPECT_EQ(seconds(), 0.0);
+    press.turns = true;
+    life.run(5s);
+    press.turns = false;
+    life.run(5s);
+    EXPECT_NEAR(seconds(), 5.0, 0.05);
+}
+
+TEST_F(Kept, a_keeper_that_cannot_write_says_so_and_goes_on) {
+    Life life{directory};
+    std::filesystem::create_directory(directory + "/hours.cpf.new"); // where the new one would be written
+    testing::internal::CaptureStdout();
+    life.run(125s);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(life.part<PropertyKeeper>("keeper").failed.last(), 2);
+    EXPECT_NE(said.find("keeper: "), std::string::npos) << said;
+    EXPECT_TRUE(std::filesystem::exists(directory + "/strokes.cpf")) << "the others are kept";
+}
+
+} // namespace
+} // namespace tappet

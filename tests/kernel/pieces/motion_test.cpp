@@ -1,0 +1,97 @@
+// Pieces of what moves: ramps, integrals, dead time compensated.
+#include "kernel/pieces/integrator.hpp"
+#include "kernel/pieces/lead.hpp"
+#include "kernel/pieces/ramp.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tappet {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr Time at(Duration time) { return Time{time}; }
+
+TEST(Ramp, follows_no_faster_than_it_may_and_does_not_pass_its_target) {
+    Ramp ramp{10.0, 20.0};
+    EXPECT_DOUBLE_EQ(ramp(3.0, 100ms), 1.0);
+    EXPECT_DOUBLE_EQ(ramp(3.0, 150ms), 2.5);
+    EXPECT_DOUBLE_EQ(ramp(3.0, 100ms), 3.0);
+    EXPECT_DOUBLE_EQ(ramp(-3.0, 100ms), 1.0) << "down it is faster";
+    EXPECT_DOUBLE_EQ(ramp(-3.0, 1s), -3.0);
+    ramp.reset(5.0);
+    EXPECT_DOUBLE_EQ(ramp(5.0, 1s), 5.0);
+}
+
+TEST(Ramp, is_not_moved_by_what_is_no_number_or_by_a_rate_that_is_not_positive) {
+    Ramp ramp{10.0};
+    EXPECT_EQ(ramp(no_number, 1s), 0.0);
+    EXPECT_EQ(ramp(1.0, 0ms), 0.0);
+    EXPECT_DOUBLE_EQ(ramp(std::numeric_limits<double>::infinity(), 1s), 10.0);
+    Ramp stands{-1.0, no_number};
+    EXPECT_EQ(stands(5.0, 1s), 0.0);
+    EXPECT_EQ(stands(-5.0, 1s), 0.0);
+}
+
+TEST(Integrator, adds_up_by_trapezia_from_the_first_sample_on) {
+    Integrator litres;
+    EXPECT_EQ(litres(2.0, at(1s)), 0.0);
+    EXPECT_DOUBLE_EQ(litres(4.0, at(2s)), 3.0);
+    EXPECT_DOUBLE_EQ(litres(4.0, at(2500ms)), 5.0);
+    litres.pause();
+    EXPECT_DOUBLE_EQ(litres(4.0, at(10s)), 5.0) << "what was not seen is not added";
+    EXPECT_DOUBLE_EQ(litres(4.0, at(11s)), 9.0);
+    litres.reset(1.0);
+    EXPECT_DOUBLE_EQ(litres.value(), 1.0);
+}
+
+TEST(Integrator, leaves_out_what_is_no_number_or_older_and_stays_within_its_limits) {
+    Integrator bounded{-1.0, 2.0};
+    static_cast<void>(bounded(1.0, at(1s)));
+    EXPECT_DOUBLE_EQ(bounded(1.0, at(2s)), 1.0);
+    EXPECT_DOUBLE_EQ(bounded(no_number, at(3s)), 1.0);
+    EXPECT_DOUBLE_EQ(bounded(1.0, at(4s)), 1.0) << "it begins anew after it";
+    EXPECT_DOUBLE_EQ(bounded(1.0, at(3s)), 1.0) << "time does not run backwards";
+    EXPECT_DOUBLE_EQ(bounded(100.0, at(5s)), 2.0);
+    EXPECT_DOUBLE_EQ(bounded(-100.0, at(6s)), 2.0);
+    EXPECT_DOUBLE_EQ(bounded(-100.0, at(7s)), -1.0) << "at once: nothing was wound up";
+}
+
+TEST(Lead, says_where_something_will_be_and_when_to_drive_an_actuator) {
+    Lead belt{100ms};
+    belt.sample(10.0, at(0ms));
+    EXPECT_FALSE(belt.good(at(0ms)));
+    EXPECT_EQ(belt.drive_at(12.0, 5ms), never);
+    belt.sample(10.5, at(10ms)); // 50 a second
+    EXPECT_TRUE(belt.good(at(20ms)));
+    EXPECT_DOUBLE_EQ(belt.at(at(30ms)), 11.5);
+    EXPECT_EQ(belt.drive_at(11.5, 5ms), at(25ms));
+    EXPECT_EQ(belt.drive_at(10.6, 5ms), at(7ms)) << "it is late already: the time is past";
+    EXPECT_EQ(belt.drive_at(10.0, 5ms), never) << "it was there before";
+    EXPECT_EQ(belt.drive_at(99.0, 5ms), never) << "that is too far to be known";
+    EXPECT_DOUBLE_EQ(belt.at(at(10s)), 15.5) << "no further than it may look";
+    EXPECT_FALSE(belt.good(at(111ms)));
+}
+
+TEST(Lead, begins_anew_after_what_is_no_number_or_older) {
+    Lead belt{100ms};
+    belt.sample(0.0, at(0ms));
+    belt.sample(1.0, at(10ms));
+    belt.sample(no_number, at(20ms));
+    EXPECT_FALSE(belt.good(at(20ms)));
+    belt.sample(2.0, at(30ms));
+    EXPECT_FALSE(belt.good(at(30ms)));
+    belt.sample(2.0, at(40ms));
+    EXPECT_TRUE(belt.good(at(40ms)));
+    EXPECT_EQ(belt.drive_at(3.0, 0ms), never) << "it stands";
+    belt.sample(1.0, at(5ms));
+    EXPECT_FALSE(belt.good(at(5ms)));
+    belt.reset();
+    belt.sample(4.0, at(50ms));
+    EXPECT_DOUBLE_EQ(belt.at(at(60ms)), 4.0);
+}
+
+} // namespace
+} // namespace tappet
