@@ -6,6 +6,9 @@
 
 namespace tappet::carpet {
 
+inline constexpr std::string_view unprepared = "the loom is not prepared; it waits for";
+inline constexpr std::string_view unsafe = "the brake may not be released; the loom waits for";
+
 // clang-format off
 inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
     states(
@@ -22,11 +25,11 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         state("fault",     entry<&Loom::enter_fault>),
         state("safe",      final, entry<&Loom::enter_safe>)),
     transitions(
-        transition("locked",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>),
-        transition("preparing", "ready",     guard<&Loom::prepared>),
-        transition("preparing", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>), // asks the drives again
-        transition("ready",     "run_up",    on("io.button_start.rises"), guard<&Loom::may_start>),
-        transition("run_up",    "weave",     guard<&Loom::at_speed>),
+        transition("locked",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)),
+        transition("preparing", "ready",     guard<&Loom::prepared>.because<&Loom::missing>(unprepared)),
+        transition("preparing", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)), // asks the drives again
+        transition("ready",     "run_up",    on("io.button_start.rises"), guard<&Loom::may_start>.because<&Loom::missing>(unprepared)),
+        transition("run_up",    "weave",     guard<&Loom::at_speed>.because("the shaft has not reached its speed yet")),
         transition("run_up",    "fault",     after(3s), because("the shaft did not reach its speed within 3 s")),
         transition("running",   "stopping",  on("weft.missed"), then<&Loom::because_weft>, because("the weft did not arrive")),
         transition("running",   "stopping",  on("io.drop_wire.rises"), then<&Loom::because_warp>, because("a warp end broke")),
@@ -44,7 +47,7 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         transition("stopping",  "fault",     after(3s), because("the shaft did not come to stand within 3 s")),
         transition("stopping",  "fault",     guard<&Loom::encoder_is_stale>, because("the encoder is stale")),
         transition("stopping",  "fault",     on("shaft_dog.silent"), because("the shaft's activity shows no life")),
-        transition("stopped",   "preparing", on("io.button_acknowledge.rises"), guard<&Loom::repaired>),
+        transition("stopped",   "preparing", on("io.button_acknowledge.rises"), guard<&Loom::repaired>.because<&Loom::missing>("the loom stands; it waits for")),
         transition("operating", "emergency", on("io.emergency_stop.rises"), because("the emergency stop was pressed")),
         transition("operating", "emergency", guard<&Loom::emergency_is_pressed>, because("the emergency stop is pressed")),
         transition("operating", "emergency", on("io.line_fault"), because("the lines can no longer be relied on")),
@@ -53,8 +56,8 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         transition("operating", "fault",     guard<&Loom::bus_is_off>, because("the CAN bus is off")),
         transition("running",   "fault",     guard<&Loom::drive_is_faulty>, because("a drive reports a fault")),
         transition("operating", "fault",     guard<&Loom::something_is_lost>, because("a node, a drive or the encoder was lost")),
-        transition("emergency", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>),
-        transition("fault",     "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>)));
+        transition("emergency", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)),
+        transition("fault",     "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe))));
 // clang-format on
 
 } // namespace tappet::carpet

@@ -38,6 +38,12 @@ struct Line {
     [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME {
         return emergency_stop.get() || lines_faulted.get() || bus_faulted.get();
     }
+    /// Why the guards above say no.
+    [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
+        if (emergency_stop.get()) return "the emergency stop is pressed";
+        if (lines_faulted.get()) return "the lines cannot be relied on";
+        return bus_faulted.get() ? "the CAN bus cannot be relied on" : "the drive is not enabled";
+    }
     [[nodiscard]] bool drive_is_lost() noexcept TAPPET_REALTIME { return !follows_; }
 
     static constexpr auto interface() {
@@ -72,9 +78,9 @@ inline constexpr auto line_states = state_machine<Line>("line_states",
         state("emergency", entry<&Line::enter_halted>),
         state("safe",      final, entry<&Line::enter_halted>)),
     transitions(
-        transition("locked",    "ready",     on("io.start.rises"), guard<&Line::may_unlock>, then<&Line::acknowledge>),
-        transition("emergency", "ready",     on("io.start.rises"), guard<&Line::may_unlock>, then<&Line::acknowledge>),
-        transition("ready",     "running",   on("io.start.rises"), guard<&Line::may_run>),
+        transition("locked",    "ready",     on("io.start.rises"), guard<&Line::may_unlock>.because<&Line::obstacle>("the line may not be unlocked"), then<&Line::acknowledge>),
+        transition("emergency", "ready",     on("io.start.rises"), guard<&Line::may_unlock>.because<&Line::obstacle>("the line may not be unlocked"), then<&Line::acknowledge>),
+        transition("ready",     "running",   on("io.start.rises"), guard<&Line::may_run>.because<&Line::obstacle>("the line may not run")),
         transition("running",   "ready",     on("io.stop.rises"), because("stop was pressed")),
         transition("running",   "emergency", guard<&Line::drive_is_lost>, because("the drive does not follow")),
         transition("running",   "emergency", on("measuring.wheel_lost"), because("the measuring wheel is silent")),

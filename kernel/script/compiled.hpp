@@ -134,7 +134,7 @@ struct StoredScript {
         for (StateRow& row : rows.states) names(row.name), names(row.parent), names(row.region);
         for (TransitionRow& row : rows.transitions) {
             names(row.from), names(row.to), names(row.event);
-            names(row.because), names(row.otherwise_to);
+            names(row.because), names(row.otherwise_to), names(row.refusal.text);
         }
         for (BehaviourType& type : rows.types) {
             ProgramTables& tables = type.tables;

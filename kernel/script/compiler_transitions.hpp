@@ -45,6 +45,14 @@ constexpr void Machines::parse_transition(const Token& at, std::uint16_t state, 
         const Token where = token_;
         const Operand value = parse_condition();
         row.guard = ConditionRef{make_condition(where, first, value)};
+        if (take(Sign::k_because)) {
+            const Token reason = token_;
+            if (need(Sign::text, "what is told when the condition does not hold, in quotes"))
+                row.refusal.text = keep({reason.text});
+            if (ok() && row.refusal.text.empty())
+                return fail(reason,
+                            {"the reason is empty; say what is missing when the condition does not hold"});
+        }
         static_cast<void>(take(Sign::k_then));
     }
     const auto number = static_cast<std::uint16_t>(transitions_.count());

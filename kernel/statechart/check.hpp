@@ -48,6 +48,8 @@ private:
     constexpr bool fail_twice(const NamedRow& who, std::string_view part) {
         if (part == "component type")
             return fail(who, " has programs of two component types; use those of one");
+        if (part == "empty reason")
+            return fail(who, " has a condition whose reason is empty; say what is missing then");
         return fail(who, " is given ", part, " twice; keep one");
     }
     constexpr bool fail_foreign(const NamedRow& who, TypeId component) {

@@ -40,7 +40,7 @@ bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TA
     automatic_ = run_once_ = program_begun_ = false;
     status_ = {};
     reason_ = {};
-    news_ = 0;
+    news_ = refused_ = 0;
     stepped_at_ = {};
     job_ = {};
     selected_.clear();
@@ -60,8 +60,36 @@ void StateMachineExecution::give_reason(TransitionIndex transition, std::string_
     status_.reason = transition;
     status_.reason_at = context_.now;
     reason_ = text;
-    std::atomic_ref{news_}.store((news().number + 1) << transition_bits | transition,
-                                 std::memory_order_relaxed);
+    write(news_, transition);
+}
+
+auto StateMachineExecution::look(TransitionIndex transition, Time now) noexcept TAPPET_REALTIME -> Look {
+    using statechart::InMemory;
+    using Said = Look::Answer;
+    if (transition >= machine_.table.transitions.size()) return {};
+    const InMemory::Arc arc = InMemory::arc_of(*this, static_cast<ArcIndex>(first_arc + transition));
+    const StateArc& row = arc.row();
+    if (!is_in(row.source)) return {};
+    const Time due_at = due(row, status_.states[index_of(row.source)].entered_at);
+    if (row.after != Duration{} && now < due_at) return {.answer = Said::too_early, .left = due_at - now};
+    if (row.captures) return {.answer = Said::arguments};
+    context_.now = now;
+    const auto said = [&](Answer answer, Said no, StateIndex state, const GuardReason& reason) noexcept
+        TAPPET_REALTIME {
+            if (answer == Answer::failed) no = Said::failed;
+            return Look{no, state, {}, reason.detail != nullptr ? reason.detail(context_.component) : ""};
+        };
+    context_.position.entered = false;
+    if (const Answer answer = InMemory::ask(*this, arc.guard()); answer != Answer::yes)
+        return said(answer, Said::guard, row.source, machine_.table.transitions[transition].refusal);
+    Look found{.answer = Said::open};
+    InMemory::for_each_entered<false>(*this, arc, [&](InMemory::State state) noexcept TAPPET_REALTIME {
+        const Answer answer = InMemory::ask(*this, state.precondition());
+        if (answer == Answer::yes) return true;
+        found = said(answer, Said::precondition, state.number(), state.row.refusal);
+        return false;
+    });
+    return found;
 }
 
 // The end of a call from outside: what programs asked for while they ran, and what had to wait for them. The
@@ -256,6 +284,7 @@ StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_RE
     using Table = statechart::InMemory;
     const StateIndex target = wanted_state_;
     wanted_state_ = no_state;
+    TransitionIndex of_no_event = no_transition;
     bool there = is_in(target);
     if (!there && target == machine_.final_state) {
         supersede(final_arc);
@@ -267,7 +296,8 @@ StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_RE
     if (!there)
         Table::for_each_asked(
             *this, Table::conditions(), [&](Table::Leaf, Table::Arc arc) noexcept TAPPET_REALTIME {
-                const Answer answer = arc.row().to == target ? Order::asks(*this, arc, nullptr) : Answer::no;
+                const Answer answer =
+                    arc.row().to == target ? Order::asks(*this, arc, nullptr, of_no_event) : Answer::no;
                 there = answer == Answer::yes;
                 if (there) Order::begins<false>(*this, arc);
                 return there || answer == Answer::failed ? statechart::Flow::stop : statechart::Flow::on;

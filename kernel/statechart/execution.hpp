@@ -194,10 +194,28 @@ public:
         TransitionIndex transition = 0;
         bool operator==(const News&) const = default;
     };
-    [[nodiscard]] News news() const noexcept TAPPET_REALTIME {
-        const std::uint64_t word = std::atomic_ref{news_}.load(std::memory_order_relaxed);
-        return {word >> transition_bits, static_cast<TransitionIndex>(word)};
-    }
+    [[nodiscard]] News news() const noexcept TAPPET_REALTIME { return read(news_); }
+    /// Likewise the last transition that an event asked for and whose guard refused it, with a reason.
+    [[nodiscard]] News refusals() const noexcept TAPPET_REALTIME { return read(refused_); }
+    /// What a transition would be answered now.
+    struct Look {
+        enum class Answer : std::uint8_t {
+            open,         ///< when its event comes; without one in the next step
+            too_early,    ///< a time-out: for so long
+            guard,        ///< says no
+            precondition, ///< of that state says no
+            arguments,    ///< its guard is asked with those of its event
+            failed,       ///< what is asked fails
+            elsewhere     ///< its source is not active
+        };
+        Answer answer = Answer::elsewhere;
+        StateIndex state = no_state;
+        Duration left{};
+        std::string_view detail{}; ///< see GuardReason
+    };
+    /// Asks a transition of the table as a step or an event does, and takes nothing. In the machine's
+    /// activity, between its steps.
+    [[nodiscard]] Look look(TransitionIndex transition, Time now) noexcept TAPPET_REALTIME;
     /// The last call reached a bound with more to do: a condition that still held, an event that still waits
     /// although nothing hinders it, or statements.
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME {
@@ -312,6 +330,17 @@ private:
     StateOutcome queue(std::size_t trigger, Time now, const std::byte* arguments) noexcept TAPPET_REALTIME;
     void drop_waiting() noexcept TAPPET_REALTIME;
     void give_reason(TransitionIndex transition, std::string_view text) noexcept TAPPET_REALTIME;
+    [[gnu::cold]] void tell_refusal(TransitionIndex transition) noexcept TAPPET_REALTIME {
+        write(refused_, transition);
+    }
+    static News read(std::uint64_t& place) noexcept TAPPET_REALTIME {
+        const std::uint64_t word = std::atomic_ref{place}.load(std::memory_order_relaxed);
+        return {word >> transition_bits, static_cast<TransitionIndex>(word)};
+    }
+    static void write(std::uint64_t& place, TransitionIndex transition) noexcept TAPPET_REALTIME {
+        std::atomic_ref{place}.store((read(place).number + 1) << transition_bits | transition,
+                                     std::memory_order_relaxed);
+    }
     void begin_request(ArcIndex arc) noexcept TAPPET_REALTIME;
     void supersede(ArcIndex arc) noexcept TAPPET_REALTIME;
 
@@ -396,8 +425,9 @@ private:
     static constexpr int transition_bits = 16;
     static_assert(sizeof(TransitionIndex) * 8 == transition_bits,
                   "news_ holds a transition in its lowest bits");
-    alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t news_ =
-        0; // mutable: atomic_ref reads it
+    // mutable: atomic_ref reads them
+    alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t news_ = 0;
+    alignas(std::atomic_ref<std::uint64_t>::required_alignment) mutable std::uint64_t refused_ = 0;
     std::string_view final_reason_;
     StateIndex wanted_state_ = no_state;
     bool wanted_run_ = false;

@@ -152,8 +152,8 @@ template <class Table> struct Order {
     }
     // 10, 11, 14
     template <class Arc>
-    [[gnu::always_inline]] static Answer asks(Execution& e, Arc arc, const std::byte* arguments) noexcept
-        TAPPET_REALTIME {
+    [[gnu::always_inline]] static Answer asks(Execution& e, Arc arc, const std::byte* arguments,
+                                              TransitionIndex& refused_by) noexcept TAPPET_REALTIME {
         if (arc.row().after != Duration{} &&
             e.context_.now < Execution::due(arc.row(), Table::source_of(e, arc).entered_at))
             return Answer::no;
@@ -161,6 +161,8 @@ template <class Table> struct Order {
             return e.refuses(StatePart::capture, arc.row());
         e.context_.position.entered = false; // a question has waited for nothing
         Answer answer = Table::ask(e, arc.guard());
+        if (arc.row().tells_refusal && answer == Answer::no && refused_by == no_transition)
+            refused_by = arc.row().transition;
         if (answer == Answer::yes) answer = may_enter<false>(e, arc);
         if (answer == Answer::no && arc.row().has_otherwise) {
             answer = may_enter<true>(e, arc);
@@ -174,12 +176,13 @@ template <class Table> struct Order {
     [[gnu::always_inline]] static bool reacts(Execution& e, Cell cell, const std::byte* arguments,
                                               Call& call) noexcept TAPPET_REALTIME {
         StateIndex refused = no_state;
+        TransitionIndex refused_by = no_transition;
         bool is_taken = false, has_failed = false;
         Table::for_each_asked(
             e, cell, [&] [[gnu::always_inline]] (auto leaf, auto arc) noexcept TAPPET_REALTIME {
                 if (!Table::is_asked_from(e, leaf, arc)) return Flow::next_leaf;
                 if (Table::is_inside_selected(e, arc)) return Flow::on;
-                const Answer answer = asks(e, arc, arguments);
+                const Answer answer = asks(e, arc, arguments, refused_by);
                 if (answer == Answer::no) {
                     if (refused == no_state) refused = arc.row().source;
                     return Flow::on;
@@ -209,6 +212,7 @@ template <class Table> struct Order {
                     if (!Table::is_single(e)) static_cast<void>(goes_on(e, call));
                 }
         } else if (refused != no_state) {
+            if (refused_by != no_transition) e.tell_refusal(refused_by);
             static_cast<void>(handles(e, Table::first_asked(e, cell, refused), call));
         }
         return is_taken;
@@ -252,6 +256,7 @@ template <class Table> struct Order {
     [[gnu::always_inline]] static Found finds(Execution& e, Call& call) noexcept TAPPET_REALTIME {
         Found found = Found::nothing;
         std::uint32_t number = 0;
+        TransitionIndex of_no_event = no_transition;
         Table::for_each_asked(
             e, Table::conditions(),
             [&] [[gnu::always_inline]] (auto leaf, auto arc) noexcept TAPPET_REALTIME {
@@ -270,7 +275,7 @@ template <class Table> struct Order {
                     --call.left;
                     ++e.asked_;
                 }
-                const Answer answer = asks(e, arc, nullptr);
+                const Answer answer = asks(e, arc, nullptr, of_no_event);
                 if (answer == Answer::no || answer == Answer::otherwise) return Flow::on;
                 found = answer == Answer::yes && takes<false>(e, arc, call) ? Found::taken : Found::halted;
                 return Flow::stop;

@@ -67,6 +67,7 @@ struct StateArc {
     bool captures = false;
     bool has_otherwise = false;
     bool gives_reason = false;
+    bool tells_refusal = false; ///< of its guard, when an event is refused
 };
 
 /// One of the arcs that are asked one after the other.
@@ -308,6 +309,7 @@ private:
         arc.captures = row.captures != 0;
         arc.has_otherwise = row.has_otherwise;
         arc.gives_reason = !row.because.empty();
+        arc.tells_refusal = row.on_event && !row.refusal.text.empty();
         arc.to = names_.to[t];
         arc.kept_levels = kept_by(arc.source, arc.to);
         arc.steps = add_steps(row.then, StepKind::act, arc.to, arc.kept_levels, row.enters);

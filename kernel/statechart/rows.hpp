@@ -9,7 +9,8 @@
 //             state("weave", in("working"), run<&Loom::check>, exit<&Loom::stop_weft>),
 //             state("safe", final, entry<&Loom::safe>)),
 //         transitions(
-//             transition("idle", "run_up", on("panel.start"), guard<&Loom::ready>, then<&Loom::count_start>),
+//             transition("idle", "run_up", on("panel.start"), guard<&Loom::warm>.because("the oil is cold"),
+//                        then<&Loom::count_start>),
 //             transition("run_up", "weave", guard<&Loom::at_speed>),
 //             transition("run_up", "safe", after(5s), because("the run-up took too long")),
 //             transition("working", "safe", on("panel.emergency")),
@@ -57,7 +58,8 @@ template <auto Function, class Result> consteval auto bind() {
                   "a program or guard of a state machine is a member function without arguments, "
                   "declared noexcept TAPPET_REALTIME: it runs in the real-time activity");
     static_assert(std::is_same_v<typename Of::Result, Result>,
-                  "a guard returns bool; an entry, exit, run or transition program returns void");
+                  "a guard returns bool; an entry, exit, run or transition program returns void; the detail "
+                  "of a reason returns std::string_view");
     return Bound<Result (*)(void*) noexcept TAPPET_REALTIME>{&call<Function, Result>,
                                                              type_id<typename Of::Component>};
 }
@@ -68,8 +70,36 @@ struct Run : Bound<StateProgram> {};
 struct Handle : Bound<StateProgram> {};
 struct Then : Bound<StateProgram> {};
 struct Otherwise : Bound<StateProgram> {};
-struct When : Bound<StateGuard> {};
-struct Precondition : Bound<StateGuard> {};
+/// A question, and what people are told when it is answered by no.
+struct Asked : Bound<StateGuard> {
+    GuardReason refusal{};
+    std::string_view fault{}; ///< as `twice` of a row
+
+    constexpr void give(std::string_view text) {
+        if (text.empty()) fault = "empty reason";
+        if (!refusal.text.empty()) fault = "the reason of its guard";
+        refusal.text = text;
+    }
+};
+enum class AskedOf : std::uint8_t { transition, state };
+template <AskedOf> struct Question : Asked {
+    /// What `tappet-browse why` says, and the log when an event is refused for it.
+    [[nodiscard]] constexpr Question because(std::string_view text) const {
+        Question told = *this;
+        told.give(text);
+        return told;
+    }
+    /// `detail` adds which of several things it is: a member function that returns words that stand for ever.
+    template <auto detail> [[nodiscard]] constexpr Question because(std::string_view text) const {
+        Question told = because(text);
+        const auto words = bind<detail, std::string_view>();
+        told.refusal.detail = words.call;
+        if (words.component != component) told.fault = "component type";
+        return told;
+    }
+};
+using When = Question<AskedOf::transition>;
+using Precondition = Question<AskedOf::state>;
 struct In {
     std::string_view state;
 };
@@ -103,6 +133,12 @@ constexpr void give(Row& row, std::string_view part, Reference& place, const Bou
     else if (row.component != bound.component)
         give(row, "component type", true);
 }
+template <class Row>
+constexpr void give(Row& row, std::string_view part, ConditionRef& place, const Asked& question) {
+    give(row, part, place, static_cast<const Bound<StateGuard>&>(question));
+    give(row, question.fault, !question.fault.empty());
+    row.refusal = question.refusal;
+}
 
 } // namespace statechart
 
@@ -120,10 +156,11 @@ template <auto Function> inline constexpr statechart::Run run{statechart::bind<F
 template <auto Function> inline constexpr statechart::Handle handles{statechart::bind<Function, void>()};
 /// Asked in addition to the guard of each transition that enters the state.
 template <auto Function>
-inline constexpr statechart::Precondition precondition{statechart::bind<Function, bool>()};
+inline constexpr statechart::Precondition precondition{{{statechart::bind<Function, bool>()}}};
 /// The transition program.
 template <auto Function> inline constexpr statechart::Then then{statechart::bind<Function, void>()};
-template <auto Function> inline constexpr statechart::When guard{statechart::bind<Function, bool>()};
+template <auto Function>
+inline constexpr statechart::When guard{{{statechart::bind<Function, bool>()}}};
 /// Run instead when the guard of an event transition refuses, and the state entered then (listing 5.4, else).
 template <auto Function>
 inline constexpr statechart::Otherwise otherwise{statechart::bind<Function, void>()};

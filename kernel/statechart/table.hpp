@@ -19,6 +19,8 @@ namespace tappet {
 using StateProgram = void (*)(void* component) noexcept TAPPET_REALTIME;
 /// Says whether a transition may be taken. It may be asked any number of times, so it changes nothing.
 using StateGuard = bool (*)(void* component) noexcept TAPPET_REALTIME;
+/// Words for people, which stand for ever: a literal, a name of an enumerator.
+using StateWords = std::string_view (*)(void* component) noexcept TAPPET_REALTIME;
 
 /// Limits of one state machine. They bound the memory of the checks
 /// and of the resolver, which also run on the target.
@@ -58,6 +60,12 @@ struct ConditionRef {
     }
 };
 
+/// What people are told of a guard that says no. Nobody asks for it in a cycle.
+struct GuardReason {
+    std::string_view text{};
+    StateWords detail = nullptr; ///< which of several things it is, asked in the engine like the guard
+};
+
 struct StateRow {
     std::string_view name;
     std::string_view parent{}; ///< the composite state around it; empty: a top state
@@ -65,6 +73,7 @@ struct StateRow {
     bool initial = false;      ///< entered when its region, or the machine, is entered
     bool final = false;        ///< the safe state of thesis 5.2.2: reachable from everywhere by request
     ConditionRef precondition{}; ///< asked in addition to the guard of each transition that enters it
+    GuardReason refusal{};       ///< of the precondition
     ProgramRef entry{};
     ProgramRef exit{};
     ProgramRef run{};
@@ -99,6 +108,7 @@ struct TransitionRow {
     bool timed = false;       ///< a condition transition that waits for `after`
     Duration after{};         ///< time since `from` was entered
     ConditionRef guard{};
+    GuardReason refusal{}; ///< of the guard
     ProgramRef then{};
     std::string_view because{}; ///< what the operator is told
     TypeId component = nullptr;

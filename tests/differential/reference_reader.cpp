@@ -207,6 +207,7 @@ private:
         if (take("if")) {
             made.has_guard = true;
             made.guard = expression();
+            if (take("because")) ++at_; // what is told has no meaning for the order
             static_cast<void>(take("then"));
         }
         if (is("{")) made.then = block();

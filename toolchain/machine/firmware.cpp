@@ -6,6 +6,7 @@
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 #include "toolchain/machine/guardian.hpp"
+#include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
 
 #include <algorithm>
@@ -177,16 +178,14 @@ private:
     /// True when it ended because its time was over.
     bool supervise(MachineInstance& instance, RealWorld& world) {
         const Time begin = machine_clock.now();
-        std::array<StateMachineExecution::News, 16> told{};
+        ReasonTeller reasons;
         for (int look = 1;; ++look) {
             const Duration left = options_.time - (machine_clock.now() - begin);
             if (left <= Duration::zero()) return true;
             guard_.be_back_within(away_while_running);
             if (guard_.guardian_is_lost()) return false;
             if (!world.supervise(std::min<Duration>(left, 100ms))) return false;
-            std::size_t n = 0;
-            for (const BehaviourRow& row : instance.machine().table.behaviours)
-                if (n < told.size()) tell_reason(instance, row.component, told[n++]);
+            reasons.tell(instance, name_);
             if (look % 10 == 0) print_timing(instance);
         }
     }
@@ -259,20 +258,6 @@ private:
         }
         line.add(" misses=").add(misses).add("\n");
         os::print(line.view());
-    }
-
-    /// Says once why a state machine left its state, for each transition that gives a reason.
-    void tell_reason(const MachineInstance& instance, std::string_view component,
-                     StateMachineExecution::News& told) const {
-        const StateMachineExecution* machine = instance.state_machine_of(component);
-        if (machine == nullptr) return;
-        const StateMachineExecution::News news = machine->news();
-        if (news == told) return;
-        told = news;
-        const auto rows = machine->machine().table.transitions;
-        if (news.transition >= rows.size()) return; // to the final state: the machine's own stop says why
-        say("the ", component, " goes to \"", rows[news.transition].to,
-            "\": ", rows[news.transition].because);
     }
 
     std::string_view name_;

@@ -6,6 +6,7 @@
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/json.hpp"
 #include "toolchain/machine/host_options.hpp"
+#include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
 
 #include <cstdio>
@@ -75,6 +76,7 @@ private:
         bool runs = true;
         while (runs && !plant_.is_done() && run.now() < end) {
             runs = run.run_for(hooks_.look != nullptr ? hooks_.look_every : 50ms);
+            reasons_.tell(run.instance(), name_);
             if (runs) look();
         }
         run.stop();
@@ -89,8 +91,10 @@ private:
         prepare(run);
         if (const auto started = run.start(2); !started) return fail(started.error());
         bool runs = true;
-        for (Duration left = time(); runs && !run.is_done() && left > Duration::zero(); left -= 50ms)
+        for (Duration left = time(); runs && !run.is_done() && left > Duration::zero(); left -= 50ms) {
             runs = run.supervise(50ms);
+            reasons_.tell(run.instance(), name_);
+        }
         const int hung = run.stop();
         Outcome outcome;
         judge(run.instance(), runs, outcome);
@@ -171,6 +175,7 @@ private:
     const HostHooks& hooks_;
     std::uint64_t seed_ = options_.number("--seed", default_seed);
     bool is_virtual_ = !options_.has("--real");
+    ReasonTeller reasons_;
 };
 
 } // namespace

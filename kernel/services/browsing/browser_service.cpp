@@ -109,6 +109,7 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::unsubscribe: return unsubscribe(client, request);
     case Verb::save: return save(client, request);
     case Verb::behaviours: return behaviours(client, request);
+    case Verb::why: return why(client, request);
     case Verb::behave: return behave(client, request);
     case Verb::script: return script(client, request);
     case Verb::load: return load(client, request);

@@ -150,15 +150,29 @@ private:
     Sentence find_behaviour(std::string_view name, FoundBehaviour& found) noexcept;
     Sentence find_slot(std::string_view name, BehaviourSlot*& slot) noexcept;
     template <class Copy>
-    [[nodiscard]] bool read_between_steps(std::size_t activity, const Copy& copy);
+    [[nodiscard]] bool read_between_steps(std::size_t activity, const Copy& copy) {
+        // This activity is in the middle of a cycle and steps no behaviour meanwhile.
+        if (activity == own_activity_) {
+            copy();
+            return true;
+        }
+        const auto view = map::View::open(machine_->observation().shared_memory());
+        return view && view->consistent(static_cast<std::uint32_t>(activity), reading_attempts, copy);
+    }
     void put_behaviour(Reply& reply, std::size_t row, const BehaviourUnit& unit, const UnitPart& part,
                        bool all);
     void put_slot(Reply& reply, const BehaviourSlot& slot);
+
+    // Why one does not come to a state; requests_why.cpp
+    Verdict why(Client& client, const Request& request);
+    Sentence find_state(std::string_view name, browsing::WhyOrder& order);
+    bool look_at_why(Pending& place);
 
     // Properties to their files; requests_save.cpp
     Verdict save(Client& client, const Request& request);
     bool look_at_saving(Pending& place);
 
+    static constexpr int reading_attempts = 1000;
     MachineInstance* machine_ = nullptr;
     std::size_t own_activity_ = nowhere;
     Time now_{};

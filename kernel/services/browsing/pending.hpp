@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/services/browsing/behaviour_order.hpp"
+#include "kernel/services/browsing/why_order.hpp"
 #include "kernel/services/configuration/property_saving.hpp"
 
 #include <array>
@@ -101,7 +102,7 @@ struct Pending {
     bool is_told = false; ///< its client heard that nobody answers, or nobody waits for an answer
     EngineCall call{};    ///< of what one engine does
     std::variant<std::monostate, FacetCall, BehaviourOrder, PropertyTransaction, FollowedCommand,
-                 FollowedLife, PropertySaving>
+                 FollowedLife, PropertySaving, WhyOrder>
         work{};
 };
 

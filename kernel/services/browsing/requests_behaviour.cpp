@@ -12,7 +12,6 @@ using browsing::BehaviourOrder;
 
 namespace {
 
-constexpr int reading_attempts = 1000;
 constexpr std::size_t shown_characters = 64;
 
 /// In the engine that runs the behaviour. Another one may have taken over since it was asked for.
@@ -68,17 +67,6 @@ Sentence BrowserService::find_slot(std::string_view name, BehaviourSlot*& slot) 
     Sentence text{"no slot is reserved for \"", name.substr(0, nearest_max_length), "\""};
     if (nearest.best().empty()) return text.add("; add behaviour(\"...\", slot(...)) to the machine's table");
     return text.add("; did you mean \"").add(nearest.best()).add("\"?");
-}
-
-template <class Copy>
-bool BrowserService::read_between_steps(std::size_t activity, const Copy& copy) {
-    // This activity is in the middle of a cycle and steps no behaviour meanwhile.
-    if (activity == own_activity_) {
-        copy();
-        return true;
-    }
-    const auto view = map::View::open(machine_->observation().shared_memory());
-    return view && view->consistent(static_cast<std::uint32_t>(activity), reading_attempts, copy);
 }
 
 void BrowserService::put_behaviour(Reply& reply, std::size_t row, const BehaviourUnit& unit,

@@ -43,6 +43,11 @@ TEST_P(Cutter, stands_after_an_emergency_stop_and_goes_on_when_it_is_released_an
     plant.press_start(run.now() + 100ms);
     run.run_for(2s);
     EXPECT_EQ(state(), "emergency") << "it is still pressed";
+    const StateMachineExecution& line = *run.instance().state_machine_of("line");
+    ASSERT_GT(line.refusals().number, 0u) << "the start that was refused is told";
+    EXPECT_EQ(line.machine().table.transitions[line.refusals().transition].refusal.text,
+              "the line may not be unlocked");
+    EXPECT_EQ(run.instance().find<Line>("line")->obstacle(), "the emergency stop is pressed");
     EXPECT_EQ(plant.pieces(), pieces);
     plant.press_emergency_stop(false);
     plant.press_start(run.now() + 100ms);

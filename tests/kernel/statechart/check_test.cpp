@@ -33,6 +33,7 @@ struct Loom {
 };
 struct Other {
     void go() noexcept TAPPET_REALTIME {}
+    [[nodiscard]] std::string_view words() const noexcept TAPPET_REALTIME { return "very"; }
 };
 
 std::string fault(const auto& states, const auto& transitions) {
@@ -63,6 +64,23 @@ TEST(StateMachineCheck, names_the_nearest_state_for_a_misspelt_target) {
     EXPECT_EQ(m.fault(), "state machine \"m\": transition 3 (\"working\" to \"saef\" on \"panel.emergency\") "
                          "leads to an unknown "
                          "state \"saef\"; did you mean \"safe\"?");
+}
+
+TEST(StateMachineCheck, refuses_a_reason_of_a_guard_that_says_nothing_or_is_given_twice) {
+    Good m;
+    m.transitions[0] = transition("idle", "run_up", on("panel.start"), guard<&Loom::ready>.because(""));
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": transition 1 (\"idle\" to \"run_up\" on \"panel.start\") has a "
+              "condition whose reason is empty; say what is missing then");
+    m.transitions[0] = transition("idle", "run_up", on("panel.start"),
+                                  guard<&Loom::ready>.because("it is cold").because("it is old"));
+    EXPECT_EQ(m.fault(),
+              "state machine \"m\": transition 1 (\"idle\" to \"run_up\" on \"panel.start\") is given "
+              "the reason of its guard twice; keep one");
+    m.transitions[0] = transition("idle", "run_up", on("panel.start"),
+                                  guard<&Loom::ready>.because<&Other::words>("it is cold"));
+    EXPECT_EQ(m.fault(), "state machine \"m\": transition 1 (\"idle\" to \"run_up\" on \"panel.start\") has "
+                         "programs of two component types; use those of one");
 }
 
 TEST(StateMachineCheck, names_an_unknown_source) {

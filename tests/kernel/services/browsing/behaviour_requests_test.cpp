@@ -12,8 +12,12 @@ using testing::HasSubstr;
 struct RamCycle {
     static constexpr auto machine() {
         return state_machine<Ram>(
-            "cycle", states(state("up", initial), state("down"), state("safe", final)),
-            transitions(transition("up", "down", on("arrived")), transition("down", "up", on("arrived"))));
+            "cycle", states(state("up", initial), state("down"), state("held"), state("safe", final)),
+            transitions(
+                transition("up", "down", on("arrived")), transition("down", "up", on("arrived")),
+                transition("down", "held", guard<&Ram::may_hold>.because<&Ram::why_not>("it may not hold")),
+                transition("down", "held", after(1h), because("it was long enough")),
+                transition("held", "up", on("arrived"))));
     }
 };
 constexpr auto cycle = RamCycle::machine();
@@ -112,6 +116,28 @@ TEST_F(Behaviours, one_is_paused_and_stepped_and_sent_to_a_state) {
     EXPECT_THAT(ask("behave jump ram.cycle"), HasSubstr("bad_request"));
     EXPECT_THAT(ask("behave request ram.cycle"), HasSubstr("bad_request"));
     EXPECT_THAT(ask("behave step ram.cycle"), HasSubstr("not_now")); // it is not paused
+}
+
+TEST_F(Behaviours, one_says_why_it_is_not_in_a_state) {
+    EXPECT_THAT(ask("why ram.held"),
+                HasSubstr(R"("name": "ram.cycle", "status": "running", "state": "up", "wanted": "held", )"
+                          R"("is_final": false, "path": ["up", "down", "held"], )"
+                          R"("ways": [{"from": "up", "to": "down", "event": "arrived", "answer": "open"}])"));
+    instance.find<Ram>("ram")->arrived.emit(1.0);
+    run(5ms);
+    const std::string why = ask("why ram.cycle.held");
+    EXPECT_THAT(why, HasSubstr(R"("answer": "guard", "because": "it may not hold", "detail": "too fast"})"));
+    EXPECT_THAT(why, HasSubstr(R"("reason": "it was long enough", "answer": "too_early", "left_ns": 35)"));
+    EXPECT_THAT(ask("why ram.down"), HasSubstr(R"("path": ["down"], "ways": [])")) << "it is there";
+    EXPECT_THAT(ask("why ram.safe"), HasSubstr(R"("is_final": true, "path": [], "ways": [])"));
+    EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down")")) << "asking takes nothing";
+}
+
+TEST_F(Behaviours, why_of_a_misspelt_name_is_told_the_nearest) {
+    EXPECT_THAT(ask("why ram.hold"), HasSubstr(R"(has a state \"hold\"; did you mean \"held\"?)"));
+    EXPECT_THAT(ask("why rum.held"), HasSubstr(R"(no state machine of \"rum\"; did you mean \"ram\"?)"));
+    EXPECT_THAT(ask("why held"), HasSubstr("spell it COMPONENT.STATE"));
+    EXPECT_THAT(ask("why ram.cycle."), HasSubstr("no state machine"));
 }
 
 TEST_F(Behaviours, a_script_is_loaded_in_pieces_and_its_variables_are_seen) {

@@ -44,6 +44,8 @@ struct Ram {
         arrived.emit(to);
         return CommandProgress::done;
     }
+    [[nodiscard]] bool may_hold() const noexcept TAPPET_REALTIME { return false; }
+    [[nodiscard]] std::string_view why_not() const noexcept TAPPET_REALTIME { return "too fast"; }
     double distance(double to) noexcept TAPPET_REALTIME { return to - place.last(); }
     void halt() noexcept TAPPET_REALTIME { target = place.last(); }
     void let_go() noexcept TAPPET_REALTIME { ++let_goes; }

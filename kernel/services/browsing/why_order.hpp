@@ -1,0 +1,23 @@
+// Why a state machine does not come to a state: what is asked in the engine that runs it.
+#pragma once
+
+#include "kernel/machine/instance/instance.hpp"
+
+namespace tappet::browsing {
+
+struct WhyOrder {
+    static constexpr std::size_t most = 8; ///< transitions that are asked for one answer
+
+    BehaviourUnit* unit = nullptr;
+    BehaviourSlot* slot = nullptr; ///< that holds the unit; null: a row's own
+    const Engine* engine = nullptr;
+    std::size_t row = 0;
+    std::size_t part = 0;
+    StateIndex wanted = no_state;
+    StateIndex leaf = no_state; ///< that was active when it was asked
+    Bounded<TransitionIndex, most> transitions{};
+    std::array<StateMachineExecution::Look, most> looks{};
+    bool done = false;
+};
+
+} // namespace tappet::browsing
