@@ -115,12 +115,32 @@ protected:
         const auto all = facets(component);
         return find_facet(all, name, 0, all.size());
     }
+    /// Whether a facet's name begins with these words: those of a device are "line.rises", "frame.received".
+    [[nodiscard]] static constexpr bool is_begun(std::span<const Facet> all, std::string_view words,
+                                                 std::size_t first, std::size_t last) noexcept {
+        for (std::size_t i = first; i < last; i += 1 + all[i].members)
+            if (all[i].name.size() > words.size() && all[i].name.starts_with(words) &&
+                all[i].name[words.size()] == '.')
+                return true;
+        return false;
+    }
+    /// The next word of such a name.
+    constexpr bool extend(Token& name) {
+        advance();
+        const Token next = need_word("the rest of the name");
+        if (ok()) name.text = {name.text.data(), next.text.data() + next.text.size()};
+        return ok();
+    }
     /// A facet after its component's name and dot, bags followed; `none` after a fault.
     constexpr std::uint16_t parse_facet(std::uint16_t component, Token name) {
         const auto all = facets(component);
         std::size_t first = 0, last = all.size();
         while (ok()) {
-            const std::uint16_t found = find_facet(all, name.text, first, last);
+            std::uint16_t found = find_facet(all, name.text, first, last);
+            while (found == none && is(Sign::dot) && is_begun(all, name.text, first, last)) {
+                if (!extend(name)) return none;
+                found = find_facet(all, name.text, first, last);
+            }
             if (found == none) {
                 Nearest nearest{name.text};
                 for (std::size_t i = first; i < last; i += 1 + all[i].members) nearest.consider(all[i].name);

@@ -137,6 +137,9 @@ constexpr void Machines::parse_event(TransitionRow& row) {
         advance();
         event_name = need_word("the name of an event");
     }
+    const auto all = facets(component);
+    while (ok() && is(Sign::dot) && is_begun(all, event_name.text, 0, all.size()))
+        static_cast<void>(extend(event_name));
     const std::uint16_t number = ok() ? find_facet(component, event_name.text) : none;
     if (!ok()) return;
     if (number == none || facet_of(component, number).kind != FacetKind::event) {

@@ -50,7 +50,7 @@ struct Cell {
     Output<double> speed;
     Output<std::uint8_t> small;
     Output<Position> aim;
-    Event<> startMovement, startCalibration, startLocalisation, halt;
+    Event<> startMovement, startCalibration, startLocalisation, halt, lineRises;
     Event<double> moveCamera;
     Event<std::int32_t, Position> seen;
     std::string trace;
@@ -138,6 +138,7 @@ struct Cell {
                       event<&Cell::startMovement>("startMovement", "to a position"),
                       event<&Cell::startCalibration>("startCalibration", ""),
                       event<&Cell::startLocalisation>("startLocalisation", ""),
+                      event<&Cell::lineRises>("line.rises", "as a driver names it"),
                       event<&Cell::halt>("halt", ""), event<&Cell::moveCamera>("moveCamera", "with a target"),
                       event<&Cell::seen>("seen", "with a number and a place"),
                       method<&Cell::setParameter>("setParameter", ""), method<&Cell::note>("note", ""),
@@ -149,6 +150,7 @@ struct Cell {
                       method<&Cell::getPosition>("getPosition", "", any_thread),
                       method<&Cell::whereabouts>("whereabouts", "a record"),
                       method<&Cell::disableAxis>("disableAxis", ""), operation<&Cell::beep>("beep", ""),
+                      operation<&Cell::beep>("line.beep", "as a driver names it"),
                       command<&Cell::begin_move, &Cell::progress>("moveAxis", ""),
                       command<&Cell::begin_to, &Cell::progress>("moveTo", ""),
                       command<&Cell::begin_simple, &Cell::progress>("fetchImage", ""),

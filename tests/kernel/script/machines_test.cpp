@@ -82,6 +82,48 @@ StateMachine M {
     EXPECT_TRUE(p.machine("M").is_in(3));
 }
 
+TEST(A_script, names_what_a_device_has_as_tables_do) {
+    Played p{R"(
+StateMachine M {
+    initial state Low { transition robot.line.rises select High }
+    state High { entry { do robot.line.beep(2); } transition halt select Low }
+    final state Safe { }
+})"};
+    static_cast<void>(p.machine("M").start(p.now()));
+    p.event("M", "robot.line.rises");
+    EXPECT_EQ(p.state("M"), "High");
+    EXPECT_EQ(p.robot.trace, "beep2");
+    EXPECT_THAT(fault_of("StateMachine M { initial state A { transition robot.line.raises select B } "
+                         "state B { transition halt select A } final state S { } }"),
+                testing::HasSubstr("did you mean \"line.rises\"?"));
+}
+
+TEST(A_transition, says_why_its_condition_refuses) {
+    Played p{R"(
+StateMachine M {
+    var bool warm = false
+    initial state Cold { transition startMovement if warm because "product is cold" then select Runs }
+    state Runs { transition halt select Cold }
+    final state Safe { }
+})"};
+    StateMachineExecution& machine = p.machine("M");
+    static_cast<void>(machine.start(p.now()));
+    EXPECT_EQ(machine.refusals().number, 0u);
+    p.event("M", "startMovement");
+    EXPECT_EQ(p.state("M"), "Cold");
+    ASSERT_EQ(machine.refusals().number, 1u);
+    EXPECT_EQ(machine.machine().table.transitions[machine.refusals().transition].refusal.text,
+              "product is cold");
+    EXPECT_EQ(machine.look(0, p.now()).answer, StateMachineExecution::Look::Answer::guard);
+}
+
+TEST(A_transition, with_an_empty_reason_is_refused) {
+    EXPECT_THAT(
+        fault_of("StateMachine M { initial state A { transition halt if true because \"\" then select B } "
+                 "state B { transition halt select A } final state S { } }"),
+        testing::HasSubstr("the reason is empty; say what is missing"));
+}
+
 TEST(A_timed_transition, is_taken_when_its_state_was_active_so_long) {
     Played p{R"(
 StateMachine M {
