@@ -72,16 +72,28 @@ class FarEnd final : public RawFarEnd {
     struct FrameName {
         std::size_t index;
         consteval FrameName(const char* name) : index{nodes.frame(name)} {
-            if (index == no_such || nodes.frames[index].direction != direction)
-                tappet::FarEnd::this_name_is_not_in_the_map_or_goes_the_other_way();
+            if (index == no_such || nodes.frames[index].direction != direction) {
+                const auto meant = tappet::FarEnd::nearest_to(name, nodes.frames.size(), [](std::size_t i) {
+                    const bool fits = nodes.frames[i].direction == direction;
+                    return Meant{{}, fits ? std::string_view{nodes.frames[i].name} : std::string_view{}};
+                });
+                RawFarEnd::did_you_mean(meant.of.data(), meant.name.data());
+            }
         }
     };
     template <Direction direction>
     struct SignalName {
         std::size_t index;
         consteval SignalName(const char* path) : index{nodes.signal(path)} {
-            if (index == no_such || nodes.frames[nodes.frame_of[index]].direction != direction)
-                tappet::FarEnd::this_name_is_not_in_the_map_or_goes_the_other_way();
+            if (index == no_such || nodes.frames[nodes.frame_of[index]].direction != direction) {
+                const auto meant = tappet::FarEnd::nearest_to(path, nodes.signals.size(), [](std::size_t i) {
+                    const auto& frame = nodes.frames[nodes.frame_of[i]];
+                    const bool fits = frame.direction == direction;
+                    return Meant{std::string_view{frame.name},
+                                 fits ? std::string_view{nodes.signals[i].name} : std::string_view{}};
+                });
+                RawFarEnd::did_you_mean(meant.of.data(), meant.name.data());
+            }
         }
     };
 

@@ -35,8 +35,14 @@ class FarEnd final : public tappet::FarEnd {
     struct LineName {
         std::size_t index;
         consteval LineName(const char* name) : index{map.index(name)} {
-            if (index == map.rows.size() || map.rows[index].line.role != role)
-                this_name_is_not_in_the_map_or_goes_the_other_way();
+            if (index == map.rows.size() || map.rows[index].line.role != role) {
+                const auto meant = nearest_to(name, map.rows.size(), [](std::size_t i) {
+                    return Meant{{},
+                                 map.rows[i].line.role == role ? std::string_view{map.rows[i].line.name}
+                                                               : std::string_view{}};
+                });
+                did_you_mean(meant.of.data(), meant.name.data());
+            }
         }
     };
 

@@ -77,8 +77,15 @@ class FarEnd final : public tappet::FarEnd {
     struct RegisterName {
         std::size_t index;
         consteval RegisterName(const char* path) : index{map.value(path)} {
-            if (index == no_such || map.rows[map.row_of[index]].write != write)
-                this_name_is_not_in_the_map_or_goes_the_other_way();
+            if (index == no_such || map.rows[map.row_of[index]].write != write) {
+                const auto meant = nearest_to(path, map.registers.size(), [](std::size_t i) {
+                    const auto& row = map.rows[map.row_of[i]];
+                    const bool fits = row.write == write;
+                    return Meant{std::string_view{row.name},
+                                 fits ? std::string_view{map.registers[i].name} : std::string_view{}};
+                });
+                did_you_mean(meant.of.data(), meant.name.data());
+            }
         }
     };
 

@@ -4,10 +4,12 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/contract.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/component/setup.hpp"
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 
@@ -49,6 +51,31 @@ protected:
     /// Not defined and not a constant: the compiler's message names it when a plant names what its map has
     /// not.
     static void this_name_is_not_in_the_map_or_goes_the_other_way();
+    /// Its arguments stand in clang's message: the name that is nearest, of a signal its frame's before it.
+    template <class Character>
+    static constexpr void did_you_mean(const Character* of, const Character* name) {
+        if (of != name || name == nullptr) // always: g++ says less of what may be a constant
+            this_name_is_not_in_the_map_or_goes_the_other_way();
+    }
+    struct Meant {
+        std::string_view of{}, name{};
+    };
+    /// The nearest of those that `names(i)` gives; those without a name are left out.
+    template <class Names>
+    static constexpr Meant nearest_to(std::string_view written, std::size_t count, const Names& names) {
+        Meant meant;
+        std::size_t least = std::max<std::size_t>(2, written.size() / 3) + 1;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Meant each = names(i);
+            if (each.name.empty()) continue;
+            const Sentence whole{each.of, each.of.empty() ? "" : ".", each.name};
+            const std::size_t far = edit_distance(written, whole.view(), least);
+            if (far >= least) continue;
+            least = far;
+            meant = each;
+        }
+        return meant;
+    }
 
 private:
     std::string_view device_;

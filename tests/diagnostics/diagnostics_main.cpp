@@ -8,6 +8,7 @@
 //     // refused by clang: <a part of the first error, or of the line it points at: the function that is not
 //     real-time>
 //     // refused by name: <a name that both compilers show beside the faulty line>
+//     // and by clang: <what clang shows in addition; in the third line>
 // --write prints the sentences instead of comparing them.
 #include <algorithm>
 #include <array>
@@ -31,12 +32,14 @@ constexpr std::size_t most_lines = 9;
 /// Of a script the sentence comes first, the way through which it was compiled after it; a map's check stands
 /// in a macro.
 constexpr std::size_t most_script_lines = 14;
+constexpr std::size_t most_named_lines = 16; // clang shows each call on the way to the fault
 constexpr unsigned at_a_time = 2;
 constexpr std::size_t most_told = 10;
 
 struct Options {
     std::string compiler, flags, source, build, only;
     bool write = false;
+    bool clang = false;
 };
 
 struct Output {
@@ -47,6 +50,7 @@ struct Output {
 struct Case {
     std::filesystem::path file;
     std::string expected;
+    std::string by_clang; ///< beside it
     bool effects = false;
     bool named = false;
     std::string fault; ///< empty: as expected
@@ -132,15 +136,17 @@ std::vector<Case> read_cases(const Options& options, std::string& fault) {
         std::getline(file, line);
         std::getline(file, line);
         constexpr std::string_view refused = "// refused: ", by_clang = "// refused by clang: ",
-                                   by_name = "// refused by name: ";
+                                   by_name = "// refused by name: ", and_by_clang = "// and by clang: ";
         Case each;
         each.file = entry.path();
         each.effects = line.starts_with(by_clang);
         if (each.effects)
             each.expected = line.substr(by_clang.size());
-        else if ((each.named = line.starts_with(by_name)))
+        else if ((each.named = line.starts_with(by_name))) {
             each.expected = line.substr(by_name.size());
-        else if (line.starts_with(refused))
+            if (std::getline(file, line) && line.starts_with(and_by_clang))
+                each.by_clang = line.substr(and_by_clang.size());
+        } else if (line.starts_with(refused))
             each.expected = line.substr(refused.size());
         else
             fault = entry.path().string() + ": its second line is no \"// refused: ...\"";
@@ -178,10 +184,11 @@ void judge(Case& each, const Options& options, const std::string& headers) {
         each.fault = "it compiles";
     else if (each.named) {
         const std::string place = each.file.filename().string() + ":";
-        if (output.text.find(each.expected) == std::string::npos ||
+        const bool is_shown = !options.clang || output.text.find(each.by_clang) != std::string::npos;
+        if (!is_shown || output.text.find(each.expected) == std::string::npos ||
             output.text.find(place) == std::string::npos)
             each.fault = "the name or the faulty line is not shown";
-        else if (lines > most_script_lines)
+        else if (lines > most_named_lines)
             each.fault = std::to_string(lines) + " lines of output";
     } else if (each.effects && (error + source).find(each.expected) == std::string::npos)
         each.fault = "the first error does not name the function";
@@ -195,15 +202,14 @@ void judge(Case& each, const Options& options, const std::string& headers) {
 }
 
 int judge_all(const Options& options) {
-    const bool clang = is_clang(options);
     std::string fault;
     std::vector<Case> cases = read_cases(options, fault);
-    if (!clang) std::erase_if(cases, [](const Case& each) { return each.effects; });
+    if (!options.clang) std::erase_if(cases, [](const Case& each) { return each.effects; });
     if (!fault.empty() || cases.empty()) {
         std::cerr << (fault.empty() ? "there is no case to compile" : fault) << '\n';
         return 2;
     }
-    const std::string headers = precompile(options, clang);
+    const std::string headers = precompile(options, options.clang);
     if (headers.empty()) return 2;
 
     std::mutex next_mutex;
@@ -270,5 +276,6 @@ int main(int count, char** words) {
             return 2;
         }
     }
+    options.clang = is_clang(options);
     return judge_all(options);
 }

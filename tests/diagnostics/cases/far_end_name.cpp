@@ -1,5 +1,6 @@
 // A plant names a signal that the map has not.
 // refused by name: this_name_is_not_in_the_map_or_goes_the_other_way
+// and by clang: did_you_mean<char>(&"command"[0], &"speed"[0])
 #include "drivers/can/far_end.hpp"
 
 using namespace tappet;
