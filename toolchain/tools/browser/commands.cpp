@@ -17,6 +17,7 @@ constexpr auto table = std::to_array<Command>({
     {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch},
     {"tree",    "tree [COMPONENT]",                        "components, facets and what is connected to them", Takes::component, 0, 1, run_tree},
     {"info",    "info [NAME]",                             "the machine and its activities, or everything about one name", Takes::anything, 0, 1, run_info},
+    {"manifest", "manifest",                               "the machine's table as it is in effect: properties, derived priorities, all rows", Takes::nothing, 0, 0, run_manifest},
     {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions},
     {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced},
     {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events},
@@ -29,8 +30,9 @@ constexpr auto table = std::to_array<Command>({
     {"start",   "start COMPONENT|ACTIVITY",                "starts what was stopped (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"stop",    "stop COMPONENT|ACTIVITY",                 "stops it; it leaves safe values (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"restart", "restart COMPONENT|ACTIVITY",              "stops and starts it (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
-    {"behaviour", "behaviour [list [NAME] | watch [NAME] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
+    {"behaviour", "behaviour [list [NAME] | watch [NAME] [--every TIME] [--count N] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
                                                            "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour},
+    {"why",     "why COMPONENT.STATE",                     "why its state machine is not in that state: the transitions that lead nearer, the events they await, the guards that refuse and their reasons", Takes::nothing, 1, 1, run_why},
     {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
                                                            "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
 });
@@ -71,15 +73,38 @@ const Command* find_command(std::string_view name) {
     return found == table.end() ? nullptr : &*found;
 }
 
+std::string unknown_command(std::string_view name) {
+    std::vector<std::string> names;
+    for (const Command& each : table) names.emplace_back(each.name);
+    const std::string nearest = MapReader::nearest_of(name, names);
+    return "there is no command '" + std::string{name} + "'" +
+           (nearest.empty() ? "; help lists them" : nearest);
+}
+
+Result<void> check_options(const Command* command, const Line& line) {
+    constexpr auto of_all =
+        std::to_array<std::string_view>({"--json", "--help", "--socket", "--directory", "--timeout"});
+    const auto takes = [](const Command& each, const std::string& option) {
+        return each.usage.find("[" + option) != std::string_view::npos;
+    };
+    for (const std::string& option : line.given) {
+        if (std::ranges::find(of_all, option) != of_all.end() ||
+            (command != nullptr && takes(*command, option)))
+            continue;
+        std::string sentence = (command == nullptr ? "without a command nothing takes "
+                                                   : "'" + std::string{command->name} + "' takes no ") +
+                               option + "; ";
+        for (const Command& each : table)
+            if (takes(each, option)) sentence += std::string{each.name} + " ";
+        return wrong(sentence + "may");
+    }
+    return {};
+}
+
 Result<void> run_command(Work& work) {
     const Command* command = find_command(work.line.words.front());
-    if (command == nullptr) {
-        std::vector<std::string> names;
-        for (const Command& each : table) names.emplace_back(each.name);
-        const std::string nearest = MapReader::nearest_of(work.line.words.front(), names);
-        return wrong("there is no command '" + work.line.words.front() + "'" +
-                     (nearest.empty() ? "; help lists them" : nearest));
-    }
+    if (command == nullptr) return wrong(unknown_command(work.line.words.front()));
+    if (auto fits = check_options(command, work.line); !fits) return fits;
     const std::size_t count = work.arguments().size();
     if (count < command->fewest || count > command->most)
         return wrong("'" + std::string{command->name} + "' was given " + std::to_string(count) +
@@ -168,9 +193,9 @@ std::string usage() {
         "  --directory DIR    where machines have their sockets\n"
         "  --json             one JSON object a line\n"
         "  --timeout TIME     how long an answer may take (3s)\n\n"
-        "Values are written as they are shown: 4ms, 0.25, true, \"text\", [1, 2, 3]. Negative numbers need "
-        "no\n"
-        "care; after -- everything is a word.\n\n"
+        "Values are written as they are shown: 4ms, 0.25, true, \"text\", [1, 2, 3]; --json shows all "
+        "digits.\n"
+        "Negative numbers need no care; after -- everything is a word.\n\n"
         "Exit codes: 0 done; 1 refused by the machine; 2 a wrong command line or a name that it does not "
         "have;\n"
         "3 no machine; 4 the command was rejected or failed; 5 no answer in time, or a value always busy.\n";

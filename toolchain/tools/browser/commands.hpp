@@ -50,6 +50,7 @@ struct Command {
 
 [[nodiscard]] std::span<const Command> commands();
 [[nodiscard]] const Command* find_command(std::string_view name);
+[[nodiscard]] std::string unknown_command(std::string_view name);
 /// Runs the line's command; its words are not empty.
 Result<void> run_command(Work& work);
 /// True for facets of which a command may be given the name.
@@ -60,6 +61,8 @@ Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_vie
 [[nodiscard]] std::vector<std::string> names_for(const MapReader& map, Takes takes);
 /// Facets of values: names of facets as they are, names of components for all values in them.
 Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names);
+/// Whether the command takes each option of the line; null: no command, which takes those of all only.
+Result<void> check_options(const Command* command, const Line& line);
 [[nodiscard]] std::string usage();
 [[nodiscard]] std::string help_of(const Command& command);
 
@@ -77,7 +80,9 @@ Result<void> run_send(Work& work);
 Result<void> run_force(Work& work);
 Result<void> run_plain_request(Work& work);
 Result<void> run_behaviour(Work& work);
+Result<void> run_why(Work& work);
 Result<void> run_scope(Work& work);
 Result<void> run_reactions(Work& work);
+Result<void> run_manifest(Work& work);
 
 } // namespace tappet::browser

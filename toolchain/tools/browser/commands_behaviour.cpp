@@ -110,7 +110,63 @@ Result<void> load(Work& work, const std::string& file, const std::string& slot) 
                  name + ": compiled; it takes over " + (moment == "now" ? "now" : "at " + moment));
 }
 
+void print_way(std::ostream& out, const ordered_json& way) {
+    const std::string answer = text_of(way, "answer"), event = text_of(way, "event");
+    std::string reason = text_of(way, "because");
+    if (const std::string detail = text_of(way, "detail"); !detail.empty()) reason += ": " + detail;
+    out << "    " << text_of(way, "from") << " -> " << text_of(way, "to");
+    if (const std::string taken = text_of(way, "reason"); !taken.empty()) out << " (" << taken << ")";
+    out << (event.empty() ? ":" : " awaits " + event);
+    const std::string_view link = event.empty() ? " " : ", and ";
+    if (answer == "open")
+        out << (event.empty() ? " its condition holds, it is taken in the next step" : "");
+    else if (answer == "guard")
+        out << link << (event.empty() ? "its condition does not hold" : "its guard says no")
+            << (reason.empty() ? "" : ": " + reason);
+    else if (answer == "precondition")
+        out << link << "the precondition of " << text_of(way, "state") << " says no"
+            << (reason.empty() ? "" : ": " + reason);
+    else if (answer == "too_early")
+        out << " in " << moment_text(way.value("left_ns", std::int64_t{0}));
+    else if (answer == "arguments")
+        out << ", whose arguments its guard is asked with";
+    else if (answer == "failed")
+        out << link << "its guard fails";
+    else
+        out << link << "the machine went on meanwhile: ask again";
+    out << "\n";
+}
+
 } // namespace
+
+Result<void> run_why(Work& work) {
+    auto reply = work.session.link().request("why " + as_word(work.arguments()[0]));
+    if (!reply) return std::unexpected(reply.error());
+    if (work.line.json) {
+        reply->erase("id");
+        work.out << reply->dump() << "\n";
+        return {};
+    }
+    const auto path = (*reply)["path"];
+    const std::string state = text_of(*reply, "state"), wanted = text_of(*reply, "wanted");
+    work.out << text_of(*reply, "name") << " is " << text_of(*reply, "status");
+    if (!state.empty()) work.out << ", in " << state;
+    if (path.empty()) {
+        work.out << "; no transition leads from here to " << wanted;
+        if ((*reply)["is_final"] == true)
+            work.out << ", behaviour stop " << text_of(*reply, "name") << " asks for it";
+        work.out << "\n";
+    } else if (path.size() == 1) {
+        work.out << ": that is " << wanted << "\n";
+    } else {
+        work.out << "; the way to " << wanted << ": ";
+        for (std::size_t i = 0; i < path.size(); ++i)
+            work.out << (i == 0 ? "" : " -> ") << path[i].get<std::string>();
+        work.out << "\n";
+    }
+    for (const ordered_json& way : (*reply)["ways"]) print_way(work.out, way);
+    return {};
+}
 
 Result<void> run_behaviour(Work& work) {
     const auto words = work.arguments();
@@ -131,6 +187,13 @@ Result<void> run_behaviour(Work& work) {
     if (action == "request" && needs(2, 2))
         return asked(work, "behave request " + as_word(words[1]) + " " + as_word(words[2]),
                      words[1] + ": goes to " + words[2]);
+    constexpr std::array<std::string_view, 6> others{"list",   "watch",    "load",
+                                                     "unload", "rollback", "request"};
+    std::vector<std::string> actions{plain.begin(), plain.end()};
+    actions.insert(actions.end(), others.begin(), others.end());
+    if (std::ranges::find(actions, action) == actions.end())
+        if (const std::string nearest = MapReader::nearest_of(action, actions); !nearest.empty())
+            return wrong("there is no 'behaviour " + action + "'" + nearest);
     return wrong("'behaviour " + action +
                  "' is not spelled so; it is: " + std::string{find_command("behaviour")->usage});
 }

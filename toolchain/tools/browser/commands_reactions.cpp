@@ -67,8 +67,8 @@ Result<void> run_reactions(Work& work) {
         } else if (each.busy) {
             work.out << each.row << ": busy\n";
         } else {
-            work.out << each.row << ": " << t.count << " times, mean " << duration_text(mean) << ", longest "
-                     << duration_text(t.longest_ns) << "\n    " << histogram_text(t) << "\n";
+            work.out << each.row << ": " << t.count << " times, mean " << moment_text(mean) << ", longest "
+                     << moment_text(t.longest_ns) << "\n    " << histogram_text(t) << "\n";
         }
     }
     if (!any_shown && !work.line.json) work.out << "no row was set off by an edge or a frame yet\n";

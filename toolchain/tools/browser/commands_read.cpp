@@ -31,10 +31,8 @@ std::string activity_name(const MapReader& map, std::uint32_t activity) {
 /// "double", or "(double) -> bool" for what is called.
 std::string type_of(const MapReader& map, const map::Facet& facet) {
     if (facet.type == none) return "";
-    const map::Type& type = map.types()[facet.type];
-    std::string text =
-        type.shape == map::Shape::arguments ? signature(map, facet.type) : std::string{map.text(type.name)};
-    if (facet.result != none) text += " -> " + std::string{map.text(map.types()[facet.result].name)};
+    std::string text = type_name(map, facet.type);
+    if (facet.result != none) text += " -> " + type_name(map, facet.result);
     return text;
 }
 
@@ -48,6 +46,7 @@ std::string value_with_unit(Work& work, std::uint32_t index) {
     std::string unit{map.text(map.facets()[index].unit)};
     if (map.facets()[index].value_at == 0) return unit;
     const Reading reading = work.session.observer().read(index);
+    if (map.types()[map.facets()[index].type].shape == map::Shape::duration) unit.clear(); // it bears its own
     return value_of(map, reading, Style::brief) + (unit.empty() ? "" : " ") + unit +
            (reading.forced ? " FORCED" : "");
 }
@@ -128,7 +127,7 @@ void tell_figures(Work& work, map::Owner owner, std::uint32_t index, const std::
             continue;
         }
         work.out << indent << map.text(figure.name) << " = "
-                 << (none_there ? "busy" : to_text(map, figure.type, reading.value, Style::exact))
+                 << (none_there ? "busy" : to_text(map, figure.type, reading.value, Style::brief))
                  << (unit.empty() ? "" : " ") << unit << "\n";
     }
 }
@@ -148,7 +147,7 @@ void tell_activity(Work& work, std::uint32_t index) {
     }
     work.out << "activity " << map.text(each.name) << ": " << map.text(each.trigger);
     if (each.period_ns > 0) work.out << " " << duration_text(each.period_ns);
-    if (each.at_most_n > 0)
+    if (each.at_most_n > 0 && each.period_ns == 0)
         work.out << ", at most " << each.at_most_n << " in " << duration_text(each.at_most_per_ns);
     if (each.real_time != 0)
         work.out << ", deadline " << duration_text(each.deadline_ns) << ", budget "
@@ -164,7 +163,7 @@ void tell_component(Work& work, std::uint32_t index) {
     const map::Component& each = map.components()[index];
     if (work.line.json) {
         work.out << "{\"component\": " << in_quotes(map.text(each.name))
-                 << json_text("type", map.text(each.type))
+                 << json_text("type", user_name(map.text(each.type)))
                  << json_text("activity", activity_name(map, each.activity))
                  << ", \"facets\": " << each.facet_count;
         tell_figures(work, map::Owner::component, index, " ");
@@ -172,7 +171,7 @@ void tell_component(Work& work, std::uint32_t index) {
         return;
     }
     work.out << padded(std::string{map.text(each.name)}, 16) << " "
-             << padded(std::string{map.text(each.type)}, 28) << " "
+             << padded(user_name(map.text(each.type)), 28) << " "
              << padded(activity_name(map, each.activity), 12) << " " << each.facet_count << " facets";
     if (each.device.length > 0) work.out << ", device " << map.text(each.device);
     work.out << "\n";
@@ -309,7 +308,7 @@ Result<void> run_tree(Work& work) {
             continue;
         }
         const map::Component& component = map.components()[c];
-        work.out << map.text(component.name) << " (" << map.text(component.type) << ", activity "
+        work.out << map.text(component.name) << " (" << user_name(map.text(component.type)) << ", activity "
                  << activity_name(map, component.activity) << ")\n";
         for (std::uint32_t i = component.first_facet; i < component.first_facet + component.facet_count;
              ++i) {

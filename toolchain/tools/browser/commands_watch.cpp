@@ -103,7 +103,7 @@ void tell_event(Work& work, nlohmann::ordered_json packet) {
     }
     work.out << packet.value("event", std::string{}) << " "
              << (packet.contains("arguments") ? packet["arguments"].dump() : "[]") << " at "
-             << packet.value("time_ns", std::int64_t{0}) << " ns";
+             << clock_text(packet.value("time_ns", std::int64_t{0}));
     if (const auto lost = packet.value("lost", std::int64_t{0}); lost > 0)
         work.out << ", " << lost << " lost so far";
     if (const auto dropped = packet.value("dropped", std::int64_t{0}); dropped > 0)

@@ -59,9 +59,11 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
             continue;
         }
         if (word == "--json" || word == "--follow" || word == "--help") {
+            line.given.push_back(word);
             (word == "--json" ? line.json : word == "--follow" ? line.follow : line.help) = true;
             continue;
         }
+        line.given.push_back(word);
         bool known = false;
         for (const std::string_view name : names) known = known || name == word;
         if (!known) return std::unexpected(unknown(word));

@@ -17,6 +17,7 @@ struct Line {
     bool json = false;                ///< one JSON object a line
     bool follow = false;              ///< send: until the command has come to its end
     bool help = false;
+    std::vector<std::string> given{};     ///< options, as they were written
     std::string at{};                     ///< behaviour load: an event or an angle; empty: at once
     std::string to{};                     ///< scope: the file that is written; empty: none
     std::chrono::milliseconds length{};   ///< scope record: so long; 0: as usual

@@ -35,8 +35,10 @@ Result<std::unique_ptr<Session>> open_session(const Line& line) {
 }
 
 std::string help_about(std::span<const std::string> words) {
-    if (words.size() > 1)
-        if (const Command* command = find_command(words[1]); command != nullptr) return help_of(*command);
+    if (words.size() > 1) {
+        const Command* command = find_command(words[1]);
+        return command != nullptr ? help_of(*command) : unknown_command(words[1]) + "\n";
+    }
     std::string text;
     for (const Command& each : commands()) text += help_of(each);
     return text + "help [COMMAND]\n    this\nquit\n    ends the prompt, as ^D does\n";
@@ -105,23 +107,23 @@ int run(std::span<const std::string> words, Surroundings& surroundings) {
     const auto line = parse_line(words);
     if (!line) return tell(surroundings, {Fault::bad_request, line.error()}, false);
     if (line->help || (!line->words.empty() && line->words.front() == "help")) {
-        const Command* const command =
-            line->words.empty()
-                ? nullptr
-                : find_command(line->words[line->words.front() == "help" && line->words.size() > 1]);
-        surroundings.out << (command == nullptr ? usage() : help_of(*command));
+        const std::size_t named = !line->words.empty() && line->words.front() == "help" ? 1 : 0;
+        if (line->words.size() <= named) {
+            surroundings.out << usage();
+            return 0;
+        }
+        const Command* const command = find_command(line->words[named]);
+        if (command == nullptr)
+            return tell(surroundings, {Fault::bad_request, unknown_command(line->words[named])}, line->json);
+        surroundings.out << help_of(*command);
         return 0;
     }
     // A misspelt command is told without a machine.
-    if (!line->words.empty() && find_command(line->words.front()) == nullptr) {
-        std::vector<std::string> names;
-        for (const Command& each : commands()) names.emplace_back(each.name);
-        const std::string nearest = MapReader::nearest_of(line->words.front(), names);
-        return tell(surroundings,
-                    {Fault::bad_request, "there is no command '" + line->words.front() + "'" +
-                                             (nearest.empty() ? "; --help lists them" : nearest)},
-                    line->json);
-    }
+    const Command* const command = line->words.empty() ? nullptr : find_command(line->words.front());
+    if (command == nullptr && !line->words.empty())
+        return tell(surroundings, {Fault::bad_request, unknown_command(line->words.front())}, line->json);
+    if (const auto fits = check_options(command, *line); !fits)
+        return tell(surroundings, fits.error(), line->json);
     auto session = open_session(*line);
     if (!session) return tell(surroundings, session.error(), line->json);
     if (line->words.empty()) return run_lines(**session, *line, surroundings);

@@ -48,8 +48,9 @@ std::string json_of(const MapReader& map, const Reading& reading) {
 
 std::string line_of(const MapReader& map, const Reading& reading) {
     const std::string_view unit = map.text(map.facets()[reading.facet].unit);
-    std::string line = map.full_name(reading.facet) + " = " + value_of(map, reading, Style::exact);
-    if (!unit.empty()) line += " " + std::string{unit};
+    std::string line = map.full_name(reading.facet) + " = " + value_of(map, reading, Style::brief);
+    const bool bears_it = map.types()[map.facets()[reading.facet].type].shape == map::Shape::duration;
+    if (!unit.empty() && !bears_it) line += " " + std::string{unit};
     const std::string marks = marks_of(map, reading);
     return marks.empty() ? line : line + "   " + marks;
 }

@@ -51,6 +51,27 @@ template <class Real> std::string real_text(Real value, Style style) {
     return style == Style::json && !std::isfinite(value) ? in_quotes(number) : number;
 }
 
+bool is_clock(const MapReader& map, const map::Type& type) {
+    return map.text(type.name).find("time_point") != std::string_view::npos;
+}
+
+/// In the largest unit that leaves a whole part, with so many significant digits.
+std::string rounded_time(std::int64_t nanoseconds, int digits) {
+    if (nanoseconds == 0) return "0s";
+    const double magnitude = std::abs(static_cast<double>(nanoseconds));
+    const auto [unit, name] = magnitude < 1e3   ? std::pair{1e0, "ns"}
+                              : magnitude < 1e6 ? std::pair{1e3, "us"}
+                              : magnitude < 1e9 ? std::pair{1e6, "ms"}
+                                                : std::pair{1e9, "s"};
+    const double value = static_cast<double>(nanoseconds) / unit;
+    const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+    const double places = std::pow(10.0, std::max(0, digits - before_point));
+    std::array<char, 64> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(),
+                                   std::round(value * places) / places, std::chars_format::fixed);
+    return std::string{text.data(), end.ptr} + name;
+}
+
 class Writer {
 public:
     Writer(const MapReader& map, Style style) : map_{map}, style_{style} {}
@@ -66,6 +87,8 @@ public:
                                               : real_text(load<double>(bytes), style_);
         case Shape::duration: {
             const auto nanoseconds = load<std::int64_t>(bytes);
+            if (style_ == Style::brief)
+                return is_clock(map_, type) ? clock_text(nanoseconds) : rounded_time(nanoseconds, 6);
             return style_ == Style::json ? in_quotes(duration_text(nanoseconds)) : duration_text(nanoseconds);
         }
         case Shape::text: return text(type, bytes);
@@ -182,18 +205,72 @@ std::string duration_text(std::int64_t nanoseconds) {
     return std::to_string(nanoseconds) + "ns";
 }
 
+std::string moment_text(std::int64_t nanoseconds) { return rounded_time(nanoseconds, 3); }
+
 std::string to_text(const MapReader& map, std::uint32_t type, std::span<const std::byte> bytes, Style style) {
     return Writer{map, style}.write(type, bytes);
+}
+
+std::string clock_text(std::int64_t nanoseconds) {
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), "%.6fs", static_cast<double>(nanoseconds) * 1e-9);
+    return text.data();
+}
+
+std::string user_name(std::string_view type) {
+    constexpr std::string_view own = "tappet::";
+    const auto is_part = [](char c) {
+        return c == ':' || c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+               (c >= 'A' && c <= 'Z');
+    };
+    std::string text;
+    while (!type.empty()) {
+        std::size_t end = 0;
+        while (end < type.size() && is_part(type[end])) ++end;
+        std::string_view name = type.substr(0, end);
+        if (name.starts_with(own))
+            name.remove_prefix(own.size());
+        else if (const std::size_t colons = name.rfind("::"); colons != std::string_view::npos)
+            name.remove_prefix(colons + 2);
+        text += name;
+        if (end < type.size()) text += type[end++];
+        type.remove_prefix(end);
+    }
+    return text;
+}
+
+std::string type_name(const MapReader& map, std::uint32_t index) {
+    const map::Type& type = map.types()[index];
+    const std::string_view name = map.text(type.name);
+    const std::string bits = std::to_string(type.size * 8);
+    switch (type.shape) {
+    case Shape::boolean: return "bool";
+    case Shape::integer: return "int" + bits;
+    case Shape::natural: return "uint" + bits;
+    case Shape::real: return type.size == sizeof(float) ? "float" : "double";
+    case Shape::duration: return is_clock(map, type) ? "Time" : "Duration";
+    case Shape::text: return "Text<" + std::to_string(type.columns) + ">";
+    case Shape::matrix:
+        return type_name(map, type.element) + "[" + std::to_string(type.rows) +
+               (type.columns == 1 ? "]" : "x" + std::to_string(type.columns) + "]");
+    case Shape::sequence:
+        return "Sequence<" + type_name(map, type.element) + ", " + std::to_string(type.columns) + ">";
+    case Shape::arguments: return signature(map, index);
+    case Shape::record:
+    case Shape::enumeration:
+    case Shape::opaque: break;
+    }
+    return user_name(name);
 }
 
 std::string signature(const MapReader& map, std::uint32_t type) {
     if (type == map::none) return "()";
     const map::Type& list = map.types()[type];
-    if (list.shape != Shape::arguments) return "(" + std::string{map.text(list.name)} + ")";
+    if (list.shape != Shape::arguments) return "(" + type_name(map, type) + ")";
     std::string all = "(";
     for (std::uint32_t i = 0; i < list.field_count; ++i) {
         if (i > 0) all += ", ";
-        all += map.text(map.types()[map.fields()[list.first_field + i].type].name);
+        all += type_name(map, map.fields()[list.first_field + i].type);
     }
     return all + ")";
 }

@@ -4,6 +4,7 @@
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <sstream>
@@ -85,6 +86,23 @@ TEST_F(Program, says_that_a_machine_records_no_cycles_and_the_cure) {
     EXPECT_THAT(scope.errors, HasSubstr("component<ThreadScope>"));
 }
 
+TEST_F(Program, says_why_a_machine_is_not_in_a_state) {
+    machine.answer("why",
+                   {R"({"id": %, "ok": true, "name": "loom.cycle", "status": "running", "state": "a/ready", )"
+                    R"("wanted": "a/run", "is_final": false, "path": ["ready", "run"], "ways": [)"
+                    R"({"from": "ready", "to": "run", "event": "io.start.rises", "answer": "guard", )"
+                    R"("because": "it waits for", "detail": "oil"}, )"
+                    R"({"from": "a", "to": "run", "reason": "long enough", "answer": "too_early", )"
+                    R"("left_ns": 1234567890}, {"from": "a", "to": "run", "answer": "guard"}]})"});
+    EXPECT_EQ(run({"why", "loom.run"}).out,
+              "loom.cycle is running, in a/ready; the way to a/run: ready -> run\n"
+              "    ready -> run awaits io.start.rises, and its guard says no: it waits for: oil\n"
+              "    a -> run (long enough): in 1.23s\n"
+              "    a -> run: its condition does not hold\n");
+    EXPECT_EQ(asked(), std::vector<std::string>{"why loom.run"});
+    EXPECT_EQ(run({"why"}).code, 2);
+}
+
 TEST_F(Program, gets_values_for_people_and_for_programs) {
     machine.write("shaft.angle", 12.5, 77);
     EXPECT_EQ(run({"get", "shaft.angle"}).out, "shaft.angle = 12.5 deg\n");
@@ -103,6 +121,44 @@ TEST_F(Program, an_unknown_name_is_told_with_the_nearest_and_exit_code_2) {
     EXPECT_THAT(run({"list", "shafd"}).errors, HasSubstr("did you mean \"shaft\"?"));
     EXPECT_THAT(run({"stop", "shafd"}).errors, HasSubstr("did you mean \"shaft\"?"));
     EXPECT_THAT(asked(), IsEmpty());
+}
+
+TEST_F(Program, a_misspelt_command_is_told_the_nearest_wherever_it_is_named) {
+    EXPECT_THAT(run({"help", "lsit"}).errors, HasSubstr("did you mean \"list\"?"));
+    EXPECT_EQ(run({"help", "lsit"}).code, 2);
+    EXPECT_THAT(run({"help", "list"}).out, HasSubstr("list [COMPONENT]"));
+    EXPECT_THAT(run({"behaviour", "pasue", "loom.cycle"}).errors, HasSubstr("did you mean \"pause\"?"));
+    EXPECT_THAT(run({"behaviour", "pause"}).errors, HasSubstr("is not spelled so"));
+    EXPECT_THAT(asked(), IsEmpty());
+}
+
+TEST_F(Program, an_option_of_another_command_is_refused_and_its_own_named) {
+    const Outcome outcome = run({"get", "shaft.angle", "--every", "1s"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.errors, "tappet-browse: 'get' takes no --every; watch behaviour may\n");
+    EXPECT_THAT(run({"save", "--follow"}).errors, HasSubstr("'save' takes no --follow; send may"));
+    EXPECT_THAT(run({"--to", "a.vcd"}).errors, HasSubstr("without a command nothing takes --to; scope may"));
+    EXPECT_EQ(run({"get", "shaft.angle", "--json", "--timeout", "1s"}).code, 0) << "those are for all";
+    EXPECT_EQ(run({"watch", "shaft.angle", "--count", "1", "--every", "1ms"}).code, 0);
+    EXPECT_THAT(asked(), IsEmpty());
+}
+
+TEST_F(Program, prints_the_table_that_is_in_effect) {
+    machine.write("shaft.gains.p", 1.0 / 3.0, 5);
+    const Outcome manifest = run({"manifest"});
+    EXPECT_EQ(manifest.code, 0) << manifest.errors;
+    EXPECT_THAT(manifest.out, testing::StartsWith("machine sample on board test"));
+    EXPECT_THAT(manifest.out, HasSubstr("\n    shaft MainShaft\n"));
+    EXPECT_THAT(manifest.out, HasSubstr("gains.p = 0.333333"));
+    EXPECT_THAT(manifest.out, HasSubstr("shaft.angle -> loom.angle, stale after 4ms: hold"));
+    const std::string json = run({"manifest", "--json"}).out;
+    EXPECT_THAT(json, HasSubstr(R"("name": "shaft.gains.p", "value": 0.3333333333333333)"));
+    EXPECT_THAT(
+        json,
+        HasSubstr(
+            R"({"section": "connection", "from": "shaft.angle", "to": "loom.angle", "stale_after_ns": 4000000)"));
+    std::istringstream lines{json};
+    for (std::string line; std::getline(lines, line);) EXPECT_TRUE(nlohmann::json::accept(line)) << line;
 }
 
 TEST_F(Program, a_name_of_another_kind_is_told_with_what_it_is_for) {
@@ -163,14 +219,15 @@ TEST_F(Program, calls_forces_releases_and_restarts) {
 }
 
 TEST_F(Program, tells_events_with_what_was_lost) {
-    machine.answer("subscribe",
-                   {R"({"id": %, "ok": true})",
-                    R"({"id": %, "event": "shaft.beat_up", "time_ns": 5, "arguments": [1.5], "lost": 0})",
-                    R"({"id": %, "event": "shaft.beat_up", "time_ns": 6, "arguments": [2.5], "lost": 3})"});
+    machine.answer(
+        "subscribe",
+        {R"({"id": %, "ok": true})",
+         R"({"id": %, "event": "shaft.beat_up", "time_ns": 5000, "arguments": [1.5], "lost": 0})",
+         R"({"id": %, "event": "shaft.beat_up", "time_ns": 6000, "arguments": [2.5], "lost": 3})"});
     const Outcome outcome = run({"events", "shaft.beat_up", "--count", "2"});
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
-    EXPECT_THAT(outcome.out, HasSubstr("shaft.beat_up [1.5] at 5 ns\n"));
-    EXPECT_THAT(outcome.out, HasSubstr("shaft.beat_up [2.5] at 6 ns, 3 lost so far\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("shaft.beat_up [1.5] at 0.000005s\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("shaft.beat_up [2.5] at 0.000006s, 3 lost so far\n"));
     EXPECT_THAT(asked(), ElementsAre("subscribe shaft.beat_up", "unsubscribe shaft.beat_up"));
 }
 

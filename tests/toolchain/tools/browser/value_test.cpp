@@ -50,6 +50,45 @@ TEST_F(Values, durations_have_the_largest_unit_that_leaves_a_whole_number) {
     EXPECT_EQ(shown(sample.duration, bytes_of(std::int64_t{4'000'000}), Style::json), "\"4ms\"");
 }
 
+TEST_F(Values, times_are_rounded_for_people_and_still_read_as_they_are_shown) {
+    const auto brief = [&](std::int64_t ns) { return shown(sample.duration, bytes_of(ns), Style::brief); };
+    EXPECT_EQ(brief(0), "0s");
+    EXPECT_EQ(brief(7), "7ns");
+    EXPECT_EQ(brief(86'897), "86.897us");
+    EXPECT_EQ(brief(500'000'000), "500ms");
+    EXPECT_EQ(brief(1'234'567'891), "1.23457s");
+    EXPECT_EQ(brief(-2'500'000), "-2.5ms");
+    EXPECT_EQ(brief(123'456'789'000'000), "123457s");
+    EXPECT_EQ(moment_text(86'897), "86.9us");
+    EXPECT_EQ(moment_text(1'234'567'890'123), "1235s");
+    EXPECT_EQ(clock_text(78'537'605'353'999), "78537.605354s");
+}
+
+TEST_F(Values, types_bear_the_names_of_people) {
+    EXPECT_EQ(user_name("tappet::can::Bus<cut_to_length::can_signals>"), "can::Bus<can_signals>");
+    EXPECT_EQ(user_name("cut_to_length::Line"), "Line");
+    EXPECT_EQ(user_name("tappet::Map<of_a::deep::Name, 3>"), "Map<Name, 3>");
+    EXPECT_EQ(user_name("Plain"), "Plain");
+    EXPECT_EQ(user_name(""), "");
+    const auto matrix = sample.matrix(sample.f64, 3, 1, false);
+    const auto name = sample.text_type(16);
+    const auto list = sample.sequence(sample.u8, 3);
+    const auto when = sample.type("std::chrono::time_point<tappet::MachineClock>", map::Shape::duration, 8);
+    const auto record = sample.type("plant::Wrench", map::Shape::opaque, 8);
+    const std::vector<std::byte> block = sample.build();
+    const auto map = MapReader::open(block);
+    ASSERT_TRUE(map) << map.error();
+    EXPECT_EQ(type_name(*map, sample.i32), "int32");
+    EXPECT_EQ(type_name(*map, sample.u8), "uint8");
+    EXPECT_EQ(type_name(*map, sample.duration), "Duration");
+    EXPECT_EQ(type_name(*map, when), "Time");
+    EXPECT_EQ(type_name(*map, matrix), "double[3]");
+    EXPECT_EQ(type_name(*map, name), "Text<16>");
+    EXPECT_EQ(type_name(*map, list), "Sequence<uint8, 3>");
+    EXPECT_EQ(type_name(*map, record), "Wrench");
+    EXPECT_EQ(signature(*map, when), "(Time)");
+}
+
 TEST_F(Values, an_enumeration_is_shown_by_name_and_an_unknown_value_by_number) {
     const auto type = sample.enumeration("State", 1, {{"stopped", 0}, {"weaving", 200}});
     EXPECT_EQ(shown(type, bytes_of(std::uint8_t{200})), "weaving");
