@@ -2,7 +2,13 @@
 // state and its reason, and what the plant says of the run.
 #pragma once
 
-#include "apps/carpet_loom/machine.hpp"
+// The components, and not the table: on_host() of the machine's library holds that, compiled once.
+#include "apps/carpet_loom/loom.hpp"
+#include "apps/carpet_loom/main_drive.hpp"
+#include "apps/carpet_loom/main_shaft.hpp"
+#include "apps/carpet_loom/network.hpp"
+#include "apps/carpet_loom/warp_tension.hpp"
+#include "apps/carpet_loom/weft_insertion.hpp"
 #include "tests/apps/carpet_loom/loom_run.hpp"
 
 #include <gtest/gtest.h>
