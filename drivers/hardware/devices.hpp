@@ -3,7 +3,7 @@
 
 #include "drivers/can/device.hpp"
 #include "drivers/gpio/device.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/plan/places.hpp"
 #include "kernel/os/arming.hpp"
 
 #include <cstdint>

@@ -3,7 +3,6 @@
 // cure.
 #pragma once
 
-#include "kernel/machine/check/check.hpp"
 #include "kernel/machine/map/map.hpp"
 #include "kernel/machine/plan/plan.hpp"
 
@@ -54,25 +53,6 @@ constexpr Sentence over_budget(const MachineView& m, const Board& board, std::si
                     "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
 }
 
-/// A machine that was accepted.
-struct AcceptedMachine {
-    MachineView table;
-    const Board* board;
-    const Binding* binding;
-    TableIndexView index;
-    PlanView plan;
-    std::span<std::byte> memory;
-    std::span<const std::byte> map{};    ///< as the compiler drew it; empty when nothing sees the machine
-    std::span<const TypeId> map_types{}; ///< that the map describes, in its order
-};
-
-/// Whether a component of the table sees the machine: then it carries its map, and its memory is shared.
-constexpr bool is_observed(const MachineView& m) noexcept {
-    for (const ComponentRow& row : m.components)
-        if (row.type->sees_machine) return true;
-    return false;
-}
-
 namespace detail {
 
 template <const auto& table, const Board& board, const Binding& binding>
@@ -106,7 +86,7 @@ struct Planned {
 template <const auto& table, const Board& board, const Binding& binding>
 struct Planned<table, board, binding, true> {
     static constexpr auto& verdict = Judged<table, board, binding>::verdict;
-    using Map = Mapped<table, board, binding, is_observed(table.view())>;
+    using Map = Mapped<table, board, binding, find_observer(table.view()) != nowhere>;
     static constexpr auto plan =
         plan_for<count_subscriptions(table.view())>(table, board, binding, verdict.index, Map::bytes);
     static constexpr Sentence listeners = over_subscribed(table.view(), plan.subscriptions);

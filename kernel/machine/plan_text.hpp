@@ -1,7 +1,7 @@
 // What the compiler derived from a table, for people to read: priorities, order, mailboxes, memory.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/plan/places.hpp"
 
 namespace tappet {
 

@@ -3,6 +3,7 @@
 // right.
 #include "tests/kernel/services/browsing/press_machine.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/os/local_socket.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 

@@ -3,6 +3,7 @@
 
 #include "toolchain/machine/on_host.hpp"
 #include "board/host/board.hpp"
+#include "kernel/machine/firmware.hpp"
 
 namespace TAPPET_NAMESPACE {
 

@@ -1,7 +1,7 @@
 // A machine's table, accepted for the host's board.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/plan/places.hpp"
 
 namespace TAPPET_NAMESPACE {
 

@@ -9,8 +9,6 @@
 
 namespace tappet::checks {
 
-// A receiver marks each sending activity, and the requests of what sees the machine, in one 64-bit word.
-inline constexpr std::size_t max_activities = 63;
 static_assert(max_activities < Inbox::max_senders);
 
 constexpr int processor_of(const Board& board, const Binding& binding, std::string_view activity) noexcept {

@@ -2,6 +2,7 @@
 #include "kernel/machine/slots/behaviour_unit.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/slots/memory.hpp"
 #include "kernel/program/check_tables.hpp"
 #include "kernel/statechart/check_references.hpp"
 

@@ -1,5 +1,6 @@
 // Makes a machine out of its plan: constructs, places engines, wires every row and configures.
 #include "kernel/machine/instance/builder.hpp"
+#include "kernel/machine/plan/scope_layout.hpp"
 
 #include <new>
 
@@ -181,7 +182,7 @@ void MachineBuilder::connect_clocks() {
 
 void MachineBuilder::place_needed_inputs() {
     const MachineView& table = machine_.table;
-    std::size_t placed[checks::max_activities] = {};
+    std::size_t placed[max_activities] = {};
     for (std::size_t x = 0; x < table.connections.size(); ++x) {
         const Link& link = machine_.index.connections[x];
         if (!is_needed_input(table, table.connections[x], link)) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/map/layout.hpp"
 
 namespace tappet {
 

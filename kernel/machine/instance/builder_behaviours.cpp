@@ -21,7 +21,7 @@ BehaviourSlot& slot_at(void* self) noexcept TAPPET_REALTIME { return *static_cas
 } // namespace
 
 Sentence MachineBuilder::place_behaviours() {
-    std::size_t placed[checks::max_activities] = {};
+    std::size_t placed[max_activities] = {};
     for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b) {
         const BehaviourRow& row = machine_.table.behaviours[b];
         const std::size_t c = find_component(machine_.table, row.component);

@@ -19,7 +19,7 @@ void wake_chain(void* first) noexcept TAPPET_REALTIME {
 } // namespace
 
 void MachineBuilder::connect_data() {
-    std::size_t guarded[checks::max_activities] = {};
+    std::size_t guarded[max_activities] = {};
     for (std::size_t x = 0; x < machine_.table.connections.size(); ++x) {
         connect_row(x);
         const ConnectionRow& row = machine_.table.connections[x];

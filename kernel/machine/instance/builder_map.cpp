@@ -1,7 +1,7 @@
 // Gives a machine its map: laid at the beginning of memory that others may map, with the places of all live
 // values.
 #include "kernel/machine/instance/builder.hpp"
-#include "kernel/machine/map/layout.hpp"
+#include "kernel/machine/map/types.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/local_socket.hpp"
 

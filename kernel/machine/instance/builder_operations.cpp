@@ -1,5 +1,6 @@
 // Wires the uses rows: method calls to methods, command objects to the engines that take them up.
 #include "kernel/machine/instance/builder.hpp"
+#include "kernel/machine/plan/operations.hpp"
 
 #include <new>
 

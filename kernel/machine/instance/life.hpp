@@ -57,8 +57,8 @@ private:
     PlacedMachine& placed_;
     const AcceptedMachine& machine_;
     os::Waiter& supervisor_;
-    std::array<LifeRequests, checks::max_activities> activity_requests_{};
-    std::array<bool, checks::max_activities> thread_lost_{};
+    std::array<LifeRequests, max_activities> activity_requests_{};
+    std::array<bool, max_activities> thread_lost_{};
 };
 
 } // namespace tappet

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/base/contract.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/plan/places.hpp"
 
 #include <cstdint>
 #include <span>

@@ -5,6 +5,7 @@
 #include "kernel/base/real_text.hpp"
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/slots/memory.hpp"
 #include "kernel/script/load.hpp"
 
 namespace tappet {
@@ -19,12 +20,6 @@ void BehaviourSlot::place(const Place& place) {
     };
     reach(place.component);
     for (const std::string_view peer : place.row->slot.peers) reach(find_component(table, peer));
-    for (std::size_t bank = 0; bank < 2; ++bank) {
-        detail::UnitLayout layout{place.banks[bank]};
-        rooms_[bank] = detail::take_script_room(layout, slot_sizes(place.row->slot));
-        layout.take(0, unit_alignment);
-        unit_memory_[bank] = place.banks[bank].subspan(layout.used());
-    }
 }
 
 Sentence BehaviourSlot::may_load() const noexcept {
@@ -61,11 +56,15 @@ Sentence BehaviourSlot::compile(std::size_t characters, std::string_view name) {
     reach.timers = row.slot.timers;
     reach.depth = row.slot.depth;
     reach.statements_per_step = row.options.statements;
+    detail::UnitLayout layout{place_.banks[number]};
+    const ScriptRoom room = detail::take_script_room(layout, slot_sizes(row.slot));
+    layout.take(0, unit_alignment);
     const ScriptOutcome outcome =
-        compile_loaded({place_.text.data(), characters}, bank.name.view(), reach, rooms_[number]);
+        compile_loaded({place_.text.data(), characters}, bank.name.view(), reach, room);
     if (!outcome.good()) return outcome.fault;
-    if (Sentence fault = bank.unit.place(outcome.unit, {}, row.options, unit_memory_[number], place_.events,
-                                         *place_.machine, place_.component);
+    if (Sentence fault =
+            bank.unit.place(outcome.unit, {}, row.options, place_.banks[number].subspan(layout.used()),
+                            place_.events, *place_.machine, place_.component);
         !fault.empty())
         return Sentence{bank.name.view(), ": ", fault};
     bank.unit.connect_links();

@@ -1,20 +1,13 @@
 // The places of commands: a mailbox for each activity that sends to another, and room to follow all at once.
 #pragma once
 
-#include "kernel/activity/engine.hpp"
+#include "kernel/machine/plan/places.hpp"
 #include "kernel/machine/table/unit_rows.hpp"
 
 namespace tappet {
 
 /// So many requests of the components that see the machine wait at one engine, and so many of their commands.
 inline constexpr std::uint32_t requests_waiting = 16;
-
-/// Whether any component sees the machine.
-constexpr bool is_seen(const MachineView& m) noexcept {
-    for (const ComponentRow& row : m.components)
-        if (row.type->sees_machine) return true;
-    return false;
-}
 
 /// The activity that sends the command of a uses row.
 constexpr std::size_t sender_of(const MachineView& m, const TableIndexView& r, std::size_t row) noexcept {
@@ -34,7 +27,7 @@ namespace detail {
 template <class Plan, class Layout>
 constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan& p, Layout& layout) {
     const std::size_t n = m.activities.size();
-    const bool seen = is_seen(m);
+    const bool seen = find_observer(m) != nowhere;
     for (std::size_t row = 0; row < m.reactions.size(); ++row) {
         if (!is_command_row(m, r, row)) continue;
         const std::size_t receiver = r.activity[r.reactions[row].to.component];

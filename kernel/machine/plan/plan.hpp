@@ -1,12 +1,11 @@
-// Where everything of a machine lies: one block of static memory, laid out by the compiler from the table.
-// Start-up places objects at these offsets, an observer finds them there; nothing is allocated.
+// The planning of a machine's memory: one block, laid out by the compiler from a table that was checked.
 #pragma once
 
-#include "kernel/activity/engine.hpp"
 #include "kernel/machine/plan/operations.hpp"
+#include "kernel/machine/plan/places.hpp"
 #include "kernel/machine/plan/scope.hpp"
 #include "kernel/machine/plan/subscription.hpp"
-#include "kernel/machine/slots/behaviour_slot.hpp"
+#include "kernel/machine/slots/memory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,135 +13,6 @@
 #include <span>
 
 namespace tappet {
-
-/// The places that belong to one activity.
-struct ActivityPlan {
-    std::size_t parts_at = 0;
-    std::size_t part_count = 0;
-    std::size_t functions_at = 0;
-    std::size_t timers_at = 0;
-    std::size_t timer_count = 0;
-    std::size_t behaviours_at = 0;
-    std::size_t behaviour_count = 0;
-    std::size_t guarded_at = 0;
-    std::size_t guarded_count = 0;
-    std::size_t inputs_at = 0; ///< what its components need before they start
-    std::size_t input_count = 0;
-    std::size_t mailboxes_at = 0;
-    std::size_t sender_count = 0;
-    std::size_t command_mailboxes_at = 0;
-    std::size_t command_sender_count = 0;
-    std::size_t followed_at = 0;
-    std::size_t followed_count = 0; ///< commands that may be at work at once
-    std::size_t tape_at = nowhere;  ///< CycleTape, where a component records the machine's cycles
-    std::size_t tape_words = 0;
-    std::size_t stack_at = 0;
-    std::size_t stack_bytes = 0;
-    int priority = 0; ///< SCHED_FIFO; 0: not real-time
-    int processor = 0;
-};
-
-/// A connection row's memory: a shared data object, a ring, or nothing; and what it takes to wake the reader.
-struct ConnectionPlan {
-    std::size_t memory_at = nowhere;
-    bool shared = false;         ///< across activities, or scaled on its way
-    bool first_of_output = true; ///< the row that places the shared data object
-    std::size_t waker_at = nowhere;
-};
-
-struct SubscriptionPlan {
-    std::size_t subscribers_at = nowhere; ///< of the event's first subscription: the place of the whole array
-    std::size_t async_at = nowhere;
-    std::size_t binding_at = nowhere; ///< of a trigger or an observer
-    std::size_t lanes_at = nowhere;   ///< one for each emitting activity, in their order
-    std::size_t lane_count = 0;
-    std::size_t lane_of_at = nowhere;   ///< of each activity; shared by the events of a component
-    std::size_t latest_at = nowhere;    ///< of each lane, if it keeps the latest only
-    std::size_t mailboxes_at = nowhere; ///< of a wait: one for each lane
-    std::size_t mail_at = nowhere;      ///< of a wait: what the mailboxes hold
-};
-
-struct BehaviourPlan {
-    std::size_t events_at = nowhere; ///< names of the events that it hears, or may hear
-    std::size_t event_count = 0;
-    std::size_t unit_at = nowhere;   ///< BehaviourUnit
-    std::size_t memory_at = nowhere; ///< of the unit; of a slot its two banks, one after the other
-    std::size_t memory_bytes = 0;
-    std::size_t slot_at = nowhere;    ///< BehaviourSlot
-    std::size_t handles_at = nowhere; ///< of a slot's events
-    std::size_t text_at = nowhere;    ///< of the script on its way into a slot
-    std::size_t text_bytes = 0;
-};
-
-/// A mailbox from one activity to another: its ring's storage, and its index at the receiver.
-struct MailPlan {
-    std::size_t storage_at = nowhere;
-    std::uint32_t capacity = 0;
-    std::size_t sender_index = 0;
-};
-
-struct PlanView {
-    std::span<std::size_t> component_at;
-    std::span<std::uint32_t> part_of; ///< the component's index in its engine
-    std::span<ActivityPlan> activities;
-    std::span<ConnectionPlan> connections;
-    std::span<Subscription> subscriptions;
-    std::span<SubscriptionPlan> subscription_at;
-    std::span<BehaviourPlan> behaviours;
-    std::span<MailPlan> mail;             ///< [sender * activities + receiver]
-    std::span<MailPlan> requests;         ///< into each activity, of the components that see the machine
-    std::span<MailPlan> command_mail;     ///< as mail, of commands alone
-    std::span<MailPlan> command_requests; ///< as requests, of commands alone
-    std::size_t extras_at = 0;            ///< of the sections of other folders, one after the other
-    std::size_t engines_at = 0;
-    std::size_t observed_at = 0; ///< Observed
-    std::size_t scope_at = 0;    ///< scope::Directory; 0: nothing records the machine's cycles
-    std::size_t recordings_at = 0;
-    std::size_t recordings = 0;
-    std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
-    std::size_t bytes = 0;        ///< of everything below
-    std::size_t stack_bytes = 0;  ///< of these, stacks
-};
-
-/// What stands once in a machine for whoever looks at it.
-struct Observed {
-    std::atomic<std::uint32_t> forced{0}; ///< ports that are forced now
-};
-
-/// Runs the triggers of a behaviour out of a message.
-struct TriggerBinding {
-    BehaviourUnit* unit; ///< of the row; null: of a slot
-    BehaviourSlot* slot;
-    Engine* engine;
-    std::size_t event; ///< its number in the unit or slot
-};
-
-/// What is called with each emission that an observer is connected to.
-struct EventObserver {
-    void (*observe)(void* observer, std::size_t event_index, const std::byte* packed_arguments,
-                    Time now) noexcept TAPPET_REALTIME = nullptr;
-    void* observer = nullptr;
-};
-
-/// Shows one event to the observer out of a message.
-struct ObserverBinding {
-    const EventObserver* to;
-    const Engine* engine;
-    std::size_t event_index;
-};
-
-/// One waker in the chain of an output that wakes several activities.
-struct WakerNode {
-    Waker waker;
-    WakerNode* next;
-    Engine* reader;
-    WakingRow row{};
-};
-
-/// Whether the row feeds an input that a component needs before it starts.
-constexpr bool is_needed_input(const MachineView& m, const ConnectionRow& row, const Link& link) noexcept {
-    return !row.buffered && facet_at(m, link.to).required;
-}
 
 namespace detail {
 
@@ -251,8 +121,7 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
     }
     // At each receiver the senders stand in order of their urgency.
     const std::size_t n = m.activities.size();
-    bool seen = false;
-    for (const ComponentRow& row : m.components) seen |= row.type->sees_machine;
+    const bool seen = find_observer(m) != nowhere;
     for (std::size_t receiver = 0; receiver < n; ++receiver) {
         ActivityPlan& activity = p.activities[receiver];
         for (const std::size_t sender : r.by_rank) {

@@ -3,48 +3,16 @@
 #pragma once
 
 #include "kernel/machine/check/check.hpp"
-#include "kernel/statechart/execution.hpp"
+#include "kernel/machine/plan/places.hpp"
 
 #include <algorithm>
 
 namespace tappet {
 
-enum class SubscriberKind : std::uint8_t {
-    operation, ///< of a reaction row
-    wait,      ///< of a reaction row: an EventWait
-    trigger,   ///< of a behaviour
-    observer   ///< the component that sees the machine
-};
-
-/// One possible subscription.
-struct Subscription {
-    End event;
-    SubscriberKind kind = SubscriberKind::operation;
-    bool synchronous = false;
-    bool keeps_latest = false;
-    bool is_connected = true;        ///< from the start
-    End target;                      ///< the operation or the wait
-    End handle;                      ///< of a reaction row that has one
-    std::size_t behaviour = nowhere; ///< of a trigger
-    std::size_t trigger = 0;         ///< number among the events of its unit or slot
-    std::uint32_t quota = 0;
-    std::uint64_t emitters = 0; ///< one bit for each activity that may emit the event
-    std::size_t receiver = 0;   ///< activity
-    std::size_t order = 0;      ///< in the table
-    std::size_t turn = 0;       ///< among the subscriptions of its event: its bit
-};
-
 /// So many unserved emissions a state machine's trigger holds.
 inline constexpr std::uint32_t trigger_quota = 8;
 /// So many unserved emissions of each event wait for the component that sees the machine.
 inline constexpr std::uint32_t observer_quota = 8;
-
-/// The component to which every event can be shown, or nowhere.
-constexpr std::size_t find_observer(const MachineView& m) noexcept {
-    for (std::size_t c = 0; c < m.components.size(); ++c)
-        if (m.components[c].type->sees_machine) return c;
-    return nowhere;
-}
 
 /// An event whose arguments exceed a message has no asynchronous subscription.
 constexpr bool is_observable(const Facet& facet) noexcept {

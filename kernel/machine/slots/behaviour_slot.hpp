@@ -5,7 +5,6 @@
 
 #include "kernel/component/event_handle.hpp"
 #include "kernel/machine/slots/behaviour_unit.hpp"
-#include "kernel/script/room.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -49,80 +48,6 @@ enum class RollBack : std::uint8_t {
     too_much,  ///< its activity used more of its processor than its row claims
     asked      ///< from outside
 };
-
-namespace detail {
-
-/// The rows of a compiled script, in a bank.
-constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& sizes) noexcept {
-    ScriptRoom room;
-    layout.take(room.instructions, sizes.instructions);
-    layout.take(room.conditions, sizes.conditions);
-    layout.take(room.nodes, sizes.nodes);
-    layout.take(room.arcs, sizes.arcs);
-    layout.take(room.programs, sizes.programs);
-    layout.take(room.variables, sizes.variables);
-    layout.take(room.links, sizes.links);
-    room.image = {layout.take(sizes.image, data_alignment), sizes.image};
-    layout.take(room.states, sizes.states);
-    layout.take(room.transitions, sizes.transitions);
-    layout.take(room.captures, sizes.captures);
-    layout.take(room.types, sizes.types);
-    layout.take(room.instances, sizes.instances);
-    layout.take(room.names, sizes.names);
-    layout.take(room.reach, sizes.reach);
-    return room;
-}
-
-} // namespace detail
-
-/// Arguments and results of one command that a loaded behaviour sends have so many bytes together.
-inline constexpr std::size_t slot_command_bytes = 128;
-
-constexpr ScriptSizes slot_sizes(const Slot& slot) noexcept {
-    return script_sizes_for(slot.nodes, slot.data_bytes, static_cast<std::uint32_t>(slot.peers.size() + 1));
-}
-constexpr std::size_t slot_text_bytes(const Slot& slot) noexcept {
-    return slot.text_bytes != 0 ? slot.text_bytes : 48 * std::size_t{slot.nodes};
-}
-/// What the machines of a script take resolved, of usual proportions: few transitions lead out of a composite
-/// and so out of each of its leaves.
-constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_t events) noexcept {
-    ResolvedSizes resolved;
-    resolved.states = resolved.regions = sizes.states;
-    resolved.triggers = std::min<std::size_t>(sizes.transitions, events * sizes.types);
-    resolved.arcs = std::size_t{sizes.transitions} + first_arc;
-    resolved.asked = 3 * std::size_t{sizes.transitions};
-    resolved.steps = 12 * resolved.arcs + 2 * std::size_t{sizes.states};
-    return resolved;
-}
-/// Of event arguments that wait, each instance; of the histories of all together.
-inline constexpr std::size_t slot_deferred_bytes =
-    sizeof(Message::arguments) * StateMachineExecution::max_raised_events;
-
-/// What one bank takes: the rows, and the unit made of them. A machine of unusual proportions may need more
-/// than this keeps for its resolved form; then it is refused.
-constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noexcept {
-    const ScriptSizes sizes = slot_sizes(slot);
-    detail::UnitLayout layout;
-    static_cast<void>(detail::take_script_room(layout, sizes));
-    layout.take(0, unit_alignment);
-    layout.take<UnitPart>(sizes.instances);
-    layout.take<ResolvedView>(sizes.types);
-    layout.take<UnitRoute>(events * sizes.instances);
-    static_cast<void>(take_room(layout, slot_resolved_sizes(sizes, events)));
-    layout.take<StateIndex>(sizes.states);
-    for (std::size_t i = 0; i < sizes.instances; ++i) {
-        layout.take<StateMachineExecution>(1);
-        layout.take<ProgramExecution>(1);
-        layout.take(slot_deferred_bytes, data_alignment);
-    }
-    layout.take(sizes.data + sizes.instances * data_alignment, data_alignment);
-    layout.take<ProgramLink>(2 * sizes.links);
-    layout.take<CommandSlot>(slot.command_slots);
-    layout.take(slot.command_slots * slot_command_bytes, data_alignment);
-    layout.take(0, unit_alignment); // the other bank stands after it
-    return layout.used();
-}
 
 class BehaviourSlot {
 public:
@@ -223,8 +148,6 @@ private:
 
     Place place_{};
     Bank banks_[2]{};
-    ScriptRoom rooms_[2]{};
-    std::span<std::byte> unit_memory_[2]{};
     std::array<Reachable, Slot::max_names + 1> reachable_{};
     std::size_t reachable_count_ = 0;
     // Written by the background while no change is on its way, read by obey().

@@ -9,6 +9,9 @@
 
 namespace tappet {
 
+// A receiver marks each sending activity, and the requests of what sees the machine, in one 64-bit word.
+inline constexpr std::size_t max_activities = 63;
+
 enum class Trigger : std::uint8_t { every, on_work, on_device, background };
 enum class WhenLate : std::uint8_t { count, stop };
 

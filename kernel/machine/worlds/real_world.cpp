@@ -84,7 +84,7 @@ std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
     os::touch(machine.memory); // before there are threads: their stacks are part of it
     const auto engines = instance_.engines();
     int highest = 1;
-    Bounded<int, checks::max_activities> processors;
+    Bounded<int, max_activities> processors;
     os::minimise_timer_slack(); // threads inherit it
     for (std::size_t a = 0; a < engines.size(); ++a) {
         const ActivityPlan& plan = machine.plan.activities[a];
@@ -158,7 +158,7 @@ int RealWorld::stop() {
     };
     int hung = 0;
     const Time grace = os::Clock::monotonic() + grace_ms * 1ms;
-    Bounded<std::size_t, checks::max_activities> asked;
+    Bounded<std::size_t, max_activities> asked;
     for (std::size_t a = instance_.engines().size(); a-- > 0;) {
         const Engine& engine = instance_.engines()[a];
         if (engine.plan().real_time || !engine.is_active() || !asked.push(a)) {

@@ -74,7 +74,7 @@ private:
     [[nodiscard]] bool stop_engine(std::size_t activity) noexcept;
 
     MachineInstance& instance_;
-    std::array<Activity, checks::max_activities> activities_{};
+    std::array<Activity, max_activities> activities_{};
     os::CpuDmaLatency latency_{};
     struct KeptBreach {
         ContractViolation breach{};

@@ -62,11 +62,11 @@ private:
     MachineInstance& instance_;
     Bounded<VirtualProcess, 8> processes_{};
     CycleRunner runner_{};
-    Bounded<std::size_t, checks::max_activities> by_urgency_{};
+    Bounded<std::size_t, max_activities> by_urgency_{};
     // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
     // all its timers.
-    std::array<Time, checks::max_activities> wake_at_{};
-    std::array<std::optional<VirtualLoop>, checks::max_activities> loops_{};
+    std::array<Time, max_activities> wake_at_{};
+    std::array<std::optional<VirtualLoop>, max_activities> loops_{};
     std::uint64_t steps_ = 0;
     bool is_ending_ = false; ///< engines run although a stop was asked for
 };

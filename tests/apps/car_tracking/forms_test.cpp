@@ -2,6 +2,7 @@
 // compiler, and tables walked in memory, as a script that is loaded is executed.
 #include "apps/car_tracking/machine.hpp"
 #include "board/host/board.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "tests/apps/car_tracking/car_run.hpp"
 
 #include <gtest/gtest.h>

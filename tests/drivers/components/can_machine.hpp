@@ -5,6 +5,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/restarter.hpp"
 #include "drivers/can/twin_bus.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 

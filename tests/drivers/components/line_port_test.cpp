@@ -1,6 +1,7 @@
 // Digital lines as a component: edges and their times, levels, losses, and what stays behind at stop.
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/gpio/twin.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 

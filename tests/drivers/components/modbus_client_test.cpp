@@ -1,6 +1,7 @@
 // A Modbus server as a component: values with their age, outages, back-off, and who is held up by it.
 #include "drivers/modbus/client.hpp"
 #include "drivers/modbus/twin.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 

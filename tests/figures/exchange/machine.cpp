@@ -2,6 +2,8 @@
 // threads.
 #include "tests/figures/exchange/machine.hpp"
 
+#include "kernel/machine/firmware.hpp"
+
 #include <iostream>
 #include <string>
 

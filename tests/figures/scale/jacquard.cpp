@@ -1,6 +1,7 @@
 // Engine time for a pick of the jacquard head, beside the bare copies of the same 1536 bytes.
 #include "tests/figures/scale/jacquard.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/instance/instance.hpp"
 
 #include <cstdlib>

@@ -2,6 +2,7 @@
 // are refused.
 #include "kernel/limits/limits.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,7 @@
 // Data flow between the components of a machine (thesis 4.4): whatever the type, inside one activity and
 // across two, from one to many and from many to one, with every policy that a row may state.
 #include "kernel/base/random.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include "kernel/machine/instance/instance.hpp"
 
 #include "kernel/base/random.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/statechart/rows.hpp"
 

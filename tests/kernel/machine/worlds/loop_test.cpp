@@ -2,6 +2,7 @@
 // its messages where it waits, and comes back when its activity stops; under real and under virtual time.
 #include "kernel/component/loop.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/os/sleep.hpp"

@@ -3,6 +3,7 @@
 #include "kernel/machine/worlds/real_world.hpp"
 
 #include "kernel/base/random.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/sleep.hpp"
 #include "tests/kernel/machine/watched_machine.hpp"

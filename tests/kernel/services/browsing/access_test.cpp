@@ -2,6 +2,7 @@
 // of each cycle for everybody, and nothing that one client does reaches another.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/services/browsing/access.hpp"
 
 #include <memory>

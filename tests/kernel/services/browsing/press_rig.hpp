@@ -1,6 +1,7 @@
 // The press under virtual time, and a client that talks to it.
 #pragma once
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 #include "tests/kernel/services/browsing/press_machine.hpp"
 

@@ -2,6 +2,7 @@
 // what its components consume.
 #include "kernel/services/scope/thread_scope.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 #include "kernel/services/tasks/component_life.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/table/compiled.hpp"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "kernel/services/time/watchdog.hpp"
 
 #include "kernel/base/random.hpp"
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 

@@ -1,0 +1,187 @@
+// What behaviours take of a machine's memory: the same sums for the plan, which counts, and for start-up and
+// loading, which lay things there.
+#pragma once
+
+#include "kernel/machine/slots/behaviour_unit.hpp"
+#include "kernel/script/room.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace tappet {
+
+namespace detail {
+
+/// Lays things one after the other in a piece of memory, or, without one, counts.
+class UnitLayout {
+public:
+    constexpr UnitLayout() = default;
+    explicit constexpr UnitLayout(std::span<std::byte> memory) noexcept : memory_{memory} {}
+    template <class T>
+    constexpr T* take(std::size_t count) noexcept {
+        std::byte* place = take(count * sizeof(T), alignof(T));
+        if (place == nullptr) return nullptr;
+        return reinterpret_cast<T*>(place);
+    }
+    constexpr std::byte* take(std::size_t bytes, std::size_t align) noexcept {
+        at_ = (at_ + align - 1) / align * align;
+        const std::size_t here = at_;
+        at_ += bytes;
+        return memory_.empty() || at_ > memory_.size() ? nullptr : memory_.data() + here;
+    }
+    template <class T> constexpr void take(std::span<T>& into, std::size_t count) noexcept {
+        into = {take<T>(count), count};
+    }
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
+    [[nodiscard]] constexpr bool full() const noexcept { return at_ > memory_.size(); }
+
+private:
+    std::span<std::byte> memory_{};
+    std::size_t at_ = 0;
+};
+
+/// The commands of one instance that are sent to other activities: calls visit(link number, facet).
+template <class Visit>
+constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& type, const Visit& visit) {
+    for (std::size_t i = 0; i < type.tables.links.size(); ++i) {
+        const LinkRow& link = type.tables.links[i];
+        if (link.needs_slot) visit(i, unit.reach[link.peer].type->facets[link.facet]);
+    }
+}
+
+} // namespace detail
+
+/// Where a type's resolved state machine lies.
+constexpr ResolvedRoom take_room(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
+    ResolvedRoom room;
+    layout.take(room.plans, sizes.states);
+    layout.take(room.triggers, sizes.triggers);
+    layout.take(room.cells, sizes.states * sizes.triggers);
+    layout.take(room.asked, sizes.asked);
+    layout.take(room.arcs, sizes.arcs);
+    layout.take(room.steps, sizes.steps);
+    layout.take(room.regions, sizes.regions);
+    layout.take(room.captured, sizes.triggers);
+    return room;
+}
+
+/// Of one instance, what its execution keeps from step to step.
+struct MachineMemory {
+    std::span<StateIndex> history{};
+    std::span<std::byte> deferred{};
+};
+constexpr MachineMemory take_machine_memory(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
+    const std::size_t bytes = sizes.captured * StateMachineExecution::max_raised_events;
+    auto* history = layout.take<StateIndex>(sizes.history);
+    return {{history, sizes.history}, {layout.take(bytes, data_alignment), bytes}};
+}
+
+/// Of the memory of a unit.
+inline constexpr std::size_t unit_alignment = std::max(alignof(CommandSlot), data_alignment);
+
+/// What a unit that hears so many events takes of memory aligned to unit_alignment. The same sums as
+/// BehaviourUnit::place.
+constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
+    detail::UnitLayout layout;
+    layout.take<UnitPart>(unit.instances.size());
+    layout.take<StateMachineExecution>(unit.instances.size());
+    layout.take<ResolvedView>(unit.types.size());
+    layout.take<UnitRoute>(events * unit.instances.size());
+    for (std::size_t t = 0; t < unit.types.size(); ++t) {
+        if (unit.types[t].is_program()) continue;
+        const ResolvedSizes sizes = measure(unit.types[t].machine);
+        static_cast<void>(take_room(layout, sizes));
+        for (const BehaviourInstance& instance : unit.instances)
+            if (instance.type == t) static_cast<void>(take_machine_memory(layout, sizes));
+    }
+    for (const BehaviourInstance& instance : unit.instances) {
+        const BehaviourType& type = unit.types[instance.type];
+        if (type.is_program()) layout.take<ProgramExecution>(1);
+        layout.take(type.tables.layout.size, data_alignment);
+        layout.take<ProgramLink>(type.tables.links.size());
+        std::size_t slots = 0;
+        detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet&) { ++slots; });
+        layout.take<CommandSlot>(slots);
+        detail::for_each_slot_link(unit, type, [&](std::size_t, const Facet& facet) {
+            layout.take(facet.command->value_bytes(), data_alignment);
+        });
+    }
+    return layout.used();
+}
+
+namespace detail {
+
+/// The rows of a compiled script, in a bank.
+constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& sizes) noexcept {
+    ScriptRoom room;
+    layout.take(room.instructions, sizes.instructions);
+    layout.take(room.conditions, sizes.conditions);
+    layout.take(room.nodes, sizes.nodes);
+    layout.take(room.arcs, sizes.arcs);
+    layout.take(room.programs, sizes.programs);
+    layout.take(room.variables, sizes.variables);
+    layout.take(room.links, sizes.links);
+    room.image = {layout.take(sizes.image, data_alignment), sizes.image};
+    layout.take(room.states, sizes.states);
+    layout.take(room.transitions, sizes.transitions);
+    layout.take(room.captures, sizes.captures);
+    layout.take(room.types, sizes.types);
+    layout.take(room.instances, sizes.instances);
+    layout.take(room.names, sizes.names);
+    layout.take(room.reach, sizes.reach);
+    return room;
+}
+
+} // namespace detail
+
+/// Arguments and results of one command that a loaded behaviour sends have so many bytes together.
+inline constexpr std::size_t slot_command_bytes = 128;
+
+constexpr ScriptSizes slot_sizes(const Slot& slot) noexcept {
+    return script_sizes_for(slot.nodes, slot.data_bytes, static_cast<std::uint32_t>(slot.peers.size() + 1));
+}
+constexpr std::size_t slot_text_bytes(const Slot& slot) noexcept {
+    return slot.text_bytes != 0 ? slot.text_bytes : 48 * std::size_t{slot.nodes};
+}
+/// What the machines of a script take resolved, of usual proportions: few transitions lead out of a composite
+/// and so out of each of its leaves.
+constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_t events) noexcept {
+    ResolvedSizes resolved;
+    resolved.states = resolved.regions = sizes.states;
+    resolved.triggers = std::min<std::size_t>(sizes.transitions, events * sizes.types);
+    resolved.arcs = std::size_t{sizes.transitions} + first_arc;
+    resolved.asked = 3 * std::size_t{sizes.transitions};
+    resolved.steps = 12 * resolved.arcs + 2 * std::size_t{sizes.states};
+    return resolved;
+}
+/// Of event arguments that wait, each instance; of the histories of all together.
+inline constexpr std::size_t slot_deferred_bytes =
+    sizeof(Message::arguments) * StateMachineExecution::max_raised_events;
+
+/// What one bank takes: the rows, and the unit made of them. A machine of unusual proportions may need more
+/// than this keeps for its resolved form; then it is refused.
+constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noexcept {
+    const ScriptSizes sizes = slot_sizes(slot);
+    detail::UnitLayout layout;
+    static_cast<void>(detail::take_script_room(layout, sizes));
+    layout.take(0, unit_alignment);
+    layout.take<UnitPart>(sizes.instances);
+    layout.take<ResolvedView>(sizes.types);
+    layout.take<UnitRoute>(events * sizes.instances);
+    static_cast<void>(take_room(layout, slot_resolved_sizes(sizes, events)));
+    layout.take<StateIndex>(sizes.states);
+    for (std::size_t i = 0; i < sizes.instances; ++i) {
+        layout.take<StateMachineExecution>(1);
+        layout.take<ProgramExecution>(1);
+        layout.take(slot_deferred_bytes, data_alignment);
+    }
+    layout.take(sizes.data + sizes.instances * data_alignment, data_alignment);
+    layout.take<ProgramLink>(2 * sizes.links);
+    layout.take<CommandSlot>(slot.command_slots);
+    layout.take(slot.command_slots * slot_command_bytes, data_alignment);
+    layout.take(0, unit_alignment); // the other bank stands after it
+    return layout.used();
+}
+
+} // namespace tappet
