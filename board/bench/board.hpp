@@ -27,6 +27,7 @@ inline constexpr Board bench{
                  .mode = 0666,
                  .roles = roles(user(1001, Role::machine_operator), user(1002, Role::engineer))},
     .black_box_directory = "/run",
+    .watchdog = "/dev/watchdog", // QEMU's i6300esb
 };
 
 } // namespace tappet::board

@@ -2,6 +2,8 @@
 // it takes.
 #include "kernel/machine/plan_text.hpp"
 
+#include "kernel/machine/check/flow.hpp"
+
 namespace tappet {
 
 namespace {

@@ -57,7 +57,7 @@ const std::vector<Row> house{
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
 
     // A browser meets a machine at its memory and its socket only.
-    {"toolchain/tools/browser", {"kernel/base", "kernel/machine/map/layout.hpp", "kernel/machine/map/view.hpp",
+    {"toolchain/tools/browser", {"kernel/base", "kernel/machine/map/layout.hpp", "kernel/machine/map/black_box.hpp", "kernel/machine/map/view.hpp",
                            "kernel/machine/plan/scope_layout.hpp", "kernel/activity/cycle_tape.hpp",
                            "kernel/services/browsing/protocol.hpp"}},
 

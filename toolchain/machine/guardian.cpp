@@ -6,6 +6,7 @@
 #include "kernel/os/box.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/terminal.hpp"
+#include "kernel/os/watchdog.hpp"
 #include "toolchain/machine/black_box.hpp"
 
 #include <algorithm>
@@ -37,6 +38,10 @@ public:
                 Sentence{"it may not stand above the machine's threads; run as root or grant CAP_SYS_NICE"});
         if (auto prepared = devices_.prepare_safe_ending(); !prepared) return refuse(prepared.error());
         static_cast<void>(watch_.look(os::Clock::monotonic()));
+        const Board& board = *instance_.machine().board;
+        if (board.watchdog != nullptr)
+            if (auto opened = watchdog_.open(board.watchdog, board.watchdog_within); !opened)
+                return refuse(opened.error());
         guard_.stay_in_memory();
         guard_.be_ready();
         return true;
@@ -45,12 +50,14 @@ public:
     int live() {
         for (;;) {
             const Look look = watch();
+            watchdog_.kick(os::Clock::monotonic());
             if (look.must_act) {
                 act(look.reason);
                 const os::CrashNote& crash = guard_.block().crash;
                 return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
             }
             if (!look.ended) continue;
+            watchdog_.stand_down();
             if (const Sentence& fault = guard_.block().fault; !fault.empty()) keep(fault, {});
             return guard_.exit_code();
         }
@@ -104,6 +111,8 @@ private:
         const std::size_t chips = devices_.write_safe_lines();
         const std::size_t frames = devices_.send_safe_frames(confirmed_within);
         const Duration confirmed = os::Clock::monotonic() - begin;
+        // Lines that a chip did not take are for the box's reset to end.
+        if (chips == 0) watchdog_.stand_down();
         const std::size_t servers = devices_.write_safe_registers();
         if (guard_.block().crash.is_complete()) reason = guard_.block().crash.describe();
         if (reason.empty()) reason = why_it_ended();
@@ -160,6 +169,7 @@ private:
     }
 
     std::string_view black_boxes_;
+    os::Watchdog watchdog_{};
     os::Guard& guard_;
     GuardedDevices& devices_;
     MachineInstance& instance_;

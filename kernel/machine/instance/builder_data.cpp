@@ -1,6 +1,8 @@
 // Wires the connection rows: ports, rings, policies and who is woken; and the sections of other folders.
 #include "kernel/machine/instance/builder.hpp"
 
+#include "kernel/machine/check/units.hpp"
+
 #include <new>
 
 namespace tappet {

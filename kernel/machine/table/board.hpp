@@ -62,7 +62,11 @@ struct Board {
     std::string_view kernel_command_line{};
     std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
     BoardBrowsing browsing{};
-    std::string_view black_box_directory{}; ///< of what is kept of an ending that nobody asked for; "": nothing
+    std::string_view
+        black_box_directory{}; ///< of what is kept of an ending that nobody asked for; "": nothing
+    const char* watchdog =
+        nullptr; ///< "/dev/watchdog": the guardian kicks it while the machine lives; null: none
+    Duration watchdog_within = 10s; ///< then the watchdog resets the box
     /// A real-time activity that is due, or in a cycle, and gets no further for so long, ends the machine:
     /// see kernel/machine/worlds/life_watch.hpp. Longer than any deadline.
     Duration life_sign_within = 200ms;

@@ -46,7 +46,7 @@ private:
     };
     PlacedMachine& machine_;
     Duration within_;
-    std::array<Seen, checks::max_activities> seen_{};
+    std::array<Seen, max_activities> seen_{};
 };
 
 } // namespace tappet

@@ -141,7 +141,9 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const fs::
         "-serial", "file:" + (work / "kernel.log").string(), "-device", "virtio-serial-pci", "-chardev",
         "stdio,id=console,signal=off", "-device", "virtserialport,chardev=console,name=tappet.console",
         "-chardev", "file,id=results,path=" + (work / "results").string(), "-device",
-        "virtserialport,chardev=results,name=tappet.results"};
+        "virtserialport,chardev=results,name=tappet.results",
+        // It sleeps until somebody opens it; a reset ends the guest.
+        "-device", "i6300esb"};
     if (scenario.clock == Clock::instructions) {
         arguments.insert(arguments.end(),
                          {"-icount", "shift=" + std::to_string(instruction_shift) + ",sleep=off"});

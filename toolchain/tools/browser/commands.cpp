@@ -33,6 +33,7 @@ constexpr auto table = std::to_array<Command>({
     {"behaviour", "behaviour [list [NAME] | watch [NAME] [--every TIME] [--count N] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
                                                            "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour},
     {"why",     "why COMPONENT.STATE",                     "why its state machine is not in that state: the transitions that lead nearer, the events they await, the guards that refuse and their reasons", Takes::nothing, 1, 1, run_why},
+    {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "what a guardian kept of a machine that ended otherwise than asked: why, where each activity stood; or a command that reads, as of a machine that lives", Takes::nothing, 1, any, run_post_mortem},
     {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
                                                            "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
 });

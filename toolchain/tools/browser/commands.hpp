@@ -83,6 +83,7 @@ Result<void> run_behaviour(Work& work);
 Result<void> run_why(Work& work);
 Result<void> run_scope(Work& work);
 Result<void> run_reactions(Work& work);
+Result<void> run_post_mortem(Work& work);
 Result<void> run_manifest(Work& work);
 
 } // namespace tappet::browser

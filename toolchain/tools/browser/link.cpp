@@ -65,12 +65,12 @@ Result<std::string> find_socket(const std::string& directory) {
     return failure(Fault::bad_request, "there are several machines (" + names + "); name one with --socket");
 }
 
-Result<SharedBlock> SharedBlock::map(int descriptor) {
+Result<SharedBlock> SharedBlock::map(int descriptor, std::size_t at_byte) {
     struct stat state{};
-    if (::fstat(descriptor, &state) != 0 || state.st_size <= 0)
+    if (::fstat(descriptor, &state) != 0 || state.st_size <= static_cast<off_t>(at_byte))
         return failure(Fault::no_machine, "what the machine handed over is no memory");
-    const auto size = static_cast<std::size_t>(state.st_size);
-    void* const at = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+    const auto size = static_cast<std::size_t>(state.st_size) - at_byte;
+    void* const at = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, static_cast<off_t>(at_byte));
     if (at == MAP_FAILED)
         return failure(Fault::no_machine,
                        std::string{"the machine's memory cannot be mapped: "} + std::strerror(errno));
@@ -102,6 +102,12 @@ Result<Link> Link::connect(const std::string& path) {
     if (link.socket_ < 0 ||
         ::connect(link.socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
         return failure(Fault::no_machine, why_not_connected(path, errno));
+    return link;
+}
+
+Link Link::to_nobody(const std::string& path) {
+    Link link;
+    link.path_ = path;
     return link;
 }
 
@@ -177,6 +183,9 @@ Result<ordered_json> Link::request(std::string_view line) {
 }
 
 Result<ordered_json> Link::request(std::string_view line, std::uint32_t& number) {
+    if (socket_ < 0)
+        return failure(Fault::bad_request,
+                       "'" + path_ + "' is a black box: it can be read, and answers nothing");
     number = ++last_number_;
     const std::string packet = std::to_string(number) + " " + std::string{line};
     if (packet.size() > browsing::max_packet_bytes)

@@ -39,7 +39,8 @@ template <class T> using Result = std::expected<T, Failure>;
 /// Memory of the machine, read-only; unmapped at the end.
 class SharedBlock {
 public:
-    static Result<SharedBlock> map(int descriptor);
+    /// From `at` on, which is whole pages.
+    static Result<SharedBlock> map(int descriptor, std::size_t at = 0);
     SharedBlock(SharedBlock&& other) noexcept;
     SharedBlock& operator=(SharedBlock&& other) noexcept;
     ~SharedBlock();
@@ -55,6 +56,8 @@ private:
 class Link {
 public:
     static Result<Link> connect(const std::string& path);
+    /// Of a machine that is no more, kept in the file `path`: it answers nothing.
+    static Link to_nobody(const std::string& path);
     Link(Link&& other) noexcept;
     Link& operator=(Link&& other) noexcept;
     ~Link();

@@ -18,7 +18,7 @@ std::uint64_t Observer::generation(std::uint32_t activity) const {
 }
 
 template <class Copy> bool Observer::between_cycles(std::uint32_t activity, Copy&& copy_all) const {
-    if (activity == map::none || map_->activities()[activity].generation_at == 0) {
+    if (frozen_ || activity == map::none || map_->activities()[activity].generation_at == 0) {
         copy_all();
         return true;
     }

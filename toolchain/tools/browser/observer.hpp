@@ -35,7 +35,9 @@ class Observer {
 public:
     static constexpr int attempts = 64;
 
-    explicit Observer(const MapReader& map) : map_{&map} {}
+    /// `frozen`: nothing runs any more. What an activity was writing when it ended is then told as it was
+    /// left.
+    explicit Observer(const MapReader& map, bool frozen = false) : map_{&map}, frozen_{frozen} {}
 
     [[nodiscard]] Reading read(std::uint32_t facet) const;
     /// In the order of `facets`. What belongs to one activity is copied at once: it is of one and the same
@@ -58,6 +60,7 @@ private:
     template <class Copy> bool between_cycles(std::uint32_t activity, Copy&& copy_all) const;
 
     const MapReader* map_;
+    bool frozen_;
 };
 
 } // namespace tappet::browser

@@ -25,6 +25,8 @@ int tell(const Surroundings& surroundings, const Failure& failure, bool json) {
 }
 
 Result<std::unique_ptr<Session>> open_session(const Line& line) {
+    if (line.words.size() > 1 && line.words.front() == "post-mortem")
+        return Session::open_black_box(line.words[1]);
     std::string socket = line.socket;
     if (socket.empty()) {
         const auto found = find_socket(line.directory);

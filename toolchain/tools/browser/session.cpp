@@ -5,6 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace tappet::browser {
@@ -34,6 +38,34 @@ Result<std::unique_ptr<Session>> Session::open(const std::string& socket,
     if (!map) return std::unexpected(Failure{Fault::no_machine, map.error()});
     return std::unique_ptr<Session>{new Session{std::move(*link), std::move(*block), std::move(*map),
                                                 hello->value("role", std::string{"unknown"})}};
+}
+
+Result<std::unique_ptr<Session>> Session::open_black_box(const std::string& file) {
+    const auto wrong = [&](const std::string& why) {
+        return std::unexpected(Failure{Fault::bad_request, "'" + file + "' " + why});
+    };
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return wrong(std::string{"cannot be opened: "} + std::strerror(errno));
+    auto record = std::make_unique<map::black_box::Record>();
+    const bool is_one = ::read(descriptor, record.get(), sizeof *record) == sizeof *record &&
+                        record->magic == map::black_box::magic;
+    auto block = is_one ? SharedBlock::map(descriptor, map::black_box::memory_at)
+                        : Result<SharedBlock>{std::unexpected(Failure{})};
+    ::close(descriptor);
+    if (!is_one) return wrong("is no black box; a guardian names the one it kept when it has acted");
+    if (record->version != map::black_box::version)
+        return wrong("is a black box of version " + std::to_string(record->version) +
+                     "; use the browser that was built with the firmware");
+    for (const auto text :
+         {std::span{record->machine}, std::span{record->board}, std::span{record->build_id}})
+        text.back() = 0;
+    record->reason.back() = record->done.back() = record->thread_name.back() = 0;
+    if (!block || block->bytes().size() != record->memory_bytes)
+        return wrong("is cut off: its machine had " + std::to_string(record->memory_bytes) + " bytes");
+    auto map = MapReader::open(block->bytes());
+    if (!map) return wrong("holds a machine that cannot be read: " + map.error());
+    return std::unique_ptr<Session>{
+        new Session{Link::to_nobody(file), std::move(*block), std::move(*map), "reader", std::move(record)}};
 }
 
 } // namespace tappet::browser

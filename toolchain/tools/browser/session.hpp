@@ -1,6 +1,7 @@
 // A browser at work on one machine: the connection, the machine's memory and the map in it.
 #pragma once
 
+#include "kernel/machine/map/black_box.hpp"
 #include "toolchain/tools/browser/link.hpp"
 #include "toolchain/tools/browser/map_reader.hpp"
 #include "toolchain/tools/browser/observer.hpp"
@@ -12,6 +13,10 @@ public:
     /// Connects, asks who is there, and maps the memory.
     static Result<std::unique_ptr<Session>> open(const std::string& socket,
                                                  std::chrono::milliseconds patience);
+    /// What is left of a machine, in a file that its guardian kept.
+    static Result<std::unique_ptr<Session>> open_black_box(const std::string& file);
+    /// Null: the machine lives.
+    [[nodiscard]] const map::black_box::Record* black_box() const { return black_box_.get(); }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
@@ -22,16 +27,19 @@ public:
     [[nodiscard]] const std::string& role() const { return role_; }
 
 private:
-    Session(Link link, SharedBlock block, MapReader map, std::string role)
+    Session(Link link, SharedBlock block, MapReader map, std::string role,
+            std::unique_ptr<map::black_box::Record> black_box = {})
         : link_{std::move(link)},
           block_{std::move(block)},
           map_{std::move(map)},
-          observer_{map_},
+          black_box_{std::move(black_box)},
+          observer_{map_, black_box_ != nullptr},
           role_{std::move(role)} {}
 
     Link link_;
     SharedBlock block_;
     MapReader map_;
+    std::unique_ptr<map::black_box::Record> black_box_;
     Observer observer_;
     std::string role_;
 };

@@ -2,6 +2,7 @@
 // Who owes a sign of life, and for how long it may.
 #include "kernel/machine/worlds/life_watch.hpp"
 
+#include "kernel/machine/firmware.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"

@@ -6,7 +6,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 namespace tappet::browser {
@@ -55,6 +58,66 @@ TEST_F(Program, lists_components_and_their_facets) {
     EXPECT_THAT(run({"list", "shaft", "--json"}).out,
                 testing::AllOf(HasSubstr(R"("name": "shaft.angle", "kind": "output")"),
                                testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator")")));
+}
+
+class BlackBox : public Program {
+protected:
+    /// Of the machine as it is now.
+    std::string keep(std::uint32_t version = map::black_box::version) {
+        map::black_box::Record box;
+        box.magic = map::black_box::magic;
+        box.version = version;
+        box.exit_code = 139;
+        box.memory_bytes = machine.memory().size();
+        box.wall_ns = 86'400'000'000'000;
+        box.signal = 11;
+        box.instruction = 0x4e1c99;
+        std::string{"loom"}.copy(box.machine.data(), 4);
+        std::string{"SEGV at instruction 0x4e1c99"}.copy(box.reason.data(), 40);
+        std::vector<char> file(map::black_box::memory_at + machine.memory().size());
+        std::memcpy(file.data(), &box, sizeof box);
+        std::ranges::transform(machine.memory(), file.begin() + map::black_box::memory_at,
+                               [](std::byte each) { return static_cast<char>(each); });
+        const std::string path = machine.directory() + "/loom-0.blackbox";
+        std::ofstream{path, std::ios::binary}.write(file.data(), static_cast<std::streamsize>(file.size()));
+        return path;
+    }
+};
+
+TEST_F(BlackBox, tells_why_the_machine_ended_and_where_its_activities_stood) {
+    machine.hold("shaft.angle", true);
+    const Outcome told = run({"post-mortem", keep()});
+    EXPECT_EQ(told.code, 0) << told.errors;
+    EXPECT_THAT(told.out, HasSubstr("1970-01-02 00:00:00 UTC: SEGV at instruction 0x4e1c99; exit code 139"));
+    EXPECT_THAT(told.out, HasSubstr("addr2line -Cfie FIRMWARE 0x4e1c99"));
+    EXPECT_THAT(told.out, testing::ContainsRegex("activity .*: was in its cycle"));
+    EXPECT_THAT(run({"post-mortem", keep(), "--json"}).out, HasSubstr(R"("exit_code": 139)"));
+    EXPECT_THAT(asked(), IsEmpty()) << "nobody is asked";
+}
+
+TEST_F(BlackBox, is_read_by_the_commands_that_read_a_machine_and_answers_no_other) {
+    machine.write("shaft.angle", 12.5);
+    machine.hold("shaft.angle", true); // what was half written is told, not waited for
+    const std::string file = keep();
+    EXPECT_THAT(run({"post-mortem", file, "get", "shaft.angle"}).out, HasSubstr("12.5"));
+    EXPECT_EQ(run({"post-mortem", file, "list"}).out, run({"list"}).out);
+    const Outcome asked_for = run({"post-mortem", file, "send", "shaft.stop"});
+    EXPECT_EQ(asked_for.code, 2);
+    EXPECT_THAT(asked_for.errors, HasSubstr("is a black box: it can be read, and answers nothing"));
+    EXPECT_THAT(run({"post-mortem", file, "lits"}).errors, HasSubstr("list"));
+}
+
+TEST_F(BlackBox, that_is_none_or_cut_off_or_of_another_version_is_refused) {
+    EXPECT_THAT(run({"post-mortem", "/nowhere"}).errors,
+                HasSubstr("'/nowhere' cannot be opened: No such file"));
+    const std::string file = keep();
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) - 4096);
+    EXPECT_THAT(run({"post-mortem", file}).errors, HasSubstr("is cut off"));
+    EXPECT_THAT(run({"post-mortem", keep(7)}).errors, HasSubstr("is a black box of version 7"));
+    std::ofstream{file} << "text";
+    EXPECT_THAT(run({"post-mortem", file}).errors, HasSubstr("is no black box"));
+    EXPECT_THAT(run({"post-mortem"}).errors, HasSubstr("it is spelled: post-mortem FILE"));
+    std::filesystem::remove(file);
 }
 
 TEST_F(Program, says_why_the_machine_lets_it_go) {

@@ -100,6 +100,8 @@ public:
     /// number. Anything else gets an "ok".
     void answer(std::string_view request, std::vector<std::string> packets);
     [[nodiscard]] std::vector<std::string> requests() const;
+    /// As the guardian of the machine would see it.
+    [[nodiscard]] std::span<const std::byte> memory() const { return block_; }
     /// Closes every connection, as a machine that ends does.
     void end();
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four calls of the watchdog interface of Linux.
+#include "kernel/os/watchdog.hpp"
+
+#include "kernel/os/clock.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <linux/watchdog.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace tappet::os {
+
+std::expected<void, Sentence> Watchdog::open(const char* path, Duration within) noexcept {
+    descriptor_ = ::open(path, O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0)
+        return std::unexpected(Sentence{"the watchdog \"", path, "\" cannot be opened (",
+                                        std::strerror(errno),
+                                        "); load its module, end who else has it, or correct the board"});
+    int seconds = static_cast<int>(std::max<std::int64_t>(within / 1s, 1));
+    if (ioctl(descriptor_, WDIOC_SETTIMEOUT, &seconds) != 0 && errno != EOPNOTSUPP) {
+        const int error = errno;
+        stand_down();
+        return std::unexpected(Sentence{"the watchdog \"", path, "\" does not wait ", within / 1s, " s (",
+                                        std::strerror(error), "); state another time on the board"});
+    }
+    every_ = within / 8;
+    next_ = Time::min();
+    kick(Clock::monotonic());
+    return {};
+}
+
+void Watchdog::kick(Time now) noexcept {
+    if (descriptor_ < 0 || now < next_) return;
+    next_ = now + every_;
+    static_cast<void>(
+        ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr)); // who fails here is reset, which tells it
+}
+
+void Watchdog::stand_down() noexcept {
+    if (descriptor_ < 0) return;
+    [[maybe_unused]] const auto n = write(descriptor_, "V", 1);
+    close(descriptor_);
+    descriptor_ = -1;
+}
+
+} // namespace tappet::os

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The box's hardware watchdog: once opened it resets the box, unless it is kicked in time or stood down.
+#pragma once
+
+#include "kernel/base/text.hpp"
+#include "kernel/base/time.hpp"
+
+#include <expected>
+
+namespace tappet::os {
+
+/// Linux's watchdog device (Documentation/watchdog/watchdog-api.rst). Not real-time. What ends without
+/// stand_down() leaves it ticking: a guardian that is killed, or a kernel that hangs.
+class Watchdog {
+public:
+    Watchdog() = default;
+    Watchdog(const Watchdog&) = delete;
+    Watchdog& operator=(const Watchdog&) = delete;
+
+    /// Begins: from here on the box is reset when it was not kicked `within`, whole seconds as far as the
+    /// device can. The error names the cure.
+    std::expected<void, Sentence> open(const char* path, Duration within) noexcept;
+    /// At times four to eight times as often as it must; else it does nothing.
+    void kick(Time now) noexcept;
+    /// Ends: nothing is reset. Without effect when it is not open.
+    void stand_down() noexcept;
+
+private:
+    int descriptor_ = -1;
+    Duration every_{};
+    Time next_{};
+};
+
+} // namespace tappet::os
