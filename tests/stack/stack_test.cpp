@@ -38,7 +38,7 @@ const Rules rules{
         {"instructions", {"tappet::primitive::", "test_condition", "run_program", "program_wakes"}},
         {"executions", {"StateMachineExecution::", "ProgramExecution::", "native::"}},
         {"between two steps",
-         {"AsyncReaction::serve", "::run_operation(", "::run_method(", "::force_port(", "::release_port(", "::command_behaviour(",
+         {"AsyncReaction::serve", "::run_operation(", "::run_method(", "::force_port(", "::release_port(", "::command_behaviour(", "::ask_guards(",
           "PropertyTransaction::", "BehaviourSlot::obey", "EngineCall::run", "MethodRequest::run", "run_trigger",
           "run_observer", "BrowserService::observe", "MachineBuilder::place_unit", "MachineBuilder::place_slot"}},
         // Of a component that decides itself when it runs; the loom has none, and a layer that nobody enters needs nothing.
