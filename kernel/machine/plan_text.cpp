@@ -2,7 +2,7 @@
 // it takes.
 #include "kernel/machine/plan_text.hpp"
 
-#include "kernel/machine/check/flow.hpp"
+#include "kernel/machine/check/units.hpp"
 
 namespace tappet {
 

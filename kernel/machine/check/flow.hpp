@@ -36,8 +36,6 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
     return {};
 }
 
-constexpr std::string_view in_unit(const Facet& facet) { return facet.unit.empty() ? "no unit" : facet.unit; }
-
 /// Of a row that scales: the ends are numbers with a fraction, and the factor fits what their units say.
 constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, const Facet& to) {
     if (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic)

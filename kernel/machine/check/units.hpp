@@ -91,6 +91,9 @@ constexpr Unit parse_unit(std::string_view text) noexcept {
     }
 }
 
+constexpr std::string_view in_unit(const Facet& facet) noexcept {
+    return facet.unit.empty() ? "no unit" : facet.unit;
+}
 /// Whether a factor leads from one unit to the other.
 constexpr bool converts(const Unit& from, const Unit& to) noexcept {
     return from.known && to.known && from.same_kind(to);
