@@ -200,7 +200,8 @@ TEST_F(Program, an_option_of_another_command_is_refused_and_its_own_named) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.errors, "tappet-browse: 'get' takes no --every; watch behaviour may\n");
     EXPECT_THAT(run({"save", "--follow"}).errors, HasSubstr("'save' takes no --follow; send may"));
-    EXPECT_THAT(run({"--to", "a.vcd"}).errors, HasSubstr("without a command nothing takes --to; scope may"));
+    EXPECT_THAT(run({"--to", "a.vcd"}).errors,
+                HasSubstr("without a command nothing takes --to; post-mortem scope may"));
     EXPECT_EQ(run({"get", "shaft.angle", "--json", "--timeout", "1s"}).code, 0) << "those are for all";
     EXPECT_EQ(run({"watch", "shaft.angle", "--count", "1", "--every", "1ms"}).code, 0);
     EXPECT_THAT(asked(), IsEmpty());
