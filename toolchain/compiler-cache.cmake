@@ -9,7 +9,7 @@ mark_as_advanced(TAPPET_CCACHE)
 if(TAPPET_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER AND NOT DEFINED ENV{CMAKE_CXX_COMPILER_LAUNCHER})
     foreach(language IN ITEMS C CXX)
         set(CMAKE_${language}_COMPILER_LAUNCHER
-            "${CMAKE_COMMAND}" -E env "CCACHE_DIR=${TAPPET_CACHE}/compiled" CCACHE_MAXSIZE=4G CCACHE_NOHASHDIR=1
+            "${CMAKE_COMMAND}" -E env "CCACHE_DIR=${TAPPET_CACHE}/compiled" CCACHE_MAXSIZE=4G CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1
             "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}"
             # Headers that are compiled ahead are compared by what they hold, not by their age.
             "CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime" "${TAPPET_CCACHE}")
