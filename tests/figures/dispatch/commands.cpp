@@ -173,7 +173,7 @@ void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                         &execute_bare, &prepare_jobs}}});
     constexpr const char *one_receiver = "engine step, all of one component",
                          *clock = "a reading of the clock";
-    groups.push_back({"dispatch.command.execute_one",
+    groups.push_back({"dispatch.command.for_one",
                       "a command carried out by its engine, one of 32 of one component, time stamps excluded",
                       "thesis 4.5.2",
                       senders,
@@ -182,7 +182,7 @@ void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                         &execute_bare, &prepare_jobs_of_one},
                        {clock, Standing::floor, &read_clock}}});
     goals.push_back({"one of 32 queued commands <= 0.9 readings of the clock (20 ns where one takes 22)",
-                     "dispatch.command.execute_one",
+                     "dispatch.command.for_one",
                      one_receiver,
                      0.9,
                      {clock}});
