@@ -2,13 +2,16 @@
 // sentence. There is a case for each way of a refusal into a compiler's message, and for what a compiler
 // alone can see; every other fault is a row of tests/diagnostics/rows, where the same check runs without a
 // compiler.
-//     diagnostics --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--only TEXT] [--write]
-// A case states in its second line what is expected:
+//     diagnostics --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--cases DIR --header FILE]
+//                 [--lines N] [--only TEXT] [--write]
+// The header is included first by every case, and parsed once; N lines may be printed of one. A case states
+// in its second line what is expected:
 //     // refused: <the sentence, the same from both compilers; # stands for any number>
 //     // refused by clang: <a part of the first error, or of the line it points at: the function that is not
 //     real-time>
 //     // refused by name: <a name that both compilers show beside the faulty line>
 //     // and by clang: <what clang shows in addition; in the third line>
+//     // accepted
 // --write prints the sentences instead of comparing them.
 #include <algorithm>
 #include <array>
@@ -38,6 +41,7 @@ constexpr std::size_t most_told = 10;
 
 struct Options {
     std::string compiler, flags, source, build, only;
+    std::string cases, header = "tests/diagnostics/small_machine.hpp", lines;
     bool write = false;
     bool clang = false;
 };
@@ -53,6 +57,7 @@ struct Case {
     std::string by_clang; ///< beside it
     bool effects = false;
     bool named = false;
+    bool accepted = false;
     std::string fault; ///< empty: as expected
     std::string sentence;
 };
@@ -126,8 +131,7 @@ bool is_clang(const Options& options) {
 
 std::vector<Case> read_cases(const Options& options, std::string& fault) {
     std::vector<Case> cases;
-    for (const auto& entry :
-         std::filesystem::directory_iterator{options.source + "/tests/diagnostics/cases"}) {
+    for (const auto& entry : std::filesystem::directory_iterator{options.cases}) {
         if (entry.path().extension() != ".cpp" ||
             entry.path().stem().string().find(options.only) == std::string::npos)
             continue;
@@ -140,6 +144,7 @@ std::vector<Case> read_cases(const Options& options, std::string& fault) {
         Case each;
         each.file = entry.path();
         each.effects = line.starts_with(by_clang);
+        each.accepted = line == "// accepted";
         if (each.effects)
             each.expected = line.substr(by_clang.size());
         else if ((each.named = line.starts_with(by_name))) {
@@ -148,7 +153,7 @@ std::vector<Case> read_cases(const Options& options, std::string& fault) {
                 each.by_clang = line.substr(and_by_clang.size());
         } else if (line.starts_with(refused))
             each.expected = line.substr(refused.size());
-        else
+        else if (!each.accepted)
             fault = entry.path().string() + ": its second line is no \"// refused: ...\"";
         cases.push_back(each);
     }
@@ -159,11 +164,11 @@ std::vector<Case> read_cases(const Options& options, std::string& fault) {
 /// The headers, parsed once for all cases. Returns the flags that use them, or nothing with the fault
 /// printed.
 std::string precompile(const Options& options, bool clang) {
-    const std::string header = "tests/diagnostics/small_machine.hpp";
-    const std::filesystem::path place = options.build + "/precompiled/" + header + (clang ? ".pch" : ".gch");
+    const std::filesystem::path place =
+        options.build + "/precompiled/" + options.header + (clang ? ".pch" : ".gch");
     std::filesystem::create_directories(place.parent_path());
     const Output made = run("cd '" + options.source + "' && '" + options.compiler + "' " + options.flags +
-                            " -x c++-header " + header + " -o '" + place.string() + "'");
+                            " -x c++-header " + options.header + " -o '" + place.string() + "'");
     if (made.status != 0) {
         std::cerr << made.text;
         return {};
@@ -178,9 +183,13 @@ void judge(Case& each, const Options& options, const std::string& headers) {
     const auto lines = static_cast<std::size_t>(std::count(output.text.begin(), output.text.end(), '\n'));
     const bool is_script =
         each.file.stem().string().starts_with("script_") || each.file.stem().string().starts_with("map_");
-    const std::size_t most = is_script ? most_script_lines : most_lines;
+    const std::size_t most = !options.lines.empty() ? std::stoul(options.lines)
+                             : is_script            ? most_script_lines
+                                                    : most_lines;
     each.sentence = each.effects ? error : sentence_of(error);
-    if (output.status == 0)
+    if (each.accepted)
+        each.fault = output.status == 0 ? "" : "it does not compile:\n" + output.text.substr(0, 4000);
+    else if (output.status == 0)
         each.fault = "it compiles";
     else if (each.named) {
         const std::string place = each.file.filename().string() + ":";
@@ -242,7 +251,7 @@ int judge_all(const Options& options) {
     }
     if (options.write) return 0;
     std::cout << cases.size() - faults << " of " << cases.size()
-              << " faulty tables are refused with the sentence expected\n";
+              << " cases are judged as expected, word by word\n";
     return faults == 0 ? 0 : 1;
 }
 
@@ -261,10 +270,13 @@ int main(int count, char** words) {
                              : word == "--source" ? &options.source
                              : word == "--build"  ? &options.build
                              : word == "--only"   ? &options.only
+                             : word == "--cases"  ? &options.cases
+                             : word == "--header" ? &options.header
+                             : word == "--lines"  ? &options.lines
                                                   : nullptr;
         if (place == nullptr || i + 1 == count) {
-            std::cerr << "usage: diagnostics --compiler PATH --flags FLAGS --source DIR --build DIR [--only "
-                         "TEXT] [--write]\n";
+            std::cerr << "usage: diagnostics --compiler PATH --flags FLAGS --source DIR --build DIR "
+                         "[--cases DIR --header FILE] [--lines N] [--only TEXT] [--write]\n";
             return 2;
         }
         *place = words[++i];
@@ -277,5 +289,6 @@ int main(int count, char** words) {
         }
     }
     options.clang = is_clang(options);
+    if (options.cases.empty()) options.cases = options.source + "/tests/diagnostics/cases";
     return judge_all(options);
 }

@@ -83,10 +83,13 @@ std::string file_in(const std::string& code) {
     return is_of_a_floor || (word == code && word.size() > 1 && ends_like_a_file(word)) ? word : "";
 }
 
-/// From the page's folder, or from the root.
+/// From the page's folder, or from the root; in the guide also a file of the project that the front door
+/// writes.
 bool leads_somewhere(const File& page, const std::string& name, const Exists& exists) {
     const auto tidy = [](const fs::path& path) { return path.lexically_normal().generic_string(); };
-    return exists(tidy(fs::path{page.folder()} / name)) || exists(tidy(name));
+    return exists(tidy(fs::path{page.folder()} / name)) || exists(tidy(name)) ||
+           (page.is_under("toolchain/guide") &&
+            exists(tidy("toolchain/tools/front/template/" + name + ".in")));
 }
 
 Findings missing_files(const Tree& files, const Exists& exists) {
