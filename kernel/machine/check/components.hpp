@@ -10,12 +10,12 @@ namespace tappet::checks {
 /// The engine remembers so many wakes to hold a sporadic activity to its promise.
 inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
 
-/// The first facet without a name, or with the name of one before it; nowhere: there is none. Of the type
-/// alone, so that a compiler which remembers its constant calls looks at each type once.
+/// The first facet without a name or a text, or with the name of one before it; nowhere: there is none. Of
+/// the type alone, so that a compiler which remembers its constant calls looks at each type once.
 constexpr std::size_t faulty_facet(const ComponentType* type) noexcept {
     const auto& facets = type->facets;
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        if (facets[f].name.empty()) return f;
+        if (facets[f].name.empty() || facets[f].doc.empty()) return f;
         for (std::size_t g = 0; g < f; ++g)
             if (same_text(facets[f].name, facets[g].name)) return f;
     }
@@ -30,6 +30,10 @@ constexpr Sentence check_interface(const ComponentRow& row) {
     if (facet.name.empty())
         return of_component(row.name, ": its interface has a facet without a name; name it in ",
                             row.type->tag->name);
+    if (facet.doc.empty())
+        return of_component(row.name, ": its facet \"", facet.name,
+                            "\" has no text, by which people know it; say in ", row.type->tag->name,
+                            " what it is");
     return of_component(row.name, ": its interface names \"", facet.name, "\" twice; rename one in ",
                         row.type->tag->name);
 }

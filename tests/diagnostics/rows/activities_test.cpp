@@ -56,6 +56,26 @@ constexpr Fault activity_faults[] = {
          m.put(activity("logic", on_work(), deadline(2ms), budget(80us), runs("weft", "lamps")));
      },
      R"(loom: activity "logic" does not say how often it may be woken; add at_most(n, per))"},
+    {"activity_runs_too_many", [](Table& m) { m.activities[1].too_many_runs = true; },
+     R"(loom: activity "motion" runs more than 64 components; divide it)"},
+    {"activity_that_is_never_woken",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(0, 10ms), deadline(2ms), budget(80us),
+                        runs("weft", "lamps")));
+     },
+     R"(loom: activity "logic": at_most needs at least one wake; write at_most(1, ...))"},
+    {"activity_with_too_many_wakes",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(17, 10ms), deadline(2ms), budget(80us),
+                        runs("weft", "lamps")));
+     },
+     R"(loom: activity "logic" promises more than 16 wakes in one window; shorten the window of at_most)"},
+    {"activity_deadline",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(-2ms), budget(80us),
+                        runs("weft", "lamps")));
+     },
+     R"(loom: activity "logic": its deadline is negative; correct deadline(...))"},
     {"activity_period",
      [](Table& m) { m.put(activity("motion", every(0ms), budget(120us), runs("shaft", "tension"))); },
      R"(loom: activity "motion": its period is not positive; write every(1ms) or the like)"},
@@ -146,6 +166,9 @@ Table guarded_loom() {
 constexpr Fault watch_faults[] = {
     {"watch_of_nothing", [](Table& m) { m.put(component<Watchdog>("dog")); },
      R"(loom: component "dog" watches nothing; add watches("...") with an activity or an output)"},
+    {"watch_of_an_unknown_name",
+     [](Table& m) { m.put(component<Watchdog>("dog", watches("thunder"), set("limit", 20ms))); },
+     R"(loom: component "dog" watches "thunder", which no activity is called; name an activity, or an output as component.output)"},
     {"watch_by_another", [](Table& m) { m.put(component<TimedEvent>("dog", watches("motion"))); },
      R"(loom: component "dog" is no watchdog; remove watches("motion"))"},
     {"watch_activity_unknown",

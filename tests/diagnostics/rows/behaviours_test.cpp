@@ -45,6 +45,9 @@ constexpr Fault cycle_faults[] = {
     {"behaviour_foreign_event_unknown",
      [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("shaft.windw")); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.windw"): component "shaft" has no event "windw"; did you mean "window"?)"},
+    {"behaviour_event_unknown",
+     [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("thunder")); },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "thunder"): component "weft" has no event "thunder"; name it, or another component's as component.event)"},
     {"state_unknown", [](Table& m) { m.transitions[0] = transition("idle", "weavng", on("shaft.window")); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weavng" on "shaft.window") leads to an unknown state "weavng"; did you mean "weaving"?)"},
     {"state_without_exit", [](Table& m) { m.transitions.pop_back(); },
@@ -84,6 +87,26 @@ constexpr Fault slot_faults[] = {
          m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), events("weft.release"))));
      },
      R"(loom: slot of "shaft": among its events, "weft.release" is an operation, not an event; name an event)"},
+    {"slot_operation_is_an_output",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), operations("weft.reference"))));
+     },
+     R"(loom: slot of "shaft": among its operations, "weft.reference" is an output, not an operation; name an operation)"},
+    {"slot_angle_unknown",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), angle_of("encoder.angel"))));
+     },
+     R"(loom: slot of "shaft": its angle: component "encoder" has no output "angel"; did you mean "angle"?)"},
+    {"slot_angle_is_no_angle",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), angle_of("encoder.turns"))));
+     },
+     R"(loom: slot of "shaft": its angle "encoder.turns" is an output of int; name an output of double, in degrees)"},
+    {"slot_angle_of_another_activity",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), angle_of("encoder.angle"))));
+     },
+     R"(loom: slot of "shaft": its angle "encoder.angle" is written in another activity; name an output of activity "motion")"},
     {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
      R"(loom: slot of "shaft" reserves no nodes, data or depth; state all three)"},
     {"slot_stack",

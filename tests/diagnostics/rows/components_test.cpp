@@ -11,8 +11,28 @@ struct Twin {
     Output<double> one;
     Output<double> other;
     static constexpr auto interface() {
-        return facets(output<&Twin::one>("same", "", ""), output<&Twin::other>("same", "", ""));
+        return facets(output<&Twin::one>("same", "", "of two facets"),
+                      output<&Twin::other>("same", "", "of two facets"));
     }
+};
+
+struct Mute {
+    Output<double> tone;
+    static constexpr auto interface() { return facets(output<&Mute::tone>("tone", "Hz", "")); }
+};
+struct Unnamed {
+    Output<double> tone;
+    static constexpr auto interface() { return facets(output<&Unnamed::tone>("", "Hz", "of the horn")); }
+};
+
+struct Restarter {
+    static constexpr std::string_view device_kind = "can";
+    static constexpr bool shares_device = true;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+struct Recorder {
+    static constexpr bool records_cycles = true;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 
 /// What most horns have to say of themselves.
@@ -84,6 +104,16 @@ constexpr Fault component_faults[] = {
      R"(loom: component "shaft" is run twice by activity "motion"; remove it once)"},
     {"interface_twice", [](Table& m) { m.add(component<Twin>("twin")); },
      R"(loom: component "twin": its interface names "same" twice; rename one in Twin)"},
+    {"recorders",
+     [](Table& m) {
+         m.add(component<Recorder>("scope"));
+         m.add(component<Recorder>("second_scope"));
+     },
+     R"(loom: component "second_scope" records the machine's cycles as "scope" does already; remove one of them)"},
+    {"interface_without_text", [](Table& m) { m.add(component<Mute>("horn")); },
+     R"(loom: component "horn": its facet "tone" has no text, by which people know it; say in Mute what it is)"},
+    {"interface_without_name", [](Table& m) { m.add(component<Unnamed>("horn")); },
+     R"(loom: component "horn": its interface has a facet without a name; name it in Unnamed)"},
 };
 INSTANTIATE_TEST_SUITE_P(components, Refusal, testing::ValuesIn(planted_into(small_loom, component_faults)),
                          name_of);
@@ -168,6 +198,12 @@ constexpr Fault device_faults[] = {
      R"(loom: component "encoder" drives a can device but its row names none; add device("..."))"},
     {"device_kind", [](Table& m) { m.put(component<Encoder>("encoder", device("panel"))); },
      R"(loom: component "encoder": binding to board "bench", wired("panel"): it drives a can device but "io" is of kind gpio; name another)"},
+    {"device_shared_with_nobody",
+     [](Table& m) {
+         m.add(component<Restarter>("restarter", device("spare_encoder")));
+         m.put(activity("hall", every(250ms), not_real_time, runs("climate", "restarter")));
+     },
+     R"(loom: component "restarter" shares device "spare_encoder", which no component drives; correct the name)"},
     {"device_shared",
      [](Table& m) {
          m.add(component<Encoder>("spare", device("main_encoder")));
@@ -235,6 +271,28 @@ constexpr Fault board_faults[] = {
                              wired("panel", "io", line("red", 4), line("green", 5)));
      },
      R"(loom: component "climate": binding to board "old box", wired("hall"): unit(300) is no server; write 1 to 247, over TCP also 255)"},
+    {"server_that_may_never_answer",
+     [](Table& m) {
+         m.binding =
+             binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:502", answer_within(0ms)),
+                     wired("panel", "io", line("red", 4), line("green", 5)));
+     },
+     R"(loom: component "climate": binding to board "old box", wired("hall"): answer_within is not above 0; write for example answer_within(300ms))"},
+    {"server_on_a_serial_line",
+     [](Table& m) {
+         m.binding = binding(wired("main_encoder", "can0"), wired("hall", "serial1", serial_line(0, 'E', 1)),
+                             wired("panel", "io", line("red", 4), line("green", 5)));
+     },
+     R"(loom: component "climate": binding to board "old box", wired("hall"): no serial line is set so; write for example serial_line(19'200, 'E', 1))"},
+    {"line_missing", [](Table& m) { rebind(m, wired("panel", "io", line("red", 4))); },
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): it has no line "green"; add line("...", offset) to it)"},
+    {"device_missing",
+     [](Table& m) { m.binding = binding(wired("panel", "io", line("red", 4), line("green", 5))); },
+     R"(loom: component "encoder": the binding to board "old box" does not say where device "main_encoder" stands; add wired("...", "a device of the board") to it)"},
+    {"binding_too_long", [](Table& m) { m.binding.too_many = true; },
+     R"(loom: binding to board "old box": it has more rows than a binding holds: 16 devices, 64 placements; raise the bound in kernel/machine/table/binding.hpp)"},
+    {"placement_of_nothing", [](Table& m) { m.binding.placement[0] = place("thunder", 0); },
+     R"(loom: binding to board "old box", place("thunder"): the table has no such activity; remove the placement)"},
     {"placement_twice", [](Table& m) { static_cast<void>(m.binding.placement.push(place("hall", 1))); },
      R"(loom: binding to board "old box": place("hall") stands there twice; remove one)"},
     {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0"); },

@@ -7,6 +7,33 @@ namespace {
 using namespace small;
 using namespace tappet::diagnostics;
 
+/// What small_machine.hpp has no ports for.
+struct Talker {
+    Output<Text<8>> word;
+    Output<std::int8_t> count;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { count.write(1); }
+    static constexpr auto interface() {
+        return facets(output<&Talker::word>("word", "", "that it says"),
+                      output<&Talker::count>("count", "", "of its words"));
+    }
+};
+struct Hearer {
+    Input<Text<8>> word;
+    Input<std::int8_t> count;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(input<&Hearer::word>("word", "", "that it hears", optional),
+                      input<&Hearer::count>("count", "", "of the words", optional));
+    }
+};
+void add_talk(Table& m, const ConnectionRow& row) {
+    m.add(component<Talker>("talker"));
+    m.add(component<Hearer>("hearer"));
+    m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
+                   runs("weft", "lamps", "talker", "hearer")));
+    m.add(row);
+}
+
 constexpr float standing = 0;
 constexpr int at_rest = 0;
 
@@ -91,6 +118,14 @@ constexpr Fault option_faults[] = {
     {"connection_wakes_a_periodic_activity",
      [](Table& m) { m.put(data("encoder.angle", "shaft.measured", wakes)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" wakes activity "motion", which is periodic; remove wakes)"},
+    {"connection_wakes_itself", [](Table& m) { add_talk(m, data("talker.count", "hearer.count", wakes)); },
+     R"(loom: connection "talker.count" -> "hearer.count" wakes its own activity "logic"; remove wakes)"},
+    {"connection_number_for_a_text",
+     [](Table& m) { add_talk(m, data("talker.word", "hearer.word", stale_after(2ms), substitute(1.0))); },
+     R"(loom: connection "talker.word" -> "hearer.word": a value of type tappet::Text<8> is no number; write substitute<constant>() with a constant of that type)"},
+    {"connection_number_too_large",
+     [](Table& m) { add_talk(m, data("talker.count", "hearer.count", initially(128.0))); },
+     R"(loom: connection "talker.count" -> "hearer.count": the number in initially does not fit "hearer.count" of type signed char; write one that it can hold)"},
 };
 INSTANTIATE_TEST_SUITE_P(options, Refusal, testing::ValuesIn(planted_into(small_loom, option_faults)),
                          name_of);

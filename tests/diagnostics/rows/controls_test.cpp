@@ -17,6 +17,30 @@ constexpr const ScriptUnit& weaving = compiled_script<weaving_source, weft_reach
 constexpr ScriptSource other_source{"other.osd", "program feed(int picks) { yield; }"};
 constexpr const ScriptUnit& other = compiled_script<other_source, weft_reach>;
 
+// What stands in the reach of a script and not so in the machine.
+constexpr ScriptSource lifting_source{"lifting.osd", "program lift(int picks) { yield; }"};
+constexpr auto unknown_reach = script_reach(reachable<Weft>("weft"), reachable<Lamps>("lanterns", false));
+constexpr const ScriptUnit& with_unknown_peer = compiled_script<lifting_source, unknown_reach>;
+constexpr auto other_reach = script_reach(reachable<Weft>("weft"), reachable<Encoder>("lamps", false));
+constexpr const ScriptUnit& with_other_peer = compiled_script<lifting_source, other_reach>;
+constexpr auto near_reach = script_reach(reachable<Weft>("weft"), reachable<Shaft>("shaft"));
+constexpr const ScriptUnit& with_near_peer = compiled_script<lifting_source, near_reach>;
+constexpr ScriptUnit empty_script{.name = "empty.osd"};
+
+constexpr Fault script_faults[] = {
+    {"script_peer_unknown", [](Table& m) { m.behaviours[0] = behaviour("weft", with_unknown_peer, {}); },
+     R"(loom: behaviour of "weft": script "lifting.osd": among its peers, there is no component "lanterns"; add it to components(...))"},
+    {"script_peer_of_another_type",
+     [](Table& m) { m.behaviours[0] = behaviour("weft", with_other_peer, {}); },
+     R"(loom: behaviour of "weft": script "lifting.osd" was compiled for small::Encoder but "lamps" is a small::Lamps; give its reach that type)"},
+    {"script_peer_elsewhere", [](Table& m) { m.behaviours[0] = behaviour("weft", with_near_peer, {}); },
+     R"(loom: behaviour of "weft": script "lifting.osd" touches "shaft" as one of its own activity, but activity "motion" runs it; compile it with a reach that says so, or run both in one activity)"},
+    {"script_with_nothing_to_run", [](Table& m) { m.behaviours[0] = behaviour("weft", empty_script, {}); },
+     R"(loom: behaviour of "weft": script "empty.osd" has nothing to run; add a RootStateMachine or a program)"},
+};
+INSTANTIATE_TEST_SUITE_P(scripts, Refusal, testing::ValuesIn(planted_into(small_loom, script_faults)),
+                         name_of);
+
 Table controlled_loom() {
     Table m = small_loom();
     m.add(component<BehaviourTask<weaving, "feed">>("feeding", controls("weft")));
@@ -55,6 +79,9 @@ constexpr Fault control_faults[] = {
     {"task_of_an_unknown_program",
      [](Table& m) { m.put(component<BehaviourTask<weaving, "fed">>("feeding", controls("weft"))); },
      R"(loom: component "feeding" is the task of "fed", which script "weaving.osd" does not have; did you mean "feed"?)"},
+    {"task_of_no_program",
+     [](Table& m) { m.put(component<BehaviourTask<weaving, "thunder">>("feeding", controls("weft"))); },
+     R"(loom: component "feeding" is the task of "thunder", which script "weaving.osd" does not have; name one of its programs or state machines)"},
     {"task_in_another_activity",
      [](Table& m) {
          m.put(activity("logic", on_work(), at_most(8, 4ms), deadline(2ms), budget(30us),

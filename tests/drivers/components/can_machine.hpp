@@ -87,15 +87,20 @@ struct Master {
     }
 
     static constexpr auto interface() {
-        return facets(
-            input<&Master::statusword>("statusword", "", ""), input<&Master::velocity>("velocity", "rpm", ""),
-            input<&Master::faulted>("faulted", "", ""), input<&Master::lost>("lost", "", ""),
-            input<&Master::received>("received", "", ""), output<&Master::controlword>("controlword", "", ""),
-            output<&Master::target>("target", "rpm", ""), output<&Master::command>("command", "", ""),
-            output<&Master::node>("node", "", ""), output<&Master::sync>("sync", "", ""),
-            operation<&Master::on_frame>("on_frame", ""), operation<&Master::on_fault>("on_fault", ""),
-            operation<&Master::on_recovery>("on_recovery", ""),
-            operation<&Master::on_surrender>("on_surrender", ""));
+        return facets(input<&Master::statusword>("statusword", "", "of the drive"),
+                      input<&Master::velocity>("velocity", "rpm", "of the drive, measured"),
+                      input<&Master::faulted>("faulted", "", "the bus is"),
+                      input<&Master::lost>("lost", "", "frames, by the bus"),
+                      input<&Master::received>("received", "", "frames, by the bus"),
+                      output<&Master::controlword>("controlword", "", "to the drive"),
+                      output<&Master::target>("target", "rpm", "of the drive"),
+                      output<&Master::command>("command", "", "sent on demand"),
+                      output<&Master::node>("node", "", "which one the command is for"),
+                      output<&Master::sync>("sync", "", "sent every cycle"),
+                      operation<&Master::on_frame>("on_frame", "a frame arrived"),
+                      operation<&Master::on_fault>("on_fault", "the bus went off"),
+                      operation<&Master::on_recovery>("on_recovery", "the bus is back"),
+                      operation<&Master::on_surrender>("on_surrender", "nobody restarts the bus any more"));
     }
 };
 

@@ -65,17 +65,21 @@ struct Listener {
         closes = false;
     }
     static constexpr auto interface() {
-        return facets(
-            input<&Listener::stop_level>("stop_level", "", ""),
-            input<&Listener::weft_level>("weft_level", "", ""), input<&Listener::lost>("lost", "", ""),
-            output<&Listener::lamp_wanted>("lamp", "", ""), event<&Listener::open>("open", ""),
-            event<&Listener::close>("close", ""), event<&Listener::hold>("hold", ""),
-            event<&Listener::let_go>("let_go", ""), operation<&Listener::stop_rose>("stop_rose", ""),
-            operation<&Listener::stop_fell>("stop_fell", ""),
-            operation<&Listener::weft_rose>("weft_rose", ""),
-            operation<&Listener::weft_fell>("weft_fell", ""),
-            operation<&Listener::edges_lost>("edges_lost", ""), input<&Listener::faulted>("faulted", "", ""),
-            operation<&Listener::on_fault>("on_fault", ""));
+        return facets(input<&Listener::stop_level>("stop_level", "", "of the stop button"),
+                      input<&Listener::weft_level>("weft_level", "", "of the weft detector"),
+                      input<&Listener::lost>("lost", "", "edges that were lost"),
+                      output<&Listener::lamp_wanted>("lamp", "", "shall shine"),
+                      event<&Listener::open>("open", "the valve shall open"),
+                      event<&Listener::close>("close", "the valve shall close"),
+                      event<&Listener::hold>("hold", "the brake shall hold"),
+                      event<&Listener::let_go>("let_go", "the brake shall let go"),
+                      operation<&Listener::stop_rose>("stop_rose", "the button is pressed"),
+                      operation<&Listener::stop_fell>("stop_fell", "the button is let go"),
+                      operation<&Listener::weft_rose>("weft_rose", "the weft arrives"),
+                      operation<&Listener::weft_fell>("weft_fell", "the weft has passed"),
+                      operation<&Listener::edges_lost>("edges_lost", "some edges are not known"),
+                      input<&Listener::faulted>("faulted", "", "the chip is"),
+                      operation<&Listener::on_fault>("on_fault", "the chip does not answer"));
     }
 };
 using What = Listener::What;

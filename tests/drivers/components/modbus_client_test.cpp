@@ -41,11 +41,13 @@ struct Reader {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { pump.write(0); }
     static constexpr auto interface() {
-        return facets(input<&Reader::temperature>("temperature", "degC", ""),
-                      input<&Reader::connected>("connected", "", ""),
-                      input<&Reader::outages>("outages", "", ""),
-                      input<&Reader::survived>("survived", "", ""), output<&Reader::pump>("pump", "", ""),
-                      operation<&Reader::on_lost>("on_lost", ""), operation<&Reader::on_back>("on_back", ""));
+        return facets(input<&Reader::temperature>("temperature", "degC", "of the hall"),
+                      input<&Reader::connected>("connected", "", "the server answers"),
+                      input<&Reader::outages>("outages", "", "of the server"),
+                      input<&Reader::survived>("survived", "", "outages that ended"),
+                      output<&Reader::pump>("pump", "", "shall run"),
+                      operation<&Reader::on_lost>("on_lost", "the server is silent"),
+                      operation<&Reader::on_back>("on_back", "the server answers again"));
     }
 };
 using Client = modbus::Client<registers>;

@@ -46,7 +46,7 @@ struct Oven {
     static constexpr auto interface() {
         return facets(output<&Oven::angle_deg>("angle_deg", "deg", "of the turntable"),
                       output<&Oven::shown>("shown", "", "on its display"),
-                      property<&Oven::target>("target", "degC", "", range(0, 300)),
+                      property<&Oven::target>("target", "degC", "of the heater", range(0, 300)),
                       event<&Oven::hot>("hot", "it is as hot as it should be"),
                       event<&Oven::tick>("tick", "of the test"),
                       method<&Oven::note>("note", "is written down"),

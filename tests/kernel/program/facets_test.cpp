@@ -48,12 +48,16 @@ struct Arm {
     }
     void changed() noexcept TAPPET_REALTIME { ++changes; }
     static constexpr auto interface() {
-        return facets(input<&Arm::measured>("measured", "deg", ""), output<&Arm::wanted>("wanted", "deg", ""),
-                      input<&Arm::jobs>("jobs", "", ""), output<&Arm::results>("results", "", ""),
-                      event<&Arm::moved>("moved", ""), property<&Arm::speed>("speed", "", "", range(0, 10)),
-                      property<&Arm::axes>("axes", "", ""), operation<&Arm::tell>("tell", ""),
-                      method<&Arm::twice>("twice", ""), method<&Arm::enable>("enable", ""),
-                      command<&Arm::move_to, &Arm::moved_to>("move_to", ""));
+        return facets(
+            input<&Arm::measured>("measured", "deg", "angle of the arm"),
+            output<&Arm::wanted>("wanted", "deg", "angle of the arm"),
+            input<&Arm::jobs>("jobs", "", "to be done"), output<&Arm::results>("results", "", "of the jobs"),
+            event<&Arm::moved>("moved", "the arm stands"),
+            property<&Arm::speed>("speed", "", "of the arm", range(0, 10)),
+            property<&Arm::axes>("axes", "", "how many there are"),
+            operation<&Arm::tell>("tell", "hears a number"), method<&Arm::twice>("twice", "doubles a number"),
+            method<&Arm::enable>("enable", "switches the arm"),
+            command<&Arm::move_to, &Arm::moved_to>("move_to", "goes to an angle"));
     }
 };
 

@@ -50,9 +50,11 @@ struct Panel {
     CommandCall<> clean, halt_it, stop_feeder;
     CommandCall<ScriptText> request;
     static constexpr auto interface() {
-        return facets(sends<&Panel::bake>("bake", "so many"), sends<&Panel::clean>("clean", ""),
-                      sends<&Panel::halt_it>("stop", ""), sends<&Panel::stop_feeder>("stop_feeder", ""),
-                      sends<&Panel::request>("request", ""));
+        return facets(sends<&Panel::bake>("bake", "so many"),
+                      sends<&Panel::clean>("clean", "runs the program"),
+                      sends<&Panel::halt_it>("stop", "ends the program"),
+                      sends<&Panel::stop_feeder>("stop_feeder", "ends its life"),
+                      sends<&Panel::request>("request", "another state"));
     }
 };
 
