@@ -23,7 +23,7 @@ foreach(library IN ITEMS libmodbus/src libmodbus/configure.ac pugixml/src)
 endforeach()
 # What to read first: the framework's page, the guide and the smallest whole machine.
 install(FILES README.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
-install(DIRECTORY toolchain/guide DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
+install(DIRECTORY toolchain/guide "${PROJECT_BINARY_DIR}/guide" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet/examples")
 # The bench's kernels, unpacked: without them a machine runs on the host only.
 install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign")

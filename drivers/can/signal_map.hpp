@@ -39,16 +39,20 @@ template <std::size_t N> struct FrameWithSignals {
 
 /// The identifier of a row: standard(0x181), extended(0x18FF0102).
 constexpr Identifier standard(std::uint32_t id) noexcept { return {id, false}; }
+/// Likewise, of 29 bits.
 constexpr Identifier extended(std::uint32_t id) noexcept { return {id, true}; }
 
 struct Bytes {
     std::uint8_t count = 0;
 };
+/// Length of the frame, 8 at most.
 constexpr Bytes bytes(std::uint8_t count) noexcept { return {count}; }
 struct Every {
     Duration period{};
 };
+/// Sent with this period.
 constexpr Every every(Duration period) noexcept { return {period}; }
+/// Sent when one of its values was written, and all of them in order.
 inline constexpr Every on_demand{};
 
 /// receive(standard(0x181), "main_drive", bytes(6), signal("statusword", 0, 16), ...)

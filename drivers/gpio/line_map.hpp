@@ -25,8 +25,10 @@ struct LineRow {
 struct Debounce {
     Duration time{};
 };
+/// An edge counts when the level has stood so long.
 constexpr Debounce debounce(Duration time) noexcept { return {time}; }
 struct ActiveLow {};
+/// The line is active when its wire is low.
 inline constexpr ActiveLow active_low{};
 struct Safe {
     bool active = false;
@@ -57,6 +59,7 @@ constexpr LineRow row(std::string_view name, Role role, Driven driven, Options..
 
 } // namespace detail
 
+/// Is read: its level, and its edges with their times.
 template <class... Options> constexpr LineRow sensor(std::string_view name, Options... options) {
     return detail::row(name, Role::input, Driven::by_port, options...);
 }

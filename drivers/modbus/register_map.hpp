@@ -23,15 +23,19 @@ struct Run {
     std::uint32_t address = 0; ///< counted from 0, as on the wire
     std::uint32_t count = 0;
 };
+/// Bits that are read and written, from an address that counts from 0.
 constexpr Run coils(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::coils, address, count};
 }
+/// Bits that are read.
 constexpr Run discrete_inputs(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::discrete_inputs, address, count};
 }
+/// Words that are read.
 constexpr Run input_registers(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::input_registers, address, count};
 }
+/// Words that are read and written.
 constexpr Run holding_registers(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::holding_registers, address, count};
 }
@@ -63,10 +67,12 @@ template <std::size_t N> struct RowWithRegisters {
 struct Every {
     Duration period{};
 };
+/// The period of the request.
 constexpr Every every(Duration period) noexcept { return {period}; }
 struct StaleAfter {
     Duration age{};
 };
+/// Values that are older are not sent any more.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 
 /// read("climate", input_registers(0, 4), every(250ms), word("temperature", 0).as_signed().times(0.1), ...)

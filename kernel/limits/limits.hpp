@@ -23,8 +23,11 @@ enum class OnBreach : std::uint8_t {
     count, ///< it goes out as it is
     stop   ///< the nearest value goes out, and the machine stops
 };
+/// The nearest value that is allowed goes out. The default.
 inline constexpr OnBreach clamp_on_breach = OnBreach::clamp;
+/// The value goes out as it is.
 inline constexpr OnBreach count_on_breach = OnBreach::count;
+/// The nearest value that is allowed goes out, and the machine stops.
 inline constexpr OnBreach stop_on_breach = OnBreach::stop;
 
 struct LimitRow {

@@ -69,10 +69,13 @@ constexpr AtMost at_most(std::int64_t n, Duration per) noexcept { return {n, per
 struct Budget {
     Duration each;
 };
+/// Processor time of one cycle, synchronous reactions included: what the schedulability analysis believes.
 constexpr Budget budget(Duration each) noexcept { return {each}; }
 struct Deadline {
     Duration after;
 };
+/// From the release to the end of the cycle; the period, or that of at_most, unless stated. The shorter, the
+/// higher the priority.
 constexpr Deadline deadline(Duration after) noexcept { return {after}; }
 struct NotRealTime {};
 /// May block; runs below every real-time activity, without budget or deadline.
@@ -80,6 +83,7 @@ inline constexpr NotRealTime not_real_time{};
 struct StackBytes {
     std::size_t bytes;
 };
+/// Of its thread; 64 KiB unless stated, 16 KiB at least.
 constexpr StackBytes stack(std::size_t bytes) noexcept { return {bytes}; }
 struct StopWhenLate {};
 /// A missed deadline stops the machine; without this it is counted and reported.
@@ -89,6 +93,7 @@ struct Runs {
     Bounded<std::string_view, ActivityRow::max_runs> names{};
     bool too_many = false;
 };
+/// The components that it runs, 64 at most; their order follows from the data flow.
 template <class... Names>
 constexpr Runs runs(const Names&... names) {
     Runs row;
@@ -135,6 +140,7 @@ constexpr void apply(ActivityRow& row, const Runs& option) noexcept {
 
 } // namespace detail
 
+/// A thread of the machine, or its share of virtual time.
 template <class... Options>
 constexpr ActivityRow activity(std::string_view name, const Options&... options) {
     ActivityRow row{.name = name};

@@ -71,6 +71,7 @@ struct BehaviourRow {
     }
 };
 
+/// A list of names, 16 at most.
 template <class... Names>
 constexpr Bounded<std::string_view, Slot::max_names> names(const Names&... each) {
     static_assert(sizeof...(Names) <= Slot::max_names,
@@ -132,20 +133,27 @@ constexpr void apply(BehaviourOptions& row, OnError what) noexcept { row.on_erro
 
 } // namespace detail
 
+/// Instructions of what is loaded.
 constexpr detail::SlotNumber<detail::NodesTag> nodes(std::uint32_t n) noexcept { return {n}; }
+/// Of its variables and of arguments under way.
 constexpr detail::SlotNumber<detail::DataTag> data_bytes(std::uint32_t n) noexcept { return {n}; }
+/// Of composite states and child machines.
 constexpr detail::SlotNumber<detail::DepthTag> depth(std::uint32_t n) noexcept { return {n}; }
+/// Commands that it sends.
 constexpr detail::SlotNumber<detail::CommandsTag> command_slots(std::uint32_t n) noexcept { return {n}; }
+/// Statements and transitions that wait for time.
 constexpr detail::SlotNumber<detail::TimersTag> timers(std::uint32_t n) noexcept { return {n}; }
 /// The components, operations and events that what is loaded may name.
 template <class... Names>
 constexpr detail::SlotNames<detail::PeersTag> peers(const Names&... each) {
     return {names(each...)};
 }
+/// Of its peers, as component.operation.
 template <class... Names>
 constexpr detail::SlotNames<detail::OperationsTag> operations(const Names&... each) {
     return {names(each...)};
 }
+/// Of its peers, as component.event.
 template <class... Names>
 constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) {
     return {names(each...)};
@@ -156,6 +164,7 @@ constexpr detail::SlotNumber<detail::TextTag> text_bytes(std::uint32_t n) noexce
 constexpr detail::SlotNumber<detail::TrialTag> trial(std::uint32_t steps) noexcept { return {steps}; }
 /// The output, in degrees and in the slot's activity, whose angle a loading may wait for.
 constexpr detail::SlotAngle angle_of(std::string_view output) noexcept { return {output}; }
+/// Room for one behaviour that is loaded later.
 template <class... Options>
 constexpr Slot slot(const Options&... options) {
     Slot row;
@@ -169,6 +178,7 @@ inline constexpr detail::Reactive reactive_mode{};
 inline constexpr detail::Escalates escalates{};
 /// At most so many statements in one step of the engine; what is left over goes on in the next.
 constexpr detail::StatementBound at_most(std::uint32_t statements) noexcept { return {statements}; }
+/// What an error that no parent handles does; it stops the machine unless stated.
 constexpr OnError on_error(OnError what) noexcept { return what; }
 
 /// A state machine table that drives a component; it runs in the component's activity.

@@ -58,12 +58,17 @@ struct Binding {
 /// machine on a simulated board.
 inline constexpr Binding unbound{};
 
+/// A line of the map, and its offset on the chip.
 constexpr BoundLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
+/// The address of a Modbus server: 1 to 247, over TCP also 255.
 constexpr ServerUnit unit(int number) noexcept { return {number}; }
+/// How long a Modbus client waits for an answer; 300 ms unless stated.
 constexpr AnswerWithin answer_within(Duration time) noexcept { return {time}; }
+/// Baud, parity ('N', 'E' or 'O') and stop bits of a serial line.
 constexpr SerialLine serial_line(int baud, char parity, int stop_bits) noexcept {
     return {baud, parity, stop_bits};
 }
+/// The processor of an activity; the board's default unless stated.
 constexpr Placement place(std::string_view activity, int processor) noexcept { return {activity, processor}; }
 
 namespace detail {

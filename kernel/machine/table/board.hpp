@@ -92,7 +92,9 @@ constexpr BoardDevice board_device(std::string_view name, std::string_view kind,
     return device;
 }
 
+/// How many lines a GPIO chip has for wires.
 constexpr LineCount lines(unsigned count) noexcept { return {count}; }
+/// What the bus is wired and terminated for, in bit/s.
 constexpr BitRate bit_rate(std::uint32_t bits_per_second) noexcept { return {bits_per_second}; }
 
 namespace detail {
@@ -109,12 +111,16 @@ constexpr Bounded<T, N> list_of(const Items&... items) {
 
 } // namespace detail
 
+/// The devices of the box, 16 at most.
 template <class... Devices>
 constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
     return detail::list_of<BoardDevice, 16>(devices...);
 }
+/// The user of that number has this role at least.
 constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {false, number, role}; }
+/// Who is in the group of that number has this role at least.
 constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {true, number, role}; }
+/// Who may do more than look, 16 rows at most.
 template <class... Rows>
 constexpr Bounded<BoardRole, 16> roles(const Rows&... rows) {
     return detail::list_of<BoardRole, 16>(rows...);

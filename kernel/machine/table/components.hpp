@@ -112,6 +112,7 @@ constexpr void apply(ComponentRow& row, const PropertiesFile& option) noexcept {
 
 } // namespace detail
 
+/// component<Type>("name", ...): its name is the first part of every path to it, so it has no dot.
 template <class T, class... Options>
 constexpr ComponentRow component(std::string_view name, const Options&... options) {
     ComponentRow row{.name = name, .type = &component_type<T>};

@@ -47,7 +47,9 @@ struct StaleAfter {
 /// A value older than this is stale; hold, substitute(x) or stop_machine say what the reader then gets: hold,
 /// if nothing says so. stop_machine is kept whatever the reader's activity waits for.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
+/// Of a stale value: the reader keeps it, and sees that it is stale.
 inline constexpr WhenStale hold = WhenStale::hold;
+/// Of a stale value: the machine stops.
 inline constexpr WhenStale stop_machine = WhenStale::stop;
 struct Substitute {
     RowValue value;
@@ -86,7 +88,9 @@ constexpr Scaled scaled(double factor) noexcept { return {factor}; }
 struct Converted {};
 /// Likewise, and the factor leads from the unit of the output to the unit of the input.
 inline constexpr Converted converted{};
+/// Of a full buffer: what comes is not taken, and counted. The default.
 inline constexpr Overflow reject_newest = Overflow::reject;
+/// Of a full buffer: what waits longest gives way, and is counted.
 inline constexpr Overflow drop_oldest = Overflow::drop_oldest;
 
 /// Whether somebody acts when the value grows stale: the machine stops, or the reader is woken.

@@ -76,6 +76,7 @@ constexpr void apply(ReactionRow& row, Disconnected) noexcept { row.is_connected
 
 } // namespace detail
 
+/// Upon each emission of the event, as component.event: tell(...) or call(...).
 template <class... Options>
 constexpr ReactionRow when(std::string_view event, ReactionTarget target, Options... options) noexcept {
     ReactionRow row;

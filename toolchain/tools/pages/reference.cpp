@@ -1,0 +1,164 @@
+// The reference: components of the library and the drivers by their interfaces, words of tables and maps by
+// their headers, commands of the browser by their table.
+#include "drivers/can/bus.hpp"
+#include "drivers/can/restarter.hpp"
+#include "drivers/gpio/line_port.hpp"
+#include "drivers/modbus/client.hpp"
+#include "kernel/base/decimal.hpp"
+#include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/scope/thread_scope.hpp"
+#include "kernel/services/tasks/behaviour_task.hpp"
+#include "kernel/services/tasks/component_life.hpp"
+#include "kernel/services/time/timed_event.hpp"
+#include "kernel/services/time/watchdog.hpp"
+#include "toolchain/tools/browser/commands.hpp"
+#include "toolchain/tools/pages/pages.hpp"
+
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+namespace tappet::pages {
+
+namespace {
+
+// Each kind of row once, so that each kind of facet is shown.
+constexpr auto frames = can::signal_map(
+    can::receive(can::standard(1), "in_frame", can::bytes(8), can::signal("count", 0, 16),
+                 can::signal("measure", 16, 16).times(0.1).in("mm")),
+    can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
+                  can::signal("measure", 16, 16).times(0.1).in("mm")));
+constexpr auto lines =
+    gpio::line_map(gpio::sensor("sensor"), gpio::output("output"), gpio::actuator("actuator"));
+constexpr auto registers =
+    modbus::register_map(modbus::read("in_row", modbus::input_registers(0, 1), modbus::every(1s),
+                                      modbus::word("measure", 0).in("mm")),
+                         modbus::write("out_row", modbus::holding_registers(0, 1), modbus::every(1s),
+                                       modbus::stale_after(3s), modbus::word("measure", 0).in("mm")));
+
+struct Described {
+    std::string_view header, type, row;
+    const ComponentType& component;
+};
+const Described components[] = {
+    {"drivers/gpio/line_port.hpp", "LinePort", "gpio::LinePort<line_map>",
+     component_type<gpio::LinePort<lines>>},
+    {"drivers/can/bus.hpp", "Bus", "can::Bus<signal_map>", component_type<can::Bus<frames>>},
+    {"drivers/can/restarter.hpp", "Restarter", "can::Restarter", component_type<can::Restarter>},
+    {"drivers/modbus/client.hpp", "Client", "modbus::Client<register_map>",
+     component_type<modbus::Client<registers>>},
+    {"kernel/services/time/timed_event.hpp", "TimedEvent", "TimedEvent", component_type<TimedEvent>},
+    {"kernel/services/time/watchdog.hpp", "Watchdog", "Watchdog", component_type<Watchdog>},
+    {"kernel/services/tasks/behaviour_task.hpp", "BehaviourTask", "BehaviourTask<script, \"instance\">",
+     component_type<BehaviourTask<>>},
+    {"kernel/services/tasks/component_life.hpp", "ComponentLife", "ComponentLife",
+     component_type<ComponentLife>},
+    {"kernel/services/scope/thread_scope.hpp", "ThreadScope", "ThreadScope", component_type<ThreadScope>},
+    {"kernel/services/browsing/browser_service.hpp", "BrowserService", "BrowserService",
+     component_type<BrowserService>},
+};
+
+constexpr std::string_view tables[][2] = {
+    {"kernel/machine/table/components.hpp", "components(...)"},
+    {"kernel/machine/table/activities.hpp", "activities(...)"},
+    {"kernel/machine/table/connections.hpp", "connections(...)"},
+    {"kernel/machine/table/reactions.hpp", "reactions(...)"},
+    {"kernel/machine/table/behaviours.hpp", "behaviours(...)"},
+    {"kernel/limits/limits.hpp", "limits(...)"},
+    {"kernel/machine/table/board.hpp", "a board"},
+    {"kernel/machine/table/binding.hpp", "binding(...)"},
+    {"drivers/gpio/line_map.hpp", "gpio::line_map(...)"},
+    {"drivers/can/signal_map.hpp", "can::signal_map(...)"},
+    {"drivers/modbus/register_map.hpp", "modbus::register_map(...)"},
+};
+
+std::string type_text(const TypeTag& type) {
+    switch (type.kind) {
+    case ValueKind::duration: return "time";
+    case ValueKind::integer:
+    case ValueKind::natural:
+        return (type.kind == ValueKind::natural ? "uint" : "int") + std::to_string(8 * type.size);
+    case ValueKind::arguments: {
+        std::string text;
+        for (const TypeId each : type.elements) text += (text.empty() ? "" : ", ") + type_text(*each);
+        return "(" + text + ")";
+    }
+    default: break;
+    }
+    std::string text{type.name};
+    if (text.starts_with("tappet::")) text.erase(0, 8);
+    return text;
+}
+
+std::string range_text(const Range& range) {
+    if (std::isinf(range.low) && std::isinf(range.high)) return {};
+    return std::string{decimal(range.low).view()} + " to " + std::string{decimal(range.high).view()};
+}
+
+std::string_view thread_text(const Facet& facet) {
+    switch (facet.kind) {
+    case FacetKind::event: return "call: its own; tell: the receiver's";
+    case FacetKind::operation: return facet.any_thread ? "any" : "its own";
+    case FacetKind::method: return facet.any_thread ? "any" : "the caller's, in its own activity";
+    case FacetKind::command: return "its own, in its cycles";
+    default: return "its own";
+    }
+}
+
+bool may_be_asked_for(FacetKind kind) {
+    return kind == FacetKind::property || kind == FacetKind::operation || kind == FacetKind::method ||
+           kind == FacetKind::command;
+}
+
+void put(std::ostream& page, const Described& each, const std::string& text) {
+    page << "\n### " << cell(each.row) << "\n\n" << text << "\n\n`#include \"" << each.header << "\"`";
+    if (!each.component.device_kind.empty()) page << "; drives a " << each.component.device_kind << " device";
+    page << "\n\n| facet | kind | type | unit | range | text | thread | asked for by |\n"
+            "|---|---|---|---|---|---|---|---|\n";
+    for (const Facet& facet : each.component.facets) {
+        std::string_view kind = to_text(facet.kind);
+        kind.remove_prefix(kind.find(' ') + 1);
+        page << "| `" << facet.name << "` | " << kind << (facet.required ? ", required" : "") << " | "
+             << cell(type_text(*facet.type)) << " | " << facet.unit << " | " << range_text(facet.range)
+             << " | " << cell(facet.doc) << " | " << thread_text(facet) << " | "
+             << (may_be_asked_for(facet.kind) ? to_text(facet.least_role) : "") << " |\n";
+    }
+}
+
+std::optional<std::string> put(std::ostream& page, std::string_view heading, const std::string& header,
+                               const std::string& text) {
+    const auto found = words(header, text);
+    if (!found) return found.error();
+    if (found->empty()) return header + ": no word was found in it";
+    page << "\n### " << heading << "\n\n| word | says |\n|---|---|\n";
+    for (const Word& word : *found) page << "| " << code(word.spelled) << " | " << cell(word.text) << " |\n";
+    return std::nullopt;
+}
+
+} // namespace
+
+std::expected<std::string, std::string> reference_page(const std::filesystem::path& tree) {
+    std::ostringstream page;
+    page << "# Reference\n\nMade from the code: interfaces, headers and the browser's table.\n\n"
+            "## Components\n\nOf a driver the facets of a sample map, in which `in_frame`, `sensor` or "
+            "`in_row` stands for a name of yours.\n";
+    for (const Described& each : components) {
+        const std::string text = text_of(contents_of(tree / each.header), each.type);
+        if (text.empty())
+            return std::unexpected(std::string{each.header} + ": " + std::string{each.type} +
+                                   " has no text; say above it, after ///, what it is");
+        put(page, each, text);
+    }
+    page << "\n## Rows and their options\n";
+    std::string silent;
+    for (const auto& [header, heading] : tables)
+        if (const auto fault = put(page, heading, std::string{header}, contents_of(tree / header)))
+            silent += "\n  " + *fault;
+    if (!silent.empty()) return std::unexpected(silent);
+    page << "\n## Commands of the browser\n\n| `tappet-browse ...` | does |\n|---|---|\n";
+    for (const browser::Command& each : browser::commands())
+        page << "| " << code(each.usage) << " | " << cell(each.help) << " |\n";
+    return page.str();
+}
+
+} // namespace tappet::pages
