@@ -11,13 +11,14 @@
 
 namespace tappet::pages {
 
-/// A sentence by which the compiler refuses a machine, as a test of tests/diagnostics has it.
+/// A sentence by which the compiler refuses a machine, as a test has it.
 struct Refusal {
-    std::string topic;    ///< the file of its row, or the first word of its case
-    std::string name;     ///< of its row or case: "activity_runs_nothing"
+    std::string topic;    ///< the file of its row, or what the test is about
+    std::string name;     ///< of its row, case or test: "activity_runs_nothing"
     std::string sentence; ///< # stands for any number
 };
-/// Of all rows and cases, by topic; those that only clang sees are functions' names, and left out.
+/// Of all rows and cases of tests/diagnostics, and of the tests of state machines, limits and maps, by topic;
+/// those that only clang sees are functions' names, and left out.
 std::vector<Refusal> refusals(const std::filesystem::path& tree);
 
 /// What may stand in a table's row or in a map: a function or a constant of a header, with its comment.

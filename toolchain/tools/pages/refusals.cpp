@@ -1,4 +1,4 @@
-// The index of refusals: sentence, cause and cure, from the golden sentences of tests/diagnostics.
+// The index of refusals: sentence, cause and cure, from the golden sentences of the tests.
 #include "toolchain/tools/pages/pages.hpp"
 
 #include <algorithm>
@@ -12,6 +12,12 @@ namespace tappet::pages {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// After the cause; a sentence of a map has a colon there.
+std::size_t cure_of(std::string_view sentence) {
+    const std::size_t semicolon = sentence.rfind("; ");
+    return semicolon != sentence.npos ? semicolon : sentence.rfind(": ");
+}
 
 std::vector<fs::path> sources_in(const fs::path& folder) {
     std::vector<fs::path> files;
@@ -46,10 +52,25 @@ void add_case(const fs::path& file, std::vector<Refusal>& found) {
         found.push_back({"seen by a compiler only, or through it", name, line.substr(refused.size())});
 }
 
-/// After the cause; a sentence of a map has a colon there.
-std::size_t cure_of(std::string_view sentence) {
-    const std::size_t semicolon = sentence.rfind("; ");
-    return semicolon != sentence.npos ? semicolon : sentence.rfind(": ");
+/// Tests of one check beside it: what they expect, word by word, is a whole sentence with its cure.
+void add_expected(const fs::path& file, const std::string& topic, std::vector<Refusal>& found) {
+    static const std::regex test{R"(\nTEST\w*\((\w+), (\w+)\)|,\s*((?:"(?:\\.|[^"\\])*"\s*)+)\)(?:;| <<))"};
+    static const std::regex literal{R"~("((?:\\.|[^"\\])*)")~"}, escape{R"(\\(.))"};
+    const std::string text = contents_of(file);
+    std::string name;
+    for (std::sregex_iterator at(text.begin(), text.end(), test), end; at != end; ++at) {
+        if ((*at)[2].matched) {
+            name = (*at)[2].str();
+            continue;
+        }
+        const std::string said = (*at)[3].str();
+        std::string sentence;
+        for (std::sregex_iterator part(said.begin(), said.end(), literal); part != end; ++part)
+            sentence += std::regex_replace((*part)[1].str(), escape, "$1");
+        if (cure_of(sentence) != sentence.npos &&
+            std::ranges::find(found, sentence, &Refusal::sentence) == found.end())
+            found.push_back({topic, name, sentence});
+    }
 }
 
 } // namespace
@@ -81,6 +102,10 @@ std::vector<Refusal> refusals(const fs::path& tree) {
     std::vector<Refusal> found;
     for (const fs::path& file : sources_in(tree / "tests/diagnostics/rows")) add_rows(file, found);
     for (const fs::path& file : sources_in(tree / "tests/diagnostics/cases")) add_case(file, found);
+    add_expected(tree / "tests/kernel/statechart/check_test.cpp", "state machines", found);
+    add_expected(tree / "tests/kernel/limits/limits_test.cpp", "limits", found);
+    add_expected(tree / "tests/drivers/can/signal_map_test.cpp", "CAN signal maps", found);
+    add_expected(tree / "tests/drivers/modbus/register_map_test.cpp", "Modbus register maps", found);
     return found;
 }
 

@@ -93,6 +93,11 @@ TEST(Refusals, have_a_name_and_a_cure_each) {
     ASSERT_TRUE(page) << page.error();
     EXPECT_GT(refusals(tree).size(), 200u);
     for (const Refusal& each : refusals(tree)) EXPECT_NE(each.name, "") << each.sentence;
+    EXPECT_THAT(*page, HasSubstr("| `frame \"f\" is there twice` | `rename one of them` |"))
+        << "over one line";
+    EXPECT_THAT(*page,
+                HasSubstr("is a second initial state in \"working\" beside \"run_up\"` | `keep one` |"))
+        << "of two literals";
     EXPECT_THAT(*page, HasSubstr("| `loom: component \"horn\": its interface has a facet without a name` | "
                                  "`name it in Unnamed` |"));
 }
