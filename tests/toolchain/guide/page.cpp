@@ -186,8 +186,9 @@ void write_unit(const Unit& unit, const fs::path& to, const std::string& name, c
     out << "// " << page << ":" << unit.line << "\n// "
         << (unit.refusal.empty() ? "accepted" : "refused: " + unit.refusal) << "\n"
         << "#include \"tests/toolchain/guide/context.hpp\"\n#define TAPPET_NAMESPACE " << project.name << "\n"
-        << include(name, "machine.hpp") << include(name, "bindings.hpp") << include(name, "boards/my_box.hpp")
-        << (whole ? include(name, "test.cpp") : "") << "namespace " << project.name << " {\n"
+        << (whole ? include(name, "test.cpp") : "") << include(name, "machine.hpp")
+        << include(name, "bindings.hpp") << include(name, "boards/my_box.hpp") << "namespace " << project.name
+        << " {\n"
         << project.code << "} // namespace\n";
     for (const std::string board : {"bench", "my_box"})
         if (!unit.refusal.empty() || board == "my_box") // what fits one fits the other, unless a page says so

@@ -5,6 +5,7 @@
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/modbus/client.hpp"
 #include "kernel/base/decimal.hpp"
+#include "kernel/pieces/kept.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
@@ -27,14 +28,15 @@ constexpr auto frames = can::signal_map(
     can::receive(can::standard(1), "in_frame", can::bytes(8), can::signal("count", 0, 16),
                  can::signal("measure", 16, 16).times(0.1).in("mm")),
     can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
-                  can::signal("measure", 16, 16).times(0.1).in("mm")));
-constexpr auto lines =
-    gpio::line_map(gpio::sensor("sensor"), gpio::output("output"), gpio::actuator("actuator"));
+                  can::signal("measure", 16, 16).times(0.1).in("mm"))
+        .safe_by_silence());
+constexpr auto lines = gpio::line_map(gpio::sensor("sensor"), gpio::output("output", gpio::safe(false)),
+                                      gpio::actuator("actuator", gpio::safe(false)));
 constexpr auto registers =
     modbus::register_map(modbus::read("in_row", modbus::input_registers(0, 1), modbus::every(1s),
                                       modbus::word("measure", 0).in("mm")),
                          modbus::write("out_row", modbus::holding_registers(0, 1), modbus::every(1s),
-                                       modbus::stale_after(3s), modbus::word("measure", 0).in("mm")));
+                                       modbus::stale_after(3s), modbus::word("measure", 0).in("mm").safe(0)));
 
 struct Described {
     std::string_view header, type, row;
@@ -53,6 +55,8 @@ const Described components[] = {
      component_type<BehaviourTask<>>},
     {"kernel/services/tasks/component_life.hpp", "ComponentLife", "ComponentLife",
      component_type<ComponentLife>},
+    {"kernel/pieces/kept.hpp", "HourMeter", "HourMeter", component_type<HourMeter>},
+    {"kernel/pieces/kept.hpp", "Total", "Total", component_type<Total>},
     {"kernel/services/scope/thread_scope.hpp", "ThreadScope", "ThreadScope", component_type<ThreadScope>},
     {"kernel/services/browsing/browser_service.hpp", "BrowserService", "BrowserService",
      component_type<BrowserService>},
