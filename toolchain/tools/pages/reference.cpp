@@ -7,6 +7,7 @@
 #include "kernel/base/decimal.hpp"
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/configuration/property_keeper.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
 #include "kernel/services/tasks/component_life.hpp"
@@ -57,6 +58,8 @@ const Described components[] = {
      component_type<ComponentLife>},
     {"kernel/pieces/kept.hpp", "HourMeter", "HourMeter", component_type<HourMeter>},
     {"kernel/pieces/kept.hpp", "Total", "Total", component_type<Total>},
+    {"kernel/services/configuration/property_keeper.hpp", "PropertyKeeper", "PropertyKeeper",
+     component_type<PropertyKeeper>},
     {"kernel/services/scope/thread_scope.hpp", "ThreadScope", "ThreadScope", component_type<ThreadScope>},
     {"kernel/services/browsing/browser_service.hpp", "BrowserService", "BrowserService",
      component_type<BrowserService>},
