@@ -65,7 +65,11 @@ std::expected<Guard::Side, Sentence> Guard::split() noexcept {
     if (child != 0) {
         machine_ = child;
         machine_descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
-        return Side::guardian;
+        if (machine_descriptor_ >= 0) return Side::guardian;
+        auto refusal = refused("no descriptor of a process", "use Linux 5.3 or later");
+        kill();
+        waitpid(child, nullptr, 0);
+        return refusal;
     }
     pthread_mutex_lock(&block->machine_lives); // for ever
     // The end of the guardian asks for the orderly stop, as every signal does; the supervisor then sees who

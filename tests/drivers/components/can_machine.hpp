@@ -22,8 +22,10 @@ inline constexpr auto signals = can::signal_map(
                   can::signal("controlword", 0, 16).safe(2),
                   can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)),
     can::transmit(can::standard(0x000), "nmt", can::bytes(2), can::on_demand, can::signal("command", 0, 8),
-                  can::signal("node", 8, 8)).safe_by_silence(),
-    can::transmit(can::standard(0x080), "sync", can::bytes(1), can::on_demand, can::signal("count", 0, 8)).safe_by_silence());
+                  can::signal("node", 8, 8))
+        .safe_by_silence(),
+    can::transmit(can::standard(0x080), "sync", can::bytes(1), can::on_demand, can::signal("count", 0, 8))
+        .safe_by_silence());
 
 /// Does in each cycle what the test has set.
 struct Master {

@@ -14,13 +14,13 @@
 namespace tappet::modbus {
 namespace {
 
-constexpr auto map = register_map(
-    read("inputs", input_registers(10, 3), every(20ms), word("a", 0), word("b", 2)),
-    read("contacts", discrete_inputs(4, 4), every(20ms), bit("even", 0), bit("odd", 1)),
-    read("echo", holding_registers(20, 2), every(20ms), double_word("both", 0).as_signed().safe(-2)),
-    write("setpoint", holding_registers(20, 2), every(1s), stale_after(10s),
-          double_word("both", 0).as_signed()),
-    read("nowhere", holding_registers(5000, 1), every(100ms), word("w", 0)));
+constexpr auto map =
+    register_map(read("inputs", input_registers(10, 3), every(20ms), word("a", 0), word("b", 2)),
+                 read("contacts", discrete_inputs(4, 4), every(20ms), bit("even", 0), bit("odd", 1)),
+                 read("echo", holding_registers(20, 2), every(20ms), double_word("both", 0).as_signed()),
+                 write("setpoint", holding_registers(20, 2), every(1s), stale_after(10s),
+                       double_word("both", 0).as_signed().safe(-2)),
+                 read("nowhere", holding_registers(5000, 1), every(100ms), word("w", 0)));
 static_assert(map.fault.empty());
 
 Time now() {

@@ -122,6 +122,7 @@ TEST(Guard, hands_on_what_is_signalled_to_it) {
             return 7;
         },
         [](Guard& guard) {
+            while (!guard.block().activities_run) static_cast<void>(guard.look(1ms)); // its handler is there
             ::kill(::getpid(), SIGTERM);
             while (next(guard) != Seen::end) {
             }
