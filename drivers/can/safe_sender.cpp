@@ -8,6 +8,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <linux/can/raw.h>
 #include <sys/socket.h>
@@ -61,14 +62,18 @@ void SafeSender::send(Purpose purpose) noexcept {
 }
 
 std::size_t SafeSender::left() noexcept {
-    // Frames of the machine that waited in the kernel may come first: they are bounded by its queue.
-    for (int n = 0; n < 256; ++n) {
+    // Frames of the machine come first, as many as the socket's buffer holds; an interface that was down in
+    // between is told once.
+    bool was_down = false;
+    for (int n = 0; n < 65536; ++n) {
         can_frame raw{};
         iovec part{&raw, sizeof raw};
         msghdr message{};
         message.msg_iov = &part;
         message.msg_iovlen = 1;
-        if (::recvmsg(fd_, &message, MSG_DONTWAIT) != static_cast<ssize_t>(sizeof raw)) break;
+        const ssize_t got = ::recvmsg(fd_, &message, MSG_DONTWAIT);
+        if (got < 0 && errno == ENETDOWN && !std::exchange(was_down, true)) continue;
+        if (got != static_cast<ssize_t>(sizeof raw)) break;
         if ((message.msg_flags & MSG_CONFIRM) == 0) continue; // of the machine, while it lived
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             const can_frame ours = wire::encode(frames_[i]);

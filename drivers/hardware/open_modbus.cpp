@@ -1,6 +1,7 @@
 // A Modbus server, reached by Ethernet or by a serial port of the board.
 #include "drivers/hardware/open.hpp"
 #include "kernel/machine/check/board.hpp"
+#include "kernel/os/sleep.hpp"
 
 namespace tappet {
 
@@ -19,14 +20,21 @@ std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, co
     return server.open(settings);
 }
 
+// A server may still be answering the machine's last request, or hold its connection: then it is asked again.
 bool write_safe_registers(modbus::LibmodbusTransport& server, const modbus::SafeWrites& writes) noexcept {
-    if (writes.requests.empty()) return true;
-    bool good = server.connect().outcome == modbus::Outcome::ok;
-    for (const modbus::SafeWrite& each : writes.requests)
-        good = good && server.write(each.run.table, static_cast<std::uint16_t>(each.run.address),
-                                    writes.words.subspan(each.first, each.run.count))
-                               .outcome == modbus::Outcome::ok;
-    server.disconnect();
+    constexpr int attempts = 3;
+    bool good = writes.requests.empty();
+    for (int attempt = 0; attempt < attempts && !good; ++attempt) {
+        if (attempt != 0) os::sleep_for(100ms);
+        if (server.connect().outcome != modbus::Outcome::ok) continue;
+        good = true; // and each is tried: one that is refused keeps no other from being safe
+        for (const modbus::SafeWrite& each : writes.requests)
+            good = server.write(each.run.table, static_cast<std::uint16_t>(each.run.address),
+                                writes.words.subspan(each.first, each.run.count))
+                           .outcome == modbus::Outcome::ok &&
+                   good;
+        server.disconnect();
+    }
     return good;
 }
 

@@ -28,9 +28,6 @@ namespace tappet::os {
 
 namespace {
 
-// How long a crashed thread waits for the guardian before its signal ends the process all the same.
-constexpr int crash_patience_ms = 1000;
-
 void write_to(const char* path, std::string_view text) noexcept {
     const int file = open(path, O_WRONLY | O_CLOEXEC);
     if (file < 0) return;
@@ -40,7 +37,7 @@ void write_to(const char* path, std::string_view text) noexcept {
 
 } // namespace
 
-std::expected<Guard::Side, Sentence> Guard::split() noexcept {
+std::expected<Guard::Side, Sentence> Guard::split(int crash_patience_ms) noexcept {
     const auto refused = [](std::string_view what, std::string_view cure) {
         return std::unexpected(
             Sentence{"the machine has no guardian: ", what, " (", std::strerror(errno), "); ", cure});
@@ -58,7 +55,15 @@ std::expected<Guard::Side, Sentence> Guard::split() noexcept {
     pthread_mutexattr_setrobust(&robust, PTHREAD_MUTEX_ROBUST);
     pthread_mutex_init(&block->machine_lives, &robust);
     guardian_ = getpid();
+    // Somebody who ignores the ends of children leaves that to whom he starts: then nobody could wait for
+    // one.
+    signal(SIGCHLD, SIG_DFL);
+    // What comes in between is for the guardian to hand on.
+    sigset_t all, before;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, &before);
     const pid_t child = fork();
+    if (child <= 0) sigprocmask(SIG_SETMASK, &before, nullptr);
     if (child < 0)
         return refused("no second process", "give the box more memory, or raise the limit of processes");
     block_ = block;
@@ -67,21 +72,23 @@ std::expected<Guard::Side, Sentence> Guard::split() noexcept {
         machine_descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
         if (machine_descriptor_ >= 0) return Side::guardian;
         auto refusal = refused("no descriptor of a process", "use Linux 5.3 or later");
-        kill();
+        ::kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
+        block_ = nullptr;
+        sigprocmask(SIG_SETMASK, &before, nullptr);
         return refusal;
     }
     pthread_mutex_lock(&block->machine_lives); // for ever
     // The end of the guardian asks for the orderly stop, as every signal does; the supervisor then sees who
     // is gone.
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    const rlimit none{0, 0}; // a core dump would hold the end up, by as long as its file takes
+    const rlimit none{1, 1}; // a core dump would hold the end up; 0 keeps it from files, 1 from pipes too
     setrlimit(RLIMIT_CORE, &none);
     on_crash(block->crash, crash_, crash_patience_ms);
     return Side::machine;
 }
 
-Sentence Guard::wait_for_guardian() const noexcept {
+Sentence Guard::wait_for_guardian() noexcept {
     for (int waited = 0; waited < 1000 && !guardian_is_lost(); ++waited) {
         if (block_->is_ready.load(std::memory_order_acquire)) return {};
         if (block_->has_refused.load(std::memory_order_acquire)) return block_->refusal;
@@ -99,16 +106,19 @@ void Guard::let_activities_be_watched(bool watched) noexcept {
     if (block_ != nullptr) block_->activities_run.store(watched, std::memory_order_release);
 }
 
-void Guard::end_well(const Sentence& fault) noexcept {
-    if (block_ != nullptr) block_->fault = fault;
-    if (block_ != nullptr) block_->ended_well.store(true, std::memory_order_release);
+void Guard::end(Outputs outputs, const Sentence& fault) noexcept {
+    if (block_ == nullptr) return;
+    block_->fault = fault;
+    block_->ended_well.store(outputs == Outputs::safe, std::memory_order_release);
 }
 
-bool Guard::guardian_is_lost() const noexcept {
+bool Guard::guardian_is_lost() noexcept {
     if (block_ == nullptr) return false;
     if (getppid() != guardian_) return true;
     const std::int64_t looked = block_->looked_ns.load(std::memory_order_acquire);
-    return looked != 0 && Clock::monotonic() - at_ns(looked) > guardian_within;
+    const bool is_stale = looked != 0 && Clock::monotonic() - at_ns(looked) > guardian_within;
+    stale_looks_ = is_stale ? stale_looks_ + 1 : 0;
+    return stale_looks_ >= 3;
 }
 
 bool Guard::become_guardian(std::span<const int> kept) noexcept {
@@ -125,9 +135,8 @@ bool Guard::become_guardian(std::span<const int> kept) noexcept {
     for (int file = 3; file < 256; ++file)
         if (!keeps(file)) close(file);
     on_termination(nullptr);
-    sigset_t all;
+    sigset_t all; // blocked since the split
     sigfillset(&all);
-    sigprocmask(SIG_BLOCK, &all, nullptr);
     signals_ = signalfd(-1, &all, SFD_NONBLOCK | SFD_CLOEXEC);
     never_wait();
     prctl(PR_SET_NAME, "guardian");
@@ -156,7 +165,7 @@ Guard::Seen Guard::look(Duration time) noexcept {
         if (told[1].revents != 0) return Seen::crash;
         signalfd_siginfo facts{};
         if (read(signals_, &facts, sizeof facts) == sizeof facts && facts.ssi_signo != SIGCHLD)
-            ::kill(machine_, static_cast<int>(facts.ssi_signo));
+            send(static_cast<int>(facts.ssi_signo));
     }
     if (!is_owned_) is_owned_ = block_->back_by_ns.load(std::memory_order_acquire) != 0;
     // Its memory is freed before its descriptor tells the end, which takes some milliseconds.
@@ -165,15 +174,20 @@ Guard::Seen Guard::look(Duration time) noexcept {
     return Seen::nothing;
 }
 
-void Guard::kill() const noexcept { ::kill(machine_, SIGKILL); }
+void Guard::kill() const noexcept { send(SIGKILL); }
+
+// By its descriptor: the number of a process that has ended may be another's.
+void Guard::send(int signal) const noexcept {
+    syscall(SYS_pidfd_send_signal, machine_descriptor_, signal, nullptr, 0);
+}
 
 bool Guard::await_end(Duration time) noexcept {
     pollfd end{machine_descriptor_, POLLIN, 0};
     const timespec limit{static_cast<time_t>(time / 1s), static_cast<long>((time % 1s).count())};
-    static_cast<void>(ppoll(&end, 1, &limit, nullptr));
-    int status = 0;
-    if (has_ended_ || waitpid(machine_, &status, WNOHANG) != machine_) return has_ended_;
+    if (has_ended_ || ppoll(&end, 1, &limit, nullptr) <= 0) return has_ended_;
     has_ended_ = true;
+    int status = 0;
+    if (waitpid(machine_, &status, WNOHANG) != machine_) return true; // whoever traces it learns it first
     exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     return true;
 }

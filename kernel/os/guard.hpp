@@ -28,7 +28,7 @@ struct GuardBlock {
     std::atomic<bool> has_refused{false};    ///< it never can; `refusal` says why
     std::atomic<std::int64_t> looked_ns{0};  ///< when the guardian looked last
     Sentence refusal{};
-    Sentence fault{}; ///< that stopped the machine in order; before ended_well
+    Sentence fault{}; ///< that stopped the machine; before ended_well, and before its end
     CrashNote crash{};
 };
 
@@ -43,23 +43,25 @@ public:
     Guard(const Guard&) = delete;
     Guard& operator=(const Guard&) = delete;
 
-    /// Forks: from here on this is the one or the other. Before there are threads. An error names the cure,
-    /// and then there is one process only.
-    std::expected<Side, Sentence> split() noexcept;
+    /// Forks: from here on this is the one or the other. Before there are threads. A thread that crashes
+    /// waits for so long that the guardian ends it; then its signal does. An error names the cure, and then
+    /// there is one process only.
+    std::expected<Side, Sentence> split(int crash_patience_ms = 1000) noexcept;
 
     // ---- in the machine's process; without a split() they do nothing, and the guardian is not lost
 
     [[nodiscard]] bool is_split() const noexcept { return block_ != nullptr; }
     /// Empty once the guardian can act; else why not, after a second at most.
-    [[nodiscard]] Sentence wait_for_guardian() const noexcept;
+    [[nodiscard]] Sentence wait_for_guardian() noexcept;
     /// The supervisor shows life, and will again within `time`; at each call anew.
     void be_back_within(Duration time) noexcept;
     void let_activities_be_watched(bool watched) noexcept;
-    /// Every output is safe. `fault`: what stopped the machine, though nobody asked for it; empty: somebody
-    /// did.
-    void end_well(const Sentence& fault = {}) noexcept;
-    /// It ended, or it hangs.
-    [[nodiscard]] bool guardian_is_lost() const noexcept;
+    enum class Outputs : std::uint8_t { safe, not_sure };
+    /// It ends now. `fault`: what stopped the machine, though nobody asked for it; empty: somebody did.
+    void end(Outputs outputs, const Sentence& fault) noexcept;
+    /// It ended, or looked at nothing for so long in three calls one after the other: after a box was frozen
+    /// all begin at once.
+    [[nodiscard]] bool guardian_is_lost() noexcept;
 
     // ---- in the guardian's
 
@@ -84,6 +86,8 @@ public:
     [[nodiscard]] int exit_code() const noexcept { return exit_code_; }
 
 private:
+    void send(int signal) const noexcept;
+
     GuardBlock* block_ = nullptr;
     std::int32_t machine_ = -1;  // its process
     std::int32_t guardian_ = -1; // that of this
@@ -93,6 +97,7 @@ private:
     int exit_code_ = 128 + 9; // until it is known: of one that was killed and does not end
     bool has_ended_ = false;
     bool is_owned_ = false; // machine_lives
+    int stale_looks_ = 0;
 };
 
 } // namespace tappet::os

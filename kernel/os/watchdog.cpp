@@ -21,14 +21,20 @@ std::expected<void, Sentence> Watchdog::open(const char* path, Duration within) 
         return std::unexpected(Sentence{"the watchdog \"", path, "\" cannot be opened (",
                                         std::strerror(errno),
                                         "); load its module, end who else has it, or correct the board"});
-    int seconds = static_cast<int>(std::max<std::int64_t>(within / 1s, 1));
-    if (ioctl(descriptor_, WDIOC_SETTIMEOUT, &seconds) != 0 && errno != EOPNOTSUPP) {
-        const int error = errno;
+    const auto refused = [&](const Sentence& why) {
         stand_down();
-        return std::unexpected(Sentence{"the watchdog \"", path, "\" does not wait ", within / 1s, " s (",
-                                        std::strerror(error), "); state another time on the board"});
-    }
-    every_ = within / 8;
+        return std::unexpected(Sentence{"the watchdog \"", path, "\" ", why});
+    };
+    watchdog_info facts{};
+    constexpr std::uint32_t needed = WDIOF_KEEPALIVEPING | WDIOF_MAGICCLOSE;
+    if (ioctl(descriptor_, WDIOC_GETSUPPORT, &facts) != 0 || (facts.options & needed) != needed)
+        return refused(Sentence{"stops when whoever kicks it dies; use another, or none on this board"});
+    int seconds = static_cast<int>(std::max<std::int64_t>(within / 1s, 1));
+    static_cast<void>(ioctl(descriptor_, WDIOC_SETTIMEOUT, &seconds)); // some have a time of their own
+    if (ioctl(descriptor_, WDIOC_GETTIMEOUT, &seconds) != 0 || seconds * 1s > within)
+        return refused(
+            Sentence{"waits ", seconds, " s, and the board says ", within / 1s, "; correct the board"});
+    every_ = seconds * 1s / 8;
     next_ = Time::min();
     kick(Clock::monotonic());
     return {};

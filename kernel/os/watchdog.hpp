@@ -17,8 +17,8 @@ public:
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// Begins: from here on the box is reset when it was not kicked `within`, whole seconds as far as the
-    /// device can. The error names the cure.
+    /// Begins: from here on the box is reset when it was not kicked `within`, or sooner. The error names the
+    /// cure; then nothing has begun.
     std::expected<void, Sentence> open(const char* path, Duration within) noexcept;
     /// At times four to eight times as often as it must; else it does nothing.
     void kick(Time now) noexcept;

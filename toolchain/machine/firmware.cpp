@@ -23,13 +23,10 @@ constinit os::Clock machine_clock{os::Clock::Kind::real};
 std::array<char, 48 * 1024> summary_text;
 constexpr std::size_t most_own_words = 8;
 
-// How long the supervisor may be away from its guardian: while the machine runs it starts or stops an
-// activity for somebody at most; initialising and finalising a component may take what the machine's maker
-// likes.
+// How long the supervisor may be away from its guardian. What the machine's makers wrote (initialise,
+// finalise, hooks) and what is saved may take what it likes, within reason.
 constexpr Duration away_while_running = 2s;
-static_assert(away_while_running > 2 * RealWorld::patience_ms * 1ms,
-              "an activity may be restarted meanwhile");
-constexpr Duration away_while_starting = 30s;
+constexpr Duration away_with_the_makers = 30s;
 constexpr Duration away_while_stopping = 10s;
 
 struct Options {
@@ -150,14 +147,14 @@ private:
         report_guardian(arming);
         const auto armed = world.arm(arming, 2);
         if (!armed) {
-            guard_.end_well();
+            guard_.end(os::Guard::Outputs::safe, {});
             return Ending::refused_to_arm;
         }
         const Duration start_to_armed = machine_clock.now() - begun;
-        guard_.be_back_within(away_while_starting);
+        guard_.be_back_within(away_with_the_makers);
         guard_.let_activities_be_watched(true);
         if (!world.start(*armed)) {
-            guard_.end_well(world.refusal()); // it was stopped again
+            guard_.end(outputs_of(world), world.refusal()); // it was stopped again
             return fail(Ending::stopped_by_fault, world.refusal());
         }
         say("armed on board \"", board.name, "\", ", static_cast<std::int64_t>(arming.warnings()),
@@ -166,7 +163,7 @@ private:
         return end(instance, world, properties, start_to_armed, time_is_over);
     }
 
-    void report_guardian(os::ArmingReport& report) const {
+    void report_guardian(os::ArmingReport& report) {
         if (!guard_.is_split())
             report.warning("guardian", Sentence{"the machine has none"}, Sentence{"leave out --no-guardian"});
         else if (const Sentence why = guard_.wait_for_guardian(); !why.empty())
@@ -175,8 +172,16 @@ private:
             report.passed("guardian", Sentence{"it could act now"});
     }
 
+    /// Of one with a thread that hangs, or was parked, the guardian makes sure.
+    static os::Guard::Outputs outputs_of(const RealWorld& world) {
+        return world.hung() == 0 ? os::Guard::Outputs::safe : os::Guard::Outputs::not_sure;
+    }
+
     /// True when it ended because its time was over.
     bool supervise(MachineInstance& instance, RealWorld& world) {
+        world.before_changes(&guard_, [](void* guard) {
+            static_cast<os::Guard*>(guard)->be_back_within(away_with_the_makers);
+        });
         const Time begin = machine_clock.now();
         ReasonTeller reasons;
         for (int look = 1;; ++look) {
@@ -195,7 +200,7 @@ private:
         const bool unguarded = guard_.guardian_is_lost();
         guard_.let_activities_be_watched(false);
         guard_.be_back_within(away_while_stopping);
-        const int hung = world.stop();
+        static_cast<void>(world.stop());
         const Sentence reason = unguarded ? Sentence{"its guardian is gone, or hangs"}
                                 : !world.broken_contract().empty() ? world.broken_contract()
                                 : time_is_over                     ? Sentence{"its time is over"}
@@ -203,8 +208,8 @@ private:
         const bool as_asked = !unguarded &&
                               (time_is_over || instance.stop_request().reason == StopReason::requested) &&
                               world.breaches() == 0;
-        // Of one that hung the guardian makes sure.
-        if (hung == 0) guard_.end_well(as_asked ? Sentence{} : reason);
+        guard_.end(outputs_of(world), as_asked ? Sentence{} : reason);
+        guard_.be_back_within(away_with_the_makers); // finalised, saved, summed up
         say("stopped: ", reason);
         for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
             say("then: ", world.describe_breach(i));
@@ -217,7 +222,7 @@ private:
             if (const Ending written = write(instance, world, reason, start_to_armed);
                 written != Ending::well)
                 return written;
-        return as_asked && hung == 0 ? Ending::well : Ending::stopped_by_fault;
+        return as_asked && world.hung() == 0 ? Ending::well : Ending::stopped_by_fault;
     }
 
     Ending write(MachineInstance& instance, const RealWorld& world, const Sentence& reason,

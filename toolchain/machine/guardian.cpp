@@ -18,6 +18,9 @@ namespace {
 
 // Between two looks an activity may have hung for so long already: the limit is exceeded by no more.
 constexpr Duration look_every = 2ms;
+// Who did not look for so long was kept from it, as everybody was: a box that was frozen. The supervisor
+// comes after all.
+constexpr Duration frozen_after = 250ms, frozen_grace = 2s;
 constexpr Duration killed_within = 100ms; // a thread in the kernel ends when its call does
 constexpr Duration confirmed_within = 500ms;
 
@@ -83,8 +86,10 @@ private:
         if (seen == os::Guard::Seen::dying || seen == os::Guard::Seen::end)
             return {!block.ended_well.load(std::memory_order_acquire), seen == os::Guard::Seen::end, {}};
         const Time now = os::Clock::monotonic();
+        if (now - looked_ > frozen_after) forgiven_until_ = now + frozen_grace;
+        looked_ = now;
         const std::int64_t back_by = block.back_by_ns.load(std::memory_order_acquire);
-        if (back_by != 0 && to_ns(now) > back_by)
+        if (back_by != 0 && to_ns(now) > back_by && now > forgiven_until_)
             return {true, false, Sentence{"its supervisor shows no life"}};
         if (!block.activities_run.load(std::memory_order_acquire)) return {};
         if (const std::size_t a = watch_.look(now); a != LifeWatch::all_live)
@@ -97,6 +102,8 @@ private:
 
     Sentence why_it_ended() const {
         const int code = guard_.exit_code();
+        if (const Sentence& fault = guard_.block().fault; !fault.empty())
+            return Sentence{fault, "; a thread of it did not stop by itself"};
         return code > 128 ? Sentence{os::signal_name(code - 128), " ended it (signal ", code - 128, ")"}
                           : Sentence{"it ended with code ", code, " in the middle of its work"};
     }
@@ -111,8 +118,9 @@ private:
         const std::size_t chips = devices_.write_safe_lines();
         const std::size_t frames = devices_.send_safe_frames(confirmed_within);
         const Duration confirmed = os::Clock::monotonic() - begin;
-        // Lines that a chip did not take are for the box's reset to end.
-        if (chips == 0) watchdog_.stand_down();
+        // Lines that a chip did not take, or that a thread in the kernel may still write, are for the box's
+        // reset to end.
+        if (chips == 0 && ended) watchdog_.stand_down();
         const std::size_t servers = devices_.write_safe_registers();
         if (guard_.block().crash.is_complete()) reason = guard_.block().crash.describe();
         if (reason.empty()) reason = why_it_ended();
@@ -170,6 +178,8 @@ private:
 
     std::string_view black_boxes_;
     os::Watchdog watchdog_{};
+    Time looked_{};
+    Time forgiven_until_{};
     os::Guard& guard_;
     GuardedDevices& devices_;
     MachineInstance& instance_;

@@ -131,6 +131,7 @@ void MachineLife::serve_activity_requests(const ActivityControl& control) {
         LifeTicket ticket;
         LifeChange change{};
         if (!activity_requests_[a].take(ticket, change)) continue;
+        if (control.begins != nullptr) control.begins(control.world);
         LifeAnswer answer;
         static_cast<void>(change_activity(a, change, control, answer));
         activity_requests_[a].answer(ticket, answer);

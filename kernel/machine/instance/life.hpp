@@ -13,6 +13,8 @@ struct ActivityControl {
     bool (*start)(void* world, std::size_t activity) = nullptr; ///< false: its thread did not come up
     /// False: its thread hangs; the engine's stop was run in its place.
     bool (*stop)(void* world, std::size_t activity) = nullptr;
+    /// Before each change that somebody asked for: initialise and finalise may take their time.
+    void (*begins)(void* world) = nullptr;
 };
 
 /// The life of components and activities. Asking is real-time, on any thread.

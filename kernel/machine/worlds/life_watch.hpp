@@ -5,6 +5,7 @@
 
 #include "kernel/machine/instance/placed.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -18,21 +19,26 @@ public:
     LifeWatch(PlacedMachine& machine, Duration within) noexcept : machine_{machine}, within_{within} {}
 
     static constexpr std::size_t all_live = ~std::size_t{0};
-    /// The first activity that owed a sign for longer than it may, or all_live. To be asked every so often;
-    /// what it asks of an engine is read in one piece and leads nowhere: an engine that is damaged damages
-    /// nobody here.
+    /// The first activity that owed a sign for longer than it may, or all_live: for `within`, or twice its
+    /// deadline where that is longer. To be asked several times in `within`: a longer pause is taken for a
+    /// box that was frozen. What it asks of an engine is read in one piece and leads nowhere: an engine that
+    /// is damaged damages nobody here.
     [[nodiscard]] std::size_t look(Time now) noexcept {
+        // Who looks stands above everybody: when it did not look, nothing ran.
+        const Duration frozen = now - last_ > within_ / 4 ? now - last_ : Duration{};
+        last_ = now;
         const auto engines = machine_.engines();
         for (std::size_t a = 0; a < engines.size(); ++a) {
             const Engine& engine = engines[a];
+            const ActivityRow& row = machine_.machine().table.activities[a];
             Seen& seen = seen_[a];
             const std::uint64_t generation = engine.generation();
             const bool in_cycle = generation % 2 != 0;
-            const bool owes = machine_.machine().table.activities[a].real_time && engine.is_active() &&
+            const bool owes = row.real_time && engine.is_active() &&
                               (in_cycle || engine.is_woken() || engine.wakes_at() <= now);
             if (!owes || !seen.owed || generation != seen.generation)
                 seen = {generation, owes, now};
-            else if (now - seen.since > within_)
+            else if (now - (seen.since += frozen) > std::max(within_, 2 * row.deadline()))
                 return a;
         }
         return all_live;
@@ -46,6 +52,7 @@ private:
     };
     PlacedMachine& machine_;
     Duration within_;
+    Time last_{};
     std::array<Seen, max_activities> seen_{};
 };
 

@@ -116,7 +116,11 @@ ActivityControl RealWorld::control() noexcept {
             [](void* self, std::size_t a) {
                 return static_cast<RealWorld*>(self)->activities_[a].start(patience_ms);
             },
-            [](void* self, std::size_t a) { return static_cast<RealWorld*>(self)->stop_engine(a); }};
+            [](void* self, std::size_t a) { return static_cast<RealWorld*>(self)->stop_engine(a); },
+            [](void* self) {
+                const auto& world = *static_cast<RealWorld*>(self);
+                if (world.before_change_ != nullptr) world.before_change_(world.before_context_);
+            }};
 }
 
 bool RealWorld::start(Armed) {
@@ -178,7 +182,7 @@ int RealWorld::stop() {
     for (std::size_t a = instance_.engines().size(); a-- > 0;)
         if (!activities_[a].end(patience_ms)) activities_[a].abandon();
     os::heap::release();
-    return hung;
+    return hung_ = hung;
 }
 
 std::uint64_t RealWorld::page_faults_in_real_time_threads() const noexcept {

@@ -56,6 +56,14 @@ public:
     /// Returns how many threads hung; their components were stopped in their place.
     int stop();
 
+    /// Of the last stop(), the one of a refused start included.
+    [[nodiscard]] int hung() const noexcept { return hung_; }
+    /// Called on the supervisor's thread before each change of an activity that somebody asked for.
+    void before_changes(void* context, void (*call)(void* context)) noexcept {
+        before_context_ = context;
+        before_change_ = call;
+    }
+
     [[nodiscard]] const Activity& activity(std::size_t index) const noexcept { return activities_[index]; }
     /// The first contract that was broken, be it what stopped the machine or not; empty when none was.
     [[nodiscard]] Sentence broken_contract() const noexcept {
@@ -83,6 +91,9 @@ private:
     std::array<KeptBreach, max_breaches> kept_breaches_{};
     std::atomic<std::size_t> breaches_{0};
     Sentence refusal_{};
+    int hung_ = 0;
+    void (*before_change_)(void*) = nullptr;
+    void* before_context_ = nullptr;
 };
 
 } // namespace tappet

@@ -6,11 +6,7 @@
 
 namespace tappet {
 
-namespace {
-
-constexpr int reading_attempts = 1000;
-
-} // namespace
+namespace {} // namespace
 
 BrowserService::Verdict BrowserService::hello(Client& client, const Request& request) {
     const auto& header =

@@ -109,13 +109,13 @@ public:
     static constexpr const char* summary_file = "/tmp/summary.json";
     static constexpr const char* report_file = "/tmp/report.json";
 
-    explicit Loom(const std::string& plant_options = {})
+    explicit Loom(const std::string& plant_options = {}, const std::string& options = {})
         : plant{"carpet-loom-plant --period 1ms --fifo 1 "
                 "--operator-reaction 1s --report " +
                 std::string{report_file} + " " + plant_options} {
         ::unlink(summary_file);
         std::this_thread::sleep_for(100ms); // its Modbus server listens
-        machine.emplace("carpet_loom --summary " + std::string{summary_file});
+        machine.emplace("carpet_loom --summary " + std::string{summary_file} + " " + options);
     }
 
     /// The machine wrote it, after what was seen last; then that is seen, too.

@@ -20,15 +20,16 @@ using Seen = Guard::Seen;
 
 /// A process of its own splits; it ends with what `guardian` answers, or the machine's side with what
 /// `machine` does.
+constexpr int kept_open[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}; // what a test reads from
 template <class Machine, class Guardian>
-int split(Machine machine, Guardian guardian, std::string_view refusal = {}) {
+int split(Machine machine, Guardian guardian, std::string_view refusal = {}, int crash_patience_ms = 60'000) {
     const pid_t child = ::fork();
     if (child == 0) {
         Guard guard;
-        const auto side = guard.split();
+        const auto side = guard.split(crash_patience_ms);
         if (!side) std::_Exit(99);
         if (*side == Guard::Side::machine) std::_Exit(machine(guard));
-        static_cast<void>(guard.become_guardian({})); // where FIFO is not granted, the rest is
+        static_cast<void>(guard.become_guardian(kept_open)); // where FIFO is not granted, the rest is
         if (refusal.empty())
             guard.be_ready();
         else
@@ -55,7 +56,7 @@ TEST(Guard, hands_on_the_code_of_a_machine_that_ended_well) {
     const int code = split(
         [](Guard& guard) {
             if (arm(guard) != 0) return 98;
-            guard.end_well();
+            guard.end(Guard::Outputs::safe, {});
             return 4;
         },
         [](Guard& guard) {
@@ -69,7 +70,7 @@ TEST(Guard, hands_on_the_code_of_a_machine_that_ended_well) {
 TEST(Guard, tells_a_death_without_a_word_and_its_signal) {
     const int code = split(
         [](Guard& guard) {
-            static_cast<void>(arm(guard));
+            if (arm(guard) != 0) return 98;
             ::kill(::getpid(), SIGKILL);
             return 0;
         },
@@ -82,10 +83,34 @@ TEST(Guard, tells_a_death_without_a_word_and_its_signal) {
     EXPECT_EQ(code, 128 + SIGKILL);
 }
 
+TEST(Guard, learns_the_end_of_a_machine_though_it_was_started_by_one_who_ignores_children) {
+    const auto kept = ::signal(SIGCHLD, SIG_IGN);
+    int told[2];
+    ASSERT_EQ(::pipe(told), 0);
+    static_cast<void>(split(
+        [](Guard& guard) {
+            if (arm(guard) != 0) return 98;
+            ::kill(::getpid(), SIGKILL);
+            return 0;
+        },
+        [&](Guard& guard) {
+            while (next(guard) != Seen::end) {
+            }
+            const int code = guard.exit_code();
+            return static_cast<int>(::write(told[1], &code, sizeof code)); // its own parent learns nothing
+        }));
+    int code = 0;
+    EXPECT_EQ(::read(told[0], &code, sizeof code), static_cast<ssize_t>(sizeof code));
+    EXPECT_EQ(code, 128 + SIGKILL);
+    ::signal(SIGCHLD, kept);
+    ::close(told[0]);
+    ::close(told[1]);
+}
+
 TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
     const int code = split(
         [](Guard& guard) {
-            static_cast<void>(arm(guard));
+            if (arm(guard) != 0) return 98;
             ::raise(SIGSEGV);
             return 0;
         },
@@ -103,11 +128,11 @@ TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
 TEST(Guard, a_crash_that_nobody_acts_on_ends_the_process_all_the_same) {
     const int code = split(
         [](Guard& guard) {
-            static_cast<void>(arm(guard));
+            if (arm(guard) != 0) return 98;
             ::raise(SIGFPE);
             return 0;
         },
-        [](Guard& guard) { return guard.await_end(1h) ? guard.exit_code() : 90; });
+        [](Guard& guard) { return guard.await_end(1h) ? guard.exit_code() : 90; }, {}, 10);
     EXPECT_EQ(code, 128 + SIGFPE);
 }
 
@@ -116,13 +141,14 @@ TEST(Guard, hands_on_what_is_signalled_to_it) {
         [](Guard& guard) {
             static sig_atomic_t volatile asked = 0;
             ::signal(SIGTERM, [](int) { asked = 1; });
-            static_cast<void>(arm(guard));
+            if (arm(guard) != 0) return 98;
             while (asked == 0) sleep_for(1ms);
-            guard.end_well();
+            guard.end(Guard::Outputs::safe, {});
             return 7;
         },
         [](Guard& guard) {
-            while (!guard.block().activities_run) static_cast<void>(guard.look(1ms)); // its handler is there
+            while (!guard.block().activities_run && guard.look(1ms) != Seen::end) {
+            } // then its handler is there
             ::kill(::getpid(), SIGTERM);
             while (next(guard) != Seen::end) {
             }
@@ -137,12 +163,13 @@ TEST(Guard, the_machine_sees_that_its_guardian_is_gone) {
     const int code = split(
         [&](Guard& guard) {
             ::signal(SIGTERM, SIG_IGN); // which asks for the orderly stop
-            static_cast<void>(arm(guard));
+            if (arm(guard) != 0) return 98;
             while (!guard.guardian_is_lost()) sleep_for(1ms);
             return static_cast<int>(::write(told[1], "gone", 4)) - 4;
         },
         [](Guard& guard) {
-            while (!guard.block().activities_run) static_cast<void>(guard.look(1ms));
+            while (!guard.block().activities_run && guard.look(1ms) != Seen::end) {
+            }
             return 42;
         });
     EXPECT_EQ(code, 42);
@@ -155,9 +182,9 @@ TEST(Guard, the_machine_sees_that_its_guardian_is_gone) {
 TEST(Guard, the_machine_sees_that_its_guardian_looks_at_nothing) {
     const int code = split(
         [](Guard& guard) {
-            static_cast<void>(arm(guard));
+            if (arm(guard) != 0) return 98;
             while (!guard.guardian_is_lost()) sleep_for(1ms);
-            guard.end_well();
+            guard.end(Guard::Outputs::safe, {});
             return 5;
         },
         [](Guard& guard) {

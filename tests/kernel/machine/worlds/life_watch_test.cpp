@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 namespace tappet {
 namespace {
 
@@ -53,6 +55,14 @@ protected:
         }
     }
     Engine& beat() { return instance.engines()[0]; }
+    /// Looks every 10 ms, from the last look to `until`: when somebody was found; never: nobody.
+    Time found_by(Duration until) {
+        while (looked < begin + until)
+            if (watch.look(looked = std::min(looked + 10ms, begin + until)) != LifeWatch::all_live)
+                return looked;
+        return never;
+    }
+    Time looked = begin;
 
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<table, board>::machine(), clock};
@@ -60,61 +70,63 @@ protected:
 };
 
 TEST_F(Watched, an_activity_that_sleeps_and_is_due_for_nothing_owes_nothing_however_long) {
-    EXPECT_EQ(watch.look(begin), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 24h), LifeWatch::all_live);
+    EXPECT_EQ(found_by(10s), never);
 }
 
 TEST_F(Watched, one_that_does_not_wake_when_it_wanted_to_is_found) {
     beat().sleeps_until(begin + 10ms);
-    EXPECT_EQ(watch.look(begin + 9ms), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 12ms), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 112ms), LifeWatch::all_live) << "the limit is reached, not exceeded";
-    EXPECT_EQ(watch.look(begin + 113ms), 0u);
+    EXPECT_EQ(found_by(1s), begin + 120ms)
+        << "owed from 10 ms on; at 110 ms the limit is reached, not exceeded";
 }
 
 TEST_F(Watched, one_that_was_woken_and_does_not_run_is_found) {
     beat().waiter().wake();
-    EXPECT_EQ(watch.look(begin), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 101ms), 0u);
+    EXPECT_EQ(found_by(1s), begin + 120ms) << "first seen at 10 ms";
 }
 
 TEST_F(Watched, a_cycle_that_begins_or_ends_is_life) {
     beat().waiter().wake();
-    EXPECT_EQ(watch.look(begin), LifeWatch::all_live);
+    EXPECT_EQ(found_by(50ms), never);
     beat().run(true);
     beat().waiter().wake(); // at once again, as under a load that never ends
-    EXPECT_EQ(watch.look(begin + 90ms), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 180ms), LifeWatch::all_live) << "since it was seen alive";
-    EXPECT_EQ(watch.look(begin + 191ms), 0u);
+    EXPECT_EQ(found_by(1s), begin + 170ms) << "since it was seen alive, at 60 ms";
 }
 
 TEST_F(Watched, one_that_stays_in_its_cycle_is_found) {
     auto* patient = instance.find<Patient>("patient");
-    struct Looks {
-        LifeWatch& watch;
-        std::size_t first = 77, last = 77;
-    } looks{watch};
-    patient->context = &looks;
-    patient->in_cycle = [](void* context) {
-        auto& own = *static_cast<Looks*>(context);
-        own.first = own.watch.look(begin);
-        own.last = own.watch.look(begin + 101ms);
-    };
+    Time found = at_ns(0);
+    std::function<void()> hang = [&] { found = found_by(1s); };
+    patient->context = &hang;
+    patient->in_cycle = [](void* context) { (*static_cast<std::function<void()>*>(context))(); };
     clock.advance_to(begin + 10ms); // its next period
     beat().run(true);
-    EXPECT_EQ(looks.first, LifeWatch::all_live);
-    EXPECT_EQ(looks.last, 0u);
-    EXPECT_EQ(watch.look(begin + 102ms), LifeWatch::all_live) << "it came to its end after all";
+    EXPECT_EQ(found, begin + 120ms);
+    EXPECT_EQ(found_by(2s), never) << "it came to its end after all";
+}
+
+TEST_F(Watched, one_may_take_twice_its_deadline_where_that_is_longer) {
+    LifeWatch hasty{instance, 8ms}; // the deadline of its activity is its period, 10 ms
+    beat().waiter().wake();
+    Time found = never;
+    for (Time now = begin; now < begin + 100ms && found == never; now += 1ms)
+        if (hasty.look(now) != LifeWatch::all_live) found = now;
+    EXPECT_EQ(found, begin + 21ms);
+}
+
+TEST_F(Watched, a_box_that_was_frozen_is_no_hang) {
+    beat().waiter().wake();
+    EXPECT_EQ(found_by(50ms), never);
+    looked = begin + 10s; // nobody ran, who looks neither
+    EXPECT_EQ(watch.look(looked), LifeWatch::all_live);
+    EXPECT_EQ(found_by(11s), begin + 10s + 70ms) << "what was owed before counts, the frozen time does not";
 }
 
 TEST_F(Watched, who_may_block_and_who_is_stopped_owe_nothing) {
     instance.engines()[1].waiter().wake();
-    EXPECT_EQ(watch.look(begin), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 1h), LifeWatch::all_live) << "it is not real-time";
+    EXPECT_EQ(found_by(1s), never) << "it is not real-time";
     beat().stop(begin);
     beat().waiter().wake();
-    EXPECT_EQ(watch.look(begin + 1h), LifeWatch::all_live);
-    EXPECT_EQ(watch.look(begin + 2h), LifeWatch::all_live);
+    EXPECT_EQ(found_by(2s), never);
     beat().start(begin);
 }
 
