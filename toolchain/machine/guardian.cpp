@@ -22,6 +22,7 @@ constexpr Duration look_every = 2ms;
 // comes after all.
 constexpr Duration frozen_after = 250ms, frozen_grace = 2s;
 constexpr Duration killed_within = 100ms; // a thread in the kernel ends when its call does
+constexpr Duration ended_within = 3s;
 constexpr Duration confirmed_within = 500ms;
 
 class Guardian {
@@ -114,14 +115,15 @@ private:
         guard_.kill();
         static_cast<void>(devices_.write_safe_lines());
         const Duration written = os::Clock::monotonic() - begin;
-        const bool ended = guard_.await_end(killed_within);
-        const std::size_t chips = devices_.write_safe_lines();
+        static_cast<void>(guard_.await_end(killed_within));
+        static_cast<void>(devices_.write_safe_lines());
         const std::size_t frames = devices_.send_safe_frames(confirmed_within);
         const Duration confirmed = os::Clock::monotonic() - begin;
-        // Lines that a chip did not take, or that a thread in the kernel may still write, are for the box's
-        // reset to end.
-        if (chips == 0 && ended) watchdog_.stand_down();
         const std::size_t servers = devices_.write_safe_registers();
+        // A thread that waited in the kernel for memory or for a chip may have written after us.
+        const bool ended = guard_.await_end(ended_within);
+        const std::size_t chips = devices_.write_safe_lines();
+        if (chips == 0 && ended) watchdog_.stand_down(); // else the box's reset is the end of it
         if (guard_.block().crash.is_complete()) reason = guard_.block().crash.describe();
         if (reason.empty()) reason = why_it_ended();
         Sentence said{instance_.machine().table.name,

@@ -6,8 +6,6 @@
 
 namespace tappet {
 
-namespace {} // namespace
-
 BrowserService::Verdict BrowserService::hello(Client& client, const Request& request) {
     const auto& header =
         *reinterpret_cast<const map::Header*>(machine_->observation().shared_memory().data());
