@@ -17,7 +17,7 @@ namespace tappet {
 namespace {
 
 // Between two looks an activity may have hung for so long already: the limit is exceeded by no more.
-constexpr Duration look_every = 2ms;
+constexpr Duration look_every = 4ms;
 // Who did not look for so long was kept from it, as everybody was: a box that was frozen. The supervisor
 // comes after all.
 constexpr Duration frozen_after = 250ms, frozen_grace = 2s;
