@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 namespace tappet {
 
@@ -218,7 +219,11 @@ void BehaviourUnit::begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIM
 void BehaviourUnit::limit_work(Time now) noexcept TAPPET_REALTIME {
     const Duration deadline = engine_->plan().deadline;
     limit_.until = deadline > Duration::zero() ? now + deadline : never;
-    limit_.has_begun = false;
+    has_worked_ |= std::exchange(limit_.has_begun, false);
+}
+
+bool BehaviourUnit::has_worked() noexcept TAPPET_REALTIME {
+    return std::exchange(has_worked_, false) | std::exchange(limit_.has_begun, false);
 }
 
 void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
@@ -338,7 +343,9 @@ void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time no
     limit_work(now);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const TriggerIndex trigger = routes_[event * parts_.size() + i].trigger;
-        if (trigger != no_trigger) static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
+        if (trigger == no_trigger) continue;
+        has_worked_ = true;
+        static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
     }
     limit_.until = never;
 }

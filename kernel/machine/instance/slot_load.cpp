@@ -29,9 +29,10 @@ Sentence BehaviourSlot::may_load() const noexcept {
         return Sentence{"another change of behaviour of \"", place_.row->component,
                         "\" is under way; wait until it is done"};
     if (phase() == SlotPhase::trial)
-        return Sentence{
-            "the behaviour of \"", place_.row->component,
-            "\" is on trial, and the old one must be there to come back; wait until it is steady"};
+        return Sentence{"the behaviour of \"", place_.row->component,
+                        "\" is on trial, and the old one must be there to come back; let it work until it is "
+                        "steady, or roll "
+                        "it back"};
     if (!banks_[static_cast<std::size_t>(spare())].unit.is_quiet())
         return Sentence{"a command of the old behaviour of \"", place_.row->component,
                         "\" is still on its way; wait until it has ended"};

@@ -119,6 +119,7 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     ++loads_;
     set(target_ == none ? SlotPhase::empty : is_roll_back_ ? SlotPhase::steady : SlotPhase::trial);
     steps_left_ = place_.row->slot.trial;
+    bases_left_ = 2;
     connect(true);
     if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->start(now);
 }
@@ -138,7 +139,8 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
     if (unit.failed_part() != nullptr) return take_back(RollBack::error, now);
     if (unit.left_over()) return take_back(RollBack::left_over, now);
     // What the cycle of the hand-over took was the old one's end, too: time is judged from the next one on.
-    if (place_.row->slot.trial - steps_left_ < 2) {
+    if (bases_left_ != 0) {
+        --bases_left_;
         misses_before_ = misses();
         over_claim_before_ = place_.engine->statistics().over_claim;
     } else if (misses() != misses_before_) {
@@ -147,7 +149,8 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
         // Of an activity that kept its claim until now.
         return take_back(RollBack::too_much, now);
     }
-    if (steps_left_ == 0 || --steps_left_ == 0) set(SlotPhase::steady);
+    // Who was asked for nothing has shown nothing: a loom that stands does not try a weave.
+    if (unit.has_worked() && (steps_left_ == 0 || --steps_left_ == 0)) set(SlotPhase::steady);
 }
 
 // What failed is not asked to behave: its final state is requested, its exit programs get one chance, and it

@@ -165,6 +165,7 @@ private:
     bool runs_ = false; ///< its component does
     bool is_roll_back_ = false;
     std::uint32_t steps_left_ = 0;        ///< of the hand-over, then of the trial
+    std::uint32_t bases_left_ = 0;        ///< the next two lines are of now for so many steps
     std::uint64_t misses_before_ = 0;     ///< the trial
     std::uint64_t over_claim_before_ = 0; ///< of the activity
     double last_angle_ = -1;

@@ -94,6 +94,8 @@ public:
     void drop() noexcept TAPPET_REALTIME;
     /// The first instance in error; null: none is.
     [[nodiscard]] const UnitPart* failed_part() const noexcept TAPPET_REALTIME;
+    /// Whether it was told an event or a program of it ran since this was asked last.
+    [[nodiscard]] bool has_worked() noexcept TAPPET_REALTIME;
     /// The last step used up its statements with more to do.
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME;
     /// Keeps which instance is in error, for describe_fault().
@@ -128,6 +130,7 @@ private:
         StateMachineFault machine{};
     } fault_;
     bool reported_ = false;
+    bool has_worked_ = false; // before limit_ began anew, or by an event
     bool may_begin_ = false;
     StateMachineExecution::Trace trace_ = nullptr;
     void* trace_context_ = nullptr;

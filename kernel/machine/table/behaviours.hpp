@@ -22,7 +22,7 @@ struct Slot {
     std::uint32_t command_slots = 0;
     std::uint32_t timers = 0;
     std::uint32_t text_bytes = 0; ///< of the script; 0: as much as its nodes usually need
-    std::uint32_t trial = 200;    ///< so many steps an error of a new behaviour brings the old one back
+    std::uint32_t trial = 20;     ///< so many steps in which it works an error brings the old one back
     std::string_view angle{};     ///< "component.output" in degrees, whose angle a loading may wait for
     Bounded<std::string_view, max_names> peers{};      ///< components
     Bounded<std::string_view, max_names> operations{}; ///< component.operation
@@ -160,7 +160,8 @@ constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) {
 }
 /// Characters of a script.
 constexpr detail::SlotNumber<detail::TextTag> text_bytes(std::uint32_t n) noexcept { return {n}; }
-/// Steps in which a new behaviour must show that it works.
+/// A new behaviour must show that it works for so many steps in which it is told an event or a program of it
+/// runs; one that nobody asks for anything stays on trial.
 constexpr detail::SlotNumber<detail::TrialTag> trial(std::uint32_t steps) noexcept { return {steps}; }
 /// The output, in degrees and in the slot's activity, whose angle a loading may wait for.
 constexpr detail::SlotAngle angle_of(std::string_view output) noexcept { return {output}; }

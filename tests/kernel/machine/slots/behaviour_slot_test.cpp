@@ -1,88 +1,11 @@
 // A behaviour is loaded into a running machine (thesis 5.1.4, 5.2.4: programs and state machines are loaded
-// at run time): the old one ends safely, the new one is on trial, and what is faulty changes nothing.
-#include "tests/kernel/machine/behaviour_machine.hpp"
+// at run time): the old one ends safely, and what is faulty changes nothing.
+#include "tests/kernel/machine/slots/slot_rig.hpp"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
 #include <limits>
 
 namespace tappet::bakery {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
-// clang-format off
-constexpr auto table = machine("bakery",
-    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Watcher>("watcher")),
-    activities(
-        activity("fast", every(1ms), budget(50us), runs("oven", "door")),
-        activity("slow", every(5ms), budget(50us), runs("feeder")),
-        activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
-    connections(), reactions(),
-    behaviours(behaviour("oven", slot(nodes(40), data_bytes(512), depth(3), command_slots(1), timers(2), text_bytes(2000),
-                                      peers("door", "feeder"), operations("door.push", "feeder.feed"), events("door.moved"),
-                                      angle_of("oven.angle_deg"), trial(20)), at_most(30))));
-// clang-format on
-
-/// Writes down its number when it begins, at each tick, and one more when it ends.
-std::string numbered(int number, std::string_view more = {}) {
-    const std::string n = std::to_string(number);
-    return "StateMachine Numbered {\n"
-           "    initial state Begin { entry { do oven.note(" +
-           n +
-           "); } transition oven.tick() select Ticked }\n"
-           "    state Ticked { entry { do oven.note(" +
-           n + "0); } " + std::string{more} +
-           " transition oven.tick() select Begin }\n"
-           "    final state End { entry { do oven.note(" +
-           n +
-           "1); } }\n"
-           "}\n";
-}
-
-class BehaviourSlotTest : public testing::Test, protected Rig<Firmware<table, board>> {
-protected:
-    BehaviourSlot& slot = *instance.slot_of("oven");
-    BehaviourSlotTest() { run(5ms); }
-
-    std::string compile(std::string_view text, std::string_view name = "test.osd") {
-        if (text.size() > slot.text().size()) return "too long for the text";
-        std::ranges::copy(text, slot.text().begin());
-        return std::string{slot.compile(text.size(), name).view()};
-    }
-    std::string wish(BehaviourSlot::Change wish, std::string_view moment = "now") {
-        SlotMoment at;
-        if (const Sentence fault = slot.parse_moment(moment, at); !fault.empty())
-            return std::string{fault.view()};
-        if (const Sentence fault = slot.may(wish); !fault.empty()) return std::string{fault.view()};
-        EXPECT_TRUE(slot.ask(wish, at));
-        EXPECT_TRUE(instance.requests().post_change(slot));
-        return {};
-    }
-    std::string load(std::string_view text, std::string_view moment = "now") {
-        const std::string fault = compile(text);
-        return fault.empty() ? wish(BehaviourSlot::Change::take_over, moment) : fault;
-    }
-    void load_and_settle(std::string_view text) {
-        EXPECT_EQ(load(text), "");
-        run(30ms);
-        EXPECT_EQ(slot.phase(), SlotPhase::steady);
-        oven().told.clear();
-    }
-    std::string state_now() { return slot.active() == nullptr ? "none" : state(*slot.active()); }
-    std::uint64_t posted(std::string_view event) {
-        const auto& machine = instance.machine();
-        std::uint64_t count = 0;
-        for (std::size_t s = 0; s < machine.plan.subscriptions.size(); ++s)
-            if (machine.plan.subscriptions[s].kind == SubscriberKind::trigger &&
-                facet_at(machine.table, machine.plan.subscriptions[s].event).name == event)
-                count += instance.observation().counts_of(s).posted;
-        return count;
-    }
-};
 
 TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_before) {
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
@@ -94,7 +17,7 @@ TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_befo
     oven().tick.emit();
     run(2ms);
     EXPECT_THAT(oven().told, ElementsAre(1, 10));
-    run(20ms);
+    settle();
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
 }
 
@@ -103,16 +26,17 @@ TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears
     run(2ms);
     EXPECT_EQ(posted("tick"), 0u);
     load_and_settle(numbered(1));
+    const std::uint64_t heard = posted("tick");
     oven().tick.emit();
     door().moved.emit();
     run(2ms);
-    EXPECT_EQ(posted("tick"), 1u);
+    EXPECT_EQ(posted("tick"), heard + 1);
     EXPECT_EQ(posted("moved"), 0u);
     EXPECT_EQ(wish(BehaviourSlot::Change::unload), "");
     run(3ms);
     oven().tick.emit();
     run(2ms);
-    EXPECT_EQ(posted("tick"), 1u);
+    EXPECT_EQ(posted("tick"), heard + 1);
 }
 
 TEST_F(BehaviourSlotTest, a_faulty_script_is_refused_with_its_line_and_the_old_one_does_not_notice) {
@@ -218,7 +142,7 @@ TEST_F(BehaviourSlotTest, it_takes_over_when_its_angle_is_passed_upwards) {
         double past = at - wanted;
         while (past < 0) past += 360;
         EXPECT_LT(past, 10.0) << "wanted " << wanted << ", was " << at; // one step turns 10 degrees
-        run(30ms);
+        settle();
     }
 }
 
@@ -231,6 +155,7 @@ TEST_F(BehaviourSlotTest, an_angle_of_any_size_takes_no_longer_to_look_at) {
     }
     oven().from_deg = -3600.0; // ten turns back is the same angle
     run(80ms);
+    settle();
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
     EXPECT_THAT(oven().told, testing::Contains(2));
 }
@@ -242,66 +167,6 @@ TEST_F(BehaviourSlotTest, a_moment_that_is_none_is_refused_with_the_nearest) {
     EXPECT_THAT(std::string{slot.parse_moment("360", moment).view()}, HasSubstr("between 0 and 360"));
     EXPECT_THAT(std::string{slot.parse_moment("-1", moment).view()}, HasSubstr("between 0 and 360"));
     EXPECT_THAT(std::string{slot.parse_moment("nan", moment).view()}, HasSubstr("between 0 and 360"));
-}
-
-TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_is_taken_back_and_its_line_is_told) {
-    load_and_settle(numbered(1));
-    EXPECT_EQ(load("StateMachine Failing {\n"
-                   "    initial state A { entry { do oven.note(5); } transition oven.tick() select B }\n"
-                   "    state B {\n"
-                   "        entry { do oven.note(-1); } // which the oven refuses\n"
-                   "        transition oven.tick() select A }\n"
-                   "    final state End { entry { do oven.note(6); } } }"),
-              "");
-    run(2ms);
-    oven().tick.emit();
-    run(3ms);
-    EXPECT_EQ(slot.phase(), SlotPhase::steady);
-    EXPECT_EQ(slot.last_roll_back(), RollBack::error);
-    EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("failed in line 4"));
-    EXPECT_FALSE(instance.stop_asked());
-    // It was brought to its safe state, and the old one begins anew.
-    EXPECT_THAT(oven().told, ElementsAre(11, 5, -1, 6, 1));
-    oven().tick.emit();
-    run(2ms);
-    EXPECT_EQ(state_now(), "Ticked");
-}
-
-TEST_F(BehaviourSlotTest, one_that_does_not_come_to_an_end_of_a_step_is_taken_back) {
-    load_and_settle(numbered(1));
-    EXPECT_EQ(load("var int n = 0; while (true) { set n = n + 1; }"), "");
-    run(5ms);
-    EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
-    EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("did not come to an end"));
-    EXPECT_EQ(state_now(), "Begin");
-}
-
-TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_with_none_before_leaves_the_slot_empty) {
-    EXPECT_EQ(load("do oven.note(-1);"), "");
-    run(5ms);
-    EXPECT_EQ(slot.phase(), SlotPhase::empty);
-    EXPECT_EQ(slot.roll_backs(), 1u);
-    EXPECT_FALSE(instance.stop_asked());
-}
-
-TEST_F(BehaviourSlotTest, an_error_after_the_trial_does_what_its_row_says) {
-    load_and_settle(
-        "StateMachine Late { initial state A { transition oven.tick() select B }\n"
-        "state B { entry { do oven.note(-1); } transition oven.tick() select A } final state E {} }");
-    oven().tick.emit();
-    run(3ms);
-    EXPECT_TRUE(instance.stop_asked());
-    EXPECT_THAT(std::string{instance.describe_stop().view()}, HasSubstr("failed in line 2"));
-}
-
-TEST_F(BehaviourSlotTest, while_one_is_on_trial_no_other_is_loaded) {
-    EXPECT_EQ(load(numbered(1)), "");
-    run(3ms);
-    EXPECT_THAT(compile(numbered(2)), HasSubstr("is on trial"));
-    run(30ms);
-    EXPECT_EQ(load(numbered(2), "door.moved"), "");
-    run(3ms);
-    EXPECT_THAT(compile(numbered(3)), HasSubstr("another change of behaviour"));
 }
 
 TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for) {
@@ -316,69 +181,6 @@ TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for)
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
     EXPECT_THAT(oven().told, ElementsAre(21, 1, 11));
     EXPECT_THAT(wish(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
-}
-
-/// Takes so many microseconds for a tick.
-std::string takes(int us) {
-    return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
-           "state B { entry { do oven.bake(" +
-           std::to_string(us) + "); } transition oven.tick() select A }\nfinal state End {} }";
-}
-
-TEST_F(BehaviourSlotTest, one_that_makes_its_activity_late_on_trial_is_taken_back) {
-    load_and_settle(numbered(1));
-    EXPECT_EQ(load(takes(2000)), "");
-    run(3ms);
-    ASSERT_EQ(slot.phase(), SlotPhase::trial);
-    oven().tick.emit();
-    run(5ms);
-    EXPECT_EQ(slot.last_roll_back(), RollBack::late);
-    EXPECT_EQ(slot.describe_roll_back().view(),
-              "taken back: test.osd: its activity missed a deadline by it; let it do less in one step");
-    EXPECT_EQ(state_now(), "Begin") << "the first is at work";
-}
-
-TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_is_taken_back) {
-    load_and_settle(numbered(1));
-    EXPECT_EQ(load(takes(200)), "");
-    run(3ms);
-    for (int i = 0; i < 3; ++i) { // an engine measures its processor once it was busy beyond its budget
-        oven().tick.emit();
-        run(2ms);
-    }
-    run(2ms);
-    EXPECT_EQ(slot.last_roll_back(), RollBack::too_much);
-    EXPECT_THAT(std::string{slot.describe_roll_back().view()},
-                HasSubstr("more of its processor than its row claims"));
-    EXPECT_EQ(state_now(), "Begin");
-}
-
-TEST_F(BehaviourSlotTest, one_whose_statements_take_until_the_deadline_is_stopped_between_two_of_them) {
-    load_and_settle(numbered(1));
-    // Six milliseconds of work, which the number of statements alone would let one cycle do.
-    EXPECT_EQ(load("StateMachine Slow { var int i = 0; initial state A { transition oven.tick() select B }\n"
-                   "state B { entry { while (i < 20) { do oven.bake(300); set i = i + 1; } } "
-                   "exit { do oven.note(77); } transition oven.tick() select A }\nfinal state End {} }"),
-              "");
-    run(3ms);
-    ASSERT_EQ(slot.phase(), SlotPhase::trial);
-    const Time before = instance.clock().now();
-    oven().tick.emit();
-    run(2ms);
-    EXPECT_LT(instance.clock().now() - before, 4ms);
-    EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
-    EXPECT_THAT(oven().told, testing::Contains(77)) << "its exit program runs although the time is used up";
-    EXPECT_EQ(state_now(), "Begin") << "the first is at work";
-}
-
-TEST_F(BehaviourSlotTest, one_that_stays_within_its_claim_is_kept) {
-    load_and_settle(numbered(1));
-    EXPECT_EQ(load(takes(40)), "");
-    run(3ms);
-    oven().tick.emit();
-    run(30ms);
-    EXPECT_EQ(slot.phase(), SlotPhase::steady);
-    EXPECT_EQ(state_now(), "B");
 }
 
 TEST_F(BehaviourSlotTest, one_that_waits_does_not_take_over_because_another_change_is_on_its_way) {
@@ -442,7 +244,7 @@ TEST_F(BehaviourSlotTest, a_bank_whose_command_is_still_on_its_way_is_not_writte
               "");
     run(22ms); // ten pieces take 50 ms
     EXPECT_EQ(load(numbered(2)), "");
-    run(22ms);
+    settle();
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
     EXPECT_THAT(compile(numbered(3)), HasSubstr("is still on its way"));
     run(100ms);

@@ -32,7 +32,7 @@ constexpr auto with_behaviours = machine("press",
     connections(data("table.height", "ram.limit", stale_after(1s), hold)),
     reactions(),
     behaviours(behaviour("ram", cycle),
-               behaviour("ram", slot(nodes(60), data_bytes(512), depth(3), command_slots(1), timers(4), trial(10)))));
+               behaviour("ram", slot(nodes(60), data_bytes(512), depth(3), command_slots(1), timers(4), trial(1)))));
 // clang-format on
 
 constexpr std::string_view script = "StateMachine Pressing {\n"
