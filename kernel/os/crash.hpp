@@ -19,6 +19,9 @@ struct CrashNote {
     std::uint64_t address = 0;     ///< of the memory that was wanted; of ABRT nothing
     std::uint64_t instruction = 0; ///< where the thread stood
     std::array<char, 16> thread_name{};
+    /// Where the calls on its stack return to, the innermost first, 0 after the last. Found by looking for
+    /// what follows a call: some may be left over from calls that had returned.
+    std::array<std::uint64_t, 16> returns{};
 
     [[nodiscard]] bool is_complete() const noexcept { return state.load(std::memory_order_acquire) == 2; }
     /// "signal SEGV at instruction 0x.. for address 0x.. in thread \"motion\""

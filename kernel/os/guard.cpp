@@ -28,11 +28,25 @@ namespace tappet::os {
 
 namespace {
 
-void write_to(const char* path, std::string_view text) noexcept {
+bool write_to(const char* path, std::string_view text) noexcept {
     const int file = open(path, O_WRONLY | O_CLOEXEC);
-    if (file < 0) return;
-    [[maybe_unused]] const auto n = write(file, text.data(), text.size());
+    if (file < 0) return false;
+    const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
     close(file);
+    return written;
+}
+
+// 0 keeps it from files, 1 from pipes too: it would hold the end up.
+void dump_no_core() noexcept {
+    const rlimit none{1, 1};
+    setrlimit(RLIMIT_CORE, &none);
+}
+
+/// What there is to read, or the end of a process.
+bool comes_within(int descriptor, Duration time) noexcept {
+    pollfd told{descriptor, POLLIN, 0};
+    const timespec limit{static_cast<time_t>(time / 1s), static_cast<long>((time % 1s).count())};
+    return ppoll(&told, 1, &limit, nullptr) > 0;
 }
 
 } // namespace
@@ -82,8 +96,7 @@ std::expected<Guard::Side, Sentence> Guard::split(int crash_patience_ms) noexcep
     // The end of the guardian asks for the orderly stop, as every signal does; the supervisor then sees who
     // is gone.
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    const rlimit none{1, 1}; // a core dump would hold the end up; 0 keeps it from files, 1 from pipes too
-    setrlimit(RLIMIT_CORE, &none);
+    dump_no_core();
     on_crash(block->crash, crash_, crash_patience_ms);
     return Side::machine;
 }
@@ -141,15 +154,28 @@ bool Guard::become_guardian(std::span<const int> kept) noexcept {
     never_wait();
     prctl(PR_SET_NAME, "guardian");
     prctl(PR_SET_TIMERSLACK, 1);
-    write_to("/proc/self/oom_score_adj", "-1000");
+    block_->is_spared.store(write_to("/proc/self/oom_score_adj", "-1000"), std::memory_order_release);
     sched_param above{};
     above.sched_priority = sched_get_priority_max(SCHED_FIFO);
     return sched_setscheduler(0, SCHED_FIFO, &above) == 0;
 }
 
+void Guard::give_back(std::uintptr_t begin, std::uintptr_t end) noexcept {
+    constexpr std::uintptr_t page = 4096;
+    begin = (begin + page - 1) & ~(page - 1);
+    end &= ~(page - 1);
+    // Of a range that is mapped in part the rest is refused, and that part given back.
+    if (begin < end) static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED));
+}
+
 // Not what may be touched later: the machine's memory is in this process as well, where nothing of it is
 // there.
-void Guard::stay_in_memory() noexcept { static_cast<void>(mlockall(MCL_CURRENT | MCL_ONFAULT)); }
+void Guard::stay_in_memory() noexcept {
+    constexpr std::uintptr_t own_calls = 16 * 1024, most = 8 << 20;
+    const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+    give_back(here - most, here - own_calls);
+    static_cast<void>(mlockall(MCL_CURRENT | MCL_ONFAULT));
+}
 
 void Guard::refuse(const Sentence& why) noexcept {
     block_->refusal = why;
@@ -181,10 +207,25 @@ void Guard::send(int signal) const noexcept {
     syscall(SYS_pidfd_send_signal, machine_descriptor_, signal, nullptr, 0);
 }
 
+bool Guard::try_apart(Duration time, void (*act)(void*), void* context) noexcept {
+    const pid_t child = fork();
+    if (child == 0) {
+        dump_no_core();
+        const sched_param none{};
+        if (sched_setscheduler(0, SCHED_OTHER, &none) == 0) act(context);
+        _exit(0);
+    }
+    if (child < 0) return false;
+    const int descriptor = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+    const bool in_time = descriptor >= 0 && comes_within(descriptor, time);
+    if (!in_time) ::kill(child, SIGKILL);
+    if (descriptor >= 0) close(descriptor);
+    int status = 0;
+    return waitpid(child, &status, 0) == child && in_time && WIFEXITED(status);
+}
+
 bool Guard::await_end(Duration time) noexcept {
-    pollfd end{machine_descriptor_, POLLIN, 0};
-    const timespec limit{static_cast<time_t>(time / 1s), static_cast<long>((time % 1s).count())};
-    if (has_ended_ || ppoll(&end, 1, &limit, nullptr) <= 0) return has_ended_;
+    if (has_ended_ || !comes_within(machine_descriptor_, time)) return has_ended_;
     has_ended_ = true;
     int status = 0;
     if (waitpid(machine_, &status, WNOHANG) != machine_) return true; // whoever traces it learns it first

@@ -7,7 +7,9 @@
 #include "kernel/base/time.hpp"
 #include "kernel/os/crash.hpp"
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <expected>
 #include <span>
@@ -25,11 +27,13 @@ struct GuardBlock {
     std::atomic<bool> activities_run{false}; ///< from before the first start to the beginning of the stop
     std::atomic<bool> ended_well{false};     ///< what comes is an exit with every output safe
     std::atomic<bool> is_ready{false};       ///< the guardian could act now
+    std::atomic<bool> is_spared{false};      ///< the guardian, when the kernel is short of memory
     std::atomic<bool> has_refused{false};    ///< it never can; `refusal` says why
     std::atomic<std::int64_t> looked_ns{0};  ///< when the guardian looked last
     Sentence refusal{};
     Sentence fault{}; ///< that stopped the machine; before ended_well, and before its end
     CrashNote crash{};
+    alignas(16) std::array<std::byte, 64> machines{}; ///< what else the machine keeps there for its guardian
 };
 
 /// Of one process, for its whole life. Not real-time; in the machine's process its supervisor's.
@@ -48,11 +52,18 @@ public:
     /// there is one process only.
     std::expected<Side, Sentence> split(int crash_patience_ms = 1000) noexcept;
 
+    /// In both, after a split.
+    [[nodiscard]] std::span<std::byte, 64> machines() noexcept { return block_->machines; }
+
     // ---- in the machine's process; without a split() they do nothing, and the guardian is not lost
 
     [[nodiscard]] bool is_split() const noexcept { return block_ != nullptr; }
     /// Empty once the guardian can act; else why not, after a second at most.
     [[nodiscard]] Sentence wait_for_guardian() noexcept;
+    /// When memory is short the kernel ends others than the guardian. Once it can act.
+    [[nodiscard]] bool guardian_is_spared() const noexcept {
+        return block_->is_spared.load(std::memory_order_acquire);
+    }
     /// The supervisor shows life, and will again within `time`; at each call anew.
     void be_back_within(Duration time) noexcept;
     void let_activities_be_watched(bool watched) noexcept;
@@ -69,7 +80,12 @@ public:
     /// thread of the box, is no victim when memory is short, and never waits to write. False: it could not be
     /// put above.
     bool become_guardian(std::span<const int> kept) noexcept;
-    /// What was touched until now stays in memory.
+    /// The machine's alone: whole pages in it are given back and read as 0 from here on.
+    template <class Object>
+    static void forget(Object& object) noexcept {
+        give_back(reinterpret_cast<std::uintptr_t>(&object), reinterpret_cast<std::uintptr_t>(&object + 1));
+    }
+    /// What was touched until now stays in memory, but for what earlier calls left on the stack.
     void stay_in_memory() noexcept;
     void refuse(const Sentence& why) noexcept;
     void be_ready() noexcept { block_->is_ready.store(true, std::memory_order_release); }
@@ -80,6 +96,12 @@ public:
     [[nodiscard]] Seen look(Duration time) noexcept;
     [[nodiscard]] const GuardBlock& block() const noexcept { return *block_; }
     void kill() const noexcept;
+    /// Does it in a process of its own, which stands above nobody: what goes wrong there, or takes longer
+    /// than `time`, ends that one alone. False: it did not come to its end.
+    template <class Do>
+    bool try_apart(Duration time, Do&& act) noexcept {
+        return try_apart(time, [](void* context) { (*static_cast<Do*>(context))(); }, &act);
+    }
     /// Whether its end is there, or comes within `time`. Then exit_code() is as a shell tells it: 128 and the
     /// number of the signal that ended it.
     [[nodiscard]] bool await_end(Duration time) noexcept;
@@ -87,6 +109,8 @@ public:
 
 private:
     void send(int signal) const noexcept;
+    static bool try_apart(Duration time, void (*act)(void*), void* context) noexcept;
+    static void give_back(std::uintptr_t begin, std::uintptr_t end) noexcept;
 
     GuardBlock* block_ = nullptr;
     std::int32_t machine_ = -1;  // its process

@@ -3,11 +3,14 @@
 #include "toolchain/machine/black_box.hpp"
 
 #include "kernel/os/terminal.hpp"
+#include "kernel/services/browsing/protocol.hpp"
 
 #include <array>
 #include <cstdint>
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace tappet {
 
@@ -32,6 +35,29 @@ Sentence keep_black_box(std::string_view directory, const map::black_box::Record
     const std::string_view pieces[] = {{head.data(), head.size()},
                                        {reinterpret_cast<const char*>(memory.data()), memory.size()}};
     return os::replace_file(chosen.data(), pieces) ? chosen : Sentence{};
+}
+
+void add_answers(const Sentence& file, MachineInstance& instance) {
+    const int out = ::open(file.data(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (out < 0) return;
+    const auto add = [&](const Sentence& request) {
+        static std::array<char, browsing::max_packet_bytes> room;
+        const std::string_view answer = instance.observation().ask(Sentence{"0 ", request}.view(), room);
+        if (!answer.empty() && os::write_all(out, request.view()) && os::write_all(out, "\t"))
+            static_cast<void>(os::write_all(out, answer)); // it ends its line
+    };
+    add(Sentence{"behaviours"});
+    const auto rows = instance.machine().table.behaviours;
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+        const BehaviourSlot* slot = instance.slot_of_row(b);
+        const BehaviourUnit* unit = slot != nullptr ? slot->active() : instance.unit_of_row(b);
+        if (slot != nullptr) add(Sentence{"behaviours ", rows[b].component});
+        if (unit == nullptr) continue;
+        for (const UnitPart& part : unit->parts())
+            add(Sentence{"behaviours ", rows[b].component, ".", part.row->name});
+    }
+    static_cast<void>(::fsync(out));
+    ::close(out);
 }
 
 } // namespace tappet

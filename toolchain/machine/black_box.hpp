@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/base/text.hpp"
+#include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/map/black_box.hpp"
 
 #include <cstddef>
@@ -17,5 +18,8 @@ inline constexpr int black_boxes_kept = 8; ///< of one machine
 /// could be written. Not real-time.
 [[nodiscard]] Sentence keep_black_box(std::string_view directory, const map::black_box::Record& record,
                                       std::span<const std::byte> memory);
+/// Adds what the machine, of which nothing runs any more, answers to browsers. What is damaged in it may end
+/// the calling process: the file is whole without. Not real-time.
+void add_answers(const Sentence& file, MachineInstance& instance);
 
 } // namespace tappet

@@ -118,10 +118,14 @@ public:
         if (options_.guarded) {
             const auto side = guard_.split();
             if (!side) return static_cast<int>(fail(Ending::wrong_set_up, side.error()));
-            if (*side == os::Guard::Side::guardian)
+            instance.keep_stop_request_in(guard_.machines());
+            if (*side == os::Guard::Side::guardian) {
+                os::Guard::forget(properties);
+                os::Guard::forget(world);
                 be_guardian(guard_, devices_, instance,
                             options_.black_box != nullptr ? std::string_view{options_.black_box}
                                                           : instance.machine().board->black_box_directory);
+            }
             instance.observation().be_this_process();
         }
         return static_cast<int>(run(instance, world, properties, begun));
@@ -168,6 +172,9 @@ private:
             report.warning("guardian", Sentence{"the machine has none"}, Sentence{"leave out --no-guardian"});
         else if (const Sentence why = guard_.wait_for_guardian(); !why.empty())
             report.fault("guardian", why, Sentence{"see the reason"});
+        else if (!guard_.guardian_is_spared())
+            report.warning("guardian", Sentence{"the kernel may end it when memory is short"},
+                           Sentence{"run as root or grant CAP_SYS_RESOURCE"});
         else
             report.passed("guardian", Sentence{"it could act now"});
     }

@@ -96,8 +96,7 @@ private:
         if (const std::size_t a = watch_.look(now); a != LifeWatch::all_live)
             return {true, false,
                     Sentence{"activity \"", instance_.machine().table.activities[a].name,
-                             "\" shows no life for ",
-                             instance_.machine().board->life_sign_within.count() / 1'000'000, " ms"}};
+                             "\" shows no life for ", watch_.limit(a).count() / 1'000'000, " ms"}};
         return {};
     }
 
@@ -124,7 +123,10 @@ private:
         const bool ended = guard_.await_end(ended_within);
         const std::size_t chips = devices_.write_safe_lines();
         if (chips == 0 && ended) watchdog_.stand_down(); // else the box's reset is the end of it
-        if (guard_.block().crash.is_complete()) reason = guard_.block().crash.describe();
+        if (guard_.block().crash.is_complete())
+            reason = guard_.block().crash.describe();
+        else if (!reason.empty() && instance_.stop_asked())
+            reason.add("; before that: ").add(instance_.describe_stop().view());
         if (reason.empty()) reason = why_it_ended();
         Sentence said{instance_.machine().table.name,
                       ": ",
@@ -159,6 +161,7 @@ private:
             record.instruction = crash.instruction;
             record.address = crash.address;
             record.thread_name = crash.thread_name;
+            record.returns = crash.returns;
         }
         const auto put = [](std::string_view text, std::span<char> into) {
             std::copy_n(text.data(), std::min(text.size(), into.size() - 1), into.data());
@@ -169,10 +172,13 @@ private:
         put(reason.view(), record.reason);
         put(done.view(), record.done);
         const Sentence file = keep_black_box(black_boxes_, record, memory);
-        if (!file.empty())
-            static_cast<void>(
-                os::write_all(2, Sentence{machine.table.name, ": the black box is ", file, "\n"}.view()));
-        else if (!black_boxes_.empty())
+        if (!file.empty()) {
+            const bool answered = guard_.try_apart(1s, [&] { add_answers(file, instance_); });
+            static_cast<void>(os::write_all(
+                2, Sentence{machine.table.name, ": the black box is ", file,
+                            answered ? "\n" : ", without its behaviours: its memory is damaged\n"}
+                       .view()));
+        } else if (!black_boxes_.empty())
             static_cast<void>(os::write_all(
                 2, Sentence{machine.table.name, ": no black box can be written in \"", black_boxes_, "\"\n"}
                        .view()));

@@ -17,20 +17,21 @@ std::expected<Standing, Sentence> MachineInstance::configure(std::span<const Pro
 void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept
     TAPPET_REALTIME {
     int free = 0;
-    if (!stop_asked_.compare_exchange_strong(free, 1, std::memory_order_acq_rel)) return;
-    stop_ = {reason, detail, from};
-    stop_asked_.store(2, std::memory_order_release);
+    if (!stop_->asked.compare_exchange_strong(free, 1, std::memory_order_acq_rel)) return;
+    stop_->request = {reason, detail, from};
+    stop_->asked.store(2, std::memory_order_release);
     supervisor_.wake();
 }
 
 Sentence MachineInstance::describe_stop() const {
-    const std::string_view who = stop_.from == nullptr ? std::string_view{} : stop_.from->name();
-    switch (stop_.reason) {
+    const StopRequest& stop = stop_request();
+    const std::string_view who = stop.from == nullptr ? std::string_view{} : stop.from->name();
+    switch (stop.reason) {
     case StopReason::none: return Sentence{"nobody asked"};
     case StopReason::requested: return Sentence{"asked for from outside"};
     case StopReason::broken_contract: return Sentence{"a contract was broken in activity \"", who, "\""};
     case StopReason::behaviour: {
-        const std::string_view driven = machine().table.components[stop_.detail].name;
+        const std::string_view driven = machine().table.components[stop.detail].name;
         Sentence text{"the behaviour of \"", driven, "\" in activity \"", who, "\" is in error: "};
         if (const BehaviourUnit* unit = behaviour_of(driven);
             unit != nullptr && unit->failed_part() != nullptr)
@@ -40,14 +41,14 @@ Sentence MachineInstance::describe_stop() const {
                                                             : text;
     }
     case StopReason::missed_deadline: {
-        const auto function = static_cast<std::uint32_t>(stop_.detail);
-        if (function == Miss::nobody || stop_.from == nullptr)
+        const auto function = static_cast<std::uint32_t>(stop.detail);
+        if (function == Miss::nobody || stop.from == nullptr)
             return Sentence{"activity \"", who, "\" missed its deadline: it began late"};
         return Sentence{"activity \"", who, "\" missed its deadline: component \"",
-                        stop_.from->plan().parts[function / functions_per_part].name, "\" took the time"};
+                        stop.from->plan().parts[function / functions_per_part].name, "\" took the time"};
     }
     case StopReason::stale_input: {
-        const ConnectionRow& row = machine().table.connections[stop_.detail];
+        const ConnectionRow& row = machine().table.connections[stop.detail];
         return Sentence{"connection \"",
                         row.from,
                         "\" -> \"",
@@ -57,7 +58,7 @@ Sentence MachineInstance::describe_stop() const {
                         " us"};
     }
     case StopReason::section:
-        return machine().table.extras->at(stop_.detail >> 32)->describe_stop(stop_.detail & 0xFFFFFFFF);
+        return machine().table.extras->at(stop.detail >> 32)->describe_stop(stop.detail & 0xFFFFFFFF);
     }
     return {};
 }

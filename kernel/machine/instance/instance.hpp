@@ -72,6 +72,16 @@ public:
 
     // ---- the end
 
+    /// Where another process sees which stop was asked for; it outlives the instance. Before anything runs.
+    static constexpr std::size_t stop_request_bytes = 64;
+    void keep_stop_request_in(std::span<std::byte, stop_request_bytes> shared) noexcept {
+        auto* kept = reinterpret_cast<KeptStop*>(shared.data());
+        if (stop_asked() && kept->asked.load(std::memory_order_acquire) == 0) {
+            kept->request = stop_request();
+            kept->asked.store(2, std::memory_order_release);
+        }
+        stop_ = kept;
+    }
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
     /// The same for a row of a section of another folder, which describes it.
@@ -79,9 +89,9 @@ public:
         ask_stop(StopReason::section, std::uint64_t{section} << 32 | row, from);
     }
     [[nodiscard]] bool stop_asked() const noexcept TAPPET_REALTIME {
-        return stop_asked_.load(std::memory_order_acquire) == 2;
+        return stop_->asked.load(std::memory_order_acquire) == 2;
     }
-    [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_; }
+    [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_->request; }
     /// What a stop request says, as a sentence.
     [[nodiscard]] Sentence describe_stop() const;
     /// Woken when a stop is asked for.
@@ -100,6 +110,13 @@ public:
 private:
     friend class MachineBuilder;
 
+    /// All of it 0: nobody asked.
+    struct KeptStop {
+        std::atomic<int> asked{0}; ///< 1: somebody is writing the request, 2: it is written
+        StopRequest request{};
+    };
+    static_assert(sizeof(KeptStop) <= stop_request_bytes && static_cast<int>(StopReason::none) == 0);
+
     void expect_unconfigured() const noexcept { TAPPET_CONTRACT(!is_configured_, Contract::wrong_phase); }
 
     PropertyStore store_{};
@@ -110,8 +127,8 @@ private:
     MachineLife life_{*this, supervisor_};
     MachineRequests requests_{*this};
     MachineObservation observation_{*this};
-    std::atomic<int> stop_asked_{0}; // 1: somebody is writing the request, 2: it is written
-    StopRequest stop_{};
+    KeptStop own_stop_{};
+    KeptStop* stop_ = &own_stop_;
 };
 
 } // namespace tappet

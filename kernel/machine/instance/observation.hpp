@@ -8,8 +8,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace tappet {
+
+/// Answers what a browser may ask, and writes the answer to `into`; returns its length, 0 for none.
+struct BrowsingAnswerer {
+    std::size_t (*answer)(void* self, std::string_view request, std::span<char> into) = nullptr;
+    void* self = nullptr;
+};
 
 /// Any thread, not real-time but for what says so.
 class MachineObservation {
@@ -35,6 +42,16 @@ public:
     /// Who is called, in the activity of what sees the machine, with each emission that observe_event()
     /// connected. While the machine is configured.
     void show_events_to(const EventObserver& observer) noexcept { event_observer_ = observer; }
+    /// The component that browsers ask says how it answers. While the machine is configured.
+    void answer_by(const BrowsingAnswerer& answerer) noexcept { answerer_ = answerer; }
+    /// The answer of a machine that runs no more to a request that only reads, see
+    /// kernel/services/browsing/protocol.hpp; empty: it has none. What stood in the middle of a cycle may be
+    /// half written, and what is damaged may end who asks.
+    [[nodiscard]] std::string_view ask(std::string_view request, std::span<char> into) const {
+        if (answerer_.answer == nullptr) return {};
+        return {into.data(), answerer_.answer(answerer_.self, request, into)};
+    }
+
     /// Connects and disconnects the observer and one event; the event's number there is observed_index(). Not
     /// valid when nothing sees the machine, or the event's arguments exceed a message. The handle is
     /// real-time, finding it is not.
@@ -79,6 +96,7 @@ private:
     const AcceptedMachine& machine_;
     os::SharedMemory shared_{};
     EventObserver event_observer_{};
+    BrowsingAnswerer answerer_{};
 };
 
 } // namespace tappet

@@ -9,11 +9,13 @@
 
 /// A file. It begins with Record; the machine's memory, as layout.hpp describes it, follows at memory_at, as
 /// it stood when the outputs were safe. An activity whose generation is odd was in its cycle, and what it
-/// writes may be half written. All integers are little-endian; texts end with a zero.
+/// writes may be half written. All integers are little-endian; texts end with a zero. After the memory stand
+/// what the machine then answered to browsers: lines of a request, a tabulator and the answer as
+/// kernel/services/browsing/protocol.hpp has it; none when nothing in it answers, or it was damaged.
 namespace tappet::map::black_box {
 
 inline constexpr std::array<char, 8> magic{'T', 'A', 'P', 'P', 'E', 'T', 'B', 'B'};
-inline constexpr std::uint32_t version = 1;
+inline constexpr std::uint32_t version = 2;
 inline constexpr std::uint64_t memory_at = 4096; ///< a whole page: it may be mapped
 
 struct Record {
@@ -27,6 +29,7 @@ struct Record {
     std::int32_t thread = 0;
     std::uint64_t instruction = 0; ///< in the program of build_id
     std::uint64_t address = 0;
+    std::array<std::uint64_t, 16> returns{}; ///< on the stack of the crash, see os::CrashNote
     std::array<char, 16> thread_name{};
     std::array<char, 64> machine{};
     std::array<char, 64> board{};

@@ -19,10 +19,13 @@ public:
     LifeWatch(PlacedMachine& machine, Duration within) noexcept : machine_{machine}, within_{within} {}
 
     static constexpr std::size_t all_live = ~std::size_t{0};
-    /// The first activity that owed a sign for longer than it may, or all_live: for `within`, or twice its
-    /// deadline where that is longer. To be asked several times in `within`: a longer pause is taken for a
-    /// box that was frozen. What it asks of an engine is read in one piece and leads nowhere: an engine that
-    /// is damaged damages nobody here.
+    /// How long an activity may owe a sign: `within`, or twice its deadline where that is longer.
+    [[nodiscard]] Duration limit(std::size_t activity) const noexcept {
+        return std::max(within_, 2 * machine_.machine().table.activities[activity].deadline());
+    }
+    /// The first activity that owed a sign for longer than its limit, or all_live. To be asked several times
+    /// in `within`: a longer pause is taken for a box that was frozen. What it asks of an engine is read in
+    /// one piece and leads nowhere: an engine that is damaged damages nobody here.
     [[nodiscard]] std::size_t look(Time now) noexcept {
         // Who looks stands above everybody: when it did not look, nothing ran.
         const Duration frozen = now - last_ > within_ / 4 ? now - last_ : Duration{};
@@ -38,7 +41,7 @@ public:
                               (in_cycle || engine.is_woken() || engine.wakes_at() <= now);
             if (!owes || !seen.owed || generation != seen.generation)
                 seen = {generation, owes, now};
-            else if (now - (seen.since += frozen) > std::max(within_, 2 * row.deadline()))
+            else if (now - (seen.since += frozen) > limit(a))
                 return a;
         }
         return all_live;

@@ -12,6 +12,7 @@ Sentence BrowserService::configure(Setup& setup) {
     machine_ = setup.machine;
     own_activity_ = activity_of(machine_->machine().table, setup.component);
     machine_->observation().show_events_to({&observe, this});
+    machine_->observation().answer_by({&answer_for_nobody, this});
     return initialise();
 }
 
@@ -82,6 +83,24 @@ void BrowserService::handle(Client& client, std::string_view packet, bool cut) {
     if (verdict.good()) return;
     Reply reply{request.number, verdict.code, verdict.why};
     finish(client, reply);
+}
+
+std::size_t BrowserService::answer_for_nobody(void* self, std::string_view packet, std::span<char> into) {
+    auto& service = *static_cast<BrowserService*>(self);
+    service.for_nobody_ = into;
+    Request request;
+    Client nobody;
+    const bool good = browsing::parse_request(packet, request).empty() &&
+                      request.verb->role == Role::observer && service.answer(nobody, request).good();
+    return good ? into.size() - service.for_nobody_.size() : 0;
+}
+
+void BrowserService::finish(Client& client, Reply& reply) noexcept {
+    const std::string_view text = reply.finish();
+    if (for_nobody_.data() == nullptr)
+        connections_.send(client, text);
+    else
+        for_nobody_ = for_nobody_.subspan(text.copy(for_nobody_.data(), for_nobody_.size()));
 }
 
 BrowserService::Verdict BrowserService::check_role(const Client& client, std::string_view what, Role least) {

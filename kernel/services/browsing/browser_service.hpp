@@ -73,7 +73,9 @@ private:
     void handle(Client& client, std::string_view packet, bool cut);
     Verdict answer(Client& client, const Request& request);
     void note(const Client& client, std::string_view what, std::string_view packet, const Verdict& verdict);
-    void finish(Client& client, Reply& reply) noexcept { connections_.send(client, reply.finish()); }
+    void finish(Client& client, Reply& reply) noexcept;
+    /// As BrowsingAnswerer.
+    static std::size_t answer_for_nobody(void* self, std::string_view request, std::span<char> into);
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
         return {client.serial, request.number, now_};
     }
@@ -151,8 +153,9 @@ private:
     Sentence find_slot(std::string_view name, BehaviourSlot*& slot) noexcept;
     template <class Copy>
     [[nodiscard]] bool read_between_steps(std::size_t activity, const Copy& copy) {
-        // This activity is in the middle of a cycle and steps no behaviour meanwhile.
-        if (activity == own_activity_) {
+        // This activity is in the middle of a cycle and steps no behaviour meanwhile; nothing steps where
+        // nobody waits for the answer.
+        if (activity == own_activity_ || for_nobody_.data() != nullptr) {
             copy();
             return true;
         }
@@ -187,6 +190,7 @@ private:
     std::uint64_t unseen_ = 0; ///< emissions beyond max_events
     Upload upload_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
+    std::span<char> for_nobody_{}; ///< where the answer goes, and what is left there; empty: to the client
 };
 
 } // namespace tappet

@@ -23,8 +23,9 @@ namespace tappet::bench {
 namespace {
 
 // Of what hangs: the board's life_sign_within. Of a bus that is down: the drives' time-out.
+// Of who is asked by a browser: until that has started, and the loom stands.
 constexpr auto death = 10ms, hang = 210ms, silence = 110ms, orderly = 110ms, guardian_hangs = 1310ms,
-               exhausted = 1500ms;
+               exhausted = 1500ms, asked = 3000ms;
 
 /// Brake on, valve closed: read from files that stay open, so that looking costs the machine little.
 class SafeLines {
@@ -90,7 +91,8 @@ struct Fault {
     void (*commit)(pid_t guardian, pid_t machine);
     std::chrono::milliseconds within;
     After after;
-    int code = 0; ///< dead: the exit code
+    int code = 0;                    ///< dead: the exit code
+    const char* mended_by = nullptr; ///< goes_on: a command, for who goes on by itself none
 };
 
 // clang-format off
@@ -106,6 +108,8 @@ constexpr Fault faults[] = {
     {"guardian-stopped",  [](pid_t g, pid_t) { ::kill(g, SIGSTOP); },  guardian_hangs, After::stopped},
     {"can-down",          [](pid_t, pid_t) { take_bus_down(); },       silence,        After::goes_on},
     {"memory-exhausted",  [](pid_t, pid_t) { exhaust_memory(); },      exhausted,      After::either, 137},
+    {"component-stopped", [](pid_t, pid_t) { ::tappet::run("tappet-browse stop weft"); },  asked, After::goes_on, 0, "tappet-browse start weft"},
+    {"activity-stopped",  [](pid_t, pid_t) { ::tappet::run("tappet-browse stop shaft"); }, asked, After::goes_on, 0, "tappet-browse start shaft"},
 };
 // clang-format on
 
@@ -237,6 +241,8 @@ private:
             return "the machine ended: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 400));
         }
         seen_ = machine_->output().size();
+        if (fault.mended_by != nullptr && ::tappet::run(fault.mended_by) != 0)
+            return "it takes no \"" + std::string{fault.mended_by} + "\"";
         return after == After::goes_on || says("state=weave") ? "" : "it does not weave on";
     }
 

@@ -107,18 +107,21 @@ TEST(Guard, learns_the_end_of_a_machine_though_it_was_started_by_one_who_ignores
     ::close(told[1]);
 }
 
+[[gnu::noinline]] int crash_here() { return ::raise(SIGSEGV) + 1; }
+
 TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
     const int code = split(
         [](Guard& guard) {
             if (arm(guard) != 0) return 98;
-            ::raise(SIGSEGV);
-            return 0;
+            return crash_here();
         },
         [](Guard& guard) {
             if (next(guard) != Seen::crash) return 94;
             const CrashNote& note = guard.block().crash;
             if (!note.is_complete() || note.signal != SIGSEGV || note.instruction == 0) return 93;
             if (note.describe().view().find("SEGV at instruction 0x") != 0) return 92;
+            const auto begin = reinterpret_cast<std::uint64_t>(&crash_here);
+            if (std::ranges::none_of(note.returns, [&](auto at) { return at - begin < 100; })) return 89;
             guard.kill();
             return guard.await_end(1h) ? guard.exit_code() : 91;
         });
@@ -134,6 +137,18 @@ TEST(Guard, a_crash_that_nobody_acts_on_ends_the_process_all_the_same) {
         },
         [](Guard& guard) { return guard.await_end(1h) ? guard.exit_code() : 90; }, {}, 10);
     EXPECT_EQ(code, 128 + SIGFPE);
+}
+
+TEST(Guard, what_it_tries_apart_ends_nobody_else) {
+    const int code = split([](Guard& guard) { return arm(guard); },
+                           [](Guard& guard) {
+                               int here = 0;
+                               if (!guard.try_apart(1h, [&] { here = 1; }) || here != 0) return 95;
+                               if (guard.try_apart(1h, [] { __builtin_trap(); })) return 94;
+                               if (guard.try_apart(10ms, [] { ::pause(); })) return 93;
+                               return guard.await_end(1h) ? guard.exit_code() : 91;
+                           });
+    EXPECT_EQ(code, 0);
 }
 
 TEST(Guard, hands_on_what_is_signalled_to_it) {

@@ -38,23 +38,31 @@ Result<void> tell(Work& work) {
         text("done", done);
         text("thread", box.thread_name.data());
         work.out << "\"signal\": " << box.signal << ", \"instruction\": " << box.instruction
-                 << ", \"address\": " << box.address << ", \"exit_code\": " << box.exit_code << "}\n";
+                 << ", \"returns\": [";
+        for (std::size_t i = 0; i < box.returns.size() && box.returns[i] != 0; ++i)
+            work.out << (i == 0 ? "" : ", ") << box.returns[i];
+        work.out << "], \"address\": " << box.address << ", \"exit_code\": " << box.exit_code << "}\n";
         return {};
     }
     work.out << box.machine.data() << " on board " << box.board.data() << ", build "
              << (build.empty() ? "without an id" : build) << "\n"
              << date_of(box.wall_ns) << ": " << box.reason.data() << "; exit code " << box.exit_code << "\n";
     if (!done.empty()) work.out << "told: " << done << "\n";
-    if (box.signal != 0)
-        work.out << "source: addr2line -Cfie FIRMWARE 0x" << std::hex << box.instruction << std::dec
-                 << " (the firmware of this build, not stripped)\n";
+    if (box.signal != 0) {
+        work.out << "source, then callers (some may have returned before): addr2line -Cfipe FIRMWARE"
+                 << std::hex << " 0x" << box.instruction;
+        for (const std::uint64_t address : box.returns)
+            if (address != 0) work.out << " 0x" << address - 1; // of the call, not of what follows it
+        work.out << std::dec << " (the firmware of this build, not stripped)\n";
+    }
     for (std::uint32_t a = 0; a < map.activities().size(); ++a)
         work.out << "activity " << map.text(map.activities()[a].name)
                  << (work.session.observer().generation(a) % 2 == 0
                          ? ": slept\n"
                          : ": was in its cycle; what it writes may be half written\n");
     work.out << work.session.observer().forced() << " ports forced\n"
-             << "more: post-mortem FILE list | get NAME... | tree | info NAME | forced | reactions | scope\n";
+             << "more: post-mortem FILE list | get NAME... | tree | info NAME | forced | reactions | scope | "
+                "behaviour [NAME]\n";
     return {};
 }
 

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <expected>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -56,8 +58,9 @@ private:
 class Link {
 public:
     static Result<Link> connect(const std::string& path);
-    /// Of a machine that is no more, kept in the file `path`: it answers nothing.
-    static Link to_nobody(const std::string& path);
+    /// Of a machine that is no more, kept in the file `path`: it gives the answers that it gave before, as
+    /// map/black_box.hpp lays them out.
+    static Link to_nobody(const std::string& path, const std::string& answers);
     Link(Link&& other) noexcept;
     Link& operator=(Link&& other) noexcept;
     ~Link();
@@ -88,6 +91,7 @@ private:
     std::uint32_t last_number_ = 0;
     std::string path_{};
     std::vector<std::string> waiting_{};
+    std::map<std::string, std::string, std::less<>> answers_{}; ///< of a machine that is no more
 };
 
 } // namespace tappet::browser

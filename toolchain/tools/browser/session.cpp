@@ -60,12 +60,19 @@ Result<std::unique_ptr<Session>> Session::open_black_box(const std::string& file
          {std::span{record->machine}, std::span{record->board}, std::span{record->build_id}})
         text.back() = 0;
     record->reason.back() = record->done.back() = record->thread_name.back() = 0;
-    if (!block || block->bytes().size() != record->memory_bytes)
+    if (record->memory_bytes == 0)
+        return wrong("holds nothing of the machine, in which no component saw it (a BrowserService does); "
+                     "what is known: " +
+                     std::string{record->reason.data()} + "; " + record->done.data());
+    if (!block || block->bytes().size() < record->memory_bytes)
         return wrong("is cut off: its machine had " + std::to_string(record->memory_bytes) + " bytes");
-    auto map = MapReader::open(block->bytes());
+    const auto memory = block->bytes().first(record->memory_bytes);
+    const auto after = block->bytes().subspan(record->memory_bytes);
+    auto map = MapReader::open(memory);
     if (!map) return wrong("holds a machine that cannot be read: " + map.error());
+    auto link = Link::to_nobody(file, {reinterpret_cast<const char*>(after.data()), after.size()});
     return std::unique_ptr<Session>{
-        new Session{Link::to_nobody(file), std::move(*block), std::move(*map), "reader", std::move(record)}};
+        new Session{std::move(link), std::move(*block), std::move(*map), "reader", std::move(record)}};
 }
 
 } // namespace tappet::browser

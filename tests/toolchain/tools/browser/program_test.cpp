@@ -63,7 +63,7 @@ TEST_F(Program, lists_components_and_their_facets) {
 class BlackBox : public Program {
 protected:
     /// Of the machine as it is now.
-    std::string keep(std::uint32_t version = map::black_box::version) {
+    std::string keep(std::uint32_t version = map::black_box::version, std::string_view answers = {}) {
         map::black_box::Record box;
         box.magic = map::black_box::magic;
         box.version = version;
@@ -72,6 +72,7 @@ protected:
         box.wall_ns = 86'400'000'000'000;
         box.signal = 11;
         box.instruction = 0x4e1c99;
+        box.returns[0] = 0x4e1c00;
         std::string{"loom"}.copy(box.machine.data(), 4);
         std::string{"SEGV at instruction 0x4e1c99"}.copy(box.reason.data(), 40);
         std::vector<char> file(map::black_box::memory_at + machine.memory().size());
@@ -79,6 +80,7 @@ protected:
         std::ranges::transform(machine.memory(), file.begin() + map::black_box::memory_at,
                                [](std::byte each) { return static_cast<char>(each); });
         const std::string path = machine.directory() + "/loom-0.blackbox";
+        file.insert(file.end(), answers.begin(), answers.end());
         std::ofstream{path, std::ios::binary}.write(file.data(), static_cast<std::streamsize>(file.size()));
         return path;
     }
@@ -89,7 +91,7 @@ TEST_F(BlackBox, tells_why_the_machine_ended_and_where_its_activities_stood) {
     const Outcome told = run({"post-mortem", keep()});
     EXPECT_EQ(told.code, 0) << told.errors;
     EXPECT_THAT(told.out, HasSubstr("1970-01-02 00:00:00 UTC: SEGV at instruction 0x4e1c99; exit code 139"));
-    EXPECT_THAT(told.out, HasSubstr("addr2line -Cfie FIRMWARE 0x4e1c99"));
+    EXPECT_THAT(told.out, HasSubstr("addr2line -Cfipe FIRMWARE 0x4e1c99 0x4e1bff ("));
     EXPECT_THAT(told.out, testing::ContainsRegex("activity .*: was in its cycle"));
     EXPECT_THAT(run({"post-mortem", keep(), "--json"}).out, HasSubstr(R"("exit_code": 139)"));
     EXPECT_THAT(asked(), IsEmpty()) << "nobody is asked";
@@ -103,8 +105,29 @@ TEST_F(BlackBox, is_read_by_the_commands_that_read_a_machine_and_answers_no_othe
     EXPECT_EQ(run({"post-mortem", file, "list"}).out, run({"list"}).out);
     const Outcome asked_for = run({"post-mortem", file, "send", "shaft.stop"});
     EXPECT_EQ(asked_for.code, 2);
-    EXPECT_THAT(asked_for.errors, HasSubstr("is a black box: it can be read, and answers nothing"));
+    EXPECT_THAT(asked_for.errors, HasSubstr("is a black box: it can be read, and does not answer that"));
     EXPECT_THAT(run({"post-mortem", file, "lits"}).errors, HasSubstr("list"));
+}
+
+TEST_F(BlackBox, gives_the_answers_that_the_machine_gave_when_it_stood) {
+    const std::string file =
+        keep(map::black_box::version,
+             "behaviours\t{\"id\": 0, \"ok\": true, \"behaviours\": [{\"name\": \"loom.cycle\", "
+             "\"kind\": \"machine\", \"status\": \"running\", \"state\": \"weave\"}], \"slots\": []}\n"
+             "behaviours loom.cycle\t{\"cut off");
+    EXPECT_EQ(run({"post-mortem", file, "behaviour"}).out, "loom.cycle: running, in weave\n");
+    EXPECT_THAT(run({"post-mortem", file, "behaviour", "list", "loom.cycle"}).errors,
+                HasSubstr("does not answer that"));
+}
+
+TEST_F(BlackBox, of_a_machine_that_nobody_saw_is_told_all_the_same) {
+    const std::string file = keep(map::black_box::version, {});
+    std::fstream box{file, std::ios::binary | std::ios::in | std::ios::out};
+    box.seekp(offsetof(map::black_box::Record, memory_bytes));
+    box.write("\0\0\0\0\0\0\0", 8);
+    box.close();
+    EXPECT_THAT(run({"post-mortem", file}).errors,
+                HasSubstr("(a BrowserService does); what is known: SEGV at instruction 0x4e1c99"));
 }
 
 TEST_F(BlackBox, that_is_none_or_cut_off_or_of_another_version_is_refused) {
