@@ -82,6 +82,7 @@ enum class After : std::uint8_t {
     dead,      ///< the guardian acted and handed the code on
     stopped,   ///< the machine stopped itself
     goes_on,   ///< it waits for the operator
+    misses,    ///< the same, but acknowledged it prepares itself, with its brake off, and waits for its part
     untouched, ///< it weaves on
     either,    ///< untouched or dead: who asks the kernel for memory waits, in real time too
 };
@@ -92,7 +93,7 @@ struct Fault {
     std::chrono::milliseconds within;
     After after;
     int code = 0;                    ///< dead: the exit code
-    const char* mended_by = nullptr; ///< goes_on: a command, for who goes on by itself none
+    const char* mended_by = nullptr; ///< misses: the command that starts the part again
 };
 
 // clang-format off
@@ -108,8 +109,8 @@ constexpr Fault faults[] = {
     {"guardian-stopped",  [](pid_t g, pid_t) { ::kill(g, SIGSTOP); },  guardian_hangs, After::stopped},
     {"can-down",          [](pid_t, pid_t) { take_bus_down(); },       silence,        After::goes_on},
     {"memory-exhausted",  [](pid_t, pid_t) { exhaust_memory(); },      exhausted,      After::either, 137},
-    {"component-stopped", [](pid_t, pid_t) { ::tappet::run("tappet-browse stop weft"); },  asked, After::goes_on, 0, "tappet-browse start weft"},
-    {"activity-stopped",  [](pid_t, pid_t) { ::tappet::run("tappet-browse stop shaft"); }, asked, After::goes_on, 0, "tappet-browse start shaft"},
+    {"component-stopped", [](pid_t, pid_t) { ::tappet::run("tappet-browse stop weft"); },  asked, After::misses, 0, "tappet-browse start weft"},
+    {"activity-stopped",  [](pid_t, pid_t) { ::tappet::run("tappet-browse stop shaft"); }, asked, After::misses, 0, "tappet-browse start shaft"},
 };
 // clang-format on
 
@@ -165,6 +166,8 @@ public:
         pull(wires::line::brake, true);
         pull(wires::line::weft_release, false);
         if (after != After::untouched) judge_drives(fault, committed, listener, verdict);
+        if (after == After::misses && ::tappet::run(fault.mended_by) != 0 && verdict.fault.empty())
+            verdict.fault = "it takes no \"" + std::string{fault.mended_by} + "\"";
         return verdict;
     }
 
@@ -197,8 +200,10 @@ private:
             if (now_safe && !safe)
                 verdict.lines = std::chrono::duration_cast<WallDuration>(wall_now() - committed);
             // A machine that still lives may have stopped for a weft, and weave again.
-            const bool may_weave = fault.after == After::stopped || fault.after == After::either;
-            if (!now_safe && safe && !may_weave) verdict.fault = "the lines did not stay safe";
+            const bool may_weave =
+                fault.after == After::stopped || fault.after == After::either || fault.after == After::misses;
+            if (!now_safe && safe && !may_weave && fault.after != After::misses)
+                verdict.fault = "the lines did not stay safe";
             safe = now_safe || (safe && !may_weave);
             std::this_thread::sleep_for(200us);
         }
@@ -233,6 +238,7 @@ private:
             return {};
         }
         case After::goes_on:
+        case After::misses:
         case After::untouched: break;
         }
         if (!machine_->runs()) {
@@ -241,9 +247,7 @@ private:
             return "the machine ended: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 400));
         }
         seen_ = machine_->output().size();
-        if (fault.mended_by != nullptr && ::tappet::run(fault.mended_by) != 0)
-            return "it takes no \"" + std::string{fault.mended_by} + "\"";
-        return after == After::goes_on || says("state=weave") ? "" : "it does not weave on";
+        return after != After::untouched || says("state=weave") ? "" : "it does not weave on";
     }
 
     void judge_drives(const Fault& fault, WallTime committed, Foreign& listener, Verdict& verdict) {
@@ -257,7 +261,11 @@ private:
         for (const Logged& f : frames_of(listener.output())) {
             if (!is_drive_command(f) || f.at < committed || f.at > end) continue;
             ++told;
-            if (!drives_stand(f)) verdict.drives = std::chrono::duration_cast<WallDuration>(f.at - committed);
+            // Who prepares itself has its drives hold, and tightens the warp.
+            const bool turns = fault.after != After::misses
+                                   ? !drives_stand(f)
+                                   : f.id == wires::cob::main_drive_command && f.target() != 0;
+            if (turns) verdict.drives = std::chrono::duration_cast<WallDuration>(f.at - committed);
         }
         if (!verdict.fault.empty()) return;
         if (verdict.drives > fault.within) verdict.fault = "a drive was still told to turn";
