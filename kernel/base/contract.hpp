@@ -21,6 +21,7 @@ namespace tappet {
 enum class Contract : std::uint16_t {
     index_out_of_range = 1,
     precondition = 2,
+    not_a_number = 4,
     single_writer = 103,
     single_reader = 104,
     command_sender = 105,
@@ -54,6 +55,7 @@ struct ContractText {
 inline constexpr auto contract_texts = std::to_array<ContractText>({
     {Contract::index_out_of_range,     "index-out-of-range",     "Element {} was asked of something that has {}."},
     {Contract::precondition,           "precondition",           "A function was called with {}, which its declaration forbids."},
+    {Contract::not_a_number,           "not-a-number",           "Element {} of what a function was given is no number, or infinite: look at values where they come in."},
     {Contract::single_writer,          "single-writer",          "An output was written in activity {}: only its component writes it, in its own activity."},
     {Contract::single_reader,          "single-reader",          "An input was read in activity {}: only its component reads it, in its own activity."},
     {Contract::command_sender,         "command-sender",         "A command that activity {} sends was sent in activity {}: write sent_by(...) in its row."},

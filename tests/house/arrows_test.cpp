@@ -25,6 +25,7 @@ const std::vector<Row> house{
     {"kernel/os",         {"kernel/base"}},
     {"kernel/exchange",   {"kernel/base"}},
     {"kernel/cam",        {"kernel/base"}},
+    {"kernel/motion",     {"kernel/base"}},
     {"kernel/component",  {"kernel/os", "kernel/exchange"}},
     {"kernel/pieces",     {"kernel/component"}},
     {"kernel/activity",   {"kernel/component"}},
@@ -50,7 +51,7 @@ const std::vector<Row> house{
     {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
-    {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
+    {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
     // A machine may say what spin is to prove of it, and what its host's program is to look at.
     {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp"}},
     // A plant meets its machine at frames, lines and registers only.

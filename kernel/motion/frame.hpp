@@ -1,0 +1,65 @@
+// Frames, points and vectors whose frame of reference is part of their type: what does not fit together does
+// not compile. A reference is any type, a declared one is enough: struct World; struct Flange;
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/motion/rotation.hpp"
+
+#include <Eigen/Core>
+
+namespace tappet::motion {
+
+/// A place, by its coordinates in A, m.
+template <class A>
+struct Point {
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+};
+
+/// A direction with a length, along the axes of A: a displacement in m, a velocity in m/s, a force in N.
+template <class A>
+struct Vector {
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+};
+
+/// Where the frame B stands in the frame A: its axes are the columns of `rotation`, its origin is `position`
+/// (m). Made without numbers it coincides with A. `rotation` is a rotation matrix; nobody looks.
+template <class A, class B>
+struct Frame {
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+
+    /// C in A from B in A and C in B. Real-time.
+    template <class C>
+    friend Frame<A, C> operator*(const Frame& ab, const Frame<B, C>& bc) noexcept TAPPET_REALTIME {
+        Frame<A, C> ac;
+        ac.rotation.noalias() = ab.rotation * bc.rotation;
+        ac.position = ab.rotation * bc.position + ab.position;
+        return ac;
+    }
+    /// The same place, seen from A. Real-time.
+    friend Point<A> operator*(const Frame& ab, const Point<B>& b) noexcept TAPPET_REALTIME {
+        return {ab.rotation * b.at + ab.position};
+    }
+    /// The same direction, along the axes of A. Real-time.
+    friend Vector<A> operator*(const Frame& ab, const Vector<B>& b) noexcept TAPPET_REALTIME {
+        return {ab.rotation * b.along};
+    }
+    /// A in B. Real-time.
+    friend Frame<B, A> inverse(const Frame& ab) noexcept TAPPET_REALTIME {
+        Frame<B, A> ba;
+        ba.rotation = ab.rotation.transpose();
+        ba.position = -(ba.rotation * ab.position);
+        return ba;
+    }
+};
+
+template <class A>
+Vector<A> operator-(const Point<A>& to, const Point<A>& from) noexcept TAPPET_REALTIME {
+    return {to.at - from.at};
+}
+template <class A>
+Point<A> operator+(const Point<A>& from, const Vector<A>& by) noexcept TAPPET_REALTIME {
+    return {from.at + by.along};
+}
+
+} // namespace tappet::motion

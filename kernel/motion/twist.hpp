@@ -1,0 +1,94 @@
+// Twists and wrenches with what they are of, at which point and along whose axes in their type (after De Laet
+// et al., Geometric relations between rigid bodies, IEEE Robotics & Automation Magazine 20(1), 2013).
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/motion/frame.hpp"
+
+#include <Eigen/Core>
+
+namespace tappet::motion {
+
+/// The velocity of Body as Reference sees it. `linear` (m/s) is that of the point of Body where the origin of
+/// At is, `angular` rad/s; both along the axes of In.
+template <class Body, class Reference, class At, class In>
+struct Twist {
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+    Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+
+    /// Of Next as Reference sees it, by way of Body. Real-time.
+    template <class Next>
+    friend Twist<Next, Reference, At, In> operator+(const Twist& body,
+                                                    const Twist<Next, Body, At, In>& next) noexcept
+        TAPPET_REALTIME {
+        return {body.linear + next.linear, body.angular + next.angular};
+    }
+    /// Of Reference as Body sees it. Real-time.
+    friend Twist<Reference, Body, At, In> operator-(const Twist& twist) noexcept TAPPET_REALTIME {
+        return {-twist.linear, -twist.angular};
+    }
+};
+
+/// What acts on Body: `force` N, `torque` Nm about the origin of At; both along the axes of In.
+template <class Body, class At, class In>
+struct Wrench {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+
+    friend Wrench operator+(const Wrench& a, const Wrench& b) noexcept TAPPET_REALTIME {
+        return {a.force + b.force, a.torque + b.torque};
+    }
+    friend Wrench operator-(const Wrench& wrench) noexcept TAPPET_REALTIME {
+        return {-wrench.force, -wrench.torque};
+    }
+};
+
+/// Power that a wrench brings into a body that moves, W. Both at one point, along the same axes. Real-time.
+template <class B, class R, class At, class In>
+double power(const Wrench<B, At, In>& wrench, const Twist<B, R, At, In>& twist) noexcept TAPPET_REALTIME {
+    return wrench.force.dot(twist.linear) + wrench.torque.dot(twist.angular);
+}
+
+/// The same motion, said of the body's point at the origin of To; `way` leads there from the origin of At.
+/// Real-time.
+template <class To, class B, class R, class At, class In>
+Twist<B, R, To, In> moved(const Twist<B, R, At, In>& twist, const Vector<In>& way) noexcept TAPPET_REALTIME {
+    return {twist.linear + twist.angular.cross(way.along), twist.angular};
+}
+/// The same load, its torque about the origin of To; `way` leads there from the origin of At. Real-time.
+template <class To, class B, class At, class In>
+Wrench<B, To, In> moved(const Wrench<B, At, In>& wrench, const Vector<In>& way) noexcept TAPPET_REALTIME {
+    return {wrench.force, wrench.torque + wrench.force.cross(way.along)};
+}
+
+/// The same motion at the same point, along the axes of X. Real-time.
+template <class X, class In, class B, class R, class At>
+Twist<B, R, At, X> turned(const Frame<X, In>& frame, const Twist<B, R, At, In>& twist) noexcept
+    TAPPET_REALTIME {
+    return {frame.rotation * twist.linear, frame.rotation * twist.angular};
+}
+/// The same load about the same point, along the axes of X. Real-time.
+template <class X, class In, class B, class At>
+Wrench<B, At, X> turned(const Frame<X, In>& frame, const Wrench<B, At, In>& wrench) noexcept TAPPET_REALTIME {
+    return {frame.rotation * wrench.force, frame.rotation * wrench.torque};
+}
+
+/// Point and axes at once, for what is said wholly in one frame (the adjoint). Real-time.
+template <class X, class Y, class B, class R>
+Twist<B, R, X, X> operator*(const Frame<X, Y>& frame, const Twist<B, R, Y, Y>& twist) noexcept
+    TAPPET_REALTIME {
+    return moved<X>(turned(frame, twist), Vector<X>{-frame.position});
+}
+template <class X, class Y, class B>
+Wrench<B, X, X> operator*(const Frame<X, Y>& frame, const Wrench<B, Y, Y>& wrench) noexcept TAPPET_REALTIME {
+    return moved<X>(turned(frame, wrench), Vector<X>{-frame.position});
+}
+
+/// The twist that leads from one place of B to another within a second: straight, and about one axis. At the
+/// origin of B, along the axes of A. Real-time.
+template <class A, class B>
+Twist<B, A, B, A> difference(const Frame<A, B>& from, const Frame<A, B>& to) noexcept TAPPET_REALTIME {
+    return {to.position - from.position, rotation_vector(to.rotation * from.rotation.transpose())};
+}
+
+} // namespace tappet::motion

@@ -1,0 +1,119 @@
+// Frames, twists and wrenches: what holds whatever their numbers are, and what does not compile.
+#include "kernel/motion/twist.hpp"
+#include "tests/kernel/motion/random_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace tappet::motion::test {
+namespace {
+
+struct A;
+struct B;
+struct C;
+struct D;
+
+class Frames : public testing::Test {
+protected:
+    std::uint64_t seed = any_seed();
+    Random random{seed};
+    testing::ScopedTrace trace{__FILE__, __LINE__, "seed " + std::to_string(seed)};
+
+    template <class Body, class Reference, class At, class In>
+    Twist<Body, Reference, At, In> any_twist() {
+        const Eigen::Vector3d linear = any_vector(random, 3.0);
+        const Eigen::Vector3d angular = any_vector(random, 3.0);
+        return {linear, angular};
+    }
+    template <class Body, class At, class In>
+    Wrench<Body, At, In> any_wrench() {
+        const Eigen::Vector3d force = any_vector(random, 100.0);
+        const Eigen::Vector3d torque = any_vector(random, 10.0);
+        return {force, torque};
+    }
+};
+
+TEST_F(Frames, follow_one_another_and_lead_back) {
+    for (int i = 0; i < 100; ++i) {
+        const auto ab = any_frame<A, B>(random);
+        const auto bc = any_frame<B, C>(random);
+        const Point<C> p{any_vector(random, 2.0)};
+        EXPECT_NEAR((ab * bc * p - ab * (bc * p)).along.norm(), 0.0, 1e-14);
+        EXPECT_NEAR((inverse(ab) * (ab * (bc * p)) - bc * p).along.norm(), 0.0, 1e-14);
+        const Frame<A, A> nowhere = ab * inverse(ab);
+        EXPECT_NEAR((nowhere.rotation - Eigen::Matrix3d::Identity()).norm() + nowhere.position.norm(), 0.0,
+                    1e-14);
+    }
+}
+
+TEST_F(Frames, give_a_vector_no_place) {
+    const auto ab = any_frame<A, B>(random);
+    const Point<B> from{any_vector(random, 1.0)};
+    const Vector<B> way{any_vector(random, 1.0)};
+    EXPECT_NEAR((ab * (from + way) - (ab * from + ab * way)).along.norm(), 0.0, 1e-14);
+}
+
+TEST_F(Frames, turn_by_rotation_vectors_and_tell_them) {
+    for (const double angle :
+         {0.0, 1e-12, 1e-6, 0.9e-4, 1.1e-4, 0.1, 1.0, 2.0, 3.0, std::numbers::pi - 1e-9}) {
+        const Eigen::Vector3d v = any_vector(random, 1.0).normalized() * angle;
+        const Eigen::Matrix3d m = rotation_about(v);
+        EXPECT_NEAR((m * m.transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 2e-15) << angle;
+        EXPECT_NEAR((rotation_vector(m) - v).norm(), 0.0, 1e-14) << angle;
+        EXPECT_NEAR((m - Eigen::AngleAxisd(angle, v.normalized()).matrix()).norm() * (angle > 0.0), 0.0,
+                    2e-15)
+            << angle;
+    }
+    const Eigen::Vector3d half = any_vector(random, 1.0).normalized() * std::numbers::pi;
+    EXPECT_NEAR((rotation_about(rotation_vector(rotation_about(half))) - rotation_about(half)).norm(), 0.0,
+                1e-14);
+}
+
+TEST_F(Frames, carry_twists_and_wrenches_without_a_change_of_power) {
+    for (int i = 0; i < 100; ++i) {
+        const auto ab = any_frame<A, B>(random);
+        const auto twist = any_twist<D, C, B, B>();
+        const auto wrench = any_wrench<D, B, B>();
+        const double watts = power(wrench, twist);
+        EXPECT_NEAR(power(ab * wrench, ab * twist), watts, 1e-11);
+        EXPECT_NEAR(power(turned(ab, wrench), turned(ab, twist)), watts, 1e-11);
+        const Vector<B> way{any_vector(random, 2.0)};
+        EXPECT_NEAR(power(moved<C>(wrench, way), moved<C>(twist, way)), watts, 1e-11);
+    }
+}
+
+TEST_F(Frames, add_twists_by_way_of_a_body) {
+    const auto b = any_twist<B, A, D, D>();
+    const auto c = any_twist<C, B, D, D>();
+    const Twist<C, A, D, D> sum = b + c;
+    const Twist<A, C, D, D> back = -c + -b;
+    EXPECT_EQ(sum.linear, -back.linear);
+    EXPECT_EQ(sum.angular, -back.angular);
+}
+
+TEST_F(Frames, differ_by_the_twist_of_their_motion) {
+    const auto from = any_frame<A, B>(random);
+    const auto to = any_frame<A, B>(random);
+    const auto way = difference(from, to);
+    EXPECT_NEAR((from.position + way.linear - to.position).norm(), 0.0, 1e-14);
+    EXPECT_NEAR((rotation_about(way.angular) * from.rotation - to.rotation).norm(), 0.0, 1e-13);
+}
+
+// What is said about one frame cannot be used as if it were said about another.
+template <class X, class Y>
+concept Multiply = requires(X x, Y y) { x * y; };
+template <class X, class Y>
+concept Add = requires(X x, Y y) { x + y; };
+static_assert(Multiply<Frame<A, B>, Frame<B, C>> && !Multiply<Frame<A, B>, Frame<A, C>>);
+static_assert(Multiply<Frame<A, B>, Point<B>> && !Multiply<Frame<A, B>, Point<A>>);
+static_assert(Add<Point<A>, Vector<A>> && !Add<Point<A>, Vector<B>> && !Add<Point<A>, Point<A>>);
+static_assert(Add<Twist<B, A, D, D>, Twist<C, B, D, D>> && !Add<Twist<B, A, D, D>, Twist<C, A, D, D>>);
+static_assert(!Add<Twist<B, A, C, D>, Twist<C, B, D, D>>, "at two points");
+static_assert(!Add<Wrench<A, B, C>, Wrench<A, B, D>>, "along the axes of two frames");
+static_assert(Multiply<Frame<A, B>, Twist<C, D, B, B>> && !Multiply<Frame<A, B>, Twist<C, D, C, B>>);
+
+} // namespace
+} // namespace tappet::motion::test
