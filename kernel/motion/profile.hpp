@@ -1,0 +1,80 @@
+// How one axis moves over time: at most seven pieces of constant jerk, each evaluated in closed form.
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/contract.hpp"
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <cstddef>
+
+namespace tappet::motion {
+
+/// Of one axis, in its unit (rad, m or any other) and seconds.
+struct AxisState {
+    double position = 0.0;
+    double velocity = 0.0;
+    double acceleration = 0.0;
+};
+
+/// The most that an axis may do, in its unit and seconds; all positive.
+struct AxisLimits {
+    double velocity = 0.0;
+    double acceleration = 0.0; ///< and deceleration
+    double jerk = 0.0;         ///< what has no bounded jerk does not look at it
+};
+
+class Profile {
+public:
+    static constexpr std::size_t most_pieces = 7;
+
+    Profile() noexcept TAPPET_REALTIME = default;
+    /// It rests there for no time: pieces follow.
+    explicit Profile(const AxisState& from) noexcept TAPPET_REALTIME : end_(from) {}
+
+    /// Adds a piece at the end that begins with `acceleration`. One that takes no time is left out.
+    void add(double seconds, double acceleration, double jerk) noexcept TAPPET_REALTIME {
+        if (!(seconds > 0.0)) return;
+        end_.acceleration = acceleration;
+        TAPPET_CONTRACT(pieces_.push({end_, jerk, duration_s_}), Contract::index_out_of_range, pieces_.size(),
+                        most_pieces);
+        end_ = pieces_[pieces_.size() - 1].at(seconds);
+        duration_s_ += seconds;
+    }
+    /// It ends at rest, exactly there.
+    void rest_at(double position) noexcept TAPPET_REALTIME { end_ = {position, 0.0, 0.0}; }
+
+    [[nodiscard]] std::size_t pieces() const noexcept TAPPET_REALTIME { return pieces_.size(); }
+    [[nodiscard]] double duration_s() const noexcept TAPPET_REALTIME { return duration_s_; }
+    /// The last state. It holds from the end of the profile on.
+    [[nodiscard]] const AxisState& end() const noexcept TAPPET_REALTIME { return end_; }
+
+    /// The state `seconds` after the begin; before it, that of the begin. At most most_pieces steps.
+    [[nodiscard]] AxisState at_s(double seconds) const noexcept TAPPET_REALTIME {
+        if (pieces_.empty() || !(seconds < duration_s_)) return end_;
+        std::size_t i = pieces_.size() - 1;
+        while (i > 0 && seconds < pieces_[i].from_s) --i;
+        const double inside = seconds - pieces_[i].from_s;
+        return pieces_[i].at(inside > 0.0 ? inside : 0.0);
+    }
+    [[nodiscard]] AxisState at(Duration since_begin) const noexcept TAPPET_REALTIME {
+        return at_s(to_seconds(since_begin));
+    }
+
+private:
+    struct Piece {
+        AxisState from;
+        double jerk = 0.0;
+        double from_s = 0.0;
+        [[nodiscard]] AxisState at(double t) const noexcept TAPPET_REALTIME {
+            const double a = from.acceleration;
+            return {from.position + t * (from.velocity + t * (0.5 * a + t * jerk / 6.0)),
+                    from.velocity + t * (a + 0.5 * t * jerk), a + t * jerk};
+        }
+    };
+    Bounded<Piece, most_pieces> pieces_;
+    AxisState end_;
+    double duration_s_ = 0.0;
+};
+
+} // namespace tappet::motion

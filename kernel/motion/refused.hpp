@@ -1,0 +1,51 @@
+// Why something of this room could not be computed: an error of operation, as a value.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/text.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet::motion {
+
+enum class Refusal : std::uint8_t {
+    not_a_number,
+    limit_not_positive,
+    out_of_reach,
+    outside_limits,
+    not_converged,
+    no_direction,
+};
+
+/// With its cure. Real-time.
+constexpr std::string_view to_text(Refusal why) noexcept TAPPET_REALTIME {
+    switch (why) {
+    case Refusal::not_a_number: return "a value is no number, or infinite; look at values where they come in";
+    case Refusal::limit_not_positive: return "a limit is not positive; give each one a value above nought";
+    case Refusal::out_of_reach:
+        return "no joints lead there; choose a target that is nearer, or further from the base";
+    case Refusal::outside_limits:
+        return "it lies outside the joint's limits; choose another target or branch";
+    case Refusal::not_converged: return "the steps that it has did not suffice; begin nearer to the target";
+    case Refusal::no_direction:
+        return "the points leave a direction open; choose three that are apart and on no line";
+    }
+    return "?";
+}
+
+/// What could not be computed, and for which axis, joint or point, from nought.
+struct Refused {
+    Refusal why;
+    int element = 0;
+    constexpr bool operator==(const Refused&) const = default;
+};
+
+/// "element 2: a limit is not positive; give ...". For people, not for a cycle.
+inline Sentence describe(const Refused& refused) noexcept {
+    return Sentence{"element ", refused.element, ": ", to_text(refused.why)};
+}
+
+constexpr bool is_number(double value) noexcept TAPPET_REALTIME { return value - value == 0.0; }
+
+} // namespace tappet::motion

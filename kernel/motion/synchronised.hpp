@@ -1,0 +1,67 @@
+// Several axes that set off and arrive together: the slowest one takes its time, and the others theirs,
+// slower.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/motion/chain.hpp"
+#include "kernel/motion/trajectory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <expected>
+
+namespace tappet::motion {
+
+template <int axes>
+struct AxesState {
+    Joints<axes> position;
+    Joints<axes> velocity;
+    Joints<axes> acceleration;
+};
+
+/// Each axis has its own jerk-limited profile in a time of its own, which runs slower by the share of its
+/// duration in the longest one: velocities shrink by that factor, accelerations by its square, jerks by its
+/// cube, so that every limit holds as before.
+template <int axes>
+class Synchronised {
+public:
+    using Limits = std::array<AxisLimits, static_cast<std::size_t>(axes)>;
+
+    /// From rest to rest. Refused: which axis, and why. Real-time.
+    static std::expected<Synchronised, Refused> plan(const Joints<axes>& from, const Joints<axes>& target,
+                                                     const Limits& limits) noexcept TAPPET_REALTIME {
+        Synchronised all;
+        for (int i = 0; i < axes; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            const Planned one = jerk_limited(from[i], target[i], limits[at]);
+            if (!one) return std::unexpected(Refused{one.error().why, i});
+            all.profiles_[at] = *one;
+            all.duration_s_ = std::max(all.duration_s_, one->duration_s());
+        }
+        return all;
+    }
+    [[nodiscard]] double duration_s() const noexcept TAPPET_REALTIME { return duration_s_; }
+    /// At most 7 steps for each axis.
+    [[nodiscard]] AxesState<axes> at_s(double seconds) const noexcept TAPPET_REALTIME {
+        AxesState<axes> state;
+        for (int i = 0; i < axes; ++i) {
+            const Profile& profile = profiles_[static_cast<std::size_t>(i)];
+            const double pace = duration_s_ > 0.0 ? profile.duration_s() / duration_s_ : 1.0;
+            const AxisState one = seconds < duration_s_ ? profile.at_s(pace * seconds) : profile.end();
+            state.position[i] = one.position;
+            state.velocity[i] = pace * one.velocity;
+            state.acceleration[i] = pace * pace * one.acceleration;
+        }
+        return state;
+    }
+    [[nodiscard]] AxesState<axes> at(Duration since_begin) const noexcept TAPPET_REALTIME {
+        return at_s(to_seconds(since_begin));
+    }
+
+private:
+    std::array<Profile, static_cast<std::size_t>(axes)> profiles_;
+    double duration_s_ = 0.0;
+};
+
+} // namespace tappet::motion
