@@ -16,6 +16,9 @@ enum class Refusal : std::uint8_t {
     outside_limits,
     not_converged,
     no_direction,
+    beyond_half_rate,
+    not_positive,
+    outlier,
 };
 
 /// With its cure. Real-time.
@@ -30,6 +33,12 @@ constexpr std::string_view to_text(Refusal why) noexcept TAPPET_REALTIME {
     case Refusal::not_converged: return "the steps that it has did not suffice; begin nearer to the target";
     case Refusal::no_direction:
         return "the points leave a direction open; choose three that are apart and on no line";
+    case Refusal::beyond_half_rate:
+        return "a frequency is not between nought and half of the sampling rate; sample faster";
+    case Refusal::not_positive:
+        return "a covariance is not positive definite; give each measurement a variance above nought";
+    case Refusal::outlier:
+        return "it lies further from what was expected than the gate allows; see whence it came";
     }
     return "?";
 }

@@ -1,0 +1,147 @@
+// What is behind noisy measurements: the alpha-beta estimator of one value and its speed, and the Kalman
+// filter of fixed size.
+#pragma once
+
+#include "kernel/base/contract.hpp"
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+#include "kernel/motion/positive.hpp"
+#include "kernel/motion/refused.hpp"
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstdint>
+#include <expected>
+#include <limits>
+#include <string_view>
+
+namespace tappet::motion {
+
+/// Gains on position and velocity.
+struct AlphaBetaGains {
+    double alpha = 1.0;
+    double beta = 1.0;
+    /// Both poles at `memory` in [0, 1): the larger, the smoother and the slower.
+    static constexpr AlphaBetaGains critically_damped(double memory) noexcept TAPPET_REALTIME {
+        return {1.0 - memory * memory, (1.0 - memory) * (1.0 - memory)};
+    }
+    /// Those of the Kalman filter at rest (Kalata 1984): `index` = deviation of the acceleration from sample
+    /// to sample * period2 / deviation of the measurement.
+    static AlphaBetaGains for_tracking_index(double index) noexcept TAPPET_REALTIME {
+        const double r = (4.0 + index - std::sqrt(8.0 * index + index * index)) / 4.0;
+        return {1.0 - r * r, 2.0 * (1.0 + r * r) - 4.0 * r};
+    }
+};
+
+/// Empty, or what is wrong with them and the cure.
+constexpr std::string_view check(const AlphaBetaGains& gains) noexcept TAPPET_REALTIME {
+    if (gains.alpha > 0.0 && gains.beta > 0.0 && 2.0 * gains.alpha + gains.beta < 4.0) return {};
+    return "these gains never settle; let alpha and beta be positive and 2 alpha + beta below 4";
+}
+
+class AlphaBeta {
+public:
+    /// Contract: the gains are stable.
+    explicit constexpr AlphaBeta(AlphaBetaGains gains) noexcept TAPPET_REALTIME : gains_{gains} {
+        TAPPET_CONTRACT(check(gains).empty(), Contract::refused_settings);
+    }
+
+    /// A value that was true at `at`. One that is no number, or not later than the last one, is left out and
+    /// counts. Real-time.
+    constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
+        if (!is_number(value) || (samples_ > 0 && at <= at_)) {
+            ++refused_;
+            return;
+        }
+        const double h = to_seconds(at - at_);
+        if (samples_ == 0) {
+            value_ = value;
+        } else if (samples_ == 1) { // two values have no more to say
+            velocity_ = (value - value_) / h;
+            value_ = value;
+        } else {
+            const double expected = value_ + velocity_ * h;
+            value_ = expected + gains_.alpha * (value - expected);
+            velocity_ += gains_.beta * (value - expected) / h;
+        }
+        at_ = at;
+        if (samples_ < 2) ++samples_;
+    }
+    /// Both of them know nothing before the second sample.
+    [[nodiscard]] constexpr bool good() const noexcept TAPPET_REALTIME { return samples_ == 2; }
+    /// Where it is, was or will be, straight on. Real-time.
+    [[nodiscard]] constexpr double at(Time when) const noexcept TAPPET_REALTIME {
+        return value_ + velocity_ * to_seconds(when - at_);
+    }
+    [[nodiscard]] constexpr double velocity() const noexcept TAPPET_REALTIME { return velocity_; }
+    [[nodiscard]] constexpr std::uint32_t refused() const noexcept TAPPET_REALTIME { return refused_; }
+    constexpr void reset() noexcept TAPPET_REALTIME {
+        samples_ = 0;
+        velocity_ = 0.0;
+    }
+
+private:
+    AlphaBetaGains gains_;
+    double value_ = 0.0;
+    double velocity_ = 0.0;
+    Time at_{};
+    int samples_ = 0;
+    std::uint32_t refused_ = 0;
+};
+
+/// The Kalman filter of `states` numbers, with the covariance in Joseph's form, which stays symmetric and
+/// positive. Units are the owner's.
+template <int states>
+class Kalman {
+public:
+    using State = Eigen::Matrix<double, states, 1>;
+    using Covariance = Eigen::Matrix<double, states, states>;
+
+    Kalman(const State& state, const Covariance& covariance) noexcept
+        : state_(state), covariance_(covariance) {}
+
+    /// One step of time: x = F x + u, with noise of covariance Q. Real-time.
+    void predict(const Covariance& f, const Covariance& q, const State& u = State::Zero()) noexcept
+        TAPPET_REALTIME {
+        state_ = f * state_ + u;
+        const Covariance moved = f * covariance_;
+        covariance_ = moved * f.transpose() + q;
+    }
+    /// A measurement z = H x with noise of covariance R. Gives the squared distance from what was expected,
+    /// in deviations; one beyond `gate` is refused, as is what is no number, and changes nothing. Real-time.
+    template <int values>
+    std::expected<double, Refused> update(const Eigen::Matrix<double, values, 1>& z,
+                                          const Eigen::Matrix<double, values, states>& h,
+                                          const Eigen::Matrix<double, values, values>& r,
+                                          double gate = std::numeric_limits<double>::infinity()) noexcept
+        TAPPET_REALTIME {
+        for (int i = 0; i < values; ++i)
+            if (!is_number(z[i])) return std::unexpected(Refused{Refusal::not_a_number, i});
+        const Eigen::Matrix<double, values, 1> surprise = z - h * state_;
+        const Eigen::Matrix<double, values, states> spread = h * covariance_;
+        const Eigen::Matrix<double, values, values> total = spread * h.transpose() + r;
+        Eigen::Matrix<double, values, states + 1> solved;
+        solved.template leftCols<states>() = spread;
+        solved.template rightCols<1>() = surprise;
+        if (!solve_positive(total, solved)) return std::unexpected(Refused{Refusal::not_positive});
+        const double distance = surprise.dot(solved.template rightCols<1>());
+        if (!(distance <= gate)) return std::unexpected(Refused{Refusal::outlier});
+        const Eigen::Matrix<double, states, values> gain = solved.template leftCols<states>().transpose();
+        const Covariance rest = Covariance::Identity() - gain * h;
+        const Covariance kept = rest * covariance_ * rest.transpose();
+        const Covariance added = gain * r * gain.transpose();
+        state_ += gain * surprise;
+        const Covariance sum = kept + added;
+        covariance_ = 0.5 * (sum + sum.transpose());
+        return distance;
+    }
+    [[nodiscard]] const State& state() const noexcept TAPPET_REALTIME { return state_; }
+    [[nodiscard]] const Covariance& covariance() const noexcept TAPPET_REALTIME { return covariance_; }
+
+private:
+    State state_;
+    Covariance covariance_;
+};
+
+} // namespace tappet::motion

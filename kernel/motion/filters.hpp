@@ -1,0 +1,129 @@
+// Linear filters of one signal: low passes, a notch and lead-lag compensation.
+#pragma once
+
+#include "kernel/base/contract.hpp"
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+#include "kernel/motion/refused.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <expected>
+
+namespace tappet::motion {
+
+/// First order, 1 / (1 + T s), by the backward difference: for any step that is not negative. The first value
+/// is taken as it is; what is no number is left out. T of nought or less is no filter. Real-time.
+class LowPass {
+public:
+    explicit constexpr LowPass(Duration time_constant) noexcept : constant_s_{to_seconds(time_constant)} {}
+    constexpr double operator()(double value, Duration step) noexcept TAPPET_REALTIME {
+        if (!is_number(value)) return value_;
+        const double h = to_seconds(step);
+        value_ = !known_ || !(constant_s_ > 0.0) ? value : value_ + (value - value_) * h / (constant_s_ + h);
+        known_ = true;
+        return value_;
+    }
+    constexpr void reset() noexcept TAPPET_REALTIME { known_ = false; }
+
+private:
+    double constant_s_;
+    double value_ = 0.0;
+    bool known_ = false;
+};
+
+/// (1 + T1 s) / (1 + T2 s), by Tustin's rule: T1 above T2 leads, below it lags. The first value is taken as
+/// one that has been there for long; what is no number is left out. Real-time.
+class LeadLag {
+public:
+    /// Contract: `lag` is positive, `lead` is not negative.
+    constexpr LeadLag(Duration lead, Duration lag) noexcept TAPPET_REALTIME : lead_s_{to_seconds(lead)},
+                                                                              lag_s_{to_seconds(lag)} {
+        TAPPET_CONTRACT(lag > Duration::zero(), Contract::precondition, lag);
+        TAPPET_CONTRACT(lead >= Duration::zero(), Contract::precondition, lead);
+    }
+    constexpr double operator()(double value, Duration step) noexcept TAPPET_REALTIME {
+        if (!is_number(value)) return value_;
+        if (!known_) before_ = value_ = value;
+        known_ = true;
+        const double h = to_seconds(step);
+        value_ = ((2.0 * lead_s_ + h) * value + (h - 2.0 * lead_s_) * before_ - (h - 2.0 * lag_s_) * value_) /
+                 (2.0 * lag_s_ + h);
+        before_ = value;
+        return value_;
+    }
+    constexpr void reset() noexcept TAPPET_REALTIME { known_ = false; }
+
+private:
+    double lead_s_;
+    double lag_s_;
+    double before_ = 0.0;
+    double value_ = 0.0;
+    bool known_ = false;
+};
+
+/// Second order at a fixed sampling period, by Tustin's rule with the corner where it is wanted (transposed
+/// direct form II). The first value is taken as one that has been there for long; what is no number is left
+/// out.
+class Biquad {
+public:
+    /// -3 dB at the corner with the usual damping of sqrt(1/2) (Butterworth).
+    static std::expected<Biquad, Refused> low_pass(double corner_hz, Duration period,
+                                                   double damping = 0.70710678118654752) noexcept
+        TAPPET_REALTIME {
+        const auto warped = warp(corner_hz, period);
+        if (!warped) return std::unexpected(warped.error());
+        if (!(damping > 0.0) || !is_number(damping))
+            return std::unexpected(Refused{Refusal::limit_not_positive, 2});
+        const double k = *warped;
+        const double a0 = 1.0 + 2.0 * damping * k + k * k;
+        return Biquad{k * k / a0, 2.0 * k * k / a0, k * k / a0, 2.0 * (k * k - 1.0) / a0,
+                      (1.0 - 2.0 * damping * k + k * k) / a0};
+    }
+    /// Takes `centre_hz` out; -3 dB over a band of about `width_hz`.
+    static std::expected<Biquad, Refused> notch(double centre_hz, double width_hz, Duration period) noexcept
+        TAPPET_REALTIME {
+        const auto warped = warp(centre_hz, period);
+        if (!warped) return std::unexpected(warped.error());
+        if (!(width_hz > 0.0) || !is_number(width_hz))
+            return std::unexpected(Refused{Refusal::limit_not_positive, 1});
+        const double k = *warped;
+        const double wide = k * width_hz / centre_hz;
+        const double a0 = 1.0 + wide + k * k;
+        return Biquad{(1.0 + k * k) / a0, 2.0 * (k * k - 1.0) / a0, (1.0 + k * k) / a0,
+                      2.0 * (k * k - 1.0) / a0, (1.0 - wide + k * k) / a0};
+    }
+    /// One value for each period. Real-time.
+    constexpr double operator()(double value) noexcept TAPPET_REALTIME {
+        if (!is_number(value)) return value_;
+        if (!known_) { // both give one at standstill
+            second_ = (b2_ - a2_) * value;
+            first_ = (b1_ - a1_) * value + second_;
+        }
+        known_ = true;
+        value_ = b0_ * value + first_;
+        first_ = b1_ * value - a1_ * value_ + second_;
+        second_ = b2_ * value - a2_ * value_;
+        return value_;
+    }
+    constexpr void reset() noexcept TAPPET_REALTIME { known_ = false; }
+
+private:
+    constexpr Biquad(double b0, double b1, double b2, double a1, double a2) noexcept TAPPET_REALTIME
+        : b0_{b0},
+          b1_{b1},
+          b2_{b2},
+          a1_{a1},
+          a2_{a2} {}
+    static std::expected<double, Refused> warp(double hz, Duration period) noexcept TAPPET_REALTIME {
+        const double turns = hz * to_seconds(period);
+        if (!(turns > 0.0 && turns < 0.5)) return std::unexpected(Refused{Refusal::beyond_half_rate});
+        return std::tan(3.14159265358979323846 * turns);
+    }
+
+    double b0_, b1_, b2_, a1_, a2_;
+    double first_ = 0.0, second_ = 0.0, value_ = 0.0;
+    bool known_ = false;
+};
+
+} // namespace tappet::motion

@@ -1,0 +1,149 @@
+// The PID controller against formulas and against a plant; what a step, a limit and a change of hands do.
+#include "kernel/motion/pid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tappet::motion::test {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+TEST(Pid, is_the_sum_of_its_parts) {
+    Pid p{{.proportional = 2.0}};
+    EXPECT_DOUBLE_EQ(p(3.0, 1.0, 1ms), 4.0);
+    Pid i{{.integral = 10.0}};
+    EXPECT_DOUBLE_EQ(i(2.0, 1.0, 100ms), 0.0) << "the integral of what was is put out next";
+    EXPECT_DOUBLE_EQ(i(2.0, 1.0, 100ms), 1.0);
+    EXPECT_DOUBLE_EQ(i(2.0, 1.0, 300ms), 2.0);
+    Pid d{{.derivative = 0.5, .derivative_weight = 1.0}};
+    EXPECT_DOUBLE_EQ(d(1.0, 0.0, 10ms), 0.0) << "before the first value there was none";
+    EXPECT_DOUBLE_EQ(d(1.0, 0.1, 10ms), -5.0);
+    EXPECT_DOUBLE_EQ(d(1.0, 0.1, 10ms), 0.0);
+    Pid ff{{.proportional = 1.0}};
+    EXPECT_DOUBLE_EQ(ff(1.0, 1.0, 1ms, 7.0), 7.0);
+}
+
+TEST(Pid, gives_no_kick_when_the_set_point_jumps_unless_told_to) {
+    const PidGains smooth{.proportional = 1.0, .derivative = 1.0, .set_point_weight = 0.5};
+    Pid weighted{smooth};
+    weighted(0.0, 0.0, 1ms);
+    EXPECT_DOUBLE_EQ(weighted(2.0, 0.0, 1ms), 1.0);
+    PidGains rough = smooth;
+    rough.derivative_weight = 1.0;
+    Pid kicked{rough};
+    kicked(0.0, 0.0, 1ms);
+    EXPECT_DOUBLE_EQ(kicked(2.0, 0.0, 1ms), 1.0 + 2000.0);
+}
+
+TEST(Pid, filters_its_derivative_to_that_of_a_ramp) {
+    Pid d{{.derivative = 2.0, .derivative_filter_s = 0.05}};
+    double output = 0.0;
+    for (int k = 0; k < 1000; ++k) output = d(0.0, 3.0 * k * 1e-3, 1ms);
+    EXPECT_NEAR(output, -6.0, 1e-6);
+    Pid early{{.derivative = 2.0, .derivative_filter_s = 0.05}};
+    for (int k = 0; k <= 50; ++k) output = early(0.0, 3.0 * k * 1e-3, 1ms);
+    EXPECT_NEAR(output, -6.0 * (1.0 - std::exp(-1.0)), 0.05) << "one time constant after the ramp's begin";
+}
+
+/// x. = u, sampled: the drive of an axis by its speed.
+struct Axis {
+    double position = 0.0;
+    void run(double speed, double seconds) { position += speed * seconds; }
+};
+
+TEST(Pid, leads_an_axis_to_its_set_point_and_follows_a_ramp_with_feed_forward_only) {
+    Pid step{{.proportional = 10.0}};
+    Axis axis;
+    for (int k = 0; k < 2000; ++k) axis.run(step(1.0, axis.position, 2ms), 2e-3);
+    EXPECT_NEAR(axis.position, 1.0, 1e-9);
+    for (const double feed : {0.0, 0.5}) {
+        Pid ramp{{.proportional = 10.0}};
+        Axis follower;
+        double error = 0.0;
+        for (int k = 0; k < 2000; ++k) {
+            error = 0.5 * k * 2e-3 - follower.position;
+            follower.run(ramp(0.5 * k * 2e-3, follower.position, 2ms, feed), 2e-3);
+        }
+        EXPECT_NEAR(error, feed > 0.0 ? 0.0 : 0.05, 1e-9);
+    }
+}
+
+/// A plant of first order, 1 / (1 + s), driven into its limit for long and then asked for less.
+double overshoot(const PidGains& gains, bool limit_is_behind) {
+    Pid pid{gains};
+    double y = 0.0;
+    double most = 0.0;
+    for (int k = 0; k < 20000; ++k) {
+        const double wanted = k < 10000 ? 5.0 : 0.5; // 5 is out of reach
+        const double u = pid(wanted, y, 1ms);
+        const double applied = std::clamp(u, -1.0, 1.0);
+        if (limit_is_behind) pid.applied(applied);
+        y += (applied - y) * 1e-3;
+        if (k > 10000 + 1500) most = std::max(most, y - 0.5);
+    }
+    return most;
+}
+
+TEST(Pid, does_not_wind_up_at_its_own_limits_nor_at_those_behind_it) {
+    const PidGains free{.proportional = 5.0, .integral = 5.0};
+    EXPECT_GT(overshoot(free, false), 0.4) << "it must show what winding up is";
+    PidGains limited = free;
+    limited.lowest = -1.0;
+    limited.highest = 1.0;
+    EXPECT_LT(overshoot(limited, false), 0.02);
+    limited.tracking_s = 0.2;
+    EXPECT_LT(overshoot(limited, false), 0.02);
+    PidGains behind = free;
+    behind.tracking_s = 0.2;
+    EXPECT_LT(overshoot(behind, true), 0.02);
+}
+
+TEST(Pid, takes_over_without_a_bump) {
+    Pid pid{{.proportional = 3.0, .integral = 2.0, .derivative = 0.1, .set_point_weight = 0.7}};
+    for (int k = 0; k < 100; ++k) pid.track(1.0 + k, 0.5, 4.25, 0.5);
+    EXPECT_EQ(pid.output(), 4.25);
+    EXPECT_NEAR(pid(100.0, 0.5, 1ms, 0.5), 4.25, 1e-12);
+}
+
+TEST(Pid, does_nothing_about_errors_in_its_dead_band) {
+    Pid pid{{.proportional = 2.0, .integral = 1.0, .dead_band = 0.5}};
+    EXPECT_EQ(pid(1.0, 0.6, 1s), 0.0);
+    EXPECT_EQ(pid(1.0, 1.4, 1s), 0.0);
+    EXPECT_DOUBLE_EQ(pid(1.0, 0.0, 1s), 1.0);
+}
+
+TEST(Pid, refuses_what_is_no_number_and_stays_what_it_was) {
+    Pid pid{{.proportional = 2.0, .integral = 1.0}};
+    pid(1.0, 0.0, 1s);
+    for (const double bad : {no_number, infinite}) {
+        EXPECT_EQ(pid(bad, 0.0, 1s), 2.0);
+        EXPECT_EQ(pid(1.0, bad, 1s), 2.0);
+        EXPECT_EQ(pid(1.0, 0.0, 1s, bad), 2.0);
+        pid.track(1.0, 0.0, bad);
+        pid.applied(bad);
+    }
+    EXPECT_EQ(pid(1.0, 0.0, 0s), 2.0);
+    EXPECT_EQ(pid.refused(), 11u);
+    EXPECT_EQ(pid.integral(), 1.0);
+    pid.reset();
+    EXPECT_EQ(pid(0.0, 0.0, 1s), 0.0);
+}
+
+TEST(Pid, says_what_is_wrong_with_its_gains) {
+    EXPECT_EQ(check(PidGains{}), "");
+    EXPECT_EQ(check(PidGains{.integral = no_number}), "a gain is no number; write one");
+    EXPECT_EQ(check(PidGains{.tracking_s = -1.0}), "a time constant is negative; write nought for none");
+    EXPECT_EQ(check(PidGains{.lowest = 1.0, .highest = 1.0}),
+              "the limits of the output hold nothing; let lowest be below highest");
+    EXPECT_EQ(check(PidGains{.dead_band = -1.0}), "the dead band is negative; write nought for none");
+    const PidGains none{.lowest = 2.0, .highest = 1.0};
+    EXPECT_DEATH(Pid{none}, "contract 5 refused-settings");
+}
+
+} // namespace
+} // namespace tappet::motion::test
