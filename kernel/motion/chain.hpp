@@ -3,13 +3,12 @@
 
 #include "kernel/base/contract.hpp"
 #include "kernel/base/realtime.hpp"
-#include "kernel/motion/degrees.hpp"
+#include "kernel/motion/sine.hpp"
 #include "kernel/motion/sparse.hpp"
 
 #include <Eigen/Core>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -210,14 +209,10 @@ template <int i, class Robot>
     const auto s0 = robot.template number<i, Of::s0>();
     const auto d = robot.template number<i, Of::d>();
     const double moved = robot.template number<i, Of::sense>() * q;
-    double sine = 0.0;
-    double cosine = 1.0;
-    if (kind) {
-        sine = std::sin(moved);
-        cosine = std::cos(moved);
-    }
-    const auto c = select(kind, cosine * c0 - sine * s0, c0);
-    const auto s = select(kind, cosine * s0 + sine * c0, s0);
+    SineCosine turn{0.0, 1.0};
+    if (kind) turn = sine_cosine(moved);
+    const auto c = select(kind, turn.cosine * c0 - turn.sine * s0, c0);
+    const auto s = select(kind, turn.cosine * s0 + turn.sine * c0, s0);
     const auto way = select(kind, d, moved + d);
     return Place{kind, Turn{c, s}, way};
 }

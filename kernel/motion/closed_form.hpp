@@ -69,8 +69,7 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
         return numbers[Of::sense] * (theta - std::atan2(numbers[Of::s0], numbers[Of::c0]));
     };
     const auto turn_by = [](double theta, double sine, double cosine) { // Rz(theta) Rx(alpha)
-        const double c = std::cos(theta);
-        const double s = std::sin(theta);
+        const auto [s, c] = sine_cosine(theta);
         Eigen::Matrix3d m;
         m << c, -s * cosine, s * sine, s, c * cosine, -c * sine, 0.0, sine, cosine;
         return m;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/motion/sine.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -16,8 +17,8 @@ inline Eigen::Matrix3d rotation_about(const Eigen::Vector3d& v) noexcept TAPPET_
     const double angle = std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z());
     // sin(x)/x and (1 - cos x)/x2 by their series where the quotients lose their digits.
     const bool is_small = angle < 1e-4;
-    const double half = std::sin(0.5 * angle);
-    const double s = is_small ? 1.0 - angle * angle / 6.0 : std::sin(angle) / angle;
+    const auto [half, half_cosine] = sine_cosine(0.5 * angle);
+    const double s = is_small ? 1.0 - angle * angle / 6.0 : 2.0 * half * half_cosine / angle;
     const double k = is_small ? 0.5 - angle * angle / 24.0 : 2.0 * half * half / (angle * angle);
     const double c = 1.0 - 2.0 * half * half;
     Eigen::Matrix3d m;

@@ -27,19 +27,6 @@ const Joints<6> zero = Joints<6>::Zero();
 const Joints<6> one = Joints<6>::Ones();
 const Joints<6> bent{0, pi / 4, pi, 0, pi / 4, 0};
 
-TEST(Degrees, are_exact_at_quarter_turns_and_near_the_library_elsewhere) {
-    static_assert(sine_cosine_of_degrees(90).cosine == 0.0 && sine_cosine_of_degrees(90).sine == 1.0);
-    static_assert(sine_cosine_of_degrees(-180).sine == 0.0 && sine_cosine_of_degrees(-180).cosine == -1.0);
-    static_assert(sine_cosine_of_degrees(270).sine == -1.0 && sine_cosine_of_degrees(-720).cosine == 1.0);
-    Random random{any_seed()};
-    for (int i = 0; i < 1000; ++i) {
-        const double degrees = within(random, 400.0);
-        const auto [sine, cosine] = sine_cosine_of_degrees(degrees);
-        EXPECT_NEAR(sine, std::sin(degrees * pi / 180.0), 2e-15) << degrees;
-        EXPECT_NEAR(cosine, std::cos(degrees * pi / 180.0), 2e-15) << degrees;
-    }
-}
-
 TEST(Puma560, stands_where_the_literature_has_it) {
     const Joints<6> q{.1, .2, .3, .4, .5, .6};
     expect_near<3>(forward(folded<puma_560_links>, q).position,

@@ -1,0 +1,63 @@
+// Sine and cosine against those of 80 bits, and where they have to be exact.
+#include "kernel/motion/sine.hpp"
+#include "tests/kernel/motion/random_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace tappet::motion::test {
+namespace {
+
+// Constants and run time are one function.
+static_assert(sine_cosine(0.0).sine == 0.0 && sine_cosine(0.0).cosine == 1.0);
+static_assert(sine_cosine_of_degrees(90).cosine == 0.0 && sine_cosine_of_degrees(90).sine == 1.0);
+static_assert(sine_cosine_of_degrees(-180).sine == 0.0 && sine_cosine_of_degrees(-180).cosine == -1.0);
+static_assert(sine_cosine_of_degrees(270).sine == -1.0 && sine_cosine_of_degrees(-720).cosine == 1.0);
+
+void expect_near_the_truth(double angle, SineCosine found) {
+    EXPECT_NEAR(found.sine, static_cast<double>(std::sin(static_cast<long double>(angle))), 2.3e-16) << angle;
+    EXPECT_NEAR(found.cosine, static_cast<double>(std::cos(static_cast<long double>(angle))), 2.3e-16)
+        << angle;
+}
+
+TEST(Sine, is_within_the_last_bit_over_many_turns) {
+    const std::uint64_t seed = any_seed();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random{seed};
+    for (const double most : {1e-9, 0.8, 3.2, 100.0, 1e5, 1e7})
+        for (int i = 0; i < 20000; ++i) {
+            const double angle = within(random, most);
+            expect_near_the_truth(angle, sine_cosine(angle));
+        }
+    for (const double quarter :
+         {1.5707963267948966, 3.1415926535897931, 4.7123889803846897, 0.78539816339744828}) {
+        expect_near_the_truth(quarter, sine_cosine(quarter));
+        expect_near_the_truth(-quarter, sine_cosine(-quarter));
+    }
+}
+
+TEST(Sine, of_degrees_is_that_of_their_angle) {
+    Random random{any_seed()};
+    for (int i = 0; i < 20000; ++i) {
+        const double degrees = within(random, 400.0);
+        const auto found = sine_cosine_of_degrees(degrees);
+        const long double angle =
+            static_cast<long double>(degrees) * (3.14159265358979323846264338328L / 180.0L);
+        EXPECT_NEAR(found.sine, static_cast<double>(std::sin(angle)), 3e-16) << degrees;
+        EXPECT_NEAR(found.cosine, static_cast<double>(std::cos(angle)), 3e-16) << degrees;
+    }
+}
+
+TEST(Sine, of_what_is_no_number_is_none) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        EXPECT_TRUE(std::isnan(sine_cosine(bad).sine));
+        EXPECT_TRUE(std::isnan(sine_cosine(bad).cosine));
+    }
+}
+
+} // namespace
+} // namespace tappet::motion::test
