@@ -3,6 +3,7 @@
 
 #include "kernel/base/contract.hpp"
 #include "kernel/base/realtime.hpp"
+#include "kernel/motion/refused.hpp"
 #include "kernel/motion/sine.hpp"
 #include "kernel/motion/sparse.hpp"
 
@@ -186,9 +187,10 @@ private:
 template <int joints>
 void require_numbers(const Joints<joints>& values) noexcept TAPPET_REALTIME {
     double sum = 0.0;
-    for (int i = 0; i < joints; ++i) sum += values[i] - values[i];
-    if (sum == 0.0) return;
-    for (int i = 0; i < joints; ++i) TAPPET_CONTRACT(values[i] - values[i] == 0.0, Contract::not_a_number, i);
+    for (int i = 0; i < joints; ++i) sum += values[i];
+    if (is_number(sum)) [[likely]]
+        return;
+    for (int i = 0; i < joints; ++i) TAPPET_CONTRACT(is_number(values[i]), Contract::not_a_number, i);
 }
 
 namespace detail {
@@ -201,19 +203,52 @@ struct Place {
     D way;
 };
 
+template <int joints>
+using Turns = std::array<SineCosine, static_cast<std::size_t>(joints)>;
+
+/// Joints 2k and 2k + 1: those of turning ones, two at a time.
+template <int k, class Robot>
+[[gnu::always_inline]] inline void turn_two(const Robot& robot, const Joints<Robot::joints>& q,
+                                            Turns<Robot::joints>& turns) noexcept TAPPET_REALTIME {
+    constexpr int first = 2 * k;
+    constexpr int second = first + 1 < Robot::joints ? first + 1 : first;
+    const double a = robot.template number<first, Of::sense>() * q[first];
+    const double b = robot.template number<second, Of::sense>() * q[second];
+    auto& of_a = turns[static_cast<std::size_t>(first)];
+    auto& of_b = turns[static_cast<std::size_t>(second)];
+    if (is_usual_angle(a) && is_usual_angle(b)) [[likely]] {
+        sine_cosine_of_two(a, b, of_a, of_b);
+        return;
+    }
+    TAPPET_CONTRACT(is_number(a), Contract::not_a_number, first);
+    TAPPET_CONTRACT(is_number(b), Contract::not_a_number, second);
+    of_a = sine_cosine(a);
+    of_b = sine_cosine(b);
+}
+
+/// Sines and cosines of all joints. Contract: q are numbers.
+template <class Robot>
+[[gnu::always_inline]] inline Turns<Robot::joints> turns_of(const Robot& robot,
+                                                            const Joints<Robot::joints>& q) noexcept
+    TAPPET_REALTIME {
+    Turns<Robot::joints> turns;
+    [&]<int... k>(std::integer_sequence<int, k...>) {
+        (turn_two<k>(robot, q, turns), ...);
+    }(std::make_integer_sequence<int, (Robot::joints + 1) / 2>{});
+    return turns;
+}
+
 template <int i, class Robot>
-[[gnu::always_inline]] inline auto place_of(const Robot& robot, double q) noexcept TAPPET_REALTIME {
+[[gnu::always_inline]] inline auto place_of(const Robot& robot, const SineCosine& turn, double q) noexcept
+    TAPPET_REALTIME {
     using namespace sparse;
     const auto kind = robot.template is_revolute<i>();
     const auto c0 = robot.template number<i, Of::c0>();
     const auto s0 = robot.template number<i, Of::s0>();
     const auto d = robot.template number<i, Of::d>();
-    const double moved = robot.template number<i, Of::sense>() * q;
-    SineCosine turn{0.0, 1.0};
-    if (kind) turn = sine_cosine(moved);
     const auto c = select(kind, turn.cosine * c0 - turn.sine * s0, c0);
     const auto s = select(kind, turn.cosine * s0 + turn.sine * c0, s0);
-    const auto way = select(kind, d, moved + d);
+    const auto way = select(kind, d, robot.template number<i, Of::sense>() * q + d);
     return Place{kind, Turn{c, s}, way};
 }
 

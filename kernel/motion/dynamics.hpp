@@ -18,6 +18,7 @@ namespace detail {
 template <int joints>
 struct Motion {
     const Joints<joints>& q;
+    const Turns<joints>& turns;
     const Joints<joints>& rates;
     const Joints<joints>& accelerations;
     const Eigen::Vector3d& tip_force; ///< on what holds the end, along the axes of the end
@@ -49,7 +50,7 @@ template <int i, class Robot, class W, class E, class G>
         return {Triple{f.x(), f.y(), f.z()}, Triple{t.x(), t.y(), t.z()}};
     } else {
         const auto number = [&]<Of which>() { return robot.template number<i, which>(); };
-        const auto place = place_of<i>(robot, motion.q[i]);
+        const auto place = place_of<i>(robot, motion.turns[static_cast<std::size_t>(i)], motion.q[i]);
         const Turn tilt{robot.template number<i, Of::ca>(), robot.template number<i, Of::sa>()};
         const double sense = number.template operator()<Of::sense>();
         const double rate = sense * motion.rates[i];
@@ -123,15 +124,15 @@ inverse_dynamics(const Robot& robot, const Joints<Robot::joints>& q, const Joint
                  const Wrench<struct Surroundings, typename Robot::End, typename Robot::End>&
                      on_surroundings = {}) noexcept TAPPET_REALTIME {
     using sparse::Triple, sparse::Zero;
-    require_numbers<Robot::joints>(q);
+    const auto turns = detail::turns_of(robot, q);
     require_numbers<Robot::joints>(rates);
     require_numbers<Robot::joints>(accelerations);
     Joints<Robot::joints> torques;
     // A base that is accelerated upwards feels like gravity.
     detail::loads<0>(
         robot,
-        detail::Motion<Robot::joints>{q, rates, accelerations, on_surroundings.force, on_surroundings.torque,
-                                      torques},
+        detail::Motion<Robot::joints>{q, turns, rates, accelerations, on_surroundings.force,
+                                      on_surroundings.torque, torques},
         Triple{Zero{}, Zero{}, Zero{}}, Triple{Zero{}, Zero{}, Zero{}},
         Triple{-robot.template gravity<0>(), -robot.template gravity<1>(), -robot.template gravity<2>()});
     return torques;

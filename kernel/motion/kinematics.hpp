@@ -48,8 +48,9 @@ namespace detail {
 /// `x`, `y`, `z` and `origin` are those of frame i, along the axes of Base. The columns are written on the
 /// way back, when the end is known.
 template <int i, class Robot, class X, class Y, class Z, class P>
-[[gnu::always_inline]] inline void follow(const Robot& robot, const Joints<Robot::joints>& q, X x, Y y, Z z,
-                                          P origin, FrameOf<Robot>& end, JacobianOf<Robot>* jacobian) noexcept
+[[gnu::always_inline]] inline void follow(const Robot& robot, const Joints<Robot::joints>& q,
+                                          const Turns<Robot::joints>& turns, X x, Y y, Z z, P origin,
+                                          FrameOf<Robot>& end, JacobianOf<Robot>* jacobian) noexcept
     TAPPET_REALTIME {
     if constexpr (i == Robot::joints) {
         end.rotation.col(0) = x.dense();
@@ -57,13 +58,13 @@ template <int i, class Robot, class X, class Y, class Z, class P>
         end.rotation.col(2) = z.dense();
         end.position = origin.dense();
     } else {
-        const auto place = place_of<i>(robot, q[i]);
+        const auto place = place_of<i>(robot, turns[static_cast<std::size_t>(i)], q[i]);
         const auto [c, s] = place.turn;
         const auto ca = robot.template number<i, Of::ca>();
         const auto sa = robot.template number<i, Of::sa>();
         const auto x1 = c * x + s * y;
         const auto y1 = c * y - s * x;
-        follow<i + 1>(robot, q, x1, ca * y1 + sa * z, ca * z - sa * y1,
+        follow<i + 1>(robot, q, turns, x1, ca * y1 + sa * z, ca * z - sa * y1,
                       origin + place.way * z + robot.template number<i, Of::a>() * x1, end, jacobian);
         if (jacobian == nullptr) return;
         const double sense = robot.template number<i, Of::sense>();
@@ -83,9 +84,8 @@ template <class Robot>
                                           FrameOf<Robot>& end, JacobianOf<Robot>* jacobian) noexcept
     TAPPET_REALTIME {
     using sparse::Triple, sparse::Zero;
-    require_numbers<Robot::joints>(q);
-    follow<0>(robot, q, Triple{1.0, Zero{}, Zero{}}, Triple{Zero{}, 1.0, Zero{}}, Triple{Zero{}, Zero{}, 1.0},
-              Triple{Zero{}, Zero{}, Zero{}}, end, jacobian);
+    follow<0>(robot, q, turns_of(robot, q), Triple{1.0, Zero{}, Zero{}}, Triple{Zero{}, 1.0, Zero{}},
+              Triple{Zero{}, Zero{}, 1.0}, Triple{Zero{}, Zero{}, Zero{}}, end, jacobian);
 }
 
 } // namespace detail

@@ -26,6 +26,9 @@ inline constexpr std::array sections{
             "What it costs to call, to ask and to tell; and what the engine of an activity adds to the components that it runs."},
     Section{"behaviour", "State machines and programs",
             "Behaviours as C++ tables and as scripts, compiled with the firmware and loaded into the running machine."},
+    Section{"motion", "The mathematics of motion",
+            "Kinematics, dynamics, their inverses, trajectories and controllers for one cycle of six axes, beside KDL. The sine that is counted is that of "
+            "kernel/motion, inlined, in a firmware as here; it stands beside musl's and glibc's in a figure of its own. KDL is given musl's."},
     Section{"experiments", "The validation experiments",
             "Four applications on one processor, from minimal to large, with drifting periods, a background activity and random load, in five "
             "settings: no communication, data through locks, data through Tappet's connectors, commands, events (thesis 4.2.3, 4.4.4, 4.5.4, 4.6.4)."},

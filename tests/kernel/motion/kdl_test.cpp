@@ -1,11 +1,11 @@
 // Random chains against KDL, which computes the same another way: joint by joint, with dense matrices.
 #include "kernel/motion/dynamics.hpp"
 #include "kernel/motion/kinematics.hpp"
+#include "tests/kernel/motion/kdl_chain.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
 #include <gtest/gtest.h>
 
-#include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
@@ -16,31 +16,6 @@
 
 namespace tappet::motion::test {
 namespace {
-
-constexpr double to_radians = 3.14159265358979323846 / 180.0;
-
-template <int joints>
-KDL::Chain kdl_chain(const Chain<Base, End, joints>& chain) {
-    KDL::Chain result;
-    for (const Link& link : chain.links) {
-        const auto axis = link.joint == Joint::revolute ? KDL::Joint::RotZ : KDL::Joint::TransZ;
-        const auto& [x, y, z] = link.centre_m;
-        const Inertia& i = link.inertia;
-        result.addSegment(KDL::Segment(
-            KDL::Joint(axis, link.reversed ? -1.0 : 1.0),
-            KDL::Frame::DH(link.a_m, link.alpha_deg * to_radians, link.d_m, link.theta_deg * to_radians),
-            KDL::RigidBodyInertia(link.mass_kg, {x, y, z},
-                                  KDL::RotationalInertia(i.xx, i.yy, i.zz, i.xy, i.xz, i.yz))));
-    }
-    return result;
-}
-
-template <int joints>
-KDL::JntArray kdl_joints(const Joints<joints>& values) {
-    KDL::JntArray result(joints);
-    result.data = values;
-    return result;
-}
 
 /// Kinematics, Jacobian and inverse dynamics of both, with a load on the last link.
 template <int joints, class Robot>

@@ -51,6 +51,21 @@ TEST(Sine, of_degrees_is_that_of_their_angle) {
     }
 }
 
+TEST(Sine, of_two_angles_is_that_of_each) {
+    Random random{any_seed()};
+    for (int i = 0; i < 20000; ++i) {
+        const double a = within(random, 1e5);
+        const double b = within(random, 7.0);
+        SineCosine of_a{};
+        SineCosine of_b{};
+        sine_cosine_of_two(a, b, of_a, of_b);
+        EXPECT_EQ(of_a.sine, sine_cosine(a).sine);
+        EXPECT_EQ(of_a.cosine, sine_cosine(a).cosine);
+        EXPECT_EQ(of_b.sine, sine_cosine(b).sine);
+        EXPECT_EQ(of_b.cosine, sine_cosine(b).cosine);
+    }
+}
+
 TEST(Sine, of_what_is_no_number_is_none) {
     for (const double bad :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
