@@ -40,7 +40,7 @@ const std::vector<Size> sizes{
     {"tests/drivers",         4761},
     {"tests/apps",            4445},
     {"tests/toolchain",       4022},
-    {"tests/bench",           1696},
+    {"tests/bench",           1695},
     {"tests/diagnostics",     3060},
     {"tests/differential",    4680},
     {"tests/figures",         13417},

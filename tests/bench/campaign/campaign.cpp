@@ -200,8 +200,7 @@ private:
             if (now_safe && !safe)
                 verdict.lines = std::chrono::duration_cast<WallDuration>(wall_now() - committed);
             // A machine that still lives may have stopped for a weft, and weave again.
-            const bool may_weave =
-                fault.after == After::stopped || fault.after == After::either || fault.after == After::misses;
+            const bool may_weave = fault.after == After::stopped || fault.after == After::either;
             if (!now_safe && safe && !may_weave && fault.after != After::misses)
                 verdict.fault = "the lines did not stay safe";
             safe = now_safe || (safe && !may_weave);
