@@ -4,6 +4,7 @@
 #     BOARDS bench ipc-x86_64 ..   boards of Tappet by name, or headers of one's own: boards/my_box.hpp holds tappet::board::my_box
 #     [BINDINGS bindings.hpp]      holds <namespace>::bindings::<board> for each board that is not simulated
 #     [PLANT plant.hpp]            holds <namespace>::Plant, made from a seed: the other end of the wires
+#     [TESTS test.cpp ..]          cases of GoogleTest about it with its PLANT: they include "toolchain/machine/test.hpp"
 #     [PLANT_SOURCES ..]           its own, and
 #     [PLANT_LIBRARIES ..]         what it stands on
 #     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks for its boards, and host_hooks for its program with the PLANT
@@ -12,7 +13,7 @@
 #     [LIBRARIES ..])              what its components need beyond Tappet
 #
 # makes <name>, the machine with its plant in one process on the host; <name>_host, the same as a library for tests, with
-# <namespace>::on_host(), the accepted machine; <name>-chart, when it is asked for, which draws it; for each board, the static
+# <namespace>::on_host(), the accepted machine; <name>_test, for CTest; <name>-chart, when it is asked for, which draws it; for each board, the static
 # firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box; and, for the bench, <name>-plant, the
 # plant at the other end of its wires. After it tappet_script(<name>_table <file>.osd) gives its table a script: see script.cmake.
 include_guard(GLOBAL)
@@ -55,7 +56,7 @@ function(tappet_language)
 endfunction()
 
 function(tappet_machine name)
-    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;MODEL;NAMESPACE" "BOARDS;LIBRARIES;PLANT_SOURCES;PLANT_LIBRARIES")
+    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;MODEL;NAMESPACE" "BOARDS;LIBRARIES;TESTS;PLANT_SOURCES;PLANT_LIBRARIES")
     if(machine_UNPARSED_ARGUMENTS OR NOT machine_TABLE OR NOT machine_BOARDS)
         message(FATAL_ERROR "tappet_machine(${name} ..): say TABLE <header> and BOARDS <board>..; \"${machine_UNPARSED_ARGUMENTS}\" is unknown")
     endif()
@@ -90,6 +91,17 @@ function(tappet_machine name)
         target_compile_definitions(${name} PRIVATE ${definitions})
         target_link_libraries(${name} PRIVATE ${name}_host tappet_warnings)
         tappet_language(${name}_host ${name})
+    endif()
+    if(machine_TESTS)
+        if(NOT machine_PLANT)
+            message(FATAL_ERROR "tappet_machine(${name} ..): TESTS need wires that lead somewhere; say PLANT <header>")
+        endif()
+        find_package(GTest REQUIRED)
+        add_executable(${name}_test ${machine_TESTS})
+        target_compile_definitions(${name}_test PRIVATE ${definitions})
+        target_link_libraries(${name}_test PRIVATE ${name}_host GTest::gmock GTest::gtest_main tappet_warnings)
+        tappet_language(${name}_test)
+        add_test(NAME ${name}_test COMMAND ${name}_test)
     endif()
 
     # Its charts: nobody waits for them who does not ask. It reads scripts back from their instructions and finds the
@@ -141,22 +153,4 @@ function(tappet_machine name)
         target_link_libraries(${firmware} PRIVATE ${name}_table tappet_firmware tappet_warnings)
         tappet_language(${firmware})
     endforeach()
-endfunction()
-
-# tappet_machine_test(<name> SOURCES test.cpp ..): a program of GoogleTest cases about the machine <name> with its plant; it may
-# include "toolchain/machine/host.hpp" and "toolchain/machine/on_host.hpp".
-function(tappet_machine_test name)
-    cmake_parse_arguments(PARSE_ARGV 1 test "" "NAMESPACE" "SOURCES")
-    if(NOT TARGET ${name}_host OR NOT test_SOURCES)
-        message(FATAL_ERROR "tappet_machine_test(${name} ..): say tappet_machine(${name} .. PLANT ..) before it, and SOURCES <file>..")
-    endif()
-    if(NOT test_NAMESPACE)
-        set(test_NAMESPACE "${name}")
-    endif()
-    find_package(GTest REQUIRED)
-    add_executable(${name}_test ${test_SOURCES})
-    target_compile_definitions(${name}_test PRIVATE TAPPET_NAMESPACE=${test_NAMESPACE})
-    target_link_libraries(${name}_test PRIVATE ${name}_host GTest::gmock GTest::gtest_main tappet_warnings)
-    tappet_language(${name}_test)
-    add_test(NAME ${name}_test COMMAND ${name}_test)
 endfunction()

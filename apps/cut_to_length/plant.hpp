@@ -22,16 +22,14 @@ public:
     }
 
     Time move(Time now) override {
-        if (begun_ == never) begun_ = last_ = now;
-        const double dt = to_seconds(now - last_);
+        const double dt = to_seconds(step());
         const double wanted = enabled_ ? can.get("feed_command.speed") : 0.0;
         const double before = speed_;
         const double change = acceleration * dt;
         speed_ += std::clamp(wanted - speed_, -change, change);
         web_mm_ += (before + speed_) / 2 * dt * 1000.0;
-        last_ = now;
         lead_drive();
-        operate(now - begun_);
+        operate(now);
         if (io.changed("knife") && io.get("knife"))
             blade_at_ = io.changed_at() + knife_dead_time +
                         Duration{static_cast<std::int64_t>((random_.unit() - 0.5) * 100'000.0)};
@@ -96,10 +94,11 @@ private:
         can.set_integer("feed.statusword", static_cast<std::uint64_t>(state_));
     }
     /// Presses start until the line runs, once; and stop when enough is cut.
-    void operate(Duration t) {
+    void operate(Time now) {
         started_ |= io.get("lamp");
-        const bool again = last_ >= start_at_ && last_ < start_at_ + 100ms;
-        io.set("start", again || (!started_ && t % 500ms > 300ms && t % 500ms < 400ms));
+        const Duration t = elapsed() % 500ms;
+        const bool again = now >= start_at_ && now < start_at_ + 100ms;
+        io.set("start", again || (!started_ && t > 300ms && t < 400ms));
         io.set("emergency_stop", emergency_);
         io.set("stop", pieces_ >= wanted_ && speed_ > 0.0);
     }
@@ -114,7 +113,7 @@ private:
     }
 
     Random random_;
-    Time begun_ = never, last_{}, blade_at_ = never;
+    Time blade_at_ = never;
     double web_mm_ = 0.0, speed_ = 0.0;
     int state_ = 0x40;
     bool enabled_ = false, cut_before_ = false, emergency_ = false, started_ = false;

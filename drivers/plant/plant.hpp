@@ -64,6 +64,9 @@ public:
     }
     /// Takes, moves, gives; when the next time is due.
     Time advance(Time now) {
+        if (begun_ == never) begun_ = now_ = now;
+        before_ = now_;
+        now_ = now;
         for (FarEnd* end : ends) end->take(now);
         Time next = move(now);
         for (FarEnd* end : ends) {
@@ -75,6 +78,14 @@ public:
 
 protected:
     FarEnds ends; ///< its own are members of it: can::FarEnd<map> can{ends, "device"}
+
+    /// Of this move, since the first one.
+    [[nodiscard]] Duration elapsed() const { return now_ - begun_; }
+    /// Of this move, since the one before; 0 at the first.
+    [[nodiscard]] Duration step() const { return now_ - before_; }
+
+private:
+    Time begun_ = never, before_{}, now_{};
 };
 
 } // namespace tappet

@@ -48,9 +48,10 @@ struct BoardBrowsing {
 
 struct Board {
     std::string_view name{};
-    std::string_view world{};            ///< "host", "bench" or "box"
-    std::size_t memory_budget_bytes = 0; ///< of all static memory, the heap's arena and the stacks included
-    std::size_t heap_bytes = 0;          ///< the arena that configuring may use before arming
+    std::string_view world = "box"; ///< or "host", "bench"
+    /// Of all static memory, the heap's arena and the stacks included.
+    std::size_t memory_budget_bytes = 4 * 1024 * 1024;
+    std::size_t heap_bytes = 0; ///< the arena that configuring may use before arming
     int processors = 1;
     int highest_priority = 80; ///< SCHED_FIFO; interrupt threads stay above it
     int default_processor = 0;

@@ -1,25 +1,13 @@
 // The cutter with its plant under virtual time: each piece has its length, and nothing cuts that should not.
 #include "apps/cut_to_length/line.hpp"
-#include "apps/cut_to_length/plant.hpp"
-#include "toolchain/machine/host.hpp"
-
-#include <gtest/gtest.h>
+#include "apps/cut_to_length/measuring.hpp"
+#include "toolchain/machine/test.hpp"
 
 namespace cut_to_length {
-
-AcceptedMachine on_host();
-
 namespace {
 
-struct Cutter : testing::TestWithParam<std::uint64_t> {
-    Plant plant{GetParam()};
-    VirtualRun run{on_host(), plant, GetParam()};
-
-    void SetUp() override {
-        const auto started = run.start();
-        ASSERT_TRUE(started) << started.error().view();
-    }
-    void TearDown() override { run.stop(); }
+struct Cutter : MachineTest, testing::WithParamInterface<std::uint64_t> {
+    Cutter() : MachineTest{GetParam()} {}
     [[nodiscard]] std::string_view state() {
         const auto path = run.instance().state_machine_of("line")->path();
         return path.empty() ? std::string_view{} : path[0];

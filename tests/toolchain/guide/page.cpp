@@ -186,6 +186,7 @@ void write_unit(const Unit& unit, const fs::path& to, const std::string& name, c
     out << "// " << page << ":" << unit.line << "\n// "
         << (unit.refusal.empty() ? "accepted" : "refused: " + unit.refusal) << "\n"
         << "#include \"tests/toolchain/guide/context.hpp\"\n#define TAPPET_NAMESPACE " << project.name << "\n"
+        << "#define TAPPET_PLANT_HEADER \"" << fs::absolute(to / name / "plant.hpp").string() << "\"\n"
         << (whole ? include(name, "test.cpp") : "") << include(name, "machine.hpp")
         << include(name, "bindings.hpp") << include(name, "boards/my_box.hpp") << "namespace " << project.name
         << " {\n"

@@ -1,0 +1,31 @@
+// A case about a machine with its plant under virtual time, as tappet_machine(.. TESTS ..) of CMake names
+// them.
+#pragma once
+
+#include TAPPET_PLANT_HEADER
+
+#include "toolchain/machine/host.hpp"
+#include "toolchain/machine/on_host.hpp"
+
+#include <gtest/gtest.h>
+
+namespace TAPPET_NAMESPACE {
+
+/// Started for each case, and stopped after it:
+///     TEST_F(MachineTest, fills_ten_bottles) {
+///         run.run_for(10s);
+///         EXPECT_EQ(plant.bottles, 10);
+///     }
+struct MachineTest : testing::Test {
+    explicit MachineTest(std::uint64_t seed = 1) : plant{seed}, run{on_host(), plant, seed} {}
+    void SetUp() override {
+        const auto started = run.start();
+        ASSERT_TRUE(started) << started.error().view();
+    }
+    void TearDown() override { run.stop(); }
+
+    Plant plant;
+    tappet::VirtualRun run;
+};
+
+} // namespace TAPPET_NAMESPACE
