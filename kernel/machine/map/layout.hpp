@@ -130,7 +130,8 @@ enum ConnectionFlag : std::uint32_t {
     connection_buffered = 1,
     connection_across = 2, ///< between two activities
     connection_wakes = 4,
-    connection_delayed = 8
+    connection_delayed = 8,
+    connection_scaled = 16 ///< the reader sees another number than the writer wrote
 };
 
 struct Connection {

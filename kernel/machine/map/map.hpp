@@ -212,7 +212,8 @@ constexpr void Cartographer::draw_connections() {
         record.to = facet_index(link.to);
         const bool across = r_.activity[link.from.component] != r_.activity[link.to.component];
         record.flags = flag(row.buffered, connection_buffered) | flag(across, connection_across) |
-                       flag(row.wakes_reader, connection_wakes) | flag(row.delayed_step, connection_delayed);
+                       flag(row.wakes_reader, connection_wakes) | flag(row.delayed_step, connection_delayed) |
+                       flag(is_scaled(row), connection_scaled);
         record.capacity = static_cast<std::uint32_t>(row.capacity);
         record.max_age_ns = row.max_age.count();
         record.when_stale = text(row.when_stale == WhenStale::hold         ? "hold"

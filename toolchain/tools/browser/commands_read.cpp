@@ -40,15 +40,13 @@ std::string json_text(std::string_view key, std::string_view text) {
     return ", " + in_quotes(key) + ": " + in_quotes(text);
 }
 
-/// "12.5 deg FORCED"; of what has no value only the unit.
+/// "12.5 deg FORCED, wire 13.5 deg"; of what has no value only the unit.
 std::string value_with_unit(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
-    std::string unit{map.text(map.facets()[index].unit)};
-    if (map.facets()[index].value_at == 0) return unit;
+    if (map.facets()[index].value_at == 0) return std::string{map.text(map.facets()[index].unit)};
     const Reading reading = work.session.observer().read(index);
-    if (map.types()[map.facets()[index].type].shape == map::Shape::duration) unit.clear(); // it bears its own
-    return value_of(map, reading, Style::brief) + (unit.empty() ? "" : " ") + unit +
-           (reading.forced ? " FORCED" : "");
+    const std::string wire = wire_of(map, reading);
+    return with_unit(map, reading) + (reading.forced ? " FORCED" : "") + (wire.empty() ? "" : ", ") + wire;
 }
 
 /// Who may set, call or send it; empty: nobody.
@@ -68,8 +66,11 @@ void list_component(Work& work, std::uint32_t index) {
                      << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
                      << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
                      << role_of(map, facet, ", \"role\": \"", "\"");
-            if (facet.value_at != 0)
-                work.out << ", \"value\": " << value_of(map, work.session.observer().read(i), Style::json);
+            if (facet.value_at != 0) {
+                const Reading reading = work.session.observer().read(i);
+                work.out << ", \"value\": " << value_of(map, reading, Style::json)
+                         << json_wire_of(map, reading);
+            }
             work.out << "}\n";
             continue;
         }
@@ -102,7 +103,9 @@ void tell_connections(Work& work, std::uint32_t facet, const std::string& indent
             work.out << " (stale after " << duration_text(each.max_age_ns) << ": "
                      << map.text(each.when_stale) << ")";
         if ((each.flags & map::connection_buffered) != 0) work.out << " (buffer of " << each.capacity << ")";
-        work.out << "\n";
+        const std::string wire =
+            map.facets()[facet].value_at == 0 ? "" : wire_of(map, work.session.observer().read(facet));
+        work.out << (wire.empty() ? "" : ", ") << wire << "\n";
     }
     for (const map::Reaction& each : map.reactions()) {
         if (each.from == facet && each.to != none)

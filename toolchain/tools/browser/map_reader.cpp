@@ -171,6 +171,13 @@ std::string MapReader::nearest_of(std::string_view written, std::span<const std:
     return "; did you mean \"" + std::string{nearest.best()} + "\"?";
 }
 
+const map::Connection* MapReader::device_row_of(std::uint32_t facet) const {
+    for (const map::Connection& each : connections_)
+        if (each.to == facet && each.from != map::none && (each.flags & map::connection_buffered) == 0)
+            return components_[facets_[each.from].component].device.length > 0 ? &each : nullptr;
+    return nullptr;
+}
+
 std::uint32_t MapReader::activity_of(const map::Facet& facet) const {
     return components_[facet.component].activity;
 }

@@ -56,6 +56,8 @@ public:
         return nearest_of(written, names);
     }
     static std::string nearest_of(std::string_view written, std::span<const std::string> names);
+    /// The row by which a device's driver gives an input its last value; null: no device does.
+    [[nodiscard]] const map::Connection* device_row_of(std::uint32_t facet) const;
     /// The activity whose generation guards a facet's value; none for a component that no activity runs.
     [[nodiscard]] std::uint32_t activity_of(const map::Facet& facet) const;
 

@@ -69,6 +69,9 @@ std::vector<Reading> Observer::read(std::span<const std::uint32_t> facets) const
             if (!whole) readings[i].value.clear();
         }
     }
+    for (Reading& reading : readings) // after them: a value that comes in between is one more, not one less
+        if (const map::Connection* row = map_->device_row_of(reading.facet))
+            reading.wire.push_back(read(row->from));
     return readings;
 }
 

@@ -18,6 +18,9 @@ struct Reading {
     std::int64_t stamp_ns = -1; ///< the time at which the value was true; -1: the machine keeps none
     std::int64_t now_ns = -1;   ///< the time of the cycle after which it was read; -1: no activity
     std::vector<std::byte> value{};
+    /// Of an input that a device feeds, which shows what its component read last: what the driver gave last.
+    /// Else empty.
+    std::vector<Reading> wire{};
 
     [[nodiscard]] bool never_written() const { return has_writes && writes == 0; }
 };

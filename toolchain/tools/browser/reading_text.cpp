@@ -24,14 +24,41 @@ std::string_view flow_of(const MapReader& map, const Reading& reading) {
 std::string marks_of(const MapReader& map, const Reading& reading) {
     if (reading.busy) return "busy";
     const std::string_view flow = flow_of(map, reading);
-    std::string marks = reading.forced ? "FORCED" : "";
-    if (flow == "fresh" || reading.forced) return marks;
-    return marks + (flow == "stale" ? "stale" : "never written");
+    std::string marks = reading.forced    ? "FORCED"
+                        : flow == "fresh" ? ""
+                        : flow == "stale" ? "stale"
+                                          : "never written";
+    const std::string wire = wire_of(map, reading);
+    return marks + (marks.empty() || wire.empty() ? "" : ", ") + wire;
 }
 
 std::string value_of(const MapReader& map, const Reading& reading, Style style) {
     if (reading.busy || reading.value.empty()) return style == Style::json ? "null" : "?";
     return to_text(map, map.facets()[reading.facet].type, reading.value, style);
+}
+
+std::string with_unit(const MapReader& map, const Reading& reading) {
+    const map::Facet& facet = map.facets()[reading.facet];
+    const bool bears_it = facet.type != map::none && map.types()[facet.type].shape == map::Shape::duration;
+    const std::string_view unit = bears_it ? std::string_view{} : map.text(facet.unit);
+    return value_of(map, reading, Style::brief) + (unit.empty() ? "" : " ") + std::string{unit};
+}
+
+std::string wire_of(const MapReader& map, const Reading& reading) {
+    if (reading.wire.empty() || reading.busy) return {};
+    const Reading& wire = reading.wire.front();
+    if (wire.busy || wire.forced || wire.never_written()) return {};
+    const bool scaled = (map.device_row_of(reading.facet)->flags & map::connection_scaled) != 0;
+    const bool same =
+        scaled ? wire.stamp_ns == reading.stamp_ns && !reading.forced : wire.value == reading.value;
+    return same ? std::string{} : "wire " + with_unit(map, wire);
+}
+
+std::string json_wire_of(const MapReader& map, const Reading& reading) {
+    if (reading.wire.empty() || reading.wire.front().busy || reading.wire.front().forced) return {};
+    const Reading& wire = reading.wire.front();
+    return ", \"wire\": " + (wire.never_written() ? "null" : value_of(map, wire, Style::json)) +
+           ", \"wire_time_ns\": " + std::to_string(wire.stamp_ns);
 }
 
 std::string json_of(const MapReader& map, const Reading& reading) {
@@ -43,15 +70,15 @@ std::string json_of(const MapReader& map, const Reading& reading) {
     all += ", \"flow\": " + in_quotes(flow_of(map, reading));
     all += std::string{", \"forced\": "} + (reading.forced ? "true" : "false");
     if (reading.stamp_ns >= 0) all += ", \"time_ns\": " + std::to_string(reading.stamp_ns);
-    return all + "}";
+    return all + json_wire_of(map, reading) + "}";
 }
 
 std::string line_of(const MapReader& map, const Reading& reading) {
-    const std::string_view unit = map.text(map.facets()[reading.facet].unit);
-    std::string line = map.full_name(reading.facet) + " = " + value_of(map, reading, Style::brief);
-    const bool bears_it = map.types()[map.facets()[reading.facet].type].shape == map::Shape::duration;
-    if (!unit.empty() && !bears_it) line += " " + std::string{unit};
-    const std::string marks = marks_of(map, reading);
+    const std::string line = map.full_name(reading.facet) + " = " + with_unit(map, reading);
+    std::string marks = marks_of(map, reading);
+    if (!reading.never_written() && !wire_of(map, reading).empty())
+        if (const std::int64_t newer = reading.wire.front().stamp_ns - reading.stamp_ns; newer > 0)
+            marks += ", " + duration_text(newer) + " newer";
     return marks.empty() ? line : line + "   " + marks;
 }
 

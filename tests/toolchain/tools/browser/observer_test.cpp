@@ -55,6 +55,25 @@ TEST_F(Watching, an_old_value_is_marked_stale_where_its_row_has_a_limit) {
     EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg   stale");
 }
 
+TEST_F(Watching, what_a_device_gave_stands_beside_what_was_read_when_they_differ) {
+    machine.write("loom.angle", 12.5, 1'000'000);
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg") << "the device gave nothing yet";
+    machine.write("shaft.angle", 12.5, 1'000'000);
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg");
+    machine.write("shaft.angle", 14.0, 3'000'000);
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg   wire 14 deg, 2ms newer");
+    machine.force("loom.angle", true, 90.0);
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 90 deg   FORCED, wire 14 deg, 2ms newer");
+    EXPECT_EQ(shown("shaft.angle"), "shaft.angle = 14 deg") << "nobody feeds it but its own device";
+}
+
+TEST_F(Watching, what_is_forced_at_the_device_is_not_taken_for_the_wire) {
+    machine.write("loom.angle", 12.5, 1'000'000);
+    machine.write("shaft.angle", 14.0, 3'000'000);
+    machine.force("shaft.angle", true, 90.0);
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg");
+}
+
 TEST_F(Watching, an_activity_in_its_cycle_makes_a_value_busy_never_torn) {
     machine.hold("shaft.angle", true);
     const Reading reading = session->observer().read(facet("shaft.angle"));

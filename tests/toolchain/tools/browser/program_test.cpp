@@ -60,6 +60,21 @@ TEST_F(Program, lists_components_and_their_facets) {
                                testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator")")));
 }
 
+TEST_F(Program, shows_the_wire_wherever_a_component_has_read_another_value) {
+    machine.write("shaft.angle", 14.0, 3'000'000);
+    machine.write("loom.angle", 12.5, 1'000'000);
+    EXPECT_THAT(run({"get", "loom.angle"}).out, HasSubstr("12.5 deg   wire 14 deg, 2ms newer\n"));
+    EXPECT_THAT(run({"list", "loom"}).out, HasSubstr("12.5 deg, wire 14 deg"));
+    for (const char* word : {"tree", "info"})
+        EXPECT_THAT(run({word, word == std::string_view{"tree"} ? "loom" : "loom.angle"}).out,
+                    testing::ContainsRegex("<- shaft.angle .*, wire 14 deg\n"));
+    for (const char* word : {"list", "get"})
+        EXPECT_THAT(run({word, word == std::string_view{"list"} ? "loom" : "loom.angle", "--json"}).out,
+                    HasSubstr(R"("wire": 14, "wire_time_ns": 3000000)"));
+    machine.write("loom.angle", 14.0, 3'000'000);
+    EXPECT_THAT(run({"list", "loom"}).out, Not(HasSubstr("wire")));
+}
+
 class BlackBox : public Program {
 protected:
     /// Of the machine as it is now.
@@ -235,7 +250,7 @@ TEST_F(Program, prints_the_table_that_is_in_effect) {
     const Outcome manifest = run({"manifest"});
     EXPECT_EQ(manifest.code, 0) << manifest.errors;
     EXPECT_THAT(manifest.out, testing::StartsWith("machine sample on board test"));
-    EXPECT_THAT(manifest.out, HasSubstr("\n    shaft MainShaft\n"));
+    EXPECT_THAT(manifest.out, HasSubstr("\n    shaft MainShaft, device encoder\n"));
     EXPECT_THAT(manifest.out, HasSubstr("gains.p = 0.333333"));
     EXPECT_THAT(manifest.out, HasSubstr("shaft.angle -> loom.angle, stale after 4ms: hold"));
     const std::string json = run({"manifest", "--json"}).out;

@@ -64,10 +64,12 @@ std::uint32_t SampleMap::activity(std::string_view name) {
     return static_cast<std::uint32_t>(activities_.size() - 1);
 }
 
-std::uint32_t SampleMap::component(std::string_view name, std::string_view type, std::uint32_t activity) {
+std::uint32_t SampleMap::component(std::string_view name, std::string_view type, std::uint32_t activity,
+                                   std::string_view device) {
     map::Component each;
     each.name = text(name);
     each.type = text(type);
+    each.device = text(device);
     each.activity = activity;
     each.first_facet = static_cast<std::uint32_t>(facets_.size());
     components_.push_back(each);
@@ -229,7 +231,7 @@ SampleMachine::SampleMachine() {
         activity_of_.emplace(index, activity);
         return index;
     };
-    map_.component("shaft", "MainShaft", motion);
+    map_.component("shaft", "MainShaft", motion, "encoder");
     const auto angle =
         add("shaft", "angle", "output", map_.f64, motion, "deg", "of the main shaft", map::facet_can_force);
     add("shaft", "gains.p", "property", map_.f64, motion, "N/deg", "proportional gain", 0);

@@ -32,7 +32,8 @@ public:
     };
 
     std::uint32_t activity(std::string_view name);
-    std::uint32_t component(std::string_view name, std::string_view type, std::uint32_t activity);
+    std::uint32_t component(std::string_view name, std::string_view type, std::uint32_t activity,
+                            std::string_view device = "");
     /// Of the component that was added last.
     std::uint32_t facet(std::string_view name, std::string_view kind, std::uint32_t type,
                         std::string_view unit = {}, std::string_view doc = {}, std::uint32_t flags = 0);
