@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # A firmware is one static binary, so what it stands on must be there as archives:
-#   tappet::libgpiod   Debian's own libgpiod.a, version 2
+#   tappet::libgpiod   Debian's own libgpiod.a, version 2; the package of Tappet has it along, since a plain Debian 12 has not
 #   tappet::libedit    Debian's own libedit.a with what it stands on; not for a firmware, but for tappet-browse beside it
 #   tappet::double_conversion  Debian's own libdouble-conversion.a
 #   tappet::mathematics  sine and its kin out of Debian's libc.a of musl: one routine for every processor
@@ -10,8 +10,8 @@ include_guard(GLOBAL)
 include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
 
 # --- libgpiod -----------------------------------------------------------------------------------------------------
-find_path(TAPPET_GPIOD_INCLUDE gpiod.h)
-find_library(TAPPET_GPIOD_ARCHIVE libgpiod.a)
+find_path(TAPPET_GPIOD_INCLUDE gpiod.h HINTS "${TAPPET_CACHE}/libgpiod")
+find_library(TAPPET_GPIOD_ARCHIVE libgpiod.a HINTS "${TAPPET_CACHE}/libgpiod")
 if(NOT TAPPET_GPIOD_INCLUDE OR NOT TAPPET_GPIOD_ARCHIVE)
     message(FATAL_ERROR "gpiod.h and libgpiod.a are not installed; run ci/setup once as root")
 endif()
@@ -21,7 +21,9 @@ if(NOT tappet_gpiod_v2)
 endif()
 
 add_library(tappet_libgpiod STATIC IMPORTED GLOBAL)
-set_target_properties(tappet_libgpiod PROPERTIES IMPORTED_LOCATION "${TAPPET_GPIOD_ARCHIVE}")
+set_target_properties(
+    tappet_libgpiod PROPERTIES IMPORTED_LOCATION "${TAPPET_GPIOD_ARCHIVE}"
+    INTERFACE_INCLUDE_DIRECTORIES "${TAPPET_GPIOD_INCLUDE}")
 add_library(tappet::libgpiod ALIAS tappet_libgpiod)
 
 # --- libedit ------------------------------------------------------------------------------------------------------

@@ -201,7 +201,7 @@ struct Emulator {
             ::dup2(from[1], STDOUT_FILENO);
             ::dup2(errors, STDERR_FILENO);
             ::execvp(words[0], words.data());
-            ::dprintf(STDERR_FILENO, "cannot run %s: %s; run ci/setup once as root\n", words[0],
+            ::dprintf(STDERR_FILENO, "cannot run %s: %s; install the package qemu-system-x86\n", words[0],
                       std::strerror(errno));
             ::_exit(127);
         }
