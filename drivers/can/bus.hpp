@@ -27,7 +27,7 @@ namespace tappet::can {
 /// what is written after it leaves. It looks for that restart every now and then and rests in between.
 /// Likewise a bus that was stopped begins anew: what arrived, waited or was demanded before is forgotten.
 template <const auto& map> struct Bus {
-    TAPPET_ACCEPTED(map.fault);
+    static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
     static constexpr std::string_view device_kind = "can";

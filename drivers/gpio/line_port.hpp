@@ -56,7 +56,7 @@ template <const auto& map> struct LineNames {
 ///
 /// At start, as after stop, every output has its safe value; after stop it keeps it.
 template <const auto& map> struct LinePort {
-    TAPPET_ACCEPTED(map.fault);
+    static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.rows.size();
     static constexpr std::string_view device_kind = "gpio";
     static constexpr std::span<const LineRow> device_map{map.rows};

@@ -39,7 +39,7 @@ template <const auto& map> struct RegisterNames {
 /// that is not_real_time. At stop, values written since go out; what the server does when it hears no more is
 /// its own time-out's business.
 template <const auto& map> struct Client {
-    TAPPET_ACCEPTED(map.fault);
+    static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.registers.size();
     static constexpr std::string_view device_kind = "modbus";
     static constexpr SafeWrites device_map = map.safe_writes();

@@ -68,12 +68,14 @@ struct text {
 template <std::size_t M>
 text(const char (&)[M]) -> text<M - 1>;
 
-/// Not defined: a compiler that prints no message objects prints the sentence as the argument of this name.
+/// A compiler that prints no message objects says: 'accepted' is not a member of refused<the sentence>.
 template <text sentence>
-struct refused;
+struct refused {};
 /// Nothing to say.
 template <>
-struct refused<text<0>{}> {};
+struct refused<text<0>{}> {
+    static constexpr bool accepted = true;
+};
 
 } // namespace tappet
 
@@ -82,5 +84,5 @@ struct refused<text<0>{}> {};
 #define TAPPET_ACCEPTED(fault) static_assert((fault).empty(), fault)
 #else
 #define TAPPET_ACCEPTED(fault)                                                                               \
-    static_assert(sizeof(::tappet::refused<::tappet::text<(fault).size()>{(fault).view()}>) != 0)
+    static_assert(::tappet::refused<::tappet::text<(fault).size()>{(fault).view()}>::accepted)
 #endif

@@ -40,6 +40,8 @@ struct ComponentType {
     std::span<const Facet> facets{};
     std::string_view device_kind{};                   ///< of the device it drives, "" for none
     std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
+    /// What is wrong with what stands on that device; the table's check says it.
+    std::string_view device_fault{};
     const void* device_map =
         nullptr;                ///< what stands on that device, as a start-up that knows the kind reads it
     bool shares_device = false; ///< it may stand beside the device's driver; what it calls is safe there
@@ -81,6 +83,7 @@ constexpr ComponentType describe() {
     type.align = alignof(T);
     type.facets = facets_of<T>;
     type.construct = [](void* memory) { new (memory) T{}; };
+    if constexpr (requires { T::device_fault; }) type.device_fault = T::device_fault;
     if constexpr (requires { T::device_kind; }) type.device_kind = T::device_kind;
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;

@@ -73,9 +73,13 @@ inline constexpr OperationOperations operation_of = {&operation_call<Method>, &O
                                                      &operation_entry<Method>};
 
 template <auto Method>
-struct TimerCall;
+struct TimerCall {
+    static constexpr bool is_run = false;
+    static constexpr TimerOperations operations{}; // so that saying so stays the only error
+};
 template <class Component, void (Component::*Method)(const Cycle&) noexcept>
 struct TimerCall<Method> {
+    static constexpr bool is_run = true;
     static constexpr TimerOperations operations{
         [](void* component, const Cycle& cycle) noexcept
         TAPPET_REALTIME { (static_cast<Component*>(component)->*Method)(cycle); }};
@@ -203,6 +207,9 @@ constexpr Facet awaits(std::string_view name, std::string_view doc, Options... o
 /// A timer and the member function it runs: `void f(const Cycle&) noexcept TAPPET_REALTIME`.
 template <auto Member, auto Method>
 constexpr Facet timer(std::string_view name, std::string_view doc) {
+    static_assert(detail::TimerCall<Method>::is_run,
+                  "a timer runs a member function void f(const Cycle&), declared noexcept TAPPET_REALTIME: "
+                  "it runs in the real-time activity");
     return {.name = name,
             .doc = doc,
             .kind = FacetKind::timer,

@@ -127,7 +127,7 @@ struct Firmware {
 #if defined(__clang__)
     static_assert(accepted, refusal);
 #else
-    static_assert(sizeof(refused<text<refusal.size()>{refusal.view()}>) != 0);
+    static_assert(refused<text<refusal.size()>{refusal.view()}>::accepted);
 #endif
 
     static AcceptedMachine machine() { return detail::Instance<table, board, binding, accepted>::machine(); }

@@ -180,7 +180,7 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
                 if (used < list.size())
                     list[used] = {static_cast<std::uint32_t>(key), static_cast<StateIndex>(leaf),
                                   events ? view.cells[key] : none_asked,
-                                  events && view.captured[key % keys] != 0};
+                                  events && view.captured[key - leaf * keys] != 0};
                 ++used;
             }
         }

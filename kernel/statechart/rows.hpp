@@ -29,6 +29,11 @@ namespace statechart {
 
 template <class> struct Member {
     static constexpr bool real_time = false;
+    using Result = struct NoResult;
+    using Component = void;
+};
+template <class F, class C> struct Member<F C::*> : Member<void> {
+    using Component = C;
 };
 template <class R, class C> struct Member<R (C::*)() noexcept TAPPET_REALTIME> {
     static constexpr bool real_time = true;
@@ -44,7 +49,11 @@ template <class R, class C> struct Member<R (C::*)() const noexcept TAPPET_REALT
 };
 
 template <auto Function, class Result> Result call(void* component) noexcept TAPPET_REALTIME {
-    return (static_cast<typename Member<decltype(Function)>::Object*>(component)->*Function)();
+    using Of = Member<decltype(Function)>;
+    if constexpr (std::is_same_v<typename Of::Result, Result>)
+        return (static_cast<typename Of::Object*>(component)->*Function)();
+    else
+        return Result(); // so that saying so stays the only error
 }
 
 template <class Pointer> struct Bound {
@@ -57,9 +66,11 @@ template <auto Function, class Result> consteval auto bind() {
     static_assert(Of::real_time,
                   "a program or guard of a state machine is a member function without arguments, "
                   "declared noexcept TAPPET_REALTIME: it runs in the real-time activity");
-    static_assert(std::is_same_v<typename Of::Result, Result>,
-                  "a guard returns bool; an entry, exit, run or transition program returns void; the detail "
-                  "of a reason returns std::string_view");
+    if constexpr (Of::real_time)
+        static_assert(
+            std::is_same_v<typename Of::Result, Result>,
+            "a guard returns bool; an entry, exit, run or transition program returns void; the detail "
+            "of a reason returns std::string_view");
     return Bound<Result (*)(void*) noexcept TAPPET_REALTIME>{&call<Function, Result>,
                                                              type_id<typename Of::Component>};
 }

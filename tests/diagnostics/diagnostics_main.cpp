@@ -32,10 +32,10 @@ namespace {
 
 /// Everything a compiler may print for one faulty table, the sentence and its surroundings included.
 constexpr std::size_t most_lines = 9;
-/// Of a script the sentence comes first, the way through which it was compiled after it; a map's check stands
-/// in a macro.
+/// Of a script the sentence comes first, the way through which it was compiled after it.
 constexpr std::size_t most_script_lines = 14;
-constexpr std::size_t most_named_lines = 16; // clang shows each call on the way to the fault
+constexpr std::size_t most_named_lines = 16;  // clang shows each call on the way to the fault
+constexpr std::size_t most_effect_lines = 28; // and what that function calls in the standard library
 constexpr unsigned at_a_time = 2;
 constexpr std::size_t most_told = 10;
 
@@ -89,6 +89,15 @@ FirstError first_error(const std::string& text) {
         break;
     }
     return first;
+}
+
+/// Without those that say through which headers a header was read: they are the case's own.
+std::size_t lines_of(const std::string& text) {
+    std::size_t count = 0;
+    std::istringstream lines{text};
+    for (std::string line; std::getline(lines, line);)
+        count += !line.starts_with("In file included from") && !line.starts_with("                 from ");
+    return count;
 }
 
 /// What stands between two marks; g++ prints the sentence as a string literal, clang as it is.
@@ -180,9 +189,8 @@ void judge(Case& each, const Options& options, const std::string& headers) {
     const Output output = run("cd '" + options.source + "' && '" + options.compiler + "' " + headers + " " +
                               options.flags + " -fsyntax-only '" + each.file.string() + "'");
     const auto [error, source] = first_error(output.text);
-    const auto lines = static_cast<std::size_t>(std::count(output.text.begin(), output.text.end(), '\n'));
-    const bool is_script =
-        each.file.stem().string().starts_with("script_") || each.file.stem().string().starts_with("map_");
+    const std::size_t lines = lines_of(output.text);
+    const bool is_script = each.file.stem().string().starts_with("script_");
     const std::size_t most = !options.lines.empty() ? std::stoul(options.lines)
                              : is_script            ? most_script_lines
                                                     : most_lines;
@@ -201,6 +209,8 @@ void judge(Case& each, const Options& options, const std::string& headers) {
             each.fault = std::to_string(lines) + " lines of output";
     } else if (each.effects && (error + source).find(each.expected) == std::string::npos)
         each.fault = "the first error does not name the function";
+    else if (each.effects && lines > most_effect_lines)
+        each.fault = std::to_string(lines) + " lines of output";
     else if (!each.effects && each.sentence.empty())
         each.fault = "the first error is no sentence of ours:\n" + output.text.substr(0, 4000);
     else if (!each.effects && !matches(each.expected, each.sentence))

@@ -68,6 +68,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         const ComponentRow& row = m.components[i];
         if (row.name.empty() || find_character(row.name, '.') != std::string_view::npos)
             return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
+        if (!row.type->device_fault.empty()) return of_component(row.name, ": ", row.type->device_fault);
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
         if (Sentence fault = check_life(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
