@@ -2,7 +2,6 @@
 #pragma once
 
 #include "apps/cut_to_length/line.hpp"
-#include "apps/cut_to_length/maps.hpp"
 #include "apps/cut_to_length/measuring.hpp"
 #include "drivers/can/restarter.hpp"
 #include "kernel/machine/table/compiled.hpp"

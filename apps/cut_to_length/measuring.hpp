@@ -24,9 +24,8 @@ struct Measuring {
     Property<double> length_mm{500.0};
 
     Sentence configure(Setup&) {
-        ShaftProperties wheel;
         codes_ = static_cast<std::int64_t>(length_mm.get() * codes_per_mm + 0.5);
-        wheel.codes_per_turn = static_cast<std::uint32_t>(codes_);
+        const ShaftProperties wheel{.codes_per_turn = static_cast<std::uint32_t>(codes_)};
         estimator_ = ShaftEstimator{wheel};
         return check(wheel);
     }
@@ -47,12 +46,9 @@ struct Measuring {
             wheel_lost.emit();
         }
         if (flow != Flow::fresh) return;
-        if (!known_) {
-            last_ = code;
-            travelled_ = 0; // the estimator begins anew after the gap
-        }
+        // The wheel counts in 16 bits; after a gap the length begins anew, as the estimator does.
+        travelled_ = known_ ? travelled_ + static_cast<std::int16_t>(code - last_) : 0;
         known_ = true;
-        travelled_ += static_cast<std::int16_t>(code - last_); // the wheel counts in 16 bits
         last_ = code;
         estimator_.sample(static_cast<std::uint32_t>((travelled_ % codes_ + codes_) % codes_),
                           position.stamp());
@@ -79,8 +75,7 @@ struct Measuring {
             input<&Measuring::position>("position", "", "of the wheel, in codes"),
             input<&Measuring::knife_allowed>("knife_allowed", "", "the line moves the web itself"),
             output<&Measuring::cuts>("cuts", "", "since start"),
-            event<&Measuring::cut_now>("cut_now", "the knife must be driven now to cut at the length",
-                                       heard_by(1)),
+            event<&Measuring::cut_now>("cut_now", "drive the knife now to cut at the length", heard_by(1)),
             event<&Measuring::knife_turned>("knife_turned", "the knife has cut and may rest", heard_by(1)),
             event<&Measuring::wheel_lost>("wheel_lost", "nobody knows where the web is"),
             timer<&Measuring::cam_timer, &Measuring::fire>("cam_timer", "the next cut"),

@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"drivers",               6527},
     {"board",                 817},
     {"apps/carpet_loom",      6160},
-    {"apps/cut_to_length",    412},
+    {"apps/cut_to_length",    404},
     {"apps/car_tracking",     1937},
     {"toolchain/machine",     2396},
     {"toolchain/tools",       9126},
