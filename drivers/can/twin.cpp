@@ -10,6 +10,9 @@ std::expected<void, Sentence> Twin::open(const Settings& settings) noexcept {
                 return std::unexpected{Sentence{"CAN twin \"", settings.interface, "\": identifier ", one.id,
                                                 " is out of range; correct the signal map"}};
     settings_ = settings;
+    // Opened again, by a new process: what the one before left is not its own.
+    generation_.fetch_add(1, std::memory_order_acq_rel);
+    for (Arrival left; inbox_.pop(left);) lost_seen_ = left.lost;
     off_bus_.store(false, std::memory_order_release);
     controller_.configure(settings);
     return {};

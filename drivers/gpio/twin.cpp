@@ -68,8 +68,22 @@ bool Twin::drive(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIM
 }
 
 void Twin::stick(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME {
-    if (schedule(line, active, at)) deliver_until(at);
+    deliver_until(at);
     stuck_ |= Mask{1} << line;
+    change_raw(line, active, at);
+    deliver_until(at);
+}
+
+void Twin::release(std::size_t line, Time at) noexcept TAPPET_REALTIME {
+    deliver_until(at);
+    stuck_ &= ~(Mask{1} << line);
+    change_raw(line, (driven_to_ >> line & 1u) != 0, at);
+}
+
+void Twin::change_raw(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME {
+    if (((raw_ >> line & 1u) != 0) == active) return;
+    raw_ ^= Mask{1} << line;
+    raw_since_[line] = at;
 }
 
 bool Twin::schedule(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME {
@@ -97,9 +111,8 @@ void Twin::deliver_until(Time now) noexcept TAPPET_REALTIME {
     while (next_change(now, change)) {
         settle(change.at);
         const Mask bit = Mask{1} << change.line;
-        if ((stuck_ & bit) != 0 || ((raw_ & bit) != 0) == change.active) continue;
-        raw_ ^= bit;
-        raw_since_[change.line] = change.at;
+        driven_to_ = change.active ? driven_to_ | bit : driven_to_ & ~bit;
+        if ((stuck_ & bit) == 0) change_raw(change.line, change.active, change.at);
     }
     settle(now);
     deliver_late(now);

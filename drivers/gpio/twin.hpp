@@ -58,9 +58,9 @@ public:
         arrived_ |= removed;
     }
     LineFaults& faults(std::size_t line) noexcept TAPPET_REALTIME { return faults_[line]; }
-    /// The input stays at this level whatever drives it, until released.
+    /// The input stays at this level whatever drives it, until released; then it is what it is driven to.
     void stick(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
-    void release(std::size_t line) noexcept TAPPET_REALTIME { stuck_ &= ~(Mask{1} << line); }
+    void release(std::size_t line, Time at) noexcept TAPPET_REALTIME;
 
 private:
     struct Change {
@@ -81,6 +81,7 @@ private:
         count_.failures += removed ? 1u : 0u;
         return removed;
     }
+    void change_raw(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
     bool schedule(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool next_change(Time now, Change& change) noexcept TAPPET_REALTIME;
     void settle(Time now) noexcept TAPPET_REALTIME;
@@ -101,6 +102,7 @@ private:
     std::array<LineFaults, most_lines> faults_{};
     std::array<Time, most_lines> raw_since_{}; // when the undebounced level last changed
     Mask raw_ = 0;
+    Mask driven_to_ = 0; // what a stuck line would be
     Mask stuck_ = 0;
     Bounded<Change, 64> changes_{};
     Bounded<Late, 64> late_{};

@@ -48,15 +48,22 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
     return {};
 }
 
+std::expected<void, Sentence> SimulatedDevices::open_again() {
+    for (const auto& bus : buses_)
+        if (auto opened = bus->machine.open(bus->settings); !opened) return opened;
+    return {};
+}
+
 std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row) {
     Bus& bus = *buses_.emplace_back(std::make_unique<Bus>(row.device, seed_));
     const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
-    can::Settings settings;
-    settings.interface = row.device;
-    settings.receive = map.receive;
-    settings.transmit = map.transmit;
-    if (auto opened = bus.machine.open(settings); !opened) return opened;
+    bus.settings.interface = row.device;
+    bus.settings.receive = map.receive;
+    bus.settings.transmit = map.transmit;
+    if (auto opened = bus.machine.open(bus.settings); !opened) return opened;
+    can::Settings settings = bus.settings;
     std::swap(settings.receive, settings.transmit);
+    settings.restarts_allowed = ~0u; // nodes try again for ever
     if (auto opened = bus.plant.open(settings); !opened) return opened;
     if (!bus.bus.attach(bus.machine) || !bus.bus.attach(bus.plant))
         return std::unexpected(Sentence{"twin bus: no room for two ends"});
@@ -81,7 +88,10 @@ WireCounters SimulatedDevices::counters() const noexcept {
 }
 
 void SimulatedDevices::advance(Time now) {
-    for (const auto& bus : buses_) bus->bus.deliver_until(now);
+    for (const auto& bus : buses_) {
+        bus->bus.deliver_until(now);
+        if (can::faulted(bus->plant.state())) static_cast<void>(bus->plant.restart());
+    }
     next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
     for (const auto& bus : buses_) bus->bus.deliver_until(now);
     for (const auto& chip : chips_) chip->twin.deliver_until(now);

@@ -23,6 +23,9 @@ public:
     explicit SimulatedDevices(Plant& plant, std::uint64_t seed) : plant_{plant}, seed_{seed} {}
 
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
+    /// The machine's ends of the buses anew, as a new process has them: a bus that was off is on again. Lines
+    /// stay as they were left.
+    std::expected<void, Sentence> open_again();
     [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return provided_; }
     void report(os::ArmingReport&) override {}
     [[nodiscard]] WireCounters counters() const noexcept override;
@@ -42,6 +45,7 @@ private:
     struct Bus {
         std::string_view name;
         can::TwinBus bus;
+        can::Settings settings{};
         can::Twin machine{}, plant{};
         Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
     };

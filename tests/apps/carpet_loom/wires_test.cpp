@@ -209,7 +209,7 @@ TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
         ASSERT_TRUE(rig.run_until_state("stopped", 1s))
             << (active ? "active" : "inactive") << ": " << rig.state();
         EXPECT_EQ(rig.cause(), StopCause::weft);
-        rig.lines().release(LoomRig::line_index(line::weft_detector));
+        rig.lines().release(LoomRig::line_index(line::weft_detector), rig.now());
         EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
     }
 }
@@ -222,8 +222,7 @@ TEST_P(Wires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
     EXPECT_EQ(rig.cause(), StopCause::warp);
     rig.run_for(5s); // acknowledged again and again, in vain
     EXPECT_EQ(rig.state(), "stopped");
-    rig.lines().release(LoomRig::line_index(line::drop_wire));
-    static_cast<void>(rig.lines().drive(LoomRig::line_index(line::drop_wire), false, rig.now()));
+    rig.lines().release(LoomRig::line_index(line::drop_wire), rig.now());
     EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
 }
 
