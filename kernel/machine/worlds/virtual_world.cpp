@@ -49,8 +49,9 @@ Time VirtualWorld::next_time() const {
     const auto engines = instance_.engines();
     for (std::size_t a = 0; a < engines.size(); ++a) {
         if (!engines[a].is_active()) continue;
-        if (engines[a].waiter().is_woken()) return instance_.clock().now();
-        next = std::min(next, wake_at_[a]);
+        const bool woken = engines[a].waiter().is_woken();
+        if (woken && hangs_until_[a] <= instance_.clock().now()) return instance_.clock().now();
+        next = std::min(next, std::max(woken ? Time::min() : wake_at_[a], hangs_until_[a]));
     }
     return next;
 }
@@ -77,7 +78,7 @@ void VirtualWorld::run_engines(Time now) {
         bool ran = false;
         for (const std::size_t a : by_urgency_) {
             Engine& engine = engines[a];
-            if (!engine.is_active()) continue;
+            if (!engine.is_active() || hangs_until_[a] > now) continue;
             const bool woken = engine.waiter().is_woken() && engine.waiter().take();
             if (!woken && wake_at_[a] > now) continue;
             run_engine(a, woken);

@@ -39,6 +39,9 @@ public:
     Sentence start();
     /// As RealWorld's.
     [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
+    /// Its thread does not come: the activity runs no cycle before `until`, whatever wakes it. A stop is done
+    /// in its place, as RealWorld does it. For tests of what a hang does to the others.
+    void hang(std::size_t activity, Time until) noexcept { hangs_until_[activity] = until; }
     /// Runs to `end`, or until a stop is asked for: then false.
     bool run_until(Time end);
     /// Engines stop, the last row of the table first.
@@ -66,6 +69,7 @@ private:
     // Of each engine, by row: it changes only while that engine runs, and asking an engine costs a look at
     // all its timers.
     std::array<Time, max_activities> wake_at_{};
+    std::array<Time, max_activities> hangs_until_{};
     std::array<std::optional<VirtualLoop>, max_activities> loops_{};
     std::uint64_t steps_ = 0;
     bool is_ending_ = false; ///< engines run although a stop was asked for
