@@ -161,6 +161,7 @@ inline constexpr auto table = machine("carpet-loom",
         when("logic_dog.silent",     call("last_resort.act")),       // the states of the whole cannot say it any more
         when("last_resort.set_brake",   tell("io.brake.set")),
         when("last_resort.close_valve", tell("io.weft_release.clear")),
+        when("last_resort.close_valve", tell("weft.inhibit")),       // a shaft that is braked passes the release angle, too
         when("last_resort.quick_stop",  tell("main.quick_stop")),
         when("last_resort.quick_stop",  tell("warp.hold"))),
     behaviours(

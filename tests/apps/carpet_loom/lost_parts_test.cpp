@@ -230,6 +230,23 @@ TEST(LostParts, a_loom_without_a_brake_is_stopped_by_its_drive_though_the_machin
     EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "it does not coast";
 }
 
+TEST(LostParts, no_weft_is_released_into_the_stop_of_a_loom_whose_states_hang) {
+    for (Duration later{}; later < 100ms; later += 7ms) { // wherever in a turn
+        Parts rig;
+        ASSERT_TRUE(rig.weave_by_hand());
+        rig.run_for(later);
+        MachineInstance& instance = rig.run().instance();
+        rig.run().world().hang(find_activity(instance.machine().table, "logic"), rig.now() + 5s);
+        rig.plant().press(Button::stop, 100ms); // wakes it in vain
+        ASSERT_TRUE(rig.run_until([&] { return rig.output(wires::line::brake); }, 100ms));
+        ASSERT_FALSE(rig.output(wires::line::weft_release));
+        while (rig.plant().speed_rpm() != 0.0) {
+            rig.run_for(100us);
+            ASSERT_FALSE(rig.output(wires::line::weft_release)) << "hung " << later / 1ms << " ms later";
+        }
+    }
+}
+
 TEST(LostParts, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_it_from_its_start) {
     Parts rig;
     ASSERT_TRUE(rig.prepare());
