@@ -8,12 +8,14 @@
 #     [PLANT_SOURCES ..]           its own, and
 #     [PLANT_LIBRARIES ..]         what it stands on
 #     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks for its boards, and host_hooks for its program with the PLANT
+#     [SWARM swarm.hpp]            holds <namespace>::Swarm: what must never be so of it, whatever goes wrong around it
 #     [MODEL model.hpp]            holds <namespace>::model: what spin is to know and to prove beside the table
 #     [NAMESPACE a::b]             where all of that stands; <name> unless said
 #     [LIBRARIES ..])              what its components need beyond Tappet
 #
 # makes <name>, the machine with its plant in one process on the host; <name>_host, the same as a library for tests, with
-# <namespace>::on_host(), the accepted machine; <name>_test, for CTest; <name>-chart, when it is asked for, which draws it; for each board, the static
+# <namespace>::on_host(), the accepted machine; <name>_test, for CTest; <name>-swarm, what its SWARM judges; <name>-chart, when it
+# is asked for, which draws it; for each board, the static
 # firmware <name>-<board>, and <name>-<board>.stripped, which is what goes onto the box; and, for the bench, <name>-plant, the
 # plant at the other end of its wires. After it tappet_script(<name>_table <file>.osd) gives its table a script: see script.cmake.
 include_guard(GLOBAL)
@@ -56,7 +58,7 @@ function(tappet_language)
 endfunction()
 
 function(tappet_machine name)
-    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;MODEL;NAMESPACE" "BOARDS;LIBRARIES;TESTS;PLANT_SOURCES;PLANT_LIBRARIES")
+    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;SWARM;MODEL;NAMESPACE" "BOARDS;LIBRARIES;TESTS;PLANT_SOURCES;PLANT_LIBRARIES")
     if(machine_UNPARSED_ARGUMENTS OR NOT machine_TABLE OR NOT machine_BOARDS)
         message(FATAL_ERROR "tappet_machine(${name} ..): say TABLE <header> and BOARDS <board>..; \"${machine_UNPARSED_ARGUMENTS}\" is unknown")
     endif()
@@ -69,7 +71,7 @@ function(tappet_machine name)
     add_library(${name}_table INTERFACE)
     target_link_libraries(${name}_table INTERFACE tappet_framework ${machine_LIBRARIES})
     set(definitions TAPPET_NAMESPACE=${machine_NAMESPACE}) # of each program: one that looks at two machines links two tables
-    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS MODEL)
+    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS SWARM MODEL)
         if(machine_${part})
             cmake_path(ABSOLUTE_PATH machine_${part} NORMALIZE OUTPUT_VARIABLE path)
             if(NOT EXISTS "${path}")
@@ -91,6 +93,12 @@ function(tappet_machine name)
         target_compile_definitions(${name} PRIVATE ${definitions})
         target_link_libraries(${name} PRIVATE ${name}_host tappet_warnings)
         tappet_language(${name}_host ${name})
+        if(machine_SWARM)
+            add_executable(${name}-swarm "${mains}/swarm_main.cpp")
+            target_compile_definitions(${name}-swarm PRIVATE ${definitions})
+            target_link_libraries(${name}-swarm PRIVATE ${name}_host tappet_warnings)
+            tappet_language(${name}-swarm)
+        endif()
     endif()
     if(machine_TESTS)
         if(NOT machine_PLANT)

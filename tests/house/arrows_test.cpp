@@ -52,8 +52,8 @@ const std::vector<Row> house{
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
     {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
-    // A machine may say what spin is to prove of it, and what its host's program is to look at.
-    {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp"}},
+    // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by.
+    {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp"}},
 

@@ -32,6 +32,9 @@ public:
     std::expected<void, Sentence> start();
     /// A new machine at the same plant, which stays as it is. The one before is gone, be it stopped or not.
     std::expected<void, Sentence> start_again();
+    /// Called whenever the plant has moved, which it does after each step of the machine: for who judges
+    /// every moment.
+    void judge_by(std::function<void(Time now)> look) { look_ = std::move(look); }
     /// False: the machine asked to stop.
     bool run_for(Duration time) { return machine_->world.run_until(clock_.now() + time); }
     /// Until `done`, looked at each millisecond. False: `limit` has passed, or the machine asked to stop.
@@ -57,6 +60,7 @@ private:
     PropertyFiles files_{""};
     std::optional<Machine> machine_;
     std::uint64_t seen_steps_ = 0;
+    std::function<void(Time now)> look_{};
 };
 
 /// Real time: the machine in its threads, the plant in one more.

@@ -25,6 +25,7 @@ std::expected<void, Sentence> VirtualRun::start() {
 std::expected<void, Sentence> VirtualRun::start_again() {
     machine_.emplace(accepted_, clock_);
     seen_steps_ = 0;
+    if (auto opened = devices_.open_again(); !opened) return opened;
     return start_machine();
 }
 
@@ -44,6 +45,7 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
                              auto& run = *static_cast<VirtualRun*>(self);
                              run.seen_steps_ = run.world().steps();
                              run.devices_.advance(now);
+                             if (run.look_) run.look_(now);
                          }});
     if (const Sentence refusal = machine_->world.start(); !refusal.empty()) return std::unexpected(refusal);
     return {};

@@ -68,6 +68,11 @@ public:
     [[nodiscard]] Report report() const noexcept TAPPET_REALTIME;
     /// The operator stops when so many picks are woven, and starts no more.
     void end_at(std::uint64_t picks) noexcept TAPPET_REALTIME { settings_.last_pick = picks; }
+    [[nodiscard]] const Damage& damage() const noexcept TAPPET_REALTIME { return report_.damage; }
+    /// As the machine drives it; offsets of wires::line.
+    [[nodiscard]] bool output(unsigned offset) const noexcept TAPPET_REALTIME {
+        return outputs_[offset - wires::line::first_output];
+    }
     [[nodiscard]] std::uint64_t picks() const noexcept TAPPET_REALTIME { return report_.picks; }
     [[nodiscard]] double position_deg() const noexcept TAPPET_REALTIME { return position_deg_at(now_); }
     [[nodiscard]] double speed_rpm() const noexcept TAPPET_REALTIME {

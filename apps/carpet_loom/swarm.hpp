@@ -1,0 +1,126 @@
+// What must never be so of the carpet loom, whatever goes wrong around it, and when it weaves: what its swarm
+// judges by.
+#pragma once
+
+#include "apps/carpet_loom/console.hpp"
+#include "apps/carpet_loom/loom.hpp"
+#include "apps/carpet_loom/main_drive.hpp"
+#include "apps/carpet_loom/plant.hpp"
+#include "toolchain/machine/swarm_rules.hpp"
+
+namespace tappet::carpet {
+
+class Swarm final : public SwarmRules {
+public:
+    Swarm(MachineInstance& machine, Plant& plant, const Struck& struck)
+        : plant_{plant.loom()}, struck_{struck}, loom_{*machine.find<Loom>("loom")} {
+        machine.find<Console>("console")->quiet.set(true);
+        const auto number = [&](std::string_view name) {
+            return find_component(machine.machine().table, name);
+        };
+        io_ = number("io");
+        logic_ = number("loom");
+        weft_ = number("weft");
+        for (const auto name : {"can", "main", "motion_dog", "last_resort"})
+            static_cast<void>(leads_.push(number(name)));
+        damage_ = plant_.damage();
+    }
+
+    std::string_view broken(Time now) override {
+        namespace line = wires::line;
+        const LoomState state = loom_.state.last();
+        if (state != state_) {
+            state_ = state;
+            since_ = now;
+            picks_ = plant_.picks();
+        }
+        const bool valve = plant_.output(line::weft_release), brake = plant_.output(line::brake);
+        const bool opens = valve && !valve_, braked = brake_;
+        valve_ = valve;
+        brake_ = brake;
+        const loom::Damage damage = damage_;
+        damage_ = plant_.damage();
+        if (damage_.closed_shed_wefts != damage.closed_shed_wefts)
+            return "a weft is released into a closed shed";
+        if (damage_.double_wefts != damage.double_wefts) return "a second weft is released into one shed";
+        if (damage_.late_wefts != damage.late_wefts) return "a weft is caught by the closing shed";
+        if (damage_.motor_blocked != damage.motor_blocked) return "the motor is driven against the brake";
+        if (damage_.ran_dry != damage.ran_dry) return "the loom runs without oil";
+        if (opens && braked) return "a weft is released while the drive is stopping";
+
+        const Duration whole = struck_.whole_for(io_, now), settled = std::min(now - since_, whole);
+        if (weaves(state) || now - since_ < reaction || whole < taken_up) return blind(now);
+        if (valve) return "the weft's valve is open while the loom stands";
+        if (promises_brake(state) && !brake) return "the brake is off in a state that promises it";
+        if (std::min(settled, struck_.whole_for(weft_, now)) >= stops_within &&
+            plant_.output(line::yarn_cutter))
+            return "the yarn cutter is driven while the loom stands";
+        if (settled >= stops_within && brake && plant_.speed_rpm() != 0.0)
+            return "the shaft turns against its brake";
+        if (std::min(settled, led_for(now)) >= stops_within && plant_.main_drive().target() != 0 &&
+            plant_.main_drive().power() == loom::Power::follow)
+            return "the main drive is driven while the loom stands";
+        return blind(now);
+    }
+    bool works() override { return state_ == LoomState::weave && plant_.picks() >= picks_ + 5; }
+    std::string_view waits_for() override {
+        const WaitsFor what = loom_.waits_for.last();
+        return what == WaitsFor::nothing || what == WaitsFor::acknowledgement ? "" : name_of(what);
+    }
+    void acknowledge() override { plant_.press(loom::Button::acknowledge, 200ms); }
+    Sentence trouble(Random& random, Duration lasts) override {
+        constexpr std::array<std::string_view, 9> names{
+            "a weft breaks",         "a warp end breaks",         "a node is silent",
+            "a drive trips",         "the oil is lost",           "the oil level is low",
+            "the feeder runs empty", "the emergency stop is hit", "stop is pressed"};
+        const std::size_t which = random.below(names.size());
+        loom::ScriptedFault fault{.fault = static_cast<loom::Fault>(which), .lasts = lasts};
+        const bool of_drive = fault.fault == loom::Fault::drive_fault;
+        fault.node = static_cast<std::uint8_t>(1 + random.below(of_drive ? 2 : wires::node::count));
+        if (random.one_in(3)) fault.lasts = {}; // until the operator repairs it
+        plant_.inject(fault);
+        Sentence text{names[which]};
+        if (of_drive || fault.fault == loom::Fault::node_lost) text.add(": node ").add(int{fault.node});
+        return text.add(fault.lasts == Duration{} ? ", until repaired" : "");
+    }
+
+private:
+    static constexpr Duration reaction = 5ms;         // from a state to what it promises on the lines
+    static constexpr Duration taken_up = 25ms;        // what a chip refused, when it is back
+    static constexpr Duration stops_within = 500ms;   // a shaft at speed, by its brake
+    static constexpr Duration noticed_within = 300ms; // that the states are gone, and it stands
+    static constexpr bool weaves(LoomState state) {
+        return state == LoomState::run_up || state == LoomState::weave || state == LoomState::stopping;
+    }
+    static constexpr bool promises_brake(LoomState state) {
+        return state == LoomState::locked || state == LoomState::emergency || state == LoomState::fault ||
+               state == LoomState::safe;
+    }
+    /// The parts between the states and the main drive.
+    [[nodiscard]] Duration led_for(Time now) const {
+        Duration least = Duration::max();
+        for (const std::size_t each : leads_) least = std::min(least, struck_.whole_for(each, now));
+        return least;
+    }
+    /// Without its states the loom is stopped by what is left.
+    std::string_view blind(Time now) {
+        if (struck_.whole_for(logic_, now) >= Duration{}) seen_at_ = now;
+        const Duration left = std::min({now - seen_at_, struck_.whole_for(io_, now), led_for(now)});
+        return left >= noticed_within && plant_.speed_rpm() != 0.0
+                   ? "the shaft turns without the loom's states"
+                   : "";
+    }
+
+    loom::Plant& plant_;
+    const Struck& struck_;
+    Loom& loom_;
+    std::size_t io_ = 0, logic_ = 0, weft_ = 0;
+    Bounded<std::size_t, 4> leads_{};
+    LoomState state_ = LoomState::off;
+    Time since_{}, seen_at_{};
+    std::uint64_t picks_ = 0;
+    bool valve_ = false, brake_ = true;
+    loom::Damage damage_{};
+};
+
+} // namespace tappet::carpet

@@ -1,0 +1,129 @@
+// The program of a machine's swarm: seed after seed, and what they came to.
+#include "kernel/base/contract.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/terminal.hpp"
+#include "toolchain/command_line.hpp"
+#include "toolchain/machine/swarm.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <unistd.h>
+
+namespace tappet {
+
+namespace {
+
+constexpr std::array options{
+    Option{.name = "--hours",
+           .value = "N",
+           .help = "so many hours of the machine (default 1)",
+           .is_number = true,
+           .least = 1,
+           .most = 1'000'000},
+    Option{
+        .name = "--minutes", .value = "N", .help = "so many minutes instead", .is_number = true, .least = 1},
+    Option{.name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true},
+    Option{.name = "--step",
+           .value = "N",
+           .help = "from one seed to the next (default 1)",
+           .is_number = true,
+           .least = 1},
+    Option{.name = "--seed",
+           .value = "SEED",
+           .help = "this one only, and tells what happens",
+           .is_number = true},
+    Option{"--help", "", "this text"}};
+enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
+constexpr std::uint64_t most_broken = 10; // then the rest would say the same again
+
+Sentence replay; // of the seed that runs
+
+Sentence in_ms(Duration time) { return Sentence{time / 1s, ".", (time / 100ms) % 10, " s"}; }
+
+void tell_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
+    TAPPET_ESCAPE("the swarm is over", os::print(Sentence{describe(breach), "\n", replay}.view());
+                  ::_exit(one_broken));
+}
+
+struct Totals {
+    Duration time{};
+    std::uint64_t seeds = 0, broken = 0, restarts = 0;
+    std::vector<Duration> back{};
+    std::map<std::string, std::uint64_t> faults{};
+    std::map<std::string, std::vector<std::uint64_t>> waited_for{}; // by the seeds
+
+    void add(std::uint64_t seed, const SwarmVerdict& verdict) {
+        ++seeds;
+        time += verdict.time;
+        restarts += verdict.restarts;
+        broken += verdict.broken.empty() ? 0u : 1u;
+        for (const auto& [kind, number] : verdict.faults) faults[kind] += number;
+        if (!verdict.waited_for.empty())
+            waited_for[verdict.waited_for].push_back(seed);
+        else if (verdict.broken.empty())
+            back.push_back(verdict.back);
+    }
+    void print(std::string_view name, Duration took) {
+        os::print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_ms(took),
+                           ", ", time / std::max(took, Duration{1ms}), " times as fast; ", broken,
+                           " broken\n"}
+                      .view());
+        Sentence struck{"struck:"};
+        for (const auto& [kind, number] : faults) struck.add(" ").add(kind).add(" ").add(number).add(",");
+        os::print(struck.add(" and ").add(restarts).add(" stops\n").view());
+        if (!back.empty()) {
+            std::ranges::sort(back);
+            os::print(Sentence{"worked again ", in_ms(back[back.size() / 2]),
+                               " after the last fault in half of them, ", in_ms(back.back()), " at most\n"}
+                          .view());
+        }
+        for (const auto& [what, by] : waited_for)
+            os::print(Sentence{"worked again after a restart only, ", by.size(), " times, as with seed ",
+                               by.front(), ": waited for ", what, "\n"}
+                          .view());
+    }
+};
+
+} // namespace
+
+int run_swarm(const SwarmOf& of, int count, char** words) {
+    const std::string_view name = of.machine.table.name;
+    const std::vector<std::string_view> all(words + 1, words + count);
+    const auto given = read_command_line(options, all, Others::refused);
+    if (!given) {
+        static_cast<void>(os::write_all(2, Sentence{name, " swarm: ", given.error(), "\n"}.view()));
+        return wrong_words;
+    }
+    if (given->has("--help")) {
+        os::print(Sentence{"the machine \"", name, "\" while everything around it goes wrong\n"}.view());
+        os::print(usage_of(options));
+        return none_broken;
+    }
+    install_contract_handler(tell_contract);
+    SwarmRun::Tell tell;
+    if (given->has("--seed"))
+        tell = [](Time now, std::string_view text) {
+            os::print(Sentence{to_ns(now) / 1000, " us: ", text, "\n"}.view());
+        };
+    const Duration wanted = given->has("--minutes") ? given->number("--minutes", 0) * Duration{1min}
+                                                    : given->number("--hours", 1) * Duration{1h};
+    std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1);
+    const Duration began = os::processor_time_of_this_thread();
+    Totals totals;
+    do {
+        replay = Sentence{"replay it: ", words[0], " --seed ", seed, "\n"};
+        const SwarmVerdict verdict = SwarmRun{of, seed, tell}.go();
+        totals.add(seed, verdict);
+        if (!verdict.broken.empty())
+            os::print(Sentence{name, ": seed ", seed, " at ", to_ns(verdict.at) / 1000,
+                               " us: ", verdict.broken, "; ", replay}
+                          .view());
+        seed += given->number("--step", 1);
+    } while (!given->has("--seed") && totals.time < wanted && totals.broken < most_broken);
+    totals.print(name, os::processor_time_of_this_thread() - began);
+    return totals.broken == 0 ? none_broken : one_broken;
+}
+
+} // namespace tappet
