@@ -50,6 +50,10 @@ public:
     /// A node that does not stop sending: this frame, every `period` from `from` on; period 0 silences it.
     void babble(const Frame& frame, Duration period, Time from) noexcept TAPPET_REALTIME;
 
+    /// Nothing is on its way that the next deliver_until() could bring.
+    [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
+        return acknowledged_ && bit_rate_ == 0 && next_babble_ == never && delayed_.empty();
+    }
     [[nodiscard]] std::uint64_t frames_on_wire() const noexcept TAPPET_REALTIME { return frames_on_wire_; }
     [[nodiscard]] std::uint64_t frames_lost() const noexcept TAPPET_REALTIME { return frames_lost_; }
 

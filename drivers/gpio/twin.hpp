@@ -57,6 +57,10 @@ public:
         removed_.store(removed, std::memory_order_release);
         arrived_ |= removed;
     }
+    /// No change or edge waits for its time.
+    [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
+        return changes_.empty() && late_.empty() && raw_ == inputs_.load(std::memory_order_relaxed);
+    }
     LineFaults& faults(std::size_t line) noexcept TAPPET_REALTIME { return faults_[line]; }
     /// The input stays at this level whatever drives it, until released; then it is what it is driven to.
     void stick(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;

@@ -35,6 +35,10 @@ public:
     /// is not what move() answered, such as the next step of its physics.
     [[nodiscard]] virtual std::optional<Time> next_on_wires() const { return {}; }
 
+    /// Under virtual time: nothing comes in and nobody looks before `until`. It may move on by itself as far as
+    /// nothing leaves it; the answer is as that of move(). Nothing: it does not know how.
+    [[nodiscard]] virtual std::optional<Time> leap(Time /*until*/) { return {}; }
+
     /// Options of its own, each with a value: a line each, for --help.
     [[nodiscard]] virtual std::string_view usage() const { return {}; }
     /// False: it has no such option. An error says what is wrong with the value.
@@ -74,6 +78,13 @@ public:
             next = std::min(next, end->next());
         }
         return next;
+    }
+    /// Leaps; when the next time is due, if that has changed.
+    std::optional<Time> leap_ahead(Time until) {
+        Time of_wires = never;
+        for (const FarEnd* end : ends) of_wires = std::min(of_wires, end->next());
+        const std::optional<Time> next = leap(std::min(until, of_wires));
+        return next ? std::min(*next, of_wires) : next;
     }
 
 protected:

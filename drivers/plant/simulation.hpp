@@ -32,6 +32,8 @@ public:
 
     /// Moves plant and wires to `now`. One thread, the plant's.
     void advance(Time now);
+    /// After advance(): nothing comes from the machine before `until`.
+    void leap(Time until);
     /// When advance() has something to do.
     [[nodiscard]] Time next() const noexcept { return next_; }
 

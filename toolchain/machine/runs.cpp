@@ -46,6 +46,7 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
                              run.seen_steps_ = run.world().steps();
                              run.devices_.advance(now);
                              if (run.look_) run.look_(now);
+                             run.devices_.leap(run.world().quiet_until(self));
                          }});
     if (const Sentence refusal = machine_->world.start(); !refusal.empty()) return std::unexpected(refusal);
     return {};

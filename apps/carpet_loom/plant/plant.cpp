@@ -45,19 +45,25 @@ Plant::Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALT
 }
 
 void Plant::advance(Time now) noexcept TAPPET_REALTIME {
-    while (true) {
-        const Time next = next_event();
-        if (next > now) break;
-        now_ = next;
-        if (step_end_ <= next_timer_) {
-            end_step();
-            begin_step();
-        } else {
-            run_timers(next);
-        }
-        find_next_timer();
-    }
+    for (Time next; (next = next_event()) <= now;) pass(next);
     now_ = std::max(now_, now);
+}
+
+Time Plant::leap(Time until) noexcept TAPPET_REALTIME {
+    for (Time next; frames_.empty() && edges_.empty(); pass(next))
+        if ((next = next_event()) >= until) return next;
+    return now_;
+}
+
+void Plant::pass(Time next) noexcept TAPPET_REALTIME {
+    now_ = next;
+    if (step_end_ <= next_timer_) {
+        end_step();
+        begin_step();
+    } else {
+        run_timers(next);
+    }
+    find_next_timer();
 }
 
 void Plant::begin_step() noexcept TAPPET_REALTIME {

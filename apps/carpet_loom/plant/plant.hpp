@@ -28,6 +28,8 @@ public:
     Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALTIME;
 
     void advance(Time now) noexcept TAPPET_REALTIME;
+    /// Moves on to before `until`, but no further than to where something leaves it. When it is to be advanced.
+    Time leap(Time until) noexcept TAPPET_REALTIME;
     /// Nothing leaves the plant before this time unless it is acted upon: a world in virtual time may leap to
     /// it.
     [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME {
@@ -95,6 +97,7 @@ private:
     };
 
     // plant.cpp: time
+    void pass(Time next) noexcept TAPPET_REALTIME;
     void begin_step() noexcept TAPPET_REALTIME;
     void end_step() noexcept TAPPET_REALTIME;
     void run_timers(Time now) noexcept TAPPET_REALTIME;

@@ -43,9 +43,12 @@ Sentence VirtualWorld::change_activity(std::size_t activity, LifeChange change) 
     return instance_.life().change_activity(activity, change, control());
 }
 
-Time VirtualWorld::next_time() const {
-    Time next = never;
-    for (const VirtualProcess& process : processes_) next = std::min(next, process.next(process.self));
+Time VirtualWorld::quiet_until(const void* process) const { return quiet(process, end_); }
+
+Time VirtualWorld::quiet(const void* but, Time end) const {
+    Time next = end;
+    for (const VirtualProcess& process : processes_)
+        if (process.self != but) next = std::min(next, process.next(process.self));
     const auto engines = instance_.engines();
     for (std::size_t a = 0; a < engines.size(); ++a) {
         if (!engines[a].is_active()) continue;
@@ -106,6 +109,7 @@ bool VirtualWorld::run_until(Time end) {
 
 void VirtualWorld::run_instant(Time end) {
     os::Clock& clock = instance_.clock();
+    end_ = end;
     clock.advance_to(std::min(std::max(next_time(), clock.now()), end));
     const Time now = clock.now();
     for (const VirtualProcess& process : processes_)

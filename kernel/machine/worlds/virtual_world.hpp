@@ -47,6 +47,10 @@ public:
     /// Engines stop, the last row of the table first.
     void stop();
 
+    /// Before this time no engine runs, no other process wants to, and run_until() does not return: for a process
+    /// that may leap. None before now.
+    [[nodiscard]] Time quiet_until(const void* process) const;
+
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
 
 private:
@@ -55,7 +59,8 @@ private:
 
     [[nodiscard]] ActivityControl control() noexcept;
     void run_engine(std::size_t activity, bool woken);
-    [[nodiscard]] Time next_time() const;
+    [[nodiscard]] Time next_time() const { return quiet(nullptr, never); }
+    [[nodiscard]] Time quiet(const void* but, Time end) const;
     void run_engines(Time now);
     /// Processes and engines of the next instant, `end` at the latest.
     void run_instant(Time end);
@@ -71,6 +76,7 @@ private:
     std::array<Time, max_activities> wake_at_{};
     std::array<Time, max_activities> hangs_until_{};
     std::array<std::optional<VirtualLoop>, max_activities> loops_{};
+    Time end_{}; ///< of the run
     std::uint64_t steps_ = 0;
     bool is_ending_ = false; ///< engines run although a stop was asked for
 };
