@@ -61,6 +61,10 @@ private:
     loom::Settings settings_;
     std::uint64_t seed_;
     std::optional<loom::Plant> loom_{};
+    struct {
+        std::uint64_t steps = ~std::uint64_t{0};
+        std::uint32_t changes = 0;
+    } exchanged_{};                    // of the climate, and of the tables
     std::optional<Duration> origin_{}; // its own time begins at Time{}
 };
 

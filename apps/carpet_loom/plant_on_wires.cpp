@@ -122,12 +122,14 @@ void Plant::exchange_registers() {
     using modbus::Table;
     modbus::ServerTables& tables = utility_.tables();
     loom::Climate& climate = loom().climate();
+    if (climate.steps() == exchanged_.steps && tables.changes() == exchanged_.changes) return;
     for (std::uint16_t i = 0; i < at::input_register::count; ++i)
         if (const auto value = climate.input_register(i)) tables.set(Table::input_registers, i, *value);
     tables.set(Table::discrete_inputs, 0, climate.discrete_input(0).value_or(false) ? 1 : 0);
     for (std::uint16_t i = 0; i < at::holding_register::count; ++i)
         static_cast<void>(climate.write_holding_register(i, tables.get(Table::holding_registers, i)));
     static_cast<void>(climate.write_coil(at::coil::lubrication_pump, utility_.get("pump.on") != 0.0));
+    exchanged_ = {climate.steps(), tables.changes()};
 }
 
 bool Plant::take_option(std::string_view option, std::string_view value, Sentence& fault) {

@@ -36,6 +36,8 @@ public:
     /// `ready` is called by the bus's thread.
     void set_listener(Listener ready, void* context) noexcept override;
 
+    /// Something has arrived that its owner has not taken; a confirmation lets it send more.
+    [[nodiscard]] bool has_arrivals() const noexcept TAPPET_REALTIME { return inbox_.front() != nullptr; }
     /// Fault: restart() fails from now on (or works again).
     void make_restarts_fail(bool fail) noexcept { restart_fails_.store(fail, std::memory_order_relaxed); }
 

@@ -5,6 +5,7 @@ namespace tappet::can {
 
 void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     now_ = now;
+    if (is_silent()) return;
     // Each end has at most `outbox` frames to give before its owner runs again; the babbler is cut off the
     // same way.
     for (std::size_t i = 0; acknowledged_ && i < 4 * most_ends * Twin::outbox; ++i) {

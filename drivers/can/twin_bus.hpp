@@ -50,6 +50,12 @@ public:
     /// A node that does not stop sending: this frame, every `period` from `from` on; period 0 silences it.
     void babble(const Frame& frame, Duration period, Time from) noexcept TAPPET_REALTIME;
 
+    /// Nobody has anything to send or to hear of.
+    [[nodiscard]] bool is_silent() const noexcept TAPPET_REALTIME {
+        for (const Twin* end : ends_)
+            if (end->arrived_ || end->starved_ || end->outbox_.front() != nullptr) return false;
+        return next_babble_ == never && delayed_.empty();
+    }
     /// Nothing is on its way that the next deliver_until() could bring.
     [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
         return acknowledged_ && bit_rate_ == 0 && next_babble_ == never && delayed_.empty();

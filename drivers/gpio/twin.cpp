@@ -107,6 +107,7 @@ bool Twin::next_change(Time now, Change& change) noexcept TAPPET_REALTIME {
 }
 
 void Twin::deliver_until(Time now) noexcept TAPPET_REALTIME {
+    if (is_still() && !arrived_) return;
     Change change;
     while (next_change(now, change)) {
         settle(change.at);

@@ -27,7 +27,10 @@ public:
     /// Addresses are below `size`.
     void set(Table table, std::size_t address, std::uint16_t value) noexcept {
         words_[static_cast<std::size_t>(table)][address].store(value, std::memory_order_relaxed);
+        changes_.fetch_add(1, std::memory_order_release);
     }
+    /// Counts what was set, by whichever side.
+    [[nodiscard]] std::uint32_t changes() const noexcept { return changes_.load(std::memory_order_acquire); }
     [[nodiscard]] std::uint16_t get(Table table, std::size_t address) const noexcept {
         return words_[static_cast<std::size_t>(table)][address].load(std::memory_order_relaxed);
     }
@@ -49,6 +52,7 @@ public:
 private:
     std::array<std::array<std::atomic<std::uint16_t>, size>, 4> words_{};
     std::array<std::size_t, 4> counts_{};
+    std::atomic<std::uint32_t> changes_{0};
     Accepts accepts_ = nullptr;
     mutable std::mutex requests_{};
 };

@@ -35,8 +35,8 @@ public:
     /// is not what move() answered, such as the next step of its physics.
     [[nodiscard]] virtual std::optional<Time> next_on_wires() const { return {}; }
 
-    /// Under virtual time: nothing comes in and nobody looks before `until`. It may move on by itself as far as
-    /// nothing leaves it; the answer is as that of move(). Nothing: it does not know how.
+    /// Under virtual time: nothing comes in and nobody looks before `until`. It may move on by itself as far
+    /// as nothing leaves it; the answer is as that of move(). Nothing: it does not know how.
     [[nodiscard]] virtual std::optional<Time> leap(Time /*until*/) { return {}; }
 
     /// Options of its own, each with a value: a line each, for --help.

@@ -88,6 +88,7 @@ WireCounters SimulatedDevices::counters() const noexcept {
 }
 
 void SimulatedDevices::advance(Time now) {
+    for (const auto& chip : chips_) chip->seen = chip->twin.outputs();
     for (const auto& bus : buses_) {
         bus->bus.deliver_until(now);
         if (can::faulted(bus->plant.state())) static_cast<void>(bus->plant.restart());
@@ -95,9 +96,21 @@ void SimulatedDevices::advance(Time now) {
     next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
     for (const auto& bus : buses_) bus->bus.deliver_until(now);
     for (const auto& chip : chips_) chip->twin.deliver_until(now);
+    for (const auto& server : servers_) server->seen = server->twin.changes();
 }
 
-// What a twin puts off comes at the plant's next move, so that there has to be one.
+// What a twin puts off may be due: it comes with the plant's next move, whatever brings that about.
+bool SimulatedDevices::are_driven() const noexcept {
+    return std::ranges::any_of(
+               buses_,
+               [](const auto& each) { return !each->bus.is_silent() || each->plant.has_arrivals(); }) ||
+           std::ranges::any_of(chips_,
+                               [](const auto& each) {
+                                   return !each->twin.is_still() || each->twin.outputs() != each->seen;
+                               }) ||
+           std::ranges::any_of(servers_, [](const auto& each) { return each->twin.changes() != each->seen; });
+}
+
 void SimulatedDevices::leap(Time until) {
     const bool still = std::ranges::all_of(buses_, [](const auto& each) { return each->bus.is_still(); }) &&
                        std::ranges::all_of(chips_, [](const auto& each) { return each->twin.is_still(); });

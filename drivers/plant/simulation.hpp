@@ -32,6 +32,8 @@ public:
 
     /// Moves plant and wires to `now`. One thread, the plant's.
     void advance(Time now);
+    /// Whether the machine has put anything on its wires since advance(), or a twin holds something back.
+    [[nodiscard]] bool are_driven() const noexcept;
     /// After advance(): nothing comes from the machine before `until`.
     void leap(Time until);
     /// When advance() has something to do.
@@ -54,11 +56,13 @@ private:
     struct Chip {
         std::string_view name;
         PlacedLines lines{};
+        gpio::Mask seen = 0;
         gpio::Twin twin;
         Chip(std::string_view of, std::uint64_t seed) : name{of}, twin{seed} {}
     };
     struct Server {
         std::string_view name;
+        std::uint32_t seen = 0;
         modbus::Twin twin;
         Server(std::string_view of, Duration answer_within) : name{of}, twin{answer_within} {}
     };

@@ -36,10 +36,13 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
     machine_->world.add({this,
                          [](void* self) {
                              auto& run = *static_cast<VirtualRun*>(self);
-                             // Whenever the machine has run it may have put something on the wires: the plant
-                             // gets it at once.
-                             return run.seen_steps_ != run.world().steps() ? run.clock_.now()
-                                                                           : run.devices_.next();
+                             // Whatever the machine has put on the wires the plant gets at once.
+                             if (run.seen_steps_ != run.world().steps()) {
+                                 if (run.devices_.are_driven()) return run.clock_.now();
+                                 run.seen_steps_ = run.world().steps();
+                                 run.devices_.leap(run.world().quiet_until(self));
+                             }
+                             return run.devices_.next();
                          },
                          [](void* self, Time now) {
                              auto& run = *static_cast<VirtualRun*>(self);

@@ -26,6 +26,7 @@ public:
     }
 
     void step() noexcept TAPPET_REALTIME {
+        ++steps_;
         const double set_point =
             0.1 * static_cast<double>(holding_[wires::modbus::holding_register::humidity_set_point]);
         humidity_percent_ += (set_point - humidity_percent_) * (period_s / 60.0);
@@ -34,6 +35,7 @@ public:
         oil_bar_ += (wanted_bar - oil_bar_) * (period_s / (pumped ? 0.7 : 2.0));
         oil_c_ += ((pump_ ? temperature_c_ + 20.0 : temperature_c_) - oil_c_) * (period_s / 600.0);
     }
+    [[nodiscard]] std::uint64_t steps() const noexcept TAPPET_REALTIME { return steps_; }
     void lose_oil(bool lost) noexcept TAPPET_REALTIME { oil_lost_ = lost; }
     void set_oil_level_low(bool low) noexcept TAPPET_REALTIME { oil_level_low_ = low; }
     [[nodiscard]] bool oil_lost() const noexcept TAPPET_REALTIME { return oil_lost_; }
@@ -98,6 +100,7 @@ private:
         return static_cast<std::uint16_t>(round_to_int(value < 0.0 ? 0.0 : value));
     }
 
+    std::uint64_t steps_ = 0;
     double temperature_c_ = 23.0;
     double humidity_percent_ = 60.0;
     double oil_bar_ = 0.0;

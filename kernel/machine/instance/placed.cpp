@@ -3,10 +3,6 @@
 
 namespace tappet {
 
-std::span<Engine> PlacedMachine::engines() noexcept TAPPET_REALTIME {
-    return {at<Engine>(machine_.plan.engines_at), machine_.table.activities.size()};
-}
-
 std::span<std::byte> PlacedMachine::stack_of(std::size_t activity) noexcept {
     return machine_.memory.subspan(machine_.plan.activities[activity].stack_at,
                                    machine_.plan.activities[activity].stack_bytes);

@@ -21,7 +21,9 @@ public:
     [[nodiscard]] const AcceptedMachine& machine() const noexcept { return machine_; }
     [[nodiscard]] os::Clock& clock() noexcept { return *clock_; }
     /// In the order of the table's activities. Real-time.
-    [[nodiscard]] std::span<Engine> engines() noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::span<Engine> engines() noexcept TAPPET_REALTIME {
+        return {at<Engine>(machine_.plan.engines_at), machine_.table.activities.size()};
+    }
     [[nodiscard]] std::span<const Engine> engines() const noexcept TAPPET_REALTIME {
         return const_cast<PlacedMachine*>(this)->engines();
     }

@@ -98,20 +98,19 @@ bool VirtualWorld::run_until(Time end) {
     os::Clock& clock = instance_.clock();
     while (!instance_.stop_asked()) {
         instance_.life().serve_activity_requests(control());
-        if (std::max(next_time(), clock.now()) > end) {
+        end_ = end;
+        const Time next = std::max(next_time(), clock.now());
+        if (next > end) {
             clock.advance_to(end);
             return true;
         }
-        run_instant(end);
+        run_instant(next);
     }
     return false;
 }
 
-void VirtualWorld::run_instant(Time end) {
-    os::Clock& clock = instance_.clock();
-    end_ = end;
-    clock.advance_to(std::min(std::max(next_time(), clock.now()), end));
-    const Time now = clock.now();
+void VirtualWorld::run_instant(Time now) {
+    instance_.clock().advance_to(now);
     for (const VirtualProcess& process : processes_)
         if (process.next(process.self) <= now) process.run(process.self, now);
     run_engines(now);
@@ -123,7 +122,10 @@ void VirtualWorld::end(std::size_t a) {
     engine.begin_end(clock.now());
     wake_at_[a] = engine.next_wake();
     is_ending_ = true;
-    while (!engine.has_ended(clock.now())) run_instant(engine.ends_at());
+    while (!engine.has_ended(clock.now())) {
+        end_ = engine.ends_at();
+        run_instant(std::min(std::max(next_time(), clock.now()), end_));
+    }
     is_ending_ = false;
 }
 

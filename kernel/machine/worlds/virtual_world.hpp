@@ -47,8 +47,8 @@ public:
     /// Engines stop, the last row of the table first.
     void stop();
 
-    /// Before this time no engine runs, no other process wants to, and run_until() does not return: for a process
-    /// that may leap. None before now.
+    /// Before this time no engine runs, no other process wants to, and run_until() does not return: for a
+    /// process that may leap. None before now.
     [[nodiscard]] Time quiet_until(const void* process) const;
 
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
@@ -62,8 +62,8 @@ private:
     [[nodiscard]] Time next_time() const { return quiet(nullptr, never); }
     [[nodiscard]] Time quiet(const void* but, Time end) const;
     void run_engines(Time now);
-    /// Processes and engines of the next instant, `end` at the latest.
-    void run_instant(Time end);
+    /// Processes and engines of an instant.
+    void run_instant(Time now);
     /// The others go on while the behaviours of one activity come to their ends.
     void end(std::size_t activity);
 
