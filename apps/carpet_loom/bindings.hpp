@@ -20,7 +20,8 @@ constexpr BoundDevice loom_io(std::string_view at) {
 inline constexpr Binding bench = binding(
     wired("loom-can", "can0"),
     detail::loom_io("io"),
-    wired("loom-utility", "127.0.0.1:1502", unit(1)));
+    wired("loom-utility", "127.0.0.1:1502", unit(1)),
+    proven_by("weft.picks_woven", 20));
 
 inline constexpr Binding ipc_x86_64 = binding(
     wired("loom-can", "can0"),
@@ -29,7 +30,8 @@ inline constexpr Binding ipc_x86_64 = binding(
     // The device activities on a processor of their own, so that neither an interrupt nor a background
     // activity takes their caches.
     place("can", 3), place("io", 3),
-    place("utility", 0), place("console", 0), place("restarter", 0), place("scope", 0), place("browser", 0));
+    place("utility", 0), place("console", 0), place("restarter", 0), place("scope", 0), place("browser", 0),
+    proven_by("weft.picks_woven", 100));
 // clang-format on
 
 } // namespace tappet::carpet::bindings

@@ -20,7 +20,11 @@ inline constexpr Board bench{
                              board_device("panel", "gpio", "/dev/panel", lines(32))),
     // The emulator has neither a frequency governor nor a clock that Linux trusts.
     .only_warned = warn_only("clock-source", "cpu-governor"),
-    .kernel_command_line = "console=ttyS0 quiet panic=-1",
+    .kernel_command_line = "quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests",
+    // Of its image, which makes its CAN interfaces and lines itself: nothing of them leaves the guest.
+    .image = {.modules = kernel_modules("can-raw", "vcan", "gpio-sim", "i6300esb heartbeat=20", "nvme",
+                                        "virtio_blk", "vfat", "nls_cp437", "nls_ascii", "button", "evdev"),
+              .consoles = consoles("ttyS0")},
     .properties_directory = "/run",
     // Everybody in the guest may look; two users of its tests may do more.
     .browsing = {.directory = "/run/tappet",

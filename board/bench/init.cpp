@@ -4,8 +4,8 @@
 // nothing else in the guest: no shell, no service, nothing that wakes up by itself and disturbs a
 // measurement.
 
-#include "board/bench/devices.hpp"
-#include "board/bench/guest.hpp"
+#include "board/bench/host.hpp"
+#include "board/init/devices.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -14,25 +14,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string>
-#include <string_view>
-#include <thread>
 #include <vector>
 
-#include <fcntl.h>
-#include <net/if.h>
-#include <sys/mount.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace tappet::bench {
 namespace {
 
+using namespace init;
 using std::chrono::milliseconds;
 
 struct BackgroundCommand {
@@ -87,36 +78,19 @@ std::vector<std::string> split(const std::string& line) {
 
 std::string base_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
-int to_exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
-
 pid_t start(const std::vector<std::string>& words) {
-    const pid_t pid = ::fork();
-    if (pid < 0) {
-        give_up("fork");
+    const auto pid = init::start(words, console, "was it given to the bench with --file or --tool?");
+    if (!pid) {
+        give_up(pid.error());
     }
-    if (pid > 0) {
-        return pid;
-    }
-    ::setsid();
-    ::signal(SIGPIPE, SIG_DFL);
-    ::dup2(console, STDOUT_FILENO);
-    ::dup2(console, STDERR_FILENO);
-    std::vector<char*> arguments;
-    for (const std::string& word : words) {
-        arguments.push_back(const_cast<char*>(word.c_str()));
-    }
-    arguments.push_back(nullptr);
-    ::execvp(arguments[0], arguments.data());
-    ::dprintf(STDERR_FILENO, "bench: cannot run '%s': %s; was it given to the bench with --file or --tool?\n",
-              words[0].c_str(), std::strerror(errno));
-    ::_exit(127);
+    return *pid;
 }
 
-void note_end_of(pid_t pid, int status) {
+void note_end_of(pid_t pid, int code) {
     for (BackgroundCommand& command : background) {
         if (command.pid == pid) {
             command.pid = -1;
-            command.exit_code = to_exit_code(status);
+            command.exit_code = code;
             results.line("ended " + std::to_string(command.exit_code) + " " + command.name);
         }
     }
@@ -131,19 +105,14 @@ int wait_for(pid_t wanted) {
             return to_exit_code(status);
         }
         if (pid > 0) {
-            note_end_of(pid, status);
+            note_end_of(pid, to_exit_code(status));
         } else if (errno == ECHILD) {
             return 127;
         }
     }
 }
 
-void collect_ended() {
-    int status = 0;
-    for (pid_t pid = ::waitpid(-1, &status, WNOHANG); pid > 0; pid = ::waitpid(-1, &status, WNOHANG)) {
-        note_end_of(pid, status);
-    }
-}
+void collect_ended() { reap(note_end_of); }
 
 int report_misuse(const std::string& message) {
     ::dprintf(console, "bench: %s\n", message.c_str());
@@ -165,7 +134,7 @@ int wait_while(const BackgroundCommand& wanted, const BackgroundCommand& other) 
     while (wanted.pid > 0 && other.pid > 0) {
         int status = 0;
         if (const pid_t pid = ::waitpid(-1, &status, 0); pid > 0) {
-            note_end_of(pid, status);
+            note_end_of(pid, to_exit_code(status));
         }
     }
     if (wanted.pid < 0) {
@@ -202,10 +171,10 @@ int run_builtin(const std::vector<std::string>& words) {
         return report_misuse("@write " + first + ": " + std::strerror(errno));
     }
     if (name == "@link" && (second == "up" || second == "down")) {
-        if (::if_nametoindex(first.c_str()) == 0) {
+        if (!has_interface(first)) {
             return report_misuse("@link: there is no interface '" + first + "'; ask for it with --can");
         }
-        set_link(first, second == "up");
+        must(set_link(first, second == "up"));
         return 0;
     }
     if (name == "@signal" || name == "@wait") {
@@ -296,26 +265,17 @@ void stop_background() {
 }
 
 void hand_over(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
+    if (::access(path.c_str(), R_OK) != 0) {
         results.line("missing " + path);
         return;
     }
-    std::ostringstream content;
-    content << file.rdbuf();
-    const std::string bytes = std::move(content).str();
+    const std::string bytes = read_text(path);
     results.line("file " + std::to_string(bytes.size()) + " " + path);
     results.write_all(bytes);
 }
 
 [[noreturn]] void serve() {
-    mount_at("devtmpfs", "/dev");
-    mount_at("proc", "/proc");
-    mount_at("sysfs", "/sys");
-    for (const char* folder : {"/dev/shm", "/tmp", "/run"}) {
-        mount_at("tmpfs", folder);
-    }
-    mount_at("devpts", "/dev/pts");
+    must(mount_kernel_files());
     ::setenv("PATH", "/bin:/usr/bin", 1);
     ::setenv("HOME", "/tmp", 1);
     // A command that dies in the middle must not take PID 1 with it.
@@ -325,8 +285,9 @@ void hand_over(const std::string& path) {
     std::vector<std::string> commands;
     std::vector<std::string> files;
     std::vector<std::pair<std::string, std::string>> devices;
-    std::ifstream manifest("/bench/manifest");
-    for (std::string line; std::getline(manifest, line);) {
+    const std::string manifest = read_text("/bench/manifest");
+    for (std::size_t at = 0, end = 0; (end = manifest.find('\n', at)) != std::string::npos; at = end + 1) {
+        const std::string line = manifest.substr(at, end - at);
         const std::size_t blank = line.find(' ');
         const std::string kind = line.substr(0, blank);
         const std::string rest = blank == std::string::npos ? "" : line.substr(blank + 1);
@@ -341,21 +302,20 @@ void hand_over(const std::string& path) {
         }
     }
 
-    load_modules(modules);
+    must(load_modules(modules));
     console = open_port("tappet.console");
     results.open(open_port("tappet.results"));
-    ::mount("configfs", "/sys/kernel/config", "configfs", 0, nullptr);
-    set_link("lo", true);
+    must(set_link("lo", true));
     for (const auto& [kind, rest] : devices) {
         if (kind == "can") {
-            create_can(rest);
+            must(create_can(rest));
         } else if (kind == "gpio") {
             const std::size_t blank = rest.find(' ');
-            create_gpio_chip(rest.substr(0, blank), rest.substr(blank + 1));
+            must(create_gpio_chip(rest.substr(0, blank), rest.substr(blank + 1)));
         } else if (kind == "set") {
             const std::size_t blank = rest.find(' ');
             if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) {
-                give_up("set " + rest);
+                must(failed("set " + rest));
             }
         }
     }

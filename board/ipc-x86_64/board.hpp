@@ -28,9 +28,22 @@ inline constexpr Board ipc_x86_64{
     // Isolated processors without ticks and callbacks; no deep sleep, no frequency changes; late interrupts
     // on 0 and 1.
     .kernel_command_line =
-        "isolcpus=managed_irq,domain,2,3 nohz_full=2,3 rcu_nocbs=2,3 irqaffinity=0,1 processor.max_cstate=1 "
-        "intel_idle.max_cstate=0 idle=poll tsc=reliable nosoftlockup nowatchdog mitigations=auto "
+        "isolcpus=managed_irq,domain,2,3 nohz_full=2,3 rcu_nocbs=2,3 rcu_nocb_poll irqaffinity=0,1 "
+        "processor.max_cstate=1 intel_idle.max_cstate=0 tsc=reliable nosoftlockup nowatchdog mce=ignore_ce "
+        "audit=0 nosmt cpufreq.default_governor=performance mitigations=auto "
         "sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
+    .image = {.modules = kernel_modules(
+                  // CAN controllers, and the watchdogs of the usual chip sets.
+                  "can-raw", "peak_pci", "peak_pciefd", "kvaser_pci", "ems_pci", "i2c-i801",
+                  "iTCO_wdt heartbeat=10 nowayout=1", "wdat_wdt nowayout=1",
+                  "sp5100_tco heartbeat=10 nowayout=1", "i6300esb heartbeat=10 nowayout=1",
+                  // Disks, and the file systems of the data partition and of the slots.
+                  "nvme", "ahci", "sd_mod", "ext4", "vfat", "nls_cp437", "nls_ascii",
+                  // The port to the utility unit; the power button.
+                  "igb", "igc", "e1000e", "r8169", "realtek", "button", "evdev"),
+              .consoles = consoles("tty0", "ttyS0,115200"),
+              .networks = networks(ethernet("eth0", "192.168.7.1/24")),
+              .interrupt_priority = 85},
     .properties_directory = "/var/lib/tappet",
     // Root, and nobody else, until the box's image has groups for its people: name them here.
     .browsing = {.directory = "/run/tappet", .mode = 0660},

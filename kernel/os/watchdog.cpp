@@ -47,6 +47,13 @@ void Watchdog::kick(Time now) noexcept {
         ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr)); // who fails here is reset, which tells it
 }
 
+void Watchdog::hand_over() noexcept {
+    if (descriptor_ < 0) return;
+    static_cast<void>(ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr));
+    close(descriptor_);
+    descriptor_ = -1;
+}
+
 void Watchdog::stand_down() noexcept {
     if (descriptor_ < 0) return;
     [[maybe_unused]] const auto n = write(descriptor_, "V", 1);

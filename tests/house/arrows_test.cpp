@@ -51,7 +51,9 @@ const std::vector<Row> house{
     {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
-    {"board",             {"kernel/services", "kernel/limits", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
+    {"board/init",        {}},
+    {"board/box",         {"board/init", "kernel/os"}},
+    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
     // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by.
     {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
@@ -66,10 +68,11 @@ const std::vector<Row> house{
     {"toolchain/machine", {"board", "drivers/plant", "toolchain/tools/chart"}},
     {"toolchain/tools/chart", {"kernel/machine", "toolchain"}},
     {"toolchain/tools/bench", {}},
+    {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},
     {"toolchain/tools/front", {"toolchain", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp"}},
     {"toolchain/tools/pages", {"drivers/plant", "kernel/pieces", "toolchain/tools/browser"}},
     {"apps/carpet_loom/demo", {"apps", "toolchain", "toolchain/tools/bench"}},
-    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages"}},
+    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/image"}},
 };
 // clang-format on
 

@@ -3,8 +3,10 @@
 
 #include "kernel/machine/plan_text.hpp"
 #include "kernel/os/box.hpp"
+#include "kernel/os/notify.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/configuration/property_files.hpp"
+#include "toolchain/machine/board_text.hpp"
 #include "toolchain/machine/guardian.hpp"
 #include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
@@ -38,6 +40,7 @@ struct Options {
     Duration time = Duration::max();
     bool help = false;
     bool plan = false;
+    bool board = false;
     bool guarded = true;
     Bounded<char*, most_own_words> own{}; ///< words for the machine's hook
     Sentence error{};
@@ -54,6 +57,7 @@ constexpr std::string_view usage =
     "  --for SECONDS      ends by itself after so long\n"
     "  --no-guardian      for tests: what a crash leaves on the outputs stays there\n"
     "  --plan             what the compiler derived from the table: priorities, order, mailboxes, memory\n"
+    "  --board            what the box must bring up for it, for its image\n"
     "  --help             this text\n";
 
 Options parse(int count, char** words, bool has_own) {
@@ -70,13 +74,15 @@ Options parse(int count, char** words, bool has_own) {
             options.help = true;
         else if (word == "--plan")
             options.plan = true;
+        else if (word == "--board")
+            options.board = true;
         else if (word == "--no-guardian")
             options.guarded = false;
         else if (place == nullptr && !(has_own && options.own.push(words[i])))
-            options.error =
-                Sentence{"option ", word,
-                         " is unknown; there are --summary FILE, --properties DIRECTORY, --browse "
-                         "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --no-guardian, --plan and --help"};
+            options.error = Sentence{
+                "option ", word,
+                " is unknown; there are --summary FILE, --properties DIRECTORY, --browse "
+                "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --no-guardian, --plan, --board and --help"};
         else if (place != nullptr && i + 1 == count)
             options.error = Sentence{"option ", word, " needs a name after it"};
         else if (place != nullptr)
@@ -163,6 +169,7 @@ private:
         }
         say("armed on board \"", board.name, "\", ", static_cast<std::int64_t>(arming.warnings()),
             " warnings, ", start_to_armed.count() / 1000, " us after its start");
+        os::notify_starter("READY=1");
         const bool time_is_over = supervise(instance, world);
         return end(instance, world, properties, start_to_armed, time_is_over);
     }
@@ -191,6 +198,7 @@ private:
         });
         const Time begin = machine_clock.now();
         ReasonTeller reasons;
+        bool proven = false;
         for (int look = 1;; ++look) {
             const Duration left = options_.time - (machine_clock.now() - begin);
             if (left <= Duration::zero()) return true;
@@ -198,8 +206,21 @@ private:
             if (guard_.guardian_is_lost()) return false;
             if (!world.supervise(std::min<Duration>(left, 100ms))) return false;
             reasons.tell(instance, name_);
+            if (!proven && (proven = is_proven(instance, machine_clock.now() - begin)))
+                os::notify_starter("X_TAPPET_PROVEN=1");
             if (look % 10 == 0) print_timing(instance);
         }
+    }
+
+    /// What its binding asks of a new version before it stays on the box.
+    static bool is_proven(MachineInstance& instance, Duration running) {
+        for (const Engine& engine : instance.engines())
+            if (engine.plan().real_time && engine.statistics().misses != 0) return false;
+        const Proof& proof = instance.machine().binding->proof;
+        if (proof.output.empty()) return running >= 60s;
+        End end{};
+        static_cast<void>(resolve(instance.machine().table, proof.output, FacetKind::output, end));
+        return static_cast<const Output<std::int64_t>*>(instance.facet(end))->last() >= proof.count;
     }
 
     Ending end(MachineInstance& instance, RealWorld& world, PropertyFiles& properties,
@@ -294,11 +315,10 @@ int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int co
         os::print(usage);
         return 0;
     }
-    if (options.plan) {
-        describe_plan(machine, nullptr,
-                      [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
-        return 0;
-    }
+    const auto print_line = [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); };
+    if (options.plan) describe_plan(machine, nullptr, print_line);
+    if (options.board) describe_board(machine, nullptr, print_line);
+    if (options.plan || options.board) return 0;
     if (hooks.take != nullptr)
         if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())
             return static_cast<int>(run.fail(Ending::wrong_set_up, refusal));

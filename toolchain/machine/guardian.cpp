@@ -5,6 +5,7 @@
 #include "kernel/machine/worlds/life_watch.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/clock.hpp"
+#include "kernel/os/notify.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/os/watchdog.hpp"
 #include "toolchain/machine/black_box.hpp"
@@ -61,7 +62,7 @@ public:
                 return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
             }
             if (!look.ended) continue;
-            watchdog_.stand_down();
+            stand_down();
             if (const Sentence& fault = guard_.block().fault; !fault.empty()) keep(fault, {});
             return guard_.exit_code();
         }
@@ -73,6 +74,12 @@ private:
         bool ended = false;
         Sentence reason{}; ///< empty: how it ended says why
     };
+
+    /// The outputs are safe: the box need not be reset, and its init may take the watchdog back.
+    void stand_down() {
+        watchdog_.stand_down();
+        os::notify_starter("X_TAPPET_OUTPUTS=safe");
+    }
 
     bool refuse(const Sentence& why) {
         guard_.refuse(why);
@@ -122,7 +129,7 @@ private:
         // A thread that waited in the kernel for memory or for a chip may have written after us.
         const bool ended = guard_.await_end(ended_within);
         const std::size_t chips = devices_.write_safe_lines();
-        if (chips == 0 && ended) watchdog_.stand_down(); // else the box's reset is the end of it
+        if (chips == 0 && ended) stand_down(); // else the box's reset is the end of it
         if (guard_.block().crash.is_complete())
             reason = guard_.block().crash.describe();
         else if (!reason.empty() && instance_.stop_asked())

@@ -124,6 +124,22 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
     return device->kind == "gpio" ? check_bound_lines(row, board, bound, *device) : Sentence{};
 }
 
+constexpr Sentence check_proof(const MachineView& m, const Board& board, const Proof& proof) {
+    if (proof.output.empty()) return {};
+    const auto fault = [&](const auto&... words) {
+        return Sentence{"binding to board \"", board.name, "\", proven_by(\"",
+                        proof.output,          "\"): ",    words...};
+    };
+    End found{};
+    if (const Sentence wrong = resolve(m, proof.output, FacetKind::output, found); !wrong.empty())
+        return fault(wrong);
+    const Facet& facet = facet_at(m, found);
+    if (facet.kind != FacetKind::output || facet.type != type_id<std::int64_t>)
+        return fault("it is no output of whole numbers; name one that counts what the machine makes");
+    if (proof.count <= 0) return fault("it is shown by nothing; name a count above 0");
+    return {};
+}
+
 constexpr Sentence check_devices(const MachineView& m, const Board& board, const Binding& binding) {
     if (binding.too_many)
         return Sentence{
@@ -171,7 +187,7 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board, const
             return of_binding(board, bound.name,
                               "no component of the machine drives it; correct the name or remove the row");
     }
-    return {};
+    return check_proof(m, board, binding.proof);
 }
 
 } // namespace tappet::checks

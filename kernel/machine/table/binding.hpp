@@ -48,9 +48,17 @@ struct Placement {
     int processor = 0;
 };
 
+/// What shows that a new version works on its box: this output has counted so far, and no deadline was
+/// missed.
+struct Proof {
+    std::string_view output{}; ///< of whole numbers: "weft.picks_woven"; "": a minute of running shows it
+    std::int64_t count = 0;
+};
+
 struct Binding {
     Bounded<BoundDevice, 16> devices{};
     Bounded<Placement, 64> placement{};
+    Proof proof{};
     bool too_many = false; ///< more rows than there is room for: the check refuses it
 };
 
@@ -71,6 +79,9 @@ constexpr SerialLine serial_line(int baud, char parity, int stop_bits) noexcept 
 /// The processor of an activity; the board's default unless stated.
 constexpr Placement place(std::string_view activity, int processor) noexcept { return {activity, processor}; }
 
+/// proven_by("weft.picks_woven", 100): a new version stays on its box after that.
+constexpr Proof proven_by(std::string_view output, std::int64_t count) noexcept { return {output, count}; }
+
 namespace detail {
 
 constexpr bool add(BoundDevice& device, const BoundLine& line) { return device.lines.push(line); }
@@ -79,6 +90,7 @@ constexpr bool add(BoundDevice& device, AnswerWithin answer) { return device.ans
 constexpr bool add(BoundDevice& device, SerialLine serial) { return device.serial = serial, true; }
 constexpr bool add(Binding& binding, const BoundDevice& device) { return binding.devices.push(device); }
 constexpr bool add(Binding& binding, const Placement& place) { return binding.placement.push(place); }
+constexpr bool add(Binding& binding, const Proof& proof) { return binding.proof = proof, true; }
 
 } // namespace detail
 
@@ -93,7 +105,7 @@ constexpr BoundDevice wired(std::string_view name, std::string_view at, const Fa
     return device;
 }
 
-/// binding(wired(...), ..., place("can", 3), ...)
+/// binding(wired(...), ..., place("can", 3), ..., proven_by("weft.picks_woven", 100))
 template <class... Rows>
 constexpr Binding binding(const Rows&... rows) {
     Binding binding;

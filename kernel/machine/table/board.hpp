@@ -46,6 +46,32 @@ struct BoardBrowsing {
     Bounded<BoardRole, 16> roles{};
 };
 
+/// An Ethernet port of the box, as the kernel names it, and its address: "192.168.7.1/24".
+struct BoardNetwork {
+    std::string_view name{};
+    std::string_view address{};
+};
+
+/// What the box's init does when the firmware ended without being asked to: it starts it again, and leaves it
+/// after so many times within so long. A started machine stands until somebody at it acknowledges.
+struct BoardRestarts {
+    int most = 3;
+    Duration within = std::chrono::minutes{10};
+};
+
+/// What the box's image carries beside the firmware, and what its init brings up.
+struct BoardImage {
+    /// Kernel modules, with their parameters after a blank. One that drives devices is loaded when one of
+    /// them is there, any other always; what they need comes with them.
+    Bounded<std::string_view, 48> modules{};
+    Bounded<std::string_view, 4>
+        consoles{}; ///< where kernel, init and firmware speak: "tty0", "ttyS0,115200"
+    Bounded<BoardNetwork, 4> networks{};
+    int interrupt_priority =
+        0; ///< SCHED_FIFO of the bound devices' interrupt threads; 0: as the kernel has them
+    BoardRestarts restarts{};
+};
+
 struct Board {
     std::string_view name{};
     std::string_view world = "box"; ///< or "host", "bench"
@@ -60,7 +86,8 @@ struct Board {
         false; ///< any device that a machine names is there, as its twin: nothing needs a binding
     Bounded<std::string_view, 16>
         only_warned{}; ///< arming checks that this development board downgrades to warnings
-    std::string_view kernel_command_line{};
+    std::string_view kernel_command_line{}; ///< without console=, which follows from the image's consoles
+    BoardImage image{};
     std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
     BoardBrowsing browsing{};
     std::string_view
@@ -130,6 +157,25 @@ constexpr Bounded<BoardRole, 16> roles(const Rows&... rows) {
 template <class... Names>
 constexpr Bounded<std::string_view, 16> warn_only(const Names&... names) {
     return detail::list_of<std::string_view, 16>(names...);
+}
+
+/// Kernel modules, 48 rows at most.
+template <class... Rows>
+constexpr Bounded<std::string_view, 48> kernel_modules(const Rows&... rows) {
+    return detail::list_of<std::string_view, 48>(rows...);
+}
+/// "tty0", "ttyS0,115200"; four at most.
+template <class... Names>
+constexpr Bounded<std::string_view, 4> consoles(const Names&... names) {
+    return detail::list_of<std::string_view, 4>(names...);
+}
+/// ethernet("eth0", "192.168.7.1/24"); four at most.
+constexpr BoardNetwork ethernet(std::string_view name, std::string_view address) noexcept {
+    return {name, address};
+}
+template <class... Rows>
+constexpr Bounded<BoardNetwork, 4> networks(const Rows&... rows) {
+    return detail::list_of<BoardNetwork, 4>(rows...);
 }
 
 } // namespace tappet

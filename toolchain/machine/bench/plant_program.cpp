@@ -6,6 +6,7 @@
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/check/board.hpp"
 #include "kernel/os/clock.hpp"
+#include "kernel/os/notify.hpp"
 #include "toolchain/machine/bench/can_end.hpp"
 #include "toolchain/machine/bench/line_end.hpp"
 #include "toolchain/machine/bench/server_end.hpp"
@@ -316,6 +317,7 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
         plant->advance(os::Clock{os::Clock::Kind::real}.now())); // no client reads what is not set
     if (const Sentence fault = wires.listen(); !fault.empty()) return fail(fault);
     if (options.fifo_priority > 0) become_real_time(name.c_str(), options.fifo_priority);
+    os::notify_starter("X_TAPPET_PLANT=ready");
     Program{name.c_str(), *plant, wires, options}.run();
     if (!write_report(*plant, options.report))
         return fail(Sentence{"the report cannot be written to \"", std::string_view{options.report}, "\""});

@@ -18,6 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/bench/initramfs.hpp"
 
 namespace tappet::bench {
@@ -37,46 +38,6 @@ constexpr char end_of_output = '\x1e';
 double seconds_since(SteadyTime start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-
-fs::path cache_folder() {
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);
-        return std::string(value != nullptr ? value : "");
-    };
-    if (const std::string own = variable("TAPPET_CACHE"); !own.empty()) {
-        return own;
-    }
-    if (const std::string shared = variable("XDG_CACHE_HOME"); !shared.empty()) {
-        return fs::path(shared) / "tappet";
-    }
-    const std::string home = variable("HOME");
-    return fs::path(home.empty() ? "/root" : home) / ".cache/tappet";
-}
-
-class WorkFolder {
-public:
-    explicit WorkFolder(bool keep) : keep_(keep) {
-        std::string pattern = (fs::temp_directory_path() / "tappet-bench-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) {
-            throw BenchError("cannot make a temporary folder '" + pattern + "'; check its rights and TMPDIR");
-        }
-        path_ = pattern;
-    }
-    ~WorkFolder() {
-        std::error_code ignored;
-        if (!keep_) {
-            fs::remove_all(path_, ignored);
-        }
-    }
-    WorkFolder(const WorkFolder&) = delete;
-    WorkFolder& operator=(const WorkFolder&) = delete;
-
-    fs::path operator/(const char* name) const { return path_ / name; }
-
-private:
-    fs::path path_;
-    bool keep_;
-};
 
 void pack(const Scenario& scenario, const fs::path& kernel, const fs::path& archive) {
     Initramfs root(archive);
@@ -362,7 +323,7 @@ void check(const Scenario& scenario, const fs::path& kernel) {
 Outcome run_checked(const Scenario& scenario, const Output& output, const Cancelled& cancelled) {
     const fs::path kernel = cache_folder() / "kernel" / scenario.kernel;
     check(scenario, kernel);
-    const WorkFolder work(scenario.keep);
+    const WorkFolder work("tappet-bench", scenario.keep);
     pack(scenario, kernel, work / "root.cpio");
 
     const auto start = std::chrono::steady_clock::now();

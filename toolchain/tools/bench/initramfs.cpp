@@ -138,10 +138,9 @@ void Initramfs::add_file(const fs::path& host, const std::string& guest) {
     }
     add_folder(guest.substr(0, guest.rfind('/')));
     const std::string content = read_file(host);
-    struct stat facts{};
-    ::stat(host.c_str(), &facts);
     present_.insert(guest);
-    entry(guest, S_IFREG | (facts.st_mode & 0777), content);
+    // Not the file's own mode, which depends on who built it: the same files make the same archive.
+    entry(guest, S_IFREG | (::access(host.c_str(), X_OK) == 0 ? 0755U : 0644U), content);
     if (is_program(host)) {
         add_libraries(host);
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every part of PID 1 needs: the way to tell the host, to give up, and to read and write small files of
-// the kernel.
+// The guest's side of its ports to the host.
 #pragma once
 
-#include <chrono>
+#include "board/init/system.hpp"
+
 #include <string>
 #include <string_view>
 
@@ -25,16 +25,12 @@ private:
 
 extern Results results;
 
-[[noreturn]] void power_off();
-
 // The guest cannot go on: the host must learn why, and on the kernel's console too if no port is up yet.
-[[noreturn]] void give_up(const std::string& what);
+[[noreturn]] void give_up(const std::string& reason);
+// The same, unless it was done.
+void must(const init::Done& done);
 
-void pause_for(std::chrono::milliseconds time);
-
-void make_folder(const std::string& path);
-bool write_text(const std::string& path, const std::string& text);
-std::string read_line(const std::string& path);
-void mount_at(const char* type, const std::string& path);
+/// The port of this name to the host, opened; waits for it to appear.
+int open_port(const std::string& wanted);
 
 } // namespace tappet::bench

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a box is to bring up: the lines of the firmware's --board, which the image carries.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::box {
+
+using Words = std::vector<std::string>;
+
+/// "can can0 500000" is the word "can" with two values.
+class Facts {
+public:
+    explicit Facts(std::string_view text);
+
+    /// The values of each line of a word, in their order.
+    [[nodiscard]] std::vector<Words> all(std::string_view word) const;
+    /// One value of the first line of a word; `otherwise` when there is none.
+    [[nodiscard]] std::string one(std::string_view word, std::size_t which = 0,
+                                  std::string_view otherwise = {}) const;
+
+    [[nodiscard]] const std::vector<Words>& lines() const { return lines_; }
+
+private:
+    std::vector<Words> lines_;
+};
+
+} // namespace tappet::box

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// CAN, GPIO, serial, Ethernet; the processors; the interrupts' threads.
+#include "board/box/hardware.hpp"
+
+#include "board/init/devices.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include <fcntl.h>
+#include <linux/gpio.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace tappet::box {
+
+namespace {
+
+std::string base_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+bool exists(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
+
+/// A chip's path, or its label as gpiodetect shows it.
+bool has_chip(const std::string& address) {
+    if (address.starts_with('/')) return exists(address);
+    return std::ranges::any_of(init::names_in("/dev"), [&](const std::string& name) {
+        if (!name.starts_with("gpiochip")) return false;
+        const int chip = ::open(("/dev/" + name).c_str(), O_RDONLY | O_CLOEXEC);
+        gpiochip_info info{};
+        const bool known = chip >= 0 && ::ioctl(chip, GPIO_GET_CHIPINFO_IOCTL, &info) == 0;
+        if (chip >= 0) ::close(chip);
+        return known && address == info.label;
+    });
+}
+
+init::Done nothing_to_do() { return {}; }
+
+/// What the firmware opens itself needs to be there only.
+Need awaited(const std::string& what, const std::string& cure, std::function<bool()> is_there) {
+    return {what, cure, std::move(is_there), nothing_to_do};
+}
+
+Need can_bus(const std::string& name, const std::string& bit_rate, bool is_emulated) {
+    if (is_emulated)
+        return {"CAN interface " + name, "add vcan to the board's modules", [] { return true; },
+                [name] { return init::create_can(name); }};
+    return {"CAN interface " + name + " at " + bit_rate + " bit/s",
+            "check its card, and that the board's modules name its driver",
+            [name] { return init::has_interface(name); },
+            [name, bit_rate]() -> init::Done {
+                const auto rate = static_cast<std::uint32_t>(std::strtoul(bit_rate.c_str(), nullptr, 10));
+                if (auto set = init::set_bit_rate(name, rate); !set) return set;
+                return init::set_link(name, true);
+            }};
+}
+
+Need gpio_chip(const std::string& address, const std::string& lines, bool is_emulated) {
+    if (is_emulated)
+        return {"GPIO chip " + address, "add gpio-sim to the board's modules", [] { return true; },
+                [address, lines] { return init::create_gpio_chip(base_name(address), lines); }};
+    return awaited(
+        "GPIO chip " + address,
+        "check its label in the board against gpiodetect's, and that the board's modules name its driver",
+        [address] { return has_chip(address); });
+}
+
+Need network(const std::string& name, const std::string& address) {
+    return {"network " + name + " as " + address,
+            "check its port, and that the board's modules name its driver",
+            [name] { return init::has_interface(name); },
+            [name, address]() -> init::Done {
+                if (auto set = init::set_address(name, address); !set) return set;
+                return init::set_link(name, true);
+            }};
+}
+
+} // namespace
+
+std::vector<Need> needs_of(const Facts& facts) {
+    const bool is_emulated = facts.one("world") == "bench";
+    std::vector<Need> needs;
+    for (const Words& each : facts.all("can")) needs.push_back(can_bus(each[0], each[1], is_emulated));
+    for (const Words& each : facts.all("gpio")) needs.push_back(gpio_chip(each[0], each[1], is_emulated));
+    for (const Words& each : facts.all("serial"))
+        needs.push_back(awaited("serial port " + each[0], "check the board's devices",
+                                [path = each[0]] { return exists(path); }));
+    for (const Words& each : facts.all("network")) needs.push_back(network(each[0], each[1]));
+    return needs;
+}
+
+void bring_up(std::vector<Need>& needs, Modules& modules, const Voice& voice,
+              std::chrono::milliseconds patience) {
+    constexpr std::chrono::milliseconds pause{10};
+    for (auto waited = std::chrono::milliseconds{0};; waited += pause) {
+        if (const auto came = modules.load_what_fits(); !came) voice.say(came.error());
+        for (Need& need : needs) {
+            if (need.is_up || !need.is_there()) continue;
+            const auto done = need.bring_up();
+            need.is_up = true;
+            voice.say(done ? need.what + " is up"
+                           : need.what + " is refused: " + done.error() + "; " + need.cure);
+        }
+        if (std::ranges::all_of(needs, &Need::is_up)) return;
+        if (waited >= patience) break;
+        init::pause_for(pause);
+    }
+    for (const Need& need : needs)
+        if (!need.is_up) voice.say(need.what + " is missing; " + need.cure);
+}
+
+void set_governor(const Voice& voice) {
+    const std::string folder = "/sys/devices/system/cpu/cpufreq";
+    for (const std::string& policy : init::names_in(folder))
+        if (policy.starts_with("policy") &&
+            !init::write_text(folder + "/" + policy + "/scaling_governor", "performance"))
+            voice.say("the frequency governor of " + policy + " is not performance: " + std::strerror(errno) +
+                      "; give the board's kernel command line cpufreq.default_governor=performance");
+}
+
+void raise_interrupts(const Facts& facts, const Voice& voice) {
+    const std::string priority = facts.one("interrupts");
+    if (priority.empty()) return;
+    sched_param parameter{};
+    parameter.sched_priority = std::atoi(priority.c_str());
+    for (const char* kind : {"can", "gpio"})
+        for (const Words& device : facts.all(kind)) {
+            int raised = 0;
+            for (const std::string& process : init::names_in("/proc")) {
+                const std::string name = init::read_line("/proc/" + process + "/comm");
+                if (!name.starts_with("irq/") ||
+                    !name.ends_with("-" + base_name(device[0]).substr(0, 15 - name.find('-') - 1)))
+                    continue;
+                raised += ::sched_setscheduler(std::atoi(process.c_str()), SCHED_FIFO, &parameter) == 0;
+            }
+            if (raised != 0)
+                voice.say("interrupts of " + device[0] + " have priority " + priority);
+            else
+                voice.say("no interrupt thread is named after " + device[0] +
+                          ", so none of it has priority " + priority + "; see /proc/interrupts for its name");
+        }
+}
+
+} // namespace tappet::box

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings up what a board's facts name, as it appears, and says what is missing.
+#pragma once
+
+#include "board/box/facts.hpp"
+#include "board/box/modules.hpp"
+#include "board/box/voice.hpp"
+
+#include <chrono>
+#include <functional>
+
+namespace tappet::box {
+
+/// One thing that the box is said to have.
+struct Need {
+    std::string what{};
+    std::string cure{};
+    std::function<bool()> is_there{};
+    std::function<init::Done()> bring_up{};
+    bool is_up = false;
+};
+
+/// What the facts name: CAN, GPIO, serial and Ethernet ports. On an emulated box ("world bench") CAN
+/// interfaces and GPIO chips are made instead of awaited.
+[[nodiscard]] std::vector<Need> needs_of(const Facts& facts);
+
+/// Loads modules and brings up what is there, until nothing is missing or the patience is over. Then one
+/// sentence is said for each thing that is missing.
+void bring_up(std::vector<Need>& needs, Modules& modules, const Voice& voice,
+              std::chrono::milliseconds patience);
+
+/// The governor of every processor that has one: no change of frequency.
+void set_governor(const Voice& voice);
+
+/// The threads of the bound devices' interrupts, which the kernel starts when somebody opens the device.
+void raise_interrupts(const Facts& facts, const Voice& voice);
+
+} // namespace tappet::box

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The box's disk as a file: a GUID partition table, the loader's partition, two slots and one for data.
+#pragma once
+
+#include "board/init/boot_state.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tappet::image {
+
+inline constexpr std::uint64_t sector_bytes = 512;
+
+struct Partition {
+    std::string name{};  ///< in the table: what the box's init looks for
+    std::string label{}; ///< of the file system: what the loader looks for
+    std::string type{};  ///< as sgdisk takes it
+    std::uint64_t first_sector = 0;
+    std::uint64_t sectors = 0;
+
+    [[nodiscard]] std::uint64_t bytes() const { return sectors * sector_bytes; }
+};
+
+/// The loader's, the slots, data: the same on every box.
+[[nodiscard]] const std::vector<Partition>& partitions();
+[[nodiscard]] std::uint64_t disk_bytes();
+
+/// Writes the whole disk. `kernel` is the unified image of both slots, of which the first is the newer. The
+/// same in makes the same out, bit by bit.
+void write_disk(const std::filesystem::path& disk, const std::filesystem::path& loader,
+                const std::filesystem::path& kernel, std::uint16_t watchdog_s,
+                const std::filesystem::path& work);
+
+/// The file system of a slot: the kernel, the loader's state, its label.
+void write_slot(const std::filesystem::path& file, const Partition& partition,
+                const std::filesystem::path& kernel, const init::BootState& state,
+                const std::filesystem::path& work);
+
+} // namespace tappet::image

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Root file system, unified kernel image, disk.
+#include "toolchain/tools/image/image.hpp"
+
+#include "board/box/facts.hpp"
+#include "toolchain/tools/bench/folders.hpp"
+#include "toolchain/tools/bench/initramfs.hpp"
+#include "toolchain/tools/image/disk.hpp"
+#include "toolchain/tools/image/kernel_modules.hpp"
+#include "toolchain/tools/image/tool.hpp"
+
+namespace tappet::image {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* boot_guard = "/usr/lib/x86_64-linux-gnu/efibootguard/";
+
+std::string joined(const box::Words& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+std::string command_line_of(const box::Facts& facts) {
+    std::string text;
+    for (const box::Words& console : facts.all("console")) text += "console=" + console[0] + " ";
+    for (const box::Words& line : facts.all("kernel")) text += joined(line);
+    return text + " rdinit=/init";
+}
+
+} // namespace
+
+Written write_image(const Request& request) {
+    if (!fs::exists(request.kernel / "vmlinuz"))
+        throw Fault("there is no kernel for a box at " + request.kernel.string() +
+                    "; run ci/setup once as root");
+    if (!fs::exists(request.firmware))
+        throw Fault("there is no firmware at " + request.firmware.string() + "; build it first");
+    std::string lines = run_tool({fs::absolute(request.firmware).string(), "--board"});
+    const box::Facts facts{lines};
+    if (facts.one("board").empty())
+        throw Fault(request.firmware.string() +
+                    " does not say its board; it is no firmware of Tappet, or an old one");
+    if (facts.all("console").empty())
+        throw Fault("board \"" + facts.one("board") +
+                    "\" says nothing of an image; give it .image with modules and consoles");
+    lines += "image " + std::to_string(request.version) + "\n";
+    if (!request.plant.empty()) lines += "plant /bin/plant " + request.plant_words + "\n";
+
+    std::vector<std::string> rows;
+    for (const box::Words& row : facts.all("module")) rows.push_back(joined(row));
+    std::string release = read_file(request.kernel / "release");
+    release.resize(std::min(release.find('\n'), release.size()));
+    const KernelModules modules = choose_modules(rows, request.kernel / "lib/modules" / release);
+
+    const bench::WorkFolder work("tappet-image");
+    fs::create_directories(request.folder);
+    bench::Initramfs root{work / "root.cpio"};
+    root.add(request.init, "/init");
+    root.add(request.firmware, "/bin/firmware");
+    if (!request.plant.empty()) root.add(request.plant, "/bin/plant");
+    root.add_text("/etc/tappet/box", lines);
+    root.add_text("/etc/tappet/modules", modules.table);
+    for (const auto& [name, file] : modules.files) root.add(file, "/modules/" + name + ".ko");
+    for (const char* folder : {"/proc", "/sys", "/tmp", "/run"}) root.add_folder(folder);
+    root.finish();
+
+    Written written;
+    written.disk = request.folder / "disk.img";
+    written.kernel = request.folder / "tappet.efi";
+    written.root = request.folder / "root.cpio.zst";
+    written.command_line = command_line_of(facts);
+    run_tool({"zstd", "-q", "-f", "-19", "--no-progress", (work / "root.cpio").string(), "-o",
+              written.root.string()});
+    run_tool({"bg_gen_unified_kernel", std::string{boot_guard} + "kernel-stubx64.efi",
+              (request.kernel / "vmlinuz").string(), written.kernel.string(), "--cmdline",
+              written.command_line, "--initrd", written.root.string()});
+    write_disk(written.disk, std::string{boot_guard} + "efibootguardx64.efi", written.kernel,
+               request.watchdog_s, work / "");
+    written.kernel_bytes = fs::file_size(request.kernel / "vmlinuz");
+    written.root_bytes = fs::file_size(written.root);
+    written.slot_bytes = fs::file_size(written.kernel);
+    written.modules = modules.files.size();
+    return written;
+}
+
+} // namespace tappet::image

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is flashed onto a box, from a firmware: the board's and the binding's tables say the rest.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace tappet::image {
+
+struct Request {
+    std::filesystem::path firmware{}; ///< stripped; asked for its board by --board
+    std::filesystem::path init{};     ///< the box's PID 1
+    std::filesystem::path plant{};    ///< of a test board: the other end of its wires; empty: none
+    std::string plant_words{};        ///< its options
+    std::filesystem::path kernel{};   ///< ci/setup's: vmlinuz, release, lib/modules
+    std::filesystem::path folder{};   ///< where everything goes
+    std::uint32_t version = 1;
+    std::uint16_t watchdog_s = 30; ///< armed by the loader; 0: none, for a box without one
+};
+
+struct Written {
+    std::filesystem::path disk{};
+    std::filesystem::path
+        kernel{}; ///< the unified kernel image of a slot: kernel, root file system, command line
+    std::filesystem::path root{};   ///< its root file system, packed, and
+    std::string command_line{};     ///< for a boot without the disk
+    std::uint64_t kernel_bytes = 0; ///< of the kernel alone
+    std::uint64_t root_bytes = 0;
+    std::uint64_t slot_bytes = 0;
+    std::size_t modules = 0;
+};
+
+/// Bit by bit the same from the same parts. What is wrong is thrown: a Fault, or a bench::BenchError.
+Written write_image(const Request& request);
+
+} // namespace tappet::image

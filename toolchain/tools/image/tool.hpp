@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong, and other people's programs that do a part of the work.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::image {
+
+/// What, where and the cure.
+struct Fault : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Runs a program of this machine under a clock that stands still, so that what it writes is the same at any
+/// time. Its standard output; a fault carries its last words.
+std::string run_tool(const std::vector<std::string>& words);
+
+std::string read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+} // namespace tappet::image
