@@ -134,7 +134,8 @@ function(tappet_machine name)
             add_executable(${firmware} "${mains}/firmware_main.cpp")
             target_compile_options(${firmware} PRIVATE -ffunction-sections -fdata-sections)
             target_link_libraries(${firmware} PRIVATE tappet_sealed_heap)
-            target_link_options(${firmware} PRIVATE -static -Wl,--gc-sections)
+            # What the linker took is the image's bill of materials.
+            target_link_options(${firmware} PRIVATE -static -Wl,--gc-sections "LINKER:--dependency-file=${CMAKE_CURRENT_BINARY_DIR}/${firmware}.inputs")
             set(stripped "$<TARGET_FILE:${firmware}>.stripped")
             add_custom_command(
                 TARGET ${firmware} POST_BUILD

@@ -18,8 +18,6 @@ constexpr std::uint64_t sectors_of_mib(std::uint64_t mib) { return mib * 1024 * 
 /// Fixed: nothing of an image is drawn by lot.
 std::string guid(unsigned number) { return "74617070-6574-4d00-8000-00000000000" + std::to_string(number); }
 
-constexpr const char* file_in_slot = "tappet.efi";
-
 void make_fat(const fs::path& file, const Partition& partition, unsigned number) {
     fs::remove(file);
     write_file(file, "");
@@ -30,6 +28,19 @@ void make_fat(const fs::path& file, const Partition& partition, unsigned number)
 
 void put(const fs::path& fat, const fs::path& file, const std::string& name) {
     run_tool({"mcopy", "-i", fat.string(), file.string(), "::" + name});
+}
+
+/// The file system of a slot: the kernel, the loader's state, its label.
+void write_slot(const fs::path& file, const Partition& partition, const fs::path& kernel,
+                const init::BootState& state, unsigned number, const fs::path& work) {
+    make_fat(file, partition, number);
+    std::string label;
+    for (const char character : partition.label) label += {character, '\0'}; // UTF-16
+    write_file(work / "EFILABEL", label);
+    write_file(work / init::boot_state_file, init::encode(state));
+    put(file, work / "EFILABEL", "EFILABEL");
+    put(file, work / init::boot_state_file, std::string{init::boot_state_file});
+    put(file, kernel, file_in_slot);
 }
 
 /// Blocks of zeros stay holes.
@@ -61,22 +72,12 @@ const std::vector<Partition>& partitions() {
     return all;
 }
 
+std::string kernel_of(const Partition& slot) { return "C:" + slot.label + ":" + file_in_slot; }
+
 std::uint64_t disk_bytes() {
     const Partition& last = partitions().back();
     return last.first_sector * sector_bytes + last.bytes() +
            1024 * 1024; // the table's second copy stands there
-}
-
-void write_slot(const fs::path& file, const Partition& partition, const fs::path& kernel,
-                const init::BootState& state, const fs::path& work) {
-    make_fat(file, partition, partition.name.back() == 'a' ? 1 : 2);
-    std::string label;
-    for (const char character : partition.label) label += {character, '\0'}; // UTF-16
-    write_file(work / "EFILABEL", label);
-    write_file(work / init::boot_state_file, init::encode(state));
-    put(file, work / "EFILABEL", "EFILABEL");
-    put(file, work / init::boot_state_file, std::string{init::boot_state_file});
-    put(file, kernel, file_in_slot);
 }
 
 void write_disk(const fs::path& disk, const fs::path& loader, const fs::path& kernel,
@@ -104,10 +105,8 @@ void write_disk(const fs::path& disk, const fs::path& loader, const fs::path& ke
     run_tool({"mmd", "-i", (work / "loader.img").string(), "::EFI", "::EFI/BOOT"});
     put(work / "loader.img", loader, "EFI/BOOT/BOOTX64.EFI");
     for (std::uint32_t slot = 1; slot <= 2; ++slot)
-        write_slot(
-            work / (rows[slot].name + ".img"), rows[slot], kernel,
-            {"C:" + rows[slot].label + ":" + file_in_slot, 3 - slot, watchdog_s, init::SlotState::good},
-            work);
+        write_slot(work / (rows[slot].name + ".img"), rows[slot], kernel,
+                   {kernel_of(rows[slot]), 3 - slot, watchdog_s, init::SlotState::good}, slot, work);
     const fs::path data = work / "data.img";
     write_file(data, "");
     fs::resize_file(data, rows[3].bytes());

@@ -26,15 +26,14 @@ struct Partition {
 [[nodiscard]] const std::vector<Partition>& partitions();
 [[nodiscard]] std::uint64_t disk_bytes();
 
+inline constexpr const char* file_in_slot = "tappet.efi";
+/// As the loader names it.
+[[nodiscard]] std::string kernel_of(const Partition& slot);
+
 /// Writes the whole disk. `kernel` is the unified image of both slots, of which the first is the newer. The
 /// same in makes the same out, bit by bit.
 void write_disk(const std::filesystem::path& disk, const std::filesystem::path& loader,
                 const std::filesystem::path& kernel, std::uint16_t watchdog_s,
-                const std::filesystem::path& work);
-
-/// The file system of a slot: the kernel, the loader's state, its label.
-void write_slot(const std::filesystem::path& file, const Partition& partition,
-                const std::filesystem::path& kernel, const init::BootState& state,
                 const std::filesystem::path& work);
 
 } // namespace tappet::image

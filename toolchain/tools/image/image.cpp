@@ -7,6 +7,7 @@
 #include "toolchain/tools/bench/initramfs.hpp"
 #include "toolchain/tools/image/disk.hpp"
 #include "toolchain/tools/image/kernel_modules.hpp"
+#include "toolchain/tools/image/sbom.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
 namespace tappet::image {
@@ -16,6 +17,18 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* boot_guard = "/usr/lib/x86_64-linux-gnu/efibootguard/";
+
+/// Everything inside: kernel, loader, what the firmware is linked of, Tappet itself. Init is linked of a part
+/// of that.
+std::string bill_of(const Request& request, const box::Facts& facts, const std::string& release) {
+    fs::path list = request.firmware; // <name>.stripped
+    std::vector<Component> parts = linked_into(list.replace_extension("inputs"), request.kernel / "../..");
+    const std::string version = read_file(request.kernel / "version");
+    parts.push_back({"linux-image-" + release, version.substr(0, version.find('\n')), "operating-system"});
+    parts.push_back(debian_package("efibootguard", "firmware"));
+    parts.push_back({"tappet", TAPPET_VERSION, "framework", false});
+    return bill_of_materials(facts.one("machine"), facts.one("board"), request.version, std::move(parts));
+}
 
 std::string joined(const box::Words& words) {
     std::string text;
@@ -53,6 +66,7 @@ Written write_image(const Request& request) {
     for (const box::Words& row : facts.all("module")) rows.push_back(joined(row));
     std::string release = read_file(request.kernel / "release");
     release.resize(std::min(release.find('\n'), release.size()));
+    const std::string bill = bill_of(request, facts, release);
     const KernelModules modules = choose_modules(rows, request.kernel / "lib/modules" / release);
 
     const bench::WorkFolder work("tappet-image");
@@ -68,6 +82,8 @@ Written write_image(const Request& request) {
     root.finish();
 
     Written written;
+    written.bill = request.folder / "sbom.cdx.json";
+    write_file(written.bill, bill);
     written.disk = request.folder / "disk.img";
     written.kernel = request.folder / "tappet.efi";
     written.root = request.folder / "root.cpio.zst";

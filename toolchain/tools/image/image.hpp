@@ -21,6 +21,7 @@ struct Request {
 
 struct Written {
     std::filesystem::path disk{};
+    std::filesystem::path bill{}; ///< what is inside, as CycloneDX
     std::filesystem::path
         kernel{}; ///< the unified kernel image of a slot: kernel, root file system, command line
     std::filesystem::path root{};   ///< its root file system, packed, and

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// tappet-image: writes what is flashed onto a box, from the firmware that shall run there.
+// tappet-image: writes what is flashed onto a box, from the firmware that shall run there; flashes it; renews
+// a slot.
 #include "toolchain/command_line.hpp"
 #include "toolchain/tools/bench/folders.hpp"
+#include "toolchain/tools/image/flash.hpp"
 #include "toolchain/tools/image/image.hpp"
+#include "toolchain/tools/image/slots.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -33,43 +37,96 @@ constexpr std::array options{
            .least = 0,
            .most = 255}};
 
+constexpr std::array flash_options{
+    Option{"--image", "FILE", "a disk.img"},
+    Option{"--erase", "", "what is on the disk may be lost"},
+};
+constexpr std::array install_options{Option{"--kernel", "FILE", "a tappet.efi"}};
+
 constexpr double goal_mb = 12.0;
+
+int fail(const std::string& why) {
+    std::fprintf(stderr, "tappet-image: %s\n", why.c_str());
+    return 2;
+}
+
+int write(const CommandLine& line) {
+    if (!line.has("--firmware") || !line.has("--to"))
+        return fail("say write --firmware FILE --to DIR; see --help");
+    Request request;
+    request.firmware = line.text("--firmware");
+    request.folder = line.text("--to");
+    request.plant = line.text("--plant");
+    request.plant_words = line.text("--plant-options");
+    const auto own = std::filesystem::canonical("/proc/self/exe").parent_path() / "box-init";
+    request.init = line.text("--init", own.native());
+    request.kernel = bench::cache_folder() / "kernel/box";
+    request.version = static_cast<std::uint32_t>(line.number("--version", 1));
+    request.watchdog_s = static_cast<std::uint16_t>(line.number("--watchdog", 30));
+    const Written written = write_image(request);
+    const auto mb = [](std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; };
+    std::printf("%s\n  a slot takes %.1f MB (goal %.0f: %s): kernel %.1f MB, root %.1f MB with %zu modules\n",
+                written.disk.c_str(), mb(written.slot_bytes), goal_mb,
+                mb(written.slot_bytes) <= goal_mb ? "held" : "MISSED", mb(written.kernel_bytes),
+                mb(written.root_bytes), written.modules);
+    std::printf("  command line: %s\n  what is inside: %s\n", written.command_line.c_str(),
+                written.bill.c_str());
+    return 0;
+}
+
+int flash(const CommandLine& line) {
+    if (!line.has("--image") || line.words.size() != 1)
+        return fail("say flash --image disk.img DEVICE; lsblk lists the disks");
+    const std::filesystem::path image = line.text("--image"), device = line.words[0];
+    if (const std::string refusal = refusal_to_flash(image, device, line.has("--erase")); !refusal.empty())
+        return fail(refusal);
+    std::uint64_t told = 0;
+    image::flash(image, device, [&](std::uint64_t bytes, std::uint64_t of) {
+        if (const std::uint64_t tenth = 10 * bytes / of; tenth != told) {
+            told = tenth;
+            std::printf("%s%llu0 %%", told > 1 ? ", " : "", static_cast<unsigned long long>(told));
+            std::fflush(stdout);
+        }
+    });
+    std::printf("\n%s holds the image: written, and read back from it\n", device.c_str());
+    return 0;
+}
+
+int install(const CommandLine& line) {
+    if (!line.has("--kernel") || line.words.size() != 1)
+        return fail("say install --kernel tappet.efi DISK; the disk is a box's, or its image");
+    const std::uint32_t revision =
+        image::install(std::filesystem::path{line.words[0]}, line.text("--kernel"));
+    std::printf("revision %u goes on trial at the next boot\n", revision);
+    return 0;
+}
+
+struct Word {
+    std::string_view name;
+    std::span<const Option> options;
+    int (*run)(const CommandLine&);
+    const char* usage;
+};
+constexpr std::array words_known{
+    Word{"write", options, &write, "write --firmware FILE --to DIR: a disk image for a box"},
+    Word{"flash", flash_options, &flash, "flash --image FILE [--erase] DEVICE: onto a disk, and read back"},
+    Word{"install", install_options, &install,
+         "install --kernel FILE DISK: a new version into the slot that is not in use, for one trial"}};
 
 int main(int count, char** words) {
     const std::vector<std::string_view> all(words + 1, words + count);
     if (all.empty() || all[0] == "--help") {
-        std::printf("tappet-image --firmware FILE --to DIR: a disk image for a box\n%s",
-                    usage_of(options).c_str());
+        for (const Word& each : words_known)
+            std::printf("tappet-image %s\n%s", each.usage, usage_of(each.options).c_str());
         return all.empty() ? 2 : 0;
     }
-    const auto line = read_command_line(options, all, Others::refused);
-    const auto fail = [](const std::string& why) {
-        std::fprintf(stderr, "tappet-image: %s\n", why.c_str());
-        return 2;
-    };
+    const auto word = std::ranges::find(words_known, all[0], &Word::name);
+    if (word == words_known.end())
+        return fail("\"" + std::string{all[0]} + "\" is no word of it; there are write, flash and install");
+    const auto line = read_command_line(word->options, std::span{all}.subspan(1), Others::words);
     if (!line) return fail(line.error());
-    if (!line->has("--firmware") || !line->has("--to"))
-        return fail("say --firmware FILE and --to DIR; see --help");
-    Request request;
-    request.firmware = line->text("--firmware");
-    request.folder = line->text("--to");
-    request.plant = line->text("--plant");
-    request.plant_words = line->text("--plant-options");
-    const auto own = std::filesystem::canonical("/proc/self/exe").parent_path() / "box-init";
-    request.init = line->text("--init", own.native());
-    request.kernel = bench::cache_folder() / "kernel/box";
-    request.version = static_cast<std::uint32_t>(line->number("--version", 1));
-    request.watchdog_s = static_cast<std::uint16_t>(line->number("--watchdog", 30));
     try {
-        const Written written = write_image(request);
-        const double slot_mb = static_cast<double>(written.slot_bytes) * 1e-6;
-        std::printf(
-            "%s\n  a slot takes %.1f MB (goal %.0f: %s): kernel %.1f MB, root %.1f MB with %zu modules\n",
-            written.disk.c_str(), slot_mb, goal_mb, slot_mb <= goal_mb ? "held" : "MISSED",
-            static_cast<double>(written.kernel_bytes) * 1e-6, static_cast<double>(written.root_bytes) * 1e-6,
-            written.modules);
-        std::printf("  command line: %s\n", written.command_line.c_str());
-        return 0;
+        return word->run(*line);
     } catch (const std::exception& fault) {
         return fail(fault.what());
     }

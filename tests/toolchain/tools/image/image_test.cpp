@@ -1,0 +1,223 @@
+// What goes into an image and where it may be written, without a kernel of ours: the kernel's tables and the
+// disks are made up.
+#include "toolchain/tools/image/disk.hpp"
+#include "toolchain/tools/image/flash.hpp"
+#include "toolchain/tools/image/kernel_modules.hpp"
+#include "toolchain/tools/image/sbom.hpp"
+#include "toolchain/tools/image/slots.hpp"
+#include "toolchain/tools/image/tool.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace tappet::image {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+struct Folder : testing::Test {
+    fs::path folder;
+    Folder() {
+        std::string pattern = testing::TempDir() + "tappet-image-test-XXXXXX";
+        folder = ::mkdtemp(pattern.data());
+    }
+    ~Folder() override { fs::remove_all(folder); }
+    static std::string fault_of(const auto& act) {
+        try {
+            act();
+        } catch (const Fault& fault) {
+            return fault.what();
+        }
+        return "none";
+    }
+};
+
+struct Modules : Folder {
+    Modules() {
+        write_file(folder / "modules.dep", "kernel/can-dev.ko:\n"
+                                           "kernel/sja1000.ko: kernel/can-dev.ko\n"
+                                           "kernel/peak_pci.ko: kernel/sja1000.ko kernel/can-dev.ko\n"
+                                           "kernel/ext4.ko: kernel/jbd2.ko\n"
+                                           "kernel/jbd2.ko:\n"
+                                           "kernel/crc32c_fast.ko:\n"
+                                           "kernel/crc32c_plain.ko:\n");
+        write_file(folder / "modules.alias", "# Aliases\n"
+                                             "alias pci:v0000001Cd* peak_pci\n"
+                                             "alias of:N*Tpeak* can_dev\n"
+                                             "alias fs-ext4 ext4\n"
+                                             "alias cpu:type:x86* crc32c_fast\n"
+                                             "alias crc32c crc32c_fast\n"
+                                             "alias crc32c crc32c_plain\n");
+        write_file(folder / "modules.softdep", "softdep jbd2 pre: crc32c post: nobody\n");
+        write_file(folder / "modules.builtin", "kernel/drivers/serial.ko\n");
+    }
+    [[nodiscard]] std::string table(const std::vector<std::string>& rows) const {
+        return choose_modules(rows, folder).table;
+    }
+};
+
+TEST_F(Modules, are_named_with_what_they_need_before_them_and_the_devices_they_drive) {
+    EXPECT_EQ(table({"peak_pci restart=1"}), "module peak_pci restart=1\n"
+                                             "needs can_dev\n"
+                                             "needs sja1000\n"
+                                             "alias pci:v0000001Cd*\n"
+                                             "module can_dev\n"
+                                             "module sja1000\n"
+                                             "needs can_dev\n");
+}
+
+TEST_F(Modules, that_drive_no_device_are_always_loaded) {
+    EXPECT_THAT(table({"can-dev"}), HasSubstr("module can_dev\nalias always\n"));
+}
+
+TEST_F(Modules, bring_what_the_kernel_would_ask_modprobe_for_in_the_form_that_every_processor_runs) {
+    const std::string text = table({"ext4"});
+    EXPECT_THAT(text, HasSubstr("module ext4\nneeds crc32c_plain\nneeds jbd2\nalias always\n"));
+    EXPECT_THAT(text, Not(HasSubstr("crc32c_fast")));
+    EXPECT_EQ(choose_modules({"ext4"}, folder).files.size(), 3u);
+}
+
+TEST_F(Modules, that_the_kernel_has_built_in_take_no_place) { EXPECT_EQ(table({"serial"}), ""); }
+
+TEST_F(Modules, that_the_kernel_does_not_have_are_refused) {
+    EXPECT_THAT(fault_of([&] { static_cast<void>(table({"peek_pci"})); }),
+                HasSubstr("has no module \"peek_pci\"; correct the board's kernel_modules(..)"));
+}
+
+struct Disk : Folder {
+    fs::path disk = folder / "disk.img";
+    void make(const std::string& kernel) const {
+        write_file(folder / "tappet.efi", kernel);
+        write_file(folder / "loader.efi", "a loader");
+        write_disk(disk, folder / "loader.efi", folder / "tappet.efi", 30, folder);
+    }
+    [[nodiscard]] init::BootState slot(std::size_t i) const {
+        return read_slot(disk, partitions()[i]).value();
+    }
+};
+
+TEST_F(Disk, boots_its_first_slot_and_falls_back_to_its_second) {
+    make("version 1");
+    EXPECT_EQ(slot(1).kernel, "C:SLOTA:tappet.efi");
+    EXPECT_EQ(slot(2).kernel, "C:SLOTB:tappet.efi");
+    EXPECT_GT(slot(1).revision, slot(2).revision);
+    for (const std::size_t i : {1u, 2u}) EXPECT_EQ(slot(i).state, init::SlotState::good);
+    EXPECT_EQ(slot(1).watchdog_s, 30u);
+}
+
+TEST_F(Disk, is_the_same_bit_by_bit_when_it_is_written_again) {
+    make("version 1");
+    const std::string first = read_file(disk);
+    make("version 1");
+    EXPECT_TRUE(read_file(disk) == first);
+    make("version 2");
+    EXPECT_FALSE(read_file(disk) == first) << "else this compares nothing";
+}
+
+TEST_F(Disk, takes_a_new_version_into_the_slot_that_is_not_in_use_for_one_trial) {
+    make("version 1");
+    write_file(folder / "new.efi", "version 2");
+    EXPECT_EQ(install(disk, folder / "new.efi"), 3u);
+    EXPECT_EQ(slot(1).revision, 2u) << "what runs stays";
+    EXPECT_EQ(slot(2).revision, 3u);
+    EXPECT_EQ(slot(2).state, init::SlotState::installed);
+    EXPECT_EQ(install(disk, folder / "new.efi"), 4u);
+    EXPECT_EQ(slot(1).revision, 4u) << "then the other is not in use";
+}
+
+TEST_F(Disk, without_slots_of_ours_is_refused) {
+    write_file(disk, std::string(1'000'000, 'x'));
+    EXPECT_THAT(fault_of([&] { install(disk, disk); }), HasSubstr("mcopy failed"));
+}
+
+TEST_F(Disk, takes_no_kernel_that_is_larger_than_a_slot) {
+    EXPECT_THAT(fault_of([&] { make(std::string(partitions()[1].bytes(), 'x')); }),
+                HasSubstr("leave modules out of the board"));
+}
+
+struct Flash : Folder {
+    fs::path image = folder / "disk.img", device = folder / "device";
+    Flash() {
+        write_file(image, "an image" + std::string(3'000'000, 'i'));
+        write_file(device, std::string(5'000'000, '\0'));
+    }
+};
+
+TEST_F(Flash, writes_every_byte_and_no_more_than_the_old_tables_end) {
+    ASSERT_EQ(refusal_to_flash(image, device, false), "");
+    std::uint64_t last = 0, all = 0;
+    flash(image, device, [&](std::uint64_t bytes, std::uint64_t of) { last = bytes, all = of; });
+    const std::string after = read_file(device);
+    EXPECT_TRUE(after.starts_with(read_file(image)));
+    EXPECT_EQ(after.size(), 5'000'000u);
+    EXPECT_LT(last, all);
+}
+
+TEST_F(Flash, forgets_the_second_copy_of_an_old_partition_table) {
+    write_file(device, std::string(5'000'000, 'o'));
+    flash(image, device, {});
+    EXPECT_EQ(read_file(device).find_last_not_of('\0'), 5'000'000u - 64 * 512 - 1);
+}
+
+TEST_F(Flash, refuses_what_is_not_empty_unless_it_may_be_lost) {
+    write_file(device, std::string(5'000'000, 'o'));
+    EXPECT_THAT(refusal_to_flash(image, device, false),
+                HasSubstr("is not empty, and all that is on it would be lost"));
+    EXPECT_EQ(refusal_to_flash(image, device, true), "");
+}
+
+TEST_F(Flash, refuses_what_is_too_small_not_there_or_no_disk) {
+    write_file(device, "");
+    EXPECT_THAT(refusal_to_flash(image, device, false), HasSubstr("take a larger disk"));
+    EXPECT_THAT(refusal_to_flash(image, folder / "nothing", false),
+                HasSubstr("is not there; lsblk lists the disks"));
+    EXPECT_THAT(refusal_to_flash(image, "/dev/null", true), HasSubstr("is neither a disk nor a file"));
+}
+
+TEST_F(Flash, refuses_the_disk_that_this_machine_lives_on) {
+    const std::string root = run_tool({"findmnt", "-n", "-o", "SOURCE", "/"});
+    const std::string source = root.substr(0, root.find('\n'));
+    if (!fs::is_block_file(source)) GTEST_SKIP() << "the root here is " << source << ", no disk";
+    EXPECT_THAT(refusal_to_flash(image, source, true),
+                testing::AnyOf(HasSubstr("is mounted at /"), HasSubstr("name the whole disk")));
+}
+
+struct Bill : Folder {};
+
+TEST_F(Bill, names_the_package_of_every_file_that_was_linked) {
+    const std::string archive = run_tool({"g++", "-print-file-name=libstdc++.a"});
+    write_file(folder / "program.inputs", "program: \\\n  " + archive.substr(0, archive.find('\n')) +
+                                              " \\\n  ours.a \\\n  libtappet_libmodbus.a\n\nours.a:\n");
+    fs::create_directories(folder / "libmodbus");
+    write_file(folder / "libmodbus/VERSION", "3.1.6-2\n");
+    const auto parts = linked_into(folder / "program.inputs", folder);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].name + " " + parts[0].version, "libmodbus 3.1.6-2");
+    EXPECT_THAT(parts[1].name, HasSubstr("libstdc++"));
+    EXPECT_EQ(parts[1].version, debian_package(parts[1].name).version);
+}
+
+TEST_F(Bill, leaves_nothing_out) {
+    write_file(folder / "program.inputs", "program: \\\n  /usr/lib/of_nobody.a\n");
+    EXPECT_THAT(fault_of([&] { static_cast<void>(linked_into(folder / "program.inputs", folder)); }),
+                HasSubstr("no Debian package holds /usr/lib/of_nobody.a"));
+    EXPECT_THAT(fault_of([&] { static_cast<void>(linked_into(folder / "nothing", folder)); }),
+                HasSubstr("build the firmware by tappet_machine(..)"));
+}
+
+TEST_F(Bill, is_sorted_names_each_once_and_says_no_date) {
+    const Component b{"b", "2"}, a{"a", "1"};
+    const std::string bill = bill_of_materials("loom", "box", 7, {b, a, b});
+    EXPECT_EQ(bill, bill_of_materials("loom", "box", 7, {a, b}));
+    EXPECT_THAT(bill, HasSubstr("\"purl\": \"pkg:deb/debian/a@1?arch=amd64\""));
+    EXPECT_THAT(bill, HasSubstr("\"bomFormat\": \"CycloneDX\""));
+    EXPECT_THAT(bill, Not(HasSubstr("timestamp")));
+}
+
+} // namespace
+} // namespace tappet::image
