@@ -5,8 +5,8 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/motion/refused.hpp"
+#include "kernel/motion/sine.hpp"
 
-#include <cmath>
 #include <cstdint>
 #include <expected>
 
@@ -68,8 +68,8 @@ private:
 class Biquad {
 public:
     /// -3 dB at the corner with the usual damping of sqrt(1/2) (Butterworth).
-    static std::expected<Biquad, Refused> low_pass(double corner_hz, Duration period,
-                                                   double damping = 0.70710678118654752) noexcept
+    static constexpr std::expected<Biquad, Refused> low_pass(double corner_hz, Duration period,
+                                                             double damping = 0.70710678118654752) noexcept
         TAPPET_REALTIME {
         const auto warped = warp(corner_hz, period);
         if (!warped) return std::unexpected(warped.error());
@@ -81,8 +81,8 @@ public:
                       (1.0 - 2.0 * damping * k + k * k) / a0};
     }
     /// Takes `centre_hz` out; -3 dB over a band of about `width_hz`.
-    static std::expected<Biquad, Refused> notch(double centre_hz, double width_hz, Duration period) noexcept
-        TAPPET_REALTIME {
+    static constexpr std::expected<Biquad, Refused> notch(double centre_hz, double width_hz,
+                                                          Duration period) noexcept TAPPET_REALTIME {
         const auto warped = warp(centre_hz, period);
         if (!warped) return std::unexpected(warped.error());
         if (!(width_hz > 0.0) || !is_number(width_hz))
@@ -115,10 +115,12 @@ private:
           b2_{b2},
           a1_{a1},
           a2_{a2} {}
-    static std::expected<double, Refused> warp(double hz, Duration period) noexcept TAPPET_REALTIME {
+    static constexpr std::expected<double, Refused> warp(double hz, Duration period) noexcept
+        TAPPET_REALTIME {
         const double turns = hz * to_seconds(period);
         if (!(turns > 0.0 && turns < 0.5)) return std::unexpected(Refused{Refusal::beyond_half_rate});
-        return std::tan(3.14159265358979323846 * turns);
+        const auto [sine, cosine] = sine_cosine_of_degrees(180.0 * turns);
+        return sine / cosine;
     }
 
     double b0_, b1_, b2_, a1_, a2_;

@@ -19,6 +19,7 @@ enum class Refusal : std::uint8_t {
     beyond_half_rate,
     not_positive,
     outlier,
+    wrong_state,
 };
 
 /// With its cure. Real-time.
@@ -39,6 +40,8 @@ constexpr std::string_view to_text(Refusal why) noexcept TAPPET_REALTIME {
         return "a covariance is not positive definite; give each measurement a variance above nought";
     case Refusal::outlier:
         return "it lies further from what was expected than the gate allows; see whence it came";
+    case Refusal::wrong_state:
+        return "the axis does not take this command in its state; bring it to standstill, or reset it";
     }
     return "?";
 }

@@ -1,0 +1,66 @@
+// The state diagram of an axis against PLCopen's, cell by cell.
+#include "kernel/motion/axis_mode.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+namespace tappet::motion::test {
+namespace {
+
+using enum AxisMode;
+using enum AxisCommand;
+
+constexpr std::array modes{disabled,          standstill,          homing,   discrete_motion,
+                           continuous_motion, synchronized_motion, stopping, error_stop};
+constexpr std::array commands{power_on, power_off, home, move,  move_on, synchronize,
+                              release,  halt,      stop, reset, done,    error};
+
+TEST(AxisMode, follows_the_diagram_of_plcopen) {
+    // Rows are modes, columns are commands, in their order; a dot refuses.
+    // clang-format off
+    constexpr std::array<std::string_view, 8> diagram{
+        // on off home move on sync release halt stop reset done error
+        "s..........E",
+        ".dhDCS..X..E",
+        ".d......X.sE",
+        ".d.DCS.DX.sE",
+        ".d.DCS.DX..E",
+        ".d.DCSCDX..E",
+        ".d........sE",
+        ".........s.E"};
+    // clang-format on
+    constexpr std::string_view letters = "dshDCSXE";
+    for (std::size_t m = 0; m < modes.size(); ++m)
+        for (std::size_t c = 0; c < commands.size(); ++c) {
+            const auto found = after(modes[m], commands[c]);
+            const char said = found ? letters[static_cast<std::size_t>(*found)] : '.';
+            EXPECT_EQ(said, diagram[m][c]) << to_text(modes[m]) << ", command " << c;
+        }
+    EXPECT_EQ(
+        describe(after(disabled, move).error()).view(),
+        "element 0: the axis does not take this command in its state; bring it to standstill, or reset it");
+}
+
+TEST(AxisMode, is_a_trap_nowhere) {
+    for (const AxisMode from : modes) {
+        std::set<AxisMode> reached{from};
+        for (std::size_t before = 0; before != reached.size();) {
+            before = reached.size();
+            for (const AxisMode mode : std::set<AxisMode>{reached})
+                for (const AxisCommand command : commands)
+                    if (const auto next = after(mode, command)) reached.insert(*next);
+        }
+        EXPECT_EQ(reached.size(), modes.size()) << to_text(from);
+    }
+}
+
+TEST(AxisMode, has_the_names_of_plcopen) {
+    EXPECT_EQ(to_text(disabled), "Disabled");
+    EXPECT_EQ(to_text(synchronized_motion), "SynchronizedMotion");
+    EXPECT_EQ(to_text(error_stop), "ErrorStop");
+}
+
+} // namespace
+} // namespace tappet::motion::test
