@@ -35,7 +35,7 @@ const std::vector<Size> sizes{
     {"apps/cut_to_length",    404},
     {"apps/car_tracking",     1937},
     {"toolchain/machine",     3161},
-    {"toolchain/tools",       10253},
+    {"toolchain/tools",       10254},
     {"tests/kernel",         25992},
     {"tests/drivers",         4762},
     {"tests/apps",            4530},

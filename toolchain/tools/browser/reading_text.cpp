@@ -78,7 +78,8 @@ std::string line_of(const MapReader& map, const Reading& reading) {
     std::string marks = marks_of(map, reading);
     if (!reading.never_written() && !wire_of(map, reading).empty())
         if (const std::int64_t newer = reading.wire.front().stamp_ns - reading.stamp_ns; newer > 0)
-            marks += ", " + duration_text(newer) + " newer";
+            marks +=
+                ", " + duration_text(newer - newer % (newer < 10'000'000 ? 1'000 : 1'000'000)) + " newer";
     return marks.empty() ? line : line + "   " + marks;
 }
 
