@@ -66,7 +66,7 @@ struct BoardImage {
     Bounded<std::string_view, 48> modules{};
     Bounded<std::string_view, 4>
         consoles{}; ///< where kernel, init and firmware speak: "tty0", "ttyS0,115200"
-    Bounded<BoardNetwork, 4> networks{};
+    Bounded<BoardNetwork, 4> networks{}; ///< Ethernet interfaces that the box brings up
     int interrupt_priority =
         0; ///< SCHED_FIFO of the bound devices' interrupt threads; 0: as the kernel has them
     BoardRestarts restarts{};
@@ -173,6 +173,7 @@ constexpr Bounded<std::string_view, 4> consoles(const Names&... names) {
 constexpr BoardNetwork ethernet(std::string_view name, std::string_view address) noexcept {
     return {name, address};
 }
+/// Of a board: the interfaces of Ethernet, as ethernet() writes each.
 template <class... Rows>
 constexpr Bounded<BoardNetwork, 4> networks(const Rows&... rows) {
     return detail::list_of<BoardNetwork, 4>(rows...);
