@@ -30,6 +30,12 @@ public:
     /// bit_rate 0: frames take no time on the wire.
     explicit TwinBus(std::uint64_t seed, std::uint32_t bit_rate = 0) noexcept
         : random_{seed}, bit_rate_{bit_rate} {}
+    void set_bit_rate(std::uint32_t bits_per_second) noexcept TAPPET_REALTIME { bit_rate_ = bits_per_second; }
+    /// When the next frame is through the wire; never: none waits, or none takes time.
+    [[nodiscard]] Time next() noexcept TAPPET_REALTIME {
+        const auto winner = bit_rate_ == 0 || !acknowledged_ ? std::nullopt : arbitrate(never - 1ns);
+        return winner ? winner->start + wire_time(winner->frame) : never;
+    }
 
     static constexpr std::size_t most_ends = 8;
     /// Not real-time, before the bus runs. False when eight ends are there already.

@@ -56,6 +56,7 @@ std::expected<void, Sentence> SimulatedDevices::open_again() {
 
 std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row) {
     Bus& bus = *buses_.emplace_back(std::make_unique<Bus>(row.device, seed_));
+    bus.bus.set_bit_rate(bit_rate_);
     const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
     bus.settings.interface = row.device;
     bus.settings.receive = map.receive;
@@ -94,7 +95,10 @@ void SimulatedDevices::advance(Time now) {
         if (can::faulted(bus->plant.state())) static_cast<void>(bus->plant.restart());
     }
     next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
-    for (const auto& bus : buses_) bus->bus.deliver_until(now);
+    for (const auto& bus : buses_) {
+        bus->bus.deliver_until(now);
+        next_ = std::min(next_, bus->bus.next());
+    }
     for (const auto& chip : chips_) chip->twin.deliver_until(now);
     for (const auto& server : servers_) server->seen = server->twin.changes();
 }

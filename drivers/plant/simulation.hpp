@@ -22,6 +22,8 @@ public:
     /// `seed` decides what the faults of the twins strike.
     explicit SimulatedDevices(Plant& plant, std::uint64_t seed) : plant_{plant}, seed_{seed} {}
 
+    /// Before open(): frames take their time on the wire; 0: none.
+    void set_bit_rate(std::uint32_t bits_per_second) noexcept { bit_rate_ = bits_per_second; }
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
     /// The machine's ends of the buses anew, as a new process has them: a bus that was off is on again. Lines
     /// stay as they were left.
@@ -72,6 +74,7 @@ private:
 
     Plant& plant_;
     std::uint64_t seed_;
+    std::uint32_t bit_rate_ = 0;
     Time next_{};
     // What a twin is given stays where it is.
     std::vector<std::unique_ptr<Bus>> buses_{};

@@ -27,6 +27,12 @@ public:
     /// Before start(): where rows with a properties file have their values from; nowhere unless told, so that
     /// a run depends on its seed alone. The characters outlive the run.
     void keep_properties_in(std::string_view directory) noexcept { files_.keep_in(directory); }
+    /// Before start(): cycles take times that the seed draws, up to their budgets, and frames theirs on the
+    /// wire.
+    void take_times(std::uint64_t seed, std::uint32_t bit_rate) {
+        timed_by_ = seed;
+        devices_.set_bit_rate(bit_rate);
+    }
     [[nodiscard]] MachineInstance& instance() noexcept { return machine_->instance; }
     /// Opens the twins, configures and starts. An error is the first refusal.
     std::expected<void, Sentence> start();
@@ -59,6 +65,7 @@ private:
     SimulatedDevices devices_;
     PropertyFiles files_{""};
     std::optional<Machine> machine_;
+    std::optional<std::uint64_t> timed_by_{};
     std::uint64_t seen_steps_ = 0;
     std::function<void(Time now)> look_{};
 };

@@ -33,6 +33,7 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
     instance().read_properties_from(files_.store());
     if (auto configured = instance().configure(devices_.provided()); !configured)
         return std::unexpected(configured.error());
+    if (timed_by_) machine_->world.take_times(*timed_by_);
     machine_->world.add({this,
                          [](void* self) {
                              auto& run = *static_cast<VirtualRun*>(self);

@@ -3,6 +3,7 @@
 
 #include "drivers/can/signal_map.hpp"
 #include "drivers/gpio/line_map.hpp"
+#include "kernel/machine/check/time.hpp"
 
 #include <algorithm>
 
@@ -21,6 +22,17 @@ bool is_driver(const ComponentRow& row) {
 }
 
 } // namespace
+
+std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
+    std::vector<int> processors;
+    for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
+    std::vector<Duration> responses(processors.size());
+    for (std::size_t a = 0; a < responses.size(); ++a)
+        if (machine.table.activities[a].real_time)
+            responses[a] =
+                Duration{checks::worst_response(machine.table, machine.index.rank, processors, a).worst_ns};
+    return responses;
+}
 
 SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     : of_{of},
@@ -127,6 +139,7 @@ bool SwarmRun::run_until_works(Duration limit) {
 }
 
 void SwarmRun::storm(Time end) {
+    if (is_calm_) return run_until(end);
     Time next = run_.now();
     while (run_.now() < end && verdict_.broken.empty()) {
         if (next <= run_.now()) {
@@ -164,8 +177,25 @@ void SwarmRun::forget_faults() {
     faults_.clear();
 }
 
+void SwarmRun::note_responses() {
+    const auto engines = run_.instance().engines();
+    verdict_.responses.resize(engines.size());
+    for (std::size_t a = 0; a < engines.size(); ++a) {
+        verdict_.responses[a] = std::max(verdict_.responses[a], run_.world().longest_response(a));
+        verdict_.woken_too_often |= engines[a].statistics().wakes_too_many != 0;
+    }
+    if (verdict_.woken_too_often || !verdict_.broken.empty()) return;
+    const std::vector<Duration> analysed = analysed_responses(of_.machine);
+    for (std::size_t a = 0; a < engines.size(); ++a)
+        if (engines[a].plan().real_time && verdict_.responses[a] > analysed[a])
+            verdict_.broken = Sentence{"activity \"", engines[a].name(),
+                                       "\" took longer to respond than the analysis of "
+                                       "its table says, though none came too often"};
+}
+
 /// In the stated order, and what it leaves on the wires stays there.
 void SwarmRun::stop() {
+    note_responses();
     run_.stop();
     for (const Time end = run_.now() + at_rest; run_.now() < end;) {
         run_.clock().advance_to(run_.now() + 1ms);
@@ -360,7 +390,7 @@ void SwarmRun::strike_activity(Duration lasts) {
                          Duration{std::int64_t{1} << random_.between(20, 32)}); // as long as watchdogs wait
         run_.world().hang(a, run_.now() + lasts);
         return begin("activity hangs", text.add("hangs"), lasts, components_of(a),
-                     [this, a] { return run_.world().hang(a, Time{}), true; });
+                     [this, a] { return run_.world().hang(a, run_.now()), true; });
     case 2:
         begin("activity restarted", text.add("restarts"), 1ms, components_of(a), runs);
         return static_cast<void>(run_.world().change_activity(a, LifeChange::restart));

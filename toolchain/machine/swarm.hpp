@@ -29,6 +29,8 @@ struct SwarmVerdict {
     std::string waited_for{}; ///< it did not work again before its restart, and said this
     std::map<std::string, std::uint64_t> faults{}; ///< by their kinds
     std::uint64_t restarts = 0;
+    std::vector<Duration> responses{}; ///< of each activity the longest, where cycles take time
+    bool woken_too_often = false;      ///< an activity, than its row says: then the analysis says nothing
 };
 
 /// One seed's run: it starts, works, is struck by faults that overlap, all of which end, works again, and is
@@ -38,6 +40,10 @@ public:
     /// `tell`: called with each thing that happens, for a replay.
     using Tell = std::function<void(Time, std::string_view)>;
     SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell = {});
+    /// Before go(): cycles and frames take time, see VirtualRun.
+    void take_times(std::uint64_t seed, std::uint32_t bit_rate) { run_.take_times(seed, bit_rate); }
+    /// Before go(): nothing fails.
+    void be_calm() { is_calm_ = true; }
     [[nodiscard]] SwarmVerdict go();
 
 private:
@@ -56,6 +62,7 @@ private:
     void strike();
     void end_faults(bool all);
     void forget_faults();
+    void note_responses();
     void stop();
     void judge(Time now);
     void judge_emissions();
@@ -80,10 +87,14 @@ private:
     std::unique_ptr<SwarmRules> rules_;
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
-    std::uint64_t lost_ = 0;             ///< emissions, so far
-    Sentence refusal_{};                 ///< why a part did not start again, the last
+    bool is_calm_ = false;
+    std::uint64_t lost_ = 0; ///< emissions, so far
+    Sentence refusal_{};     ///< why a part did not start again, the last
     SwarmVerdict verdict_{};
 };
+
+/// What the analysis of the table says of each activity; zero for those that are not real-time.
+[[nodiscard]] std::vector<Duration> analysed_responses(const AcceptedMachine& machine);
 
 /// The program of a machine's swarm. The exit code: 0 no rule was broken, 1 one was, 2 a wrong command line.
 [[nodiscard]] int run_swarm(const SwarmOf& of, int count, char** words);

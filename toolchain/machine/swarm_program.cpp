@@ -30,6 +30,13 @@ constexpr std::array options{
            .help = "from one seed to the next (default 1)",
            .is_number = true,
            .least = 1},
+    Option{.name = "--bit-rate",
+           .value = "N",
+           .help = "cycles take times drawn up to their budgets, frames theirs at so many bit/s (no time)",
+           .is_number = true,
+           .least = 1,
+           .most = 1'000'000},
+    Option{"--calm", "", "nothing fails: for the responses of a machine that works"},
     Option{.name = "--seed",
            .value = "SEED",
            .help = "this one only, and tells what happens",
@@ -51,6 +58,7 @@ struct Totals {
     Duration time{};
     std::uint64_t seeds = 0, broken = 0, restarts = 0;
     std::vector<Duration> back{};
+    std::vector<Duration> usual{}, responses{}; // of seeds in which none came too often, and of the others
     std::map<std::string, std::uint64_t> faults{};
     std::map<std::string, std::vector<std::uint64_t>> waited_for{}; // by the seeds
 
@@ -59,11 +67,25 @@ struct Totals {
         time += verdict.time;
         restarts += verdict.restarts;
         broken += verdict.broken.empty() ? 0u : 1u;
+        auto& longest = verdict.woken_too_often ? responses : usual;
+        for (std::size_t a = 0; a < verdict.responses.size(); ++a)
+            longest[a] = std::max(longest[a], verdict.responses[a]);
         for (const auto& [kind, number] : verdict.faults) faults[kind] += number;
         if (!verdict.waited_for.empty())
             waited_for[verdict.waited_for].push_back(seed);
         else if (verdict.broken.empty())
             back.push_back(verdict.back);
+    }
+    void print_responses(const AcceptedMachine& machine) const {
+        const std::vector<Duration> analysed = analysed_responses(machine);
+        for (std::size_t a = 0; a < analysed.size(); ++a) {
+            if (analysed[a] == Duration{}) continue;
+            os::print(Sentence{"activity ", machine.table.activities[a].name, ": longest response ",
+                               usual[a] / 1us, " us of ", analysed[a] / 1us, " us analysed, ",
+                               100 * usual[a] / analysed[a], " %; ", responses[a] / 1us,
+                               " us where some came more often than their rows say\n"}
+                          .view());
+        }
     }
     void print(std::string_view name, Duration took) {
         os::print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_ms(took),
@@ -112,9 +134,18 @@ int run_swarm(const SwarmOf& of, int count, char** words) {
     std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1);
     const Duration began = os::processor_time_of_this_thread();
     Totals totals;
+    totals.usual.resize(of.machine.table.activities.size());
+    totals.responses = totals.usual;
+    const bool timed = given->has("--bit-rate");
     do {
-        replay = Sentence{"replay it: ", words[0], " --seed ", seed, "\n"};
-        const SwarmVerdict verdict = SwarmRun{of, seed, tell}.go();
+        replay = Sentence{"replay it: ", words[0], " --seed ", seed};
+        if (timed) replay.add(" --bit-rate ").add(given->text("--bit-rate"));
+        if (given->has("--calm")) replay.add(" --calm");
+        replay.add("\n");
+        SwarmRun run{of, seed, tell};
+        if (timed) run.take_times(seed, static_cast<std::uint32_t>(given->number("--bit-rate", 0)));
+        if (given->has("--calm")) run.be_calm();
+        const SwarmVerdict verdict = run.go();
         totals.add(seed, verdict);
         if (!verdict.broken.empty())
             os::print(Sentence{name, ": seed ", seed, " at ", to_ns(verdict.at) / 1000,
@@ -122,6 +153,7 @@ int run_swarm(const SwarmOf& of, int count, char** words) {
                           .view());
         seed += given->number("--step", 1);
     } while (!given->has("--seed") && totals.time < wanted && totals.broken < most_broken);
+    if (timed) totals.print_responses(of.machine);
     totals.print(name, os::processor_time_of_this_thread() - began);
     return totals.broken == 0 ? none_broken : one_broken;
 }

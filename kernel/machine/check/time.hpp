@@ -38,6 +38,23 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
     }
 }
 
+/// Of one activity that is real-time, by the ranks and the processors of all; deadlines are not looked at.
+constexpr Response worst_response(const MachineView& m, std::span<const std::size_t> rank,
+                                  std::span<const int> processors, std::size_t a) {
+    std::array<TaskTiming, max_activities> tasks{};
+    std::size_t count = 0;
+    for (std::size_t urgency = 0; urgency <= rank[a]; ++urgency)
+        for (std::size_t b = 0; b < rank.size(); ++b) {
+            if (rank[b] != urgency || processors[b] != processors[a]) continue;
+            // n wakes in a window may come together: they count as one job of n budgets.
+            const ActivityRow& other = m.activities[b];
+            const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
+            tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
+                              other.deadline().count()};
+        }
+    return response_time(std::span{tasks}.first(count), count - 1);
+}
+
 /// Fills the worst response times.
 constexpr Sentence check_schedulability(const MachineView& m, const Board& board, const Binding& binding,
                                         TableIndexView r) {
@@ -80,17 +97,7 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
         r.worst_response_ns[a] = 0;
         const ActivityRow& row = m.activities[a];
         if (!row.real_time) continue;
-        std::array<TaskTiming, max_activities> tasks{};
-        std::size_t count = 0;
-        for (const std::size_t b : r.by_rank.first(r.rank[a] + 1)) {
-            if (processors[b] != processors[a]) continue;
-            // n wakes in a window may come together: they count as one job of n budgets.
-            const ActivityRow& other = m.activities[b];
-            const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
-            tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
-                              other.deadline().count()};
-        }
-        const Response response = response_time(std::span{tasks}.first(count), count - 1);
+        const Response response = worst_response(m, r.rank, processors, a);
         if (!response.bounded)
             return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
                                board.name,

@@ -28,6 +28,7 @@ ActivityControl VirtualWorld::control() noexcept {
                 auto& world = *static_cast<VirtualWorld*>(self);
                 if (world.loops_[a]) world.loops_[a]->break_off();
                 world.end(a);
+                world.jobs_[a].is_there = false;
                 world.instance_.engines()[a].stop(world.instance_.clock().now());
                 return true;
             }};
@@ -51,11 +52,14 @@ Time VirtualWorld::quiet(const void* but, Time end) const {
         if (process.self != but) next = std::min(next, process.next(process.self));
     const auto engines = instance_.engines();
     for (std::size_t a = 0; a < engines.size(); ++a) {
-        if (!engines[a].is_active()) continue;
+        if (!engines[a].is_active() || jobs_[a].is_there) continue;
         const bool woken = engines[a].waiter().is_woken();
         if (woken && hangs_until_[a] <= instance_.clock().now()) return instance_.clock().now();
         next = std::min(next, std::max(woken ? Time::min() : wake_at_[a], hangs_until_[a]));
     }
+    for (int p = 0; times_ && p < instance_.machine().board->processors; ++p)
+        if (const std::size_t a = at_work(p); a != nowhere)
+            next = std::min(next, worked_until_ + jobs_[a].left);
     return next;
 }
 
@@ -75,16 +79,62 @@ void VirtualWorld::run_engine(std::size_t a, bool woken) {
     wake_at_[a] = loops_[a]->next_wake();
 }
 
+bool VirtualWorld::is_ready(std::size_t a, Time now) {
+    Engine& engine = instance_.engines()[a];
+    Job& job = jobs_[a];
+    if (!engine.is_active()) job.is_there = false;
+    if (!engine.is_active() || hangs_until_[a] > now) return false;
+    if (!job.is_there) {
+        job.woken = engine.waiter().is_woken() && engine.waiter().take();
+        if (!job.woken && wake_at_[a] > now) return false;
+        job.is_there = true;
+        // A timer that is armed for a time that has passed is due from then on.
+        job.release = job.woken                ? now
+                      : engine.plan().periodic ? wake_at_[a]
+                                               : std::max(wake_at_[a], job.ended);
+        job.release = std::max(job.release, hangs_until_[a]);
+        job.left = {};
+        const std::int64_t budget = engine.plan().budget.count();
+        if (times_ && budget > 0)
+            job.left = Duration{times_->one_in(4) ? budget : times_->between(1, budget)};
+    }
+    return true;
+}
+
+std::size_t VirtualWorld::at_work(int processor) const {
+    for (const std::size_t a : by_urgency_)
+        if (jobs_[a].is_there && hangs_until_[a] <= worked_until_ &&
+            instance_.machine().plan.activities[a].processor == processor)
+            return a;
+    return nowhere;
+}
+
+void VirtualWorld::work_until(Time now) {
+    for (int p = 0; times_ && p < instance_.machine().board->processors; ++p)
+        if (const std::size_t a = at_work(p); a != nowhere)
+            jobs_[a].left -= std::min(jobs_[a].left, now - worked_until_);
+    worked_until_ = now;
+}
+
 void VirtualWorld::run_engines(Time now) {
-    const auto engines = instance_.engines();
+    work_until(now);
     for (int round = 0; round < max_rounds_per_instant; ++round) {
         bool ran = false;
+        std::uint64_t busy = 0; // processors
         for (const std::size_t a : by_urgency_) {
-            Engine& engine = engines[a];
-            if (!engine.is_active() || hangs_until_[a] > now) continue;
-            const bool woken = engine.waiter().is_woken() && engine.waiter().take();
-            if (!woken && wake_at_[a] > now) continue;
-            run_engine(a, woken);
+            if (!is_ready(a, now)) continue;
+            Job& job = jobs_[a];
+            if (times_) {
+                const std::uint64_t processor = std::uint64_t{1}
+                                                << instance_.machine().plan.activities[a].processor;
+                const bool waits = (busy & processor) != 0;
+                busy |= processor;
+                if (waits || job.left > Duration{}) continue;
+                job.longest = std::max(job.longest, now - job.release);
+                job.ended = now;
+            }
+            job.is_there = false;
+            run_engine(a, job.woken);
             ++steps_;
             ran = true;
             break; // the most urgent of those that are ready now runs next

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/random.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/worlds/virtual_loop.hpp"
 
@@ -35,13 +36,25 @@ public:
     /// Before start. Without one, the world itself calls Engine::run.
     void run_cycles_by(const CycleRunner& runner) noexcept { runner_ = runner; }
 
+    /// Before start: a cycle takes time, up to its row's budget, as the seed draws it; on each processor the
+    /// most urgent activity runs, and what it does is seen when its time is used up. Without this no cycle
+    /// takes any.
+    void take_times(std::uint64_t seed) noexcept { times_.emplace(seed); }
+    /// Of cycles that take time: from the wake or the release to the end, the longest so far.
+    [[nodiscard]] Duration longest_response(std::size_t activity) const noexcept {
+        return jobs_[activity].longest;
+    }
+
     /// Activities start in the table's order. Empty: all did; else the first refusal, and all are stopped.
     Sentence start();
     /// As RealWorld's.
     [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
     /// Its thread does not come: the activity runs no cycle before `until`, whatever wakes it. A stop is done
     /// in its place, as RealWorld does it. For tests of what a hang does to the others.
-    void hang(std::size_t activity, Time until) noexcept { hangs_until_[activity] = until; }
+    void hang(std::size_t activity, Time until) noexcept {
+        hangs_until_[activity] = until;
+        jobs_[activity].release = std::max(jobs_[activity].release, until); // a hang is no response
+    }
     /// Runs to `end`, or until a stop is asked for: then false.
     bool run_until(Time end);
     /// Engines stop, the last row of the table first.
@@ -57,7 +70,20 @@ private:
     /// Engines of one instant: a message wakes another, and so on, so many times at most.
     static constexpr int max_rounds_per_instant = 1000;
 
+    /// A cycle that is under way.
+    struct Job {
+        bool is_there = false;
+        bool woken = false;
+        Time release{}, ended{};
+        Duration left{};
+        Duration longest{};
+    };
+
     [[nodiscard]] ActivityControl control() noexcept;
+    [[nodiscard]] bool is_ready(std::size_t activity, Time now);
+    /// The most urgent job of a processor; nowhere: it has none.
+    [[nodiscard]] std::size_t at_work(int processor) const;
+    void work_until(Time now);
     void run_engine(std::size_t activity, bool woken);
     [[nodiscard]] Time next_time() const { return quiet(nullptr, never); }
     [[nodiscard]] Time quiet(const void* but, Time end) const;
@@ -75,6 +101,9 @@ private:
     // all its timers.
     std::array<Time, max_activities> wake_at_{};
     std::array<Time, max_activities> hangs_until_{};
+    std::optional<Random> times_{}; ///< none: cycles take no time
+    std::array<Job, max_activities> jobs_{};
+    Time worked_until_{};
     std::array<std::optional<VirtualLoop>, max_activities> loops_{};
     Time end_{}; ///< of the run
     std::uint64_t steps_ = 0;

@@ -25,9 +25,11 @@ struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<table, watched::board>::machine(), clock};
     VirtualWorld world{instance};
-    Rig() {
+    /// `seed`: cycles take times.
+    explicit Rig(std::optional<std::uint64_t> seed = {}) {
         watched::stops().clear();
         EXPECT_TRUE(instance.configure({}));
+        if (seed) world.take_times(*seed);
         world.start();
     }
     Worker& worker(std::string_view name) { return *instance.template find<Worker>(name); }
@@ -42,6 +44,43 @@ TEST(VirtualWorld, runs_every_activity_at_its_period_and_leaps_over_what_lies_be
     EXPECT_EQ(rig.worker("middle").cycles, 10'000u);
     EXPECT_EQ(rig.worker("logic").cycles, 2'000u);
     EXPECT_EQ(rig.world.steps(), 17'000u);
+}
+
+TEST(VirtualWorld, keeps_an_activity_that_hangs_from_its_cycles_and_no_other) {
+    Rig<watched::table> rig;
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 1s));
+    const auto middle = rig.worker("middle").cycles, driver = rig.worker("driver").cycles;
+    rig.world.hang(
+        rig.instance.machine().index.activity[find_component(rig.instance.machine().table, "middle")],
+        rig.clock.now() + 500ms);
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 1499ms));
+    EXPECT_EQ(rig.worker("middle").cycles, middle);
+    EXPECT_EQ(rig.worker("driver").cycles, driver + 249);
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 2s));
+    EXPECT_NEAR(static_cast<double>(rig.worker("middle").cycles - middle), 500.0, 2.0);
+}
+
+/// Cycles that take time, as long as the analysis says at most.
+TEST(VirtualWorld, lets_cycles_take_up_to_their_budgets_and_none_respond_later_than_analysed) {
+    const AcceptedMachine machine = Firmware<watched::table, watched::board>::machine();
+    std::vector<int> processors;
+    for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
+    Duration longest{};
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Rig<watched::table> rig{seed};
+        EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10s));
+        for (std::size_t a = 0; a < processors.size(); ++a) {
+            const ActivityRow& row = machine.table.activities[a];
+            if (!row.real_time) continue;
+            const Response analysed =
+                checks::worst_response(machine.table, machine.index.rank, processors, a);
+            EXPECT_LE(rig.world.longest_response(a).count(), analysed.worst_ns)
+                << row.name << ", seed " << seed;
+            EXPECT_GE(rig.world.longest_response(a), row.budget_each) << row.name << ", seed " << seed;
+            longest = std::max(longest, rig.world.longest_response(a) - row.budget_each);
+        }
+    }
+    EXPECT_GT(longest, 0us) << "none was preempted";
 }
 
 TEST(VirtualWorld, stops_the_last_row_first) {
