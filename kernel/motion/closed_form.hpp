@@ -7,8 +7,10 @@
 #include "kernel/motion/joint_range.hpp"
 #include "kernel/motion/kinematics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace tappet::motion {
 
@@ -31,6 +33,25 @@ constexpr bool has_closed_form(const Chain<Base, End, joints>& chain) noexcept {
     }
 }
 
+namespace detail {
+
+/// An angle by its cosine and sine, which need no more of it until it is told.
+struct Bend {
+    sparse::Turn<double, double> turn;
+    explicit Bend(double angle) noexcept TAPPET_REALTIME {
+        const auto [sine, cosine] = sine_cosine(angle);
+        turn = {cosine, sine};
+    }
+    /// Of numbers in that proportion; both nought are no angle, and taken for nought.
+    Bend(double cosine, double sine) noexcept TAPPET_REALTIME {
+        const double length = std::sqrt(cosine * cosine + sine * sine);
+        turn = length > 0.0 ? sparse::Turn{cosine / length, sine / length} : sparse::Turn{1.0, 0.0};
+    }
+    [[nodiscard]] double angle() const noexcept TAPPET_REALTIME { return std::atan2(turn.s, turn.c); }
+};
+
+} // namespace detail
+
 /// All joints that lead the end of a chain to `target`: shoulder in front or behind, elbow up or down, wrist
 /// turned over or not; none when it is out of reach. Where a turn is free, with the wrist stretched or above
 /// the first axis, it is that of `near`. Angles as they come; nearest(..) brings them to where the arm is.
@@ -49,6 +70,8 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
     constexpr double a1 = table[0][Of::a], d1 = table[0][Of::d], a2 = table[1][Of::a];
     constexpr double a3 = table[2][Of::a], d4 = table[3][Of::d];
     constexpr double offset = table[1][Of::d] + c2 * table[2][Of::d]; // of the arm's plane from axis 1
+    constexpr double s4 = table[3][Of::sa];
+    constexpr double s5 = table[4][Of::sa];
     require_numbers<6>(near);
     require_numbers<3>(target.position);
     require_numbers<9>(target.rotation.reshaped());
@@ -58,62 +81,71 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
     last.rotation << 1, 0, 0, 0, table[5][Of::ca], -table[5][Of::sa], 0, table[5][Of::sa], table[5][Of::ca];
     last.position = {table[5][Of::a], 0.0, table[5][Of::d]};
     const auto wrist = target * inverse(last);
-    const Eigen::Vector3d& w = wrist.position;
+    const double wx = wrist.position.x();
+    const double wy = wrist.position.y();
 
-    const auto angle_of = [&](int i, double q) { // theta, from the joint's own angle
-        const auto& numbers = table[static_cast<std::size_t>(i)];
-        return numbers[Of::sense] * q + std::atan2(numbers[Of::s0], numbers[Of::c0]);
+    using detail::Bend;
+    using sparse::Turn;
+    const auto joint_of = [](std::size_t i, double theta) {
+        return table[i][Of::sense] * (theta - chain.links[i].theta_deg * (std::numbers::pi / 180.0));
     };
-    const auto joint_of = [&](int i, double theta) {
-        const auto& numbers = table[static_cast<std::size_t>(i)];
-        return numbers[Of::sense] * (theta - std::atan2(numbers[Of::s0], numbers[Of::c0]));
-    };
-    const auto turn_by = [](double theta, double sine, double cosine) { // Rz(theta) Rx(alpha)
-        const auto [s, c] = sine_cosine(theta);
-        Eigen::Matrix3d m;
-        m << c, -s * cosine, s * sine, s, c * cosine, -c * sine, 0.0, sine, cosine;
-        return m;
+    const auto as_it_is = [&](std::size_t i) { // theta of `near`
+        const double q = near[static_cast<int>(i)];
+        return Bend{table[i][Of::sense] * q + chain.links[i].theta_deg * (std::numbers::pi / 180.0)};
     };
 
     Bounded<Joints<6>, 8> found;
-    const double out = w.x() * w.x() + w.y() * w.y() - offset * offset;
+    const double apart = wx * wx + wy * wy; // squared, from axis 1
     const double scale = a2 * a2 + a3 * a3 + d4 * d4;
+    const double out = apart - offset * offset;
     if (out < -1e-12 * scale) return found;
     const double reach = std::sqrt(out > 0.0 ? out : 0.0);
     const double forearm = std::sqrt(a3 * a3 + d4 * d4);
-    const bool is_above = w.x() * w.x() + w.y() * w.y() < 1e-20 * scale;
-    for (const double shoulder : {1.0, -1.0}) {
-        const double across = shoulder * reach;
-        const double theta1 =
-            is_above ? angle_of(0, near[0]) : std::atan2(w.y(), w.x()) - std::atan2(-s1 * offset, across);
+    for (const double across : {reach, -reach}) {
+        const Bend one = apart < 1e-20 * scale
+                             ? as_it_is(0)
+                             : Bend{wx * across - wy * s1 * offset, wy * across + wx * s1 * offset};
         const double x = across - a1;
-        const double y = s1 * (w.z() - d1);
-        double cosine = (x * x + y * y - a2 * a2 - forearm * forearm) / (2.0 * a2 * forearm);
-        if (!(std::fabs(cosine) <= 1.0 + 1e-12)) continue;
-        cosine = cosine > 1.0 ? 1.0 : cosine < -1.0 ? -1.0 : cosine;
+        const double y = s1 * (wrist.position.z() - d1);
+        const double bend = (x * x + y * y - a2 * a2 - forearm * forearm) / (2.0 * a2 * forearm);
+        if (!(std::fabs(bend) <= 1.0 + 1e-12)) continue;
+        const double cosine = std::min(std::max(bend, -1.0), 1.0);
         for (const double elbow : {1.0, -1.0}) {
             const double sine = elbow * std::sqrt(1.0 - cosine * cosine);
-            const double theta3 = std::atan2(s3 * d4, a3) + std::atan2(sine, cosine);
-            const double theta2 = std::atan2(y, x) - std::atan2(c2 * forearm * sine, a2 + forearm * cosine);
-            const Eigen::Matrix3d arm =
-                turn_by(theta1, s1, 0.0) * turn_by(theta2, 0.0, c2) * turn_by(theta3, s3, 0.0);
-            const Eigen::Matrix3d m = arm.transpose() * wrist.rotation;
-            constexpr double s4 = table[3][Of::sa];
-            constexpr double s5 = table[4][Of::sa];
-            const double bent = std::sqrt(m(0, 2) * m(0, 2) + m(1, 2) * m(1, 2));
-            for (const double over : {1.0, -1.0}) {
-                const double theta4 = bent < 1e-10 ? angle_of(3, near[3])
-                                                   : std::atan2(s5 * over * m(1, 2), s5 * over * m(0, 2));
-                const double theta5 = std::atan2(over * bent, -s4 * s5 * m(2, 2));
-                // The last turn is what is left: it makes good what is unsure about the fourth near a
-                // stretched wrist.
-                const Eigen::Matrix3d rest =
-                    (turn_by(theta4, s4, 0.0) * turn_by(theta5, s5, 0.0)).transpose() * m;
-                Joints<6> q;
-                q << joint_of(0, theta1), joint_of(1, theta2), joint_of(2, theta3), joint_of(3, theta4),
-                    joint_of(4, theta5), joint_of(5, std::atan2(rest(1, 0), rest(0, 0)));
-                static_cast<void>(found.push(q));
-            }
+            const Bend three{a3 * cosine - s3 * d4 * sine, s3 * d4 * cosine + a3 * sine};
+            const double ahead = a2 + forearm * cosine;
+            const double aside = c2 * forearm * sine;
+            const Bend two = x * x + y * y < 1e-20 * scale
+                                 ? as_it_is(1)
+                                 : Bend{x * ahead + y * aside, y * ahead - x * aside};
+            // The wrist's turn, by its first and its third column.
+            const auto into_arm = [&](const auto& v) {
+                const sparse::Triple column{v(0), v(1), v(2)};
+                const auto upper = back_about_x(Turn{0.0, s1}, back_about_z(one.turn, column));
+                const auto fore = back_about_x(Turn{c2, 0.0}, back_about_z(two.turn, upper));
+                return back_about_x(Turn{0.0, s3}, back_about_z(three.turn, fore));
+            };
+            const auto first = into_arm(wrist.rotation.col(0));
+            const auto third = into_arm(wrist.rotation.col(2));
+            const double bent = std::sqrt(third.x * third.x + third.y * third.y);
+            const Bend four = bent < 1e-10 ? as_it_is(3) : Bend{s5 * third.x, s5 * third.y};
+            const Bend five{-s4 * s5 * third.z, bent};
+            // The last turn is what is left: it makes good what is unsure about the fourth near a stretched
+            // wrist.
+            const auto left = back_about_x(
+                Turn{0.0, s5},
+                back_about_z(five.turn, back_about_x(Turn{0.0, s4}, back_about_z(four.turn, first))));
+            const Bend six{left.x, left.y};
+            Joints<6> q;
+            q << joint_of(0, one.angle()), joint_of(1, two.angle()), joint_of(2, three.angle()),
+                joint_of(3, four.angle()), joint_of(4, five.angle()), joint_of(5, six.angle());
+            static_cast<void>(found.push(q));
+            // The wrist turned over is the same: half a turn before its bend, which goes the other way, and
+            // after.
+            q[3] += std::numbers::pi;
+            q[4] = joint_of(4, -five.angle());
+            q[5] += std::numbers::pi;
+            static_cast<void>(found.push(q));
         }
     }
     return found;

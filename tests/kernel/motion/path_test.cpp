@@ -17,7 +17,6 @@ struct World;
 struct Tool;
 using Place = Frame<World, Tool>;
 using Way = Path<World, Tool>;
-constexpr double pi = std::numbers::pi;
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 class Paths : public testing::Test {
