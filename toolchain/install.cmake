@@ -13,7 +13,7 @@ install(DIRECTORY toolchain DESTINATION "${tappet_share}" PATTERN "*.md" EXCLUDE
 install(DIRECTORY toolchain/tools/chart DESTINATION "${tappet_share}/toolchain/tools" PATTERN "*.md" EXCLUDE)
 install(DIRECTORY toolchain/tools/front/template DESTINATION "${tappet_share}")
 install(FILES toolchain/tools/front/tappet.bash DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME tappet)
-foreach(library IN ITEMS libmodbus/src libmodbus/configure.ac pugixml/src)
+foreach(library IN ITEMS libmodbus/src libmodbus/configure.ac libmodbus/VERSION pugixml/src pugixml/VERSION)
     cmake_path(GET library PARENT_PATH folder)
     if(IS_DIRECTORY "${TAPPET_CACHE}/${library}")
         install(DIRECTORY "${TAPPET_CACHE}/${library}" DESTINATION "${tappet_share}/foreign/${folder}")
@@ -27,11 +27,11 @@ install(FILES "${TAPPET_GPIOD_INCLUDE}/gpiod.h" "${TAPPET_GPIOD_ARCHIVE}" DESTIN
 install(FILES README.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY toolchain/guide "${PROJECT_BINARY_DIR}/guide" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet/examples")
-# The bench's kernels, unpacked: without them a machine runs on the host only.
+# The bench's kernels, unpacked, and the box's: without them a machine runs on the host only.
 install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign")
 
 # They find each other beside themselves.
-install(TARGETS tappet tappet-bench tappet-browse bench-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
+install(TARGETS tappet tappet-bench tappet-browse tappet-image bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
 install(CODE "
     set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
     file(MAKE_DIRECTORY \"\${bin}\")
@@ -55,5 +55,5 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 # What compiles a machine, and what boots it on the bench.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "g++, cmake, ninja-build, libeigen3-dev, libdouble-conversion-dev, libedit-dev, libbsd-dev, musl-dev, libgtest-dev, libgmock-dev")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "qemu-system-x86, graphviz, plantuml")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "qemu-system-x86, graphviz, plantuml, efibootguard, gdisk, dosfstools, mtools, e2fsprogs, zstd")
 include(CPack)

@@ -1,10 +1,12 @@
 // tappet: the front door. Writes a new machine's project, builds it, runs it, tests it, measures it, draws
-// it, boots it on the bench and looks into it; each by a program that also stands for itself.
+// it, boots it on the bench, writes its image, flashes it and looks into it; each by a program that also
+// stands for itself.
 #include "toolchain/machine/host_options.hpp"
 #include "toolchain/tools/chart/options.hpp"
 #include "toolchain/tools/front/commands.hpp"
 #include "toolchain/tools/front/figures.hpp"
 #include "toolchain/tools/front/project.hpp"
+#include "toolchain/tools/image/options.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -148,12 +150,16 @@ int test(const Given& given) {
     return is_built({}) ? become(with(ctest, given.behind)) : 1;
 }
 
+/// Kernels and foreign sources of the package, unless somebody has others.
+void use_what_is_installed() {
+    if (is_installed()) ::setenv("TAPPET_CACHE", (beside_us() / "../../share/tappet/foreign").c_str(), 0);
+}
+
 int bench(const Given& given) {
     const std::string machine = machine_here(given);
     if (machine.empty()) return wrong_use;
     if (!is_built({machine + "-bench", machine + "-plant"})) return 1;
-    if (is_installed() && std::getenv("TAPPET_CACHE") == nullptr)
-        ::setenv("TAPPET_CACHE", (beside_us() / "../../share/tappet/foreign").c_str(), 1);
+    use_what_is_installed();
     // All that the bench's board has: what the machine is not bound to lies idle.
     return become({(beside_us() / "tappet-bench").string(),
                    "--timeout",
@@ -182,6 +188,38 @@ int bench(const Given& given) {
                    "@signal plant TERM",
                    "--run",
                    "@wait plant"});
+}
+
+/// For the bench's board the plant comes along, since nobody else stands at its wires.
+int image(const Given& given) {
+    const std::string machine = machine_here(given);
+    if (machine.empty()) return wrong_use;
+    if (given.line.words.size() != 1) return fail("image: name one board: tappet image my_box");
+    const std::string board{given.line.words[0]};
+    const std::vector<std::string> boards = boards_of("CMakeLists.txt", machine);
+    if (board == "host" || std::ranges::find(boards, board) == boards.end()) {
+        const std::vector<std::string_view> names(boards.begin(), boards.end());
+        return fail("image: " + machine + " has no firmware for board \"" + board + "\"" +
+                    did_you_mean(board, names, "; name it behind BOARDS in CMakeLists.txt"));
+    }
+    const std::string firmware = machine + "-" + board;
+    Words targets{firmware};
+    Words program{(beside_us() / "tappet-image").string(), "write", "--firmware",
+                  "build/" + firmware + ".stripped",       "--to",  "build/image/" + firmware};
+    if (board == "bench") {
+        targets.push_back(machine + "-plant");
+        program = with(program, {"--plant", "build/" + machine + "-plant", "--plant-options", "--fifo 1"});
+    }
+    for (const auto& [option, value] : given.line.options)
+        if (option->name != "--machine")
+            program = with(program, {std::string{option->name}, std::string{value}});
+    use_what_is_installed();
+    return is_built(targets) ? become(program) : 1;
+}
+
+int flash(const Given& given) {
+    Words program{(beside_us() / "tappet-image").string(), "flash"};
+    return become(with(program, given.words));
 }
 
 int chart(const Given& given) {
@@ -239,6 +277,7 @@ constexpr std::array new_options{Option{"--can", "", "a drive on a CAN bus"},
 constexpr auto run_options = for_a_machine(host_options);
 constexpr std::array test_options{Option{"--only", "REGEX", "tests whose names fit"}};
 constexpr auto timed_options = for_a_machine(std::array{time_option});
+constexpr auto box_image_options = for_a_machine(image::image_options);
 constexpr auto chart_options = for_a_machine(chart::chart_options);
 
 constexpr Command commands[] = {
@@ -281,6 +320,18 @@ constexpr Command commands[] = {
      .help = "boots the firmware on an emulated box with a real-time kernel, for so long of its own time",
      .options = timed_options,
      .run = &bench},
+    {.name = "image",
+     .takes = "BOARD",
+     .help = "writes what is flashed onto a box into build/image",
+     .options = box_image_options,
+     .others = Others::words,
+     .run = &image},
+    {.name = "flash",
+     .takes = "DEVICE",
+     .help = "writes an image onto a disk, and reads it back",
+     .options = image::flash_options,
+     .others = Others::words,
+     .run = &flash},
     {.name = "browse",
      .takes = "[WORD...]",
      .help = "looks into a running machine",

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <sstream>
 
 namespace tappet::front {
 
@@ -100,6 +101,23 @@ std::expected<std::vector<std::string>, std::string> machines_of(const fs::path&
     if (names.empty())
         return std::unexpected("CMakeLists.txt here names no tappet_machine(..); go to a machine's folder");
     return names;
+}
+
+std::vector<std::string> boards_of(const fs::path& cmake, std::string_view machine) {
+    const std::string text = contents_of(cmake);
+    const std::regex call{"tappet_machine\\(\\s*" + std::string{machine} + "\\b([^)]*)\\)"};
+    std::smatch arguments;
+    std::vector<std::string> boards;
+    if (!std::regex_search(text, arguments, call)) return boards;
+    static const std::regex keyword{"[A-Z_]+"};
+    std::istringstream words{arguments[1].str()};
+    bool is_board = false;
+    for (std::string word; words >> word;)
+        if (std::regex_match(word, keyword))
+            is_board = word == "BOARDS";
+        else if (is_board)
+            boards.push_back(fs::path{word}.extension() == ".hpp" ? fs::path{word}.stem().string() : word);
+    return boards;
 }
 
 bool has_option(const fs::path& folder, std::string_view option) {

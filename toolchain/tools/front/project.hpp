@@ -29,6 +29,10 @@ struct Choice {
 [[nodiscard]] std::expected<std::vector<std::string>, std::string>
 machines_of(const std::filesystem::path& cmake);
 
+/// The names of a machine's boards, as its programs have them: of boards/my_box.hpp it is my_box.
+[[nodiscard]] std::vector<std::string> boards_of(const std::filesystem::path& cmake,
+                                                 std::string_view machine);
+
 /// Whether a source in the folder names an option, as a plant of its own does. What was built is passed over.
 [[nodiscard]] bool has_option(const std::filesystem::path& folder, std::string_view option);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tappet-image: writes what is flashed onto a box, from the firmware that shall run there; flashes it; renews
 // a slot.
-#include "toolchain/command_line.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/image/flash.hpp"
 #include "toolchain/tools/image/image.hpp"
+#include "toolchain/tools/image/options.hpp"
 #include "toolchain/tools/image/slots.hpp"
 
 #include <algorithm>
@@ -17,30 +17,14 @@
 namespace tappet::image {
 namespace {
 
-constexpr std::array options{
+constexpr std::array write_options{
     Option{"--firmware", "FILE", "of one machine on one board, stripped"},
     Option{"--to", "DIR", "where disk.img, tappet.efi and their parts go"},
-    Option{"--plant", "FILE",
-           "of a test board: runs in the image, at the other end of the wires; its end is the box's"},
-    Option{"--plant-options", "TEXT", "options of the plant, in one word"},
+    Option{"--plant", "FILE", "of a test board: at the other end of the wires; its end is the box's"},
+    Option{"--plant-options", "TEXT", "of the plant, in one word"},
     Option{"--init", "FILE", "PID 1 (default: box-init beside this program)"},
-    Option{.name = "--version",
-           .value = "N",
-           .help = "of the image (default 1)",
-           .is_number = true,
-           .least = 1,
-           .most = 4'000'000'000},
-    Option{.name = "--watchdog",
-           .value = "SECONDS",
-           .help = "armed by the loader before the kernel (default 30); 0: the box has none",
-           .is_number = true,
-           .least = 0,
-           .most = 255}};
-
-constexpr std::array flash_options{
-    Option{"--image", "FILE", "a disk.img"},
-    Option{"--erase", "", "what is on the disk may be lost"},
-};
+    image_options[0],
+    image_options[1]};
 constexpr std::array install_options{Option{"--kernel", "FILE", "a tappet.efi"}};
 
 constexpr double goal_mb = 12.0;
@@ -108,7 +92,7 @@ struct Word {
     const char* usage;
 };
 constexpr std::array words_known{
-    Word{"write", options, &write, "write --firmware FILE --to DIR: a disk image for a box"},
+    Word{"write", write_options, &write, "write --firmware FILE --to DIR: a disk image for a box"},
     Word{"flash", flash_options, &flash, "flash --image FILE [--erase] DEVICE: onto a disk, and read back"},
     Word{"install", install_options, &install,
          "install --kernel FILE DISK: a new version into the slot that is not in use, for one trial"}};

@@ -24,8 +24,8 @@ using testing::Not;
 using testing::StartsWith;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> every_word{"new",     "build", "run",    "test", "chart",
-                                          "figures", "bench", "browse", "scope"};
+const std::vector<std::string> every_word{"new",   "build", "run",   "test",   "chart", "figures",
+                                          "bench", "image", "flash", "browse", "scope"};
 
 /// In a new machine's folder, which is gone with the test.
 struct Door : testing::Test {
@@ -95,6 +95,19 @@ TEST_F(Door, refuses_a_value_that_is_none_before_it_builds) {
     EXPECT_EQ(refusal("run --machine pres"),
               "tappet: there is no machine \"pres\" here; did you mean press?\n");
     EXPECT_THAT(refusal("biuld"), HasSubstr("\"biuld\" is no command; did you mean build?"));
+}
+
+TEST_F(Door, refuses_an_image_of_a_board_that_the_machine_does_not_name) {
+    EXPECT_EQ(refusal("image"), "tappet: image: name one board: tappet image my_box\n");
+    EXPECT_EQ(refusal("image my_bix"),
+              "tappet: image: press has no firmware for board \"my_bix\"; did you mean my_box?\n");
+    EXPECT_THAT(refusal("image --machine pres my_box"), HasSubstr("there is no machine \"pres\" here"));
+    EXPECT_THAT(refusal("image my_box --watchdog 256"), HasSubstr("\"256\" is not from 0 to 255"));
+}
+
+TEST_F(Door, flashes_nothing_that_is_no_disk) {
+    EXPECT_THAT(refusal("flash"), HasSubstr("say flash --image disk.img DEVICE"));
+    EXPECT_THAT(refusal("flash --image CMakeLists.txt /dev/null"), HasSubstr("is neither a disk nor a file"));
 }
 
 TEST_F(Door, refuses_to_write_two_machines_at_once) {

@@ -1,0 +1,127 @@
+// What is flashed onto a box, on an emulated one with UEFI: it boots and works, a new version stays once it
+// has proven itself, and one that does not is gone at the next boot, whatever it did instead.
+#include "tests/bench/image/emulated_box.hpp"
+#include "tests/toolchain/program.hpp"
+#include "toolchain/tools/image/slots.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+
+namespace tappet::bench {
+namespace {
+
+using init::SlotState;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+/// IMAGES holds what write_images.cmake wrote, one folder for each image.
+fs::path image(const char* name) { return fs::path{IMAGES} / name; }
+
+init::BootState slot(const EmulatedBox& box, std::size_t number) {
+    return image::read_slot(box.disk(), image::partitions()[number]).value_or(init::BootState{});
+}
+
+double seconds_after(const std::string& text, const std::string& words) {
+    std::smatch found;
+    return std::regex_search(text, found, std::regex(words + " ([0-9.]+) s")) ? std::stod(found[1]) : -1.0;
+}
+
+TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
+    EmulatedBox box{image("loom") / "disk.img"};
+    ASSERT_EQ(image::install(box.disk(), image("loom") / "tappet.efi"), 3u);
+    box.switch_on({"-no-reboot"});
+    const std::string said = box.await_end();
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("revision 3 is on trial"));
+    EXPECT_THAT(said, HasSubstr("armed on board \"bench\", 0 warnings"));
+    const double to_armed = seconds_after(said, "init: .* armed");
+    EXPECT_GT(to_armed, 0.0);
+    EXPECT_LE(to_armed, 1.0) << "of the emulated box's own time";
+    EXPECT_THAT(said, HasSubstr("\"picks\":60"));
+    EXPECT_THAT(said, HasSubstr("revision 3 has proven itself and stays"));
+    EXPECT_THAT(said, HasSubstr("power off"));
+    EXPECT_EQ(slot(box, 2).state, SlotState::good);
+    EXPECT_EQ(slot(box, 2).revision, 3u);
+}
+
+TEST(Box, says_what_is_missing_and_goes_back_when_the_new_version_refuses_to_work) {
+    EmulatedBox box{image("loom") / "disk.img"};
+    image::install(box.disk(), image("production") / "tappet.efi");
+    box.switch_on(
+        {"-object", "can-bus,id=bus", "-device", "kvaser_pci,canbus=bus", "-nic", "user,model=e1000e"});
+    const std::string said = box.await_end(); // the end of the old version's plant
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("CAN interface can0 at 500000 bit/s is up"));
+    EXPECT_THAT(said, HasSubstr("network eth0 as 192.168.7.1/24 is up"));
+    EXPECT_THAT(said, HasSubstr("data partition at /var/lib/tappet is up"));
+    EXPECT_THAT(said, HasSubstr("GPIO chip INTC1020:00 is missing; check its label in the board"));
+    EXPECT_THAT(said, HasSubstr("it was on trial: the box goes back to the other slot"));
+    EXPECT_THAT(said, HasSubstr("\"picks\":60")) << "of the old one";
+    EXPECT_EQ(slot(box, 2).state, SlotState::failed);
+}
+
+TEST(Box, goes_back_by_its_watchdog_when_the_new_version_hangs) {
+    EmulatedBox box{image("loom") / "disk.img"};
+    image::install(box.disk(), image("hanging") / "tappet.efi");
+    box.switch_on();
+    const std::string said = box.await("carpet-loom: armed");
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("hang: it hangs"));
+    EXPECT_THAT(said, HasSubstr("carpet-loom: armed"));
+    box.switch_off();
+    EXPECT_EQ(slot(box, 2).state, SlotState::failed);
+}
+
+TEST(Box, that_is_switched_off_in_order_has_its_trial_once_more) {
+    EmulatedBox box{image("loom") / "disk.img"};
+    image::install(box.disk(), image("lonely") / "tappet.efi");
+    box.switch_on({"-no-reboot"});
+    EXPECT_THAT(box.await("armed on board"), HasSubstr("revision 3 is on trial"));
+    box.press_power_button();
+    const std::string said = box.await_end();
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("the power button ends it"));
+    EXPECT_THAT(said, Not(HasSubstr("has proven itself")));
+    EXPECT_EQ(slot(box, 2).state, SlotState::installed);
+}
+
+TEST(Box, boots_the_other_slot_when_the_loaders_file_of_one_is_torn) {
+    EmulatedBox box{image("loom") / "disk.img"};
+    {
+        std::fstream disk{box.disk(), std::ios::binary | std::ios::in | std::ios::out};
+        const auto& first = image::partitions()[1];
+        std::string slot(first.bytes(), '\0');
+        disk.seekg(static_cast<std::streamoff>(first.first_sector * image::sector_bytes));
+        disk.read(slot.data(), static_cast<std::streamsize>(slot.size()));
+        std::string name;
+        for (const char character : image::kernel_of(first)) name += {character, '\0'};
+        const std::size_t at = slot.find(name);
+        ASSERT_NE(at, std::string::npos);
+        disk.seekp(static_cast<std::streamoff>(first.first_sector * image::sector_bytes + at));
+        disk.write("X", 1);
+    }
+    box.switch_on({"-no-reboot"});
+    const std::string said = box.await("Tappet, carpet-loom on board bench");
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("Starting C:SLOTB:tappet.efi"));
+    EXPECT_THAT(said, HasSubstr("Tappet, carpet-loom on board bench"));
+}
+
+TEST(Box, has_an_image_that_is_the_same_when_it_is_written_again) {
+    const EmulatedBox elsewhere{image("loom") / "disk.img"};
+    const fs::path again = elsewhere / "again";
+    const Ended ended = run_line(std::string{WRITE_LOOM} + " --to " + again.string());
+    ASSERT_EQ(ended.exit_code, 0) << ended.text;
+    EXPECT_THAT(ended.text, HasSubstr("goal 12: held"));
+    for (const char* part : {"disk.img", "tappet.efi", "sbom.cdx.json"})
+        EXPECT_EQ(
+            run_line("cmp " + (again / part).string() + " " + (image("loom") / part).string()).exit_code, 0)
+            << part;
+}
+
+} // namespace
+} // namespace tappet::bench

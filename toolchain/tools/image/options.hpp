@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be said of an image and of flashing it: to this program, and to the front door, which hands it on.
+#pragma once
+
+#include "toolchain/command_line.hpp"
+
+#include <array>
+
+namespace tappet::image {
+
+inline constexpr std::array image_options{
+    Option{.name = "--version",
+           .value = "N",
+           .help = "of the image (default 1)",
+           .is_number = true,
+           .least = 1,
+           .most = 4'000'000'000},
+    Option{.name = "--watchdog",
+           .value = "SECONDS",
+           .help = "armed by the loader before the kernel (default 30); 0: the box has none",
+           .is_number = true,
+           .least = 0,
+           .most = 255}};
+
+inline constexpr std::array flash_options{Option{"--image", "FILE", "a disk.img"},
+                                          Option{"--erase", "", "what is on the disk may be lost"}};
+
+} // namespace tappet::image
