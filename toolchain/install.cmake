@@ -32,6 +32,7 @@ install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign"
 
 # They find each other beside themselves.
 install(TARGETS tappet tappet-bench tappet-browse tappet-image bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
+install(FILES "${CMAKE_BINARY_DIR}/tools/box-init.inputs" DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet") # for bills of materials
 install(CODE "
     set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
     file(MAKE_DIRECTORY \"\${bin}\")

@@ -5,6 +5,7 @@
 #include "board/init/boot_state.hpp"
 #include "board/init/system.hpp"
 
+#include <array>
 #include <expected>
 #include <string>
 
@@ -20,21 +21,32 @@ inline constexpr const char* slot_partitions[] = {"tappet-a", "tappet-b"};
 /// Read and written, every write followed to the disk within a second.
 [[nodiscard]] init::Done mount_data(const std::string& device, const std::string& folder);
 
-/// The slot that the loader put on trial for this boot; none when it booted a good one.
-class Trial {
+/// The two slots as the loader's files say. One runs, perhaps on trial; the other takes the next version.
+class Slots {
 public:
-    /// Looks into both slots. The error: a slot that cannot be read.
+    /// The error: a slot that cannot be read. The other is looked at all the same.
     [[nodiscard]] init::Done look();
 
-    [[nodiscard]] bool is_on() const { return !device_.empty(); }
-    [[nodiscard]] std::uint32_t revision() const { return state_.revision; }
+    [[nodiscard]] bool on_trial() const { return trial_ != none; }
+    /// Of the trial, also when it is over.
+    [[nodiscard]] std::uint32_t revision() const { return revision_; }
     /// Ends it: good, or installed to have it once more at the next boot. In place: when the power fails in
     /// between, the loader finds the sum wrong and boots the other slot.
-    [[nodiscard]] init::Done end(init::SlotState state);
+    [[nodiscard]] init::Done end_trial(init::SlotState state);
+
+    /// A kernel image into the slot that is not in use, read back from the disk; then, last, on trial at the
+    /// next boot. The error, also when there is a trial: that must end first.
+    [[nodiscard]] init::Done install(std::string_view kernel);
 
 private:
-    std::string device_;
-    init::BootState state_{};
+    static constexpr std::size_t none = 2;
+    struct Slot {
+        std::string device{};
+        init::BootState state{}; ///< of revision 0, failed, when it cannot be read
+    };
+    std::array<Slot, 2> slots_{};
+    std::size_t trial_ = none;
+    std::uint32_t revision_ = 0;
 };
 
 } // namespace tappet::box

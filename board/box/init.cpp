@@ -5,6 +5,7 @@
 
 #include "board/box/disk.hpp"
 #include "board/box/hardware.hpp"
+#include "board/box/stick.hpp"
 #include "board/init/devices.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/watchdog.hpp"
@@ -110,10 +111,8 @@ private:
         box::bring_up(needs, modules_, voice_, patience);
         stage(std::to_string(modules_.loaded()) + " kernel modules and the board's devices");
         set_governor(voice_);
-        if (const auto looked = trial_.look(); !looked)
-            voice_.say("no slot can go on trial: " + looked.error());
-        else if (trial_.is_on())
-            voice_.say("revision " + std::to_string(trial_.revision()) + " is on trial");
+        if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
+        if (slots_.on_trial()) voice_.say("revision " + std::to_string(slots_.revision()) + " is on trial");
         open_power_buttons();
         stage("slots and buttons");
         if (!may_start_)
@@ -177,7 +176,7 @@ private:
         take_signals();
         if (again_at_s_ != 0.0 && uptime_s() >= again_at_s_) {
             again_at_s_ = 0.0;
-            if (trial_.is_on()) restart();
+            if (slots_.on_trial()) restart();
             start_firmware();
         }
     }
@@ -201,10 +200,10 @@ private:
                 raise_interrupts(facts_, voice_);
             } else if (notice == "X_TAPPET_OUTPUTS=safe") {
                 outputs_are_safe_ = true;
-            } else if (notice == "X_TAPPET_PROVEN=1" && trial_.is_on()) {
+            } else if (notice == "X_TAPPET_PROVEN=1" && slots_.on_trial()) {
                 const double before = uptime_s();
-                const auto ended = trial_.end(init::SlotState::good);
-                voice_.say(ended ? "revision " + std::to_string(trial_.revision()) +
+                const auto ended = slots_.end_trial(init::SlotState::good);
+                voice_.say(ended ? "revision " + std::to_string(slots_.revision()) +
                                        " has proven itself and stays, written in " +
                                        text_of(uptime_s() - before)
                                  : "the trial is not over: " + ended.error());
@@ -259,7 +258,7 @@ private:
         }
         if (code == 0) {
             voice_.say("it was asked to end; the power may go");
-        } else if (trial_.is_on()) {
+        } else if (slots_.on_trial()) {
             voice_.say("it was on trial: the box goes back to the other slot");
             again_at_s_ = uptime_s() + tell_trial_s;
         } else if (may_start_again()) {
@@ -304,11 +303,45 @@ private:
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
         voice_.say(by + " ends it");
         stop_everything();
-        if (trial_.is_on())
-            if (const auto kept = trial_.end(init::SlotState::installed); !kept) voice_.say(kept.error());
+        again |= !again && take_update();
+        if (slots_.on_trial())
+            if (const auto kept = slots_.end_trial(init::SlotState::installed); !kept)
+                voice_.say(kept.error());
         voice_.say(again ? "restart" : "power off");
         if (again) init::restart_box();
         init::power_off();
+    }
+
+    /// The machine stands, and who pressed the button is at it. True when there is something to start anew
+    /// for.
+    bool take_update() {
+        static_cast<void>(modules_.load_what_fits()); // of a stick that came later
+        std::optional<std::string> disk = find_update();
+        for (auto waited = milliseconds{0}; !disk && has_usb_storage() && waited < patience;
+             waited += milliseconds{50}) {
+            init::pause_for(milliseconds{50});
+            static_cast<void>(modules_.load_what_fits());
+            disk = find_update();
+        }
+        if (!disk) return false;
+        voice_.say("there is an update on " + *disk);
+        const auto refuse = [&](const std::string& why) {
+            voice_.say("the update on " + *disk + " is not taken: " + why);
+            return false;
+        };
+        const auto key = key_of(facts_.one("key"));
+        if (!key) return refuse("this box's image has no key; flash one that was written with --key");
+        const auto update = read_update(*disk, *key);
+        if (!update) return refuse(update.error());
+        const Manifest own{facts_.one("machine"), facts_.one("board"),
+                           static_cast<std::uint32_t>(std::atoi(facts_.one("image", 0, "0").c_str())), 0};
+        if (const std::string why = refusal_of(update->manifest, own); !why.empty()) return refuse(why);
+        const double before = uptime_s();
+        if (const auto installed = slots_.install(update->kernel); !installed)
+            return refuse(installed.error());
+        voice_.say("version " + std::to_string(update->manifest.version) + " is written and read back in " +
+                   text_of(uptime_s() - before) + ", and goes on trial");
+        return true;
     }
 
     [[noreturn]] void restart() {
@@ -322,7 +355,7 @@ private:
     Facts facts_{init::read_text("/etc/tappet/box")};
     Modules modules_{init::read_text("/etc/tappet/modules")};
     Voice voice_{};
-    Trial trial_{};
+    Slots slots_{};
     os::Watchdog watchdog_{};
     bool may_start_ = true;
     bool plant_is_ready_ = false;

@@ -37,8 +37,9 @@ inline constexpr Board ipc_x86_64{
                   "can-raw", "peak_pci", "peak_pciefd", "kvaser_pci", "ems_pci", "i2c-i801",
                   "iTCO_wdt heartbeat=10 nowayout=1", "wdat_wdt nowayout=1",
                   "sp5100_tco heartbeat=10 nowayout=1", "i6300esb heartbeat=10 nowayout=1",
-                  // Disks, and the file systems of the data partition and of the slots.
-                  "nvme", "ahci", "sd_mod", "ext4", "vfat", "nls_cp437", "nls_ascii",
+                  // Disks, sticks, and the file systems of the data partition and of the slots.
+                  "nvme", "ahci", "sd_mod", "usb-storage", "xhci-pci", "ehci-pci", "ext4", "vfat",
+                  "nls_cp437", "nls_ascii",
                   // The port to the utility unit; the power button.
                   "igb", "igc", "e1000e", "r8169", "realtek", "button", "evdev"),
               .consoles = consoles("tty0", "ttyS0,115200"),

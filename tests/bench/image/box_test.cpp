@@ -41,7 +41,7 @@ TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
     const double to_armed = seconds_after(said, "init: .* armed");
     EXPECT_GT(to_armed, 0.0);
     EXPECT_LE(to_armed, 1.0) << "of the emulated box's own time";
-    EXPECT_THAT(said, HasSubstr("\"picks\":60"));
+    EXPECT_THAT(said, HasSubstr("\"picks\": 60"));
     EXPECT_THAT(said, HasSubstr("revision 3 has proven itself and stays"));
     EXPECT_THAT(said, HasSubstr("power off"));
     EXPECT_EQ(slot(box, 2).state, SlotState::good);
@@ -60,7 +60,7 @@ TEST(Box, says_what_is_missing_and_goes_back_when_the_new_version_refuses_to_wor
     EXPECT_THAT(said, HasSubstr("data partition at /var/lib/tappet is up"));
     EXPECT_THAT(said, HasSubstr("GPIO chip INTC1020:00 is missing; check its label in the board"));
     EXPECT_THAT(said, HasSubstr("it was on trial: the box goes back to the other slot"));
-    EXPECT_THAT(said, HasSubstr("\"picks\":60")) << "of the old one";
+    EXPECT_THAT(said, HasSubstr("\"picks\": 60")) << "of the old one";
     EXPECT_EQ(slot(box, 2).state, SlotState::failed);
 }
 
@@ -87,6 +87,25 @@ TEST(Box, that_is_switched_off_in_order_has_its_trial_once_more) {
     EXPECT_THAT(said, HasSubstr("the power button ends it"));
     EXPECT_THAT(said, Not(HasSubstr("has proven itself")));
     EXPECT_EQ(slot(box, 2).state, SlotState::installed);
+}
+
+// A stick is a disk that came later. Without its plant's end the machine works until somebody presses the
+// button.
+TEST(Box, takes_a_signed_update_from_a_stick_when_its_power_button_is_pressed) {
+    EmulatedBox box{image("lonely") / "disk.img"};
+    const fs::path stick = image("newer") / "update.tap";
+    box.switch_on({"-drive", "if=none,id=stick,readonly=on,format=raw,file=" + stick.string(), "-device",
+                   "virtio-blk-pci,drive=stick"});
+    box.await("armed on board");
+    box.press_power_button();
+    const std::string said = box.await_end(); // the new version's plant ends it
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("version 2 is written and read back"));
+    EXPECT_THAT(said, HasSubstr("image 2"));
+    EXPECT_THAT(said, HasSubstr("revision 3 is on trial"));
+    EXPECT_THAT(said, HasSubstr("revision 3 has proven itself and stays"));
+    EXPECT_THAT(said, HasSubstr("is not taken: it is version 2, and this box has 2")) << "once is enough";
+    EXPECT_EQ(slot(box, 2).state, SlotState::good);
 }
 
 TEST(Box, boots_the_other_slot_when_the_loaders_file_of_one_is_torn) {

@@ -3,12 +3,15 @@
 #include "toolchain/tools/image/image.hpp"
 
 #include "board/box/facts.hpp"
+#include "board/box/update.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/bench/initramfs.hpp"
 #include "toolchain/tools/image/disk.hpp"
 #include "toolchain/tools/image/kernel_modules.hpp"
 #include "toolchain/tools/image/sbom.hpp"
 #include "toolchain/tools/image/tool.hpp"
+
+#include <algorithm>
 
 namespace tappet::image {
 
@@ -18,13 +21,19 @@ namespace {
 
 constexpr const char* boot_guard = "/usr/lib/x86_64-linux-gnu/efibootguard/";
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 /// Everything inside: kernel, loader, what the firmware is linked of, Tappet itself. Init is linked of a part
 /// of that.
 std::string bill_of(const Request& request, const box::Facts& facts, const std::string& release) {
     fs::path list = request.firmware; // <name>.stripped
     std::vector<Component> parts = linked_into(list.replace_extension("inputs"), request.kernel / "../..");
-    const std::string version = read_file(request.kernel / "version");
-    parts.push_back({"linux-image-" + release, version.substr(0, version.find('\n')), "operating-system"});
+    // Init's list lies beside it.
+    fs::path of_init = request.init;
+    for (Component& each : linked_into(of_init += ".inputs", request.kernel / "../.."))
+        parts.push_back(std::move(each));
+    const std::string version = first_line(read_file(request.kernel / "version"));
+    parts.push_back({"linux-image-" + release, version, "operating-system"});
     parts.push_back(debian_package("efibootguard", "firmware"));
     parts.push_back({"tappet", TAPPET_VERSION, "framework", false});
     return bill_of_materials(facts.one("machine"), facts.one("board"), request.version, std::move(parts));
@@ -45,6 +54,16 @@ std::string command_line_of(const box::Facts& facts) {
 
 } // namespace
 
+void write_keys(const fs::path& folder) {
+    if (fs::exists(folder / "secret"))
+        throw Fault((folder / "secret").string() + " is there already; name another folder");
+    fs::create_directories(folder);
+    const box::KeyPair keys = box::new_keys();
+    write_file(folder / "public", box::digits_of(keys.open) + "\n");
+    write_file(folder / "secret", {reinterpret_cast<const char*>(keys.secret.data()), keys.secret.size()});
+    fs::permissions(folder / "secret", fs::perms::owner_read);
+}
+
 Written write_image(const Request& request) {
     if (!fs::exists(request.kernel / "vmlinuz"))
         throw Fault("there is no kernel for a box at " + request.kernel.string() +
@@ -60,12 +79,22 @@ Written write_image(const Request& request) {
         throw Fault("board \"" + facts.one("board") +
                     "\" says nothing of an image; give it .image with modules and consoles");
     lines += "image " + std::to_string(request.version) + "\n";
+    box::SecretKey secret{};
+    if (!request.keys.empty()) {
+        const std::string open = first_line(read_file(request.keys / "public"));
+        if (const auto key = box::key_of(open); !key)
+            throw Fault((request.keys / "public").string() + ": " + key.error());
+        lines += "key " + open + "\n";
+        const std::string bytes = read_file(request.keys / "secret");
+        if (bytes.size() != secret.size())
+            throw Fault((request.keys / "secret").string() + " is no secret key; write keys anew");
+        std::ranges::copy(bytes, secret.begin());
+    }
     if (!request.plant.empty()) lines += "plant /bin/plant " + request.plant_words + "\n";
 
     std::vector<std::string> rows;
     for (const box::Words& row : facts.all("module")) rows.push_back(joined(row));
-    std::string release = read_file(request.kernel / "release");
-    release.resize(std::min(release.find('\n'), release.size()));
+    const std::string release = first_line(read_file(request.kernel / "release"));
     const std::string bill = bill_of(request, facts, release);
     const KernelModules modules = choose_modules(rows, request.kernel / "lib/modules" / release);
 
@@ -95,6 +124,12 @@ Written write_image(const Request& request) {
               written.command_line, "--initrd", written.root.string()});
     write_disk(written.disk, std::string{boot_guard} + "efibootguardx64.efi", written.kernel,
                request.watchdog_s, work / "");
+    if (!request.keys.empty()) {
+        written.update = request.folder / "update.tap";
+        const box::Manifest manifest{facts.one("machine"), facts.one("board"), request.version,
+                                     request.least};
+        write_file(written.update, box::encode({manifest, read_file(written.kernel)}, secret));
+    }
     written.kernel_bytes = fs::file_size(request.kernel / "vmlinuz");
     written.root_bytes = fs::file_size(written.root);
     written.slot_bytes = fs::file_size(written.kernel);

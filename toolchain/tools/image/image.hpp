@@ -15,13 +15,16 @@ struct Request {
     std::string plant_words{};        ///< its options
     std::filesystem::path kernel{};   ///< ci/setup's: vmlinuz, release, lib/modules
     std::filesystem::path folder{};   ///< where everything goes
+    std::filesystem::path keys{};     ///< of write_keys(); empty: the box takes no updates, and this is none
+    std::uint32_t least = 1;          ///< version that a box must have to be updated to this one
     std::uint32_t version = 1;
     std::uint16_t watchdog_s = 30; ///< armed by the loader; 0: none, for a box without one
 };
 
 struct Written {
     std::filesystem::path disk{};
-    std::filesystem::path bill{}; ///< what is inside, as CycloneDX
+    std::filesystem::path update{}; ///< the same kernel signed, for a stick; empty without keys
+    std::filesystem::path bill{};   ///< what is inside, as CycloneDX
     std::filesystem::path
         kernel{}; ///< the unified kernel image of a slot: kernel, root file system, command line
     std::filesystem::path root{};   ///< its root file system, packed, and
@@ -31,6 +34,10 @@ struct Written {
     std::uint64_t slot_bytes = 0;
     std::size_t modules = 0;
 };
+
+/// A new pair into a folder, unless one is there: "public" goes into images, "secret" signs updates and stays
+/// with their maker.
+void write_keys(const std::filesystem::path& folder);
 
 /// Bit by bit the same from the same parts. What is wrong is thrown: a Fault, or a bench::BenchError.
 Written write_image(const Request& request);

@@ -23,8 +23,16 @@ constexpr std::array write_options{
     Option{"--plant", "FILE", "of a test board: at the other end of the wires; its end is the box's"},
     Option{"--plant-options", "TEXT", "of the plant, in one word"},
     Option{"--init", "FILE", "PID 1 (default: box-init beside this program)"},
+    Option{.name = "--least",
+           .value = "N",
+           .help = "version that a box must have to take this as an update (default 1)",
+           .is_number = true,
+           .least = 1,
+           .most = 4'000'000'000},
     image_options[0],
-    image_options[1]};
+    image_options[1],
+    image_options[2]};
+constexpr std::array key_options{Option{"--to", "DIR", "where public and secret go"}};
 constexpr std::array install_options{Option{"--kernel", "FILE", "a tappet.efi"}};
 
 constexpr double goal_mb = 12.0;
@@ -47,6 +55,8 @@ int write(const CommandLine& line) {
     request.kernel = bench::cache_folder() / "kernel/box";
     request.version = static_cast<std::uint32_t>(line.number("--version", 1));
     request.watchdog_s = static_cast<std::uint16_t>(line.number("--watchdog", 30));
+    request.keys = line.text("--key");
+    request.least = static_cast<std::uint32_t>(line.number("--least", 1));
     const Written written = write_image(request);
     const auto mb = [](std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; };
     std::printf("%s\n  a slot takes %.1f MB (goal %.0f: %s): kernel %.1f MB, root %.1f MB with %zu modules\n",
@@ -55,6 +65,7 @@ int write(const CommandLine& line) {
                 mb(written.root_bytes), written.modules);
     std::printf("  command line: %s\n  what is inside: %s\n", written.command_line.c_str(),
                 written.bill.c_str());
+    if (!written.update.empty()) std::printf("  as an update, for a stick: %s\n", written.update.c_str());
     return 0;
 }
 
@@ -73,6 +84,14 @@ int flash(const CommandLine& line) {
         }
     });
     std::printf("\n%s holds the image: written, and read back from it\n", device.c_str());
+    return 0;
+}
+
+int make_keys(const CommandLine& line) {
+    if (!line.has("--to")) return fail("say key --to DIR, a folder that stays with who makes the images");
+    write_keys(line.text("--to"));
+    std::printf("%s: secret signs updates and leaves this machine for nobody; public goes into images\n",
+                std::string{line.text("--to")}.c_str());
     return 0;
 }
 
@@ -95,7 +114,8 @@ constexpr std::array words_known{
     Word{"write", write_options, &write, "write --firmware FILE --to DIR: a disk image for a box"},
     Word{"flash", flash_options, &flash, "flash --image FILE [--erase] DEVICE: onto a disk, and read back"},
     Word{"install", install_options, &install,
-         "install --kernel FILE DISK: a new version into the slot that is not in use, for one trial"}};
+         "install --kernel FILE DISK: a new version into the slot that is not in use, for one trial"},
+    Word{"key", key_options, &make_keys, "key --to DIR: a new pair for signed updates"}};
 
 int main(int count, char** words) {
     const std::vector<std::string_view> all(words + 1, words + count);
@@ -106,7 +126,8 @@ int main(int count, char** words) {
     }
     const auto word = std::ranges::find(words_known, all[0], &Word::name);
     if (word == words_known.end())
-        return fail("\"" + std::string{all[0]} + "\" is no word of it; there are write, flash and install");
+        return fail("\"" + std::string{all[0]} +
+                    "\" is no word of it; there are write, flash, install and key");
     const auto line = read_command_line(word->options, std::span{all}.subspan(1), Others::words);
     if (!line) return fail(line.error());
     try {

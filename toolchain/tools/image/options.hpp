@@ -20,7 +20,8 @@ inline constexpr std::array image_options{
            .help = "armed by the loader before the kernel (default 30); 0: the box has none",
            .is_number = true,
            .least = 0,
-           .most = 255}};
+           .most = 255},
+    Option{"--key", "DIR", "of tappet-image key: the box takes updates signed with it, and one is written"}};
 
 inline constexpr std::array flash_options{Option{"--image", "FILE", "a disk.img"},
                                           Option{"--erase", "", "what is on the disk may be lost"}};

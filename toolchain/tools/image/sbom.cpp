@@ -28,18 +28,31 @@ constexpr BuiltHere built_here[] = {{"libtappet_libmodbus.a", "libmodbus", true}
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// dpkg knows some files by their name before /usr took in the other folders.
-std::string package_of(const std::string& file) {
-    for (const std::string& name : {file, file.starts_with("/usr/") ? file.substr(4) : "/usr" + file}) {
-        try {
-            const std::string said = run_tool({"dpkg-query", "-S", name});
-            return said.substr(0, said.find_first_of(":,"));
-        } catch (const Fault&) { // the other name may be known
-        }
+/// dpkg knows some files by their name before /usr took in the other folders. It is asked once: each time it
+/// reads all that is installed.
+std::set<std::string> packages_of(const std::set<std::string>& files) {
+    std::vector<std::string> words{"dpkg-query", "-S"};
+    for (const std::string& file : files) {
+        words.push_back(file);
+        if (file.starts_with("/usr/lib/")) words.push_back(file.substr(4));
     }
-    throw Fault(
-        "no Debian package holds " + file +
-        ", which was linked; if this tree builds it, name its source in toolchain/tools/image/sbom.cpp");
+    std::istringstream lines{files.empty() ? std::string{} : run_tool(words, Trouble::is_told)};
+    std::set<std::string> packages, owned;
+    for (std::string line;
+         std::getline(lines, line);) { // "libc6-dev:amd64: /usr/lib/..", or that nobody has it
+        const std::size_t at = line.rfind(": /");
+        if (at == line.npos || line.starts_with("dpkg-query: ")) continue;
+        packages.insert(line.substr(0, line.find_first_of(":,")));
+        const std::string file = line.substr(at + 2);
+        owned.insert(file);
+        owned.insert("/usr" + file);
+    }
+    for (const std::string& file : files)
+        if (!owned.contains(file))
+            throw Fault("no Debian package holds " + file +
+                        ", which was linked; if this tree builds it, name its source in "
+                        "toolchain/tools/image/sbom.cpp");
+    return packages;
 }
 
 } // namespace
@@ -55,7 +68,7 @@ std::vector<Component> linked_into(const fs::path& list, const fs::path& cache) 
     std::istringstream words{read_file(list)};
     std::string word;
     words >> word; // the program itself
-    std::set<std::string> packages;
+    std::set<std::string> files, packages;
     std::vector<Component> components;
     while (words >> word && !word.ends_with(':')) { // rules without a recipe follow
         if (word == "\\") continue;
@@ -66,8 +79,9 @@ std::vector<Component> linked_into(const fs::path& list, const fs::path& cache) 
         else if (ours != std::end(built_here))
             packages.insert(ours->source);
         else if (path.string().starts_with("/usr/") || path.string().starts_with("/lib/"))
-            packages.insert(package_of(path.string()));
+            files.insert(path.string());
     }
+    packages.merge(packages_of(files));
     for (const std::string& each : packages) components.push_back(debian_package(each));
     return components;
 }

@@ -2,6 +2,7 @@
 // What is wrong, and other people's programs that do a part of the work.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 #include <string>

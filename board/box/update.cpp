@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// A header of one page: a mark, lines, a signature over all but itself and over the kernel.
+#include "board/box/update.hpp"
+
+#include "board/box/facts.hpp"
+
+#include <sodium.h>
+
+#include <cstdlib>
+#include <cstring>
+
+namespace tappet::box {
+
+namespace {
+
+constexpr std::string_view mark = "tappet-update 1\n";
+constexpr std::size_t signed_bytes = update_header_bytes - crypto_sign_BYTES;
+
+const unsigned char* bytes_of(std::string_view text) {
+    return reinterpret_cast<const unsigned char*>(text.data());
+}
+
+void take_in(crypto_sign_state& state, std::string_view header, std::string_view kernel) {
+    crypto_sign_init(&state);
+    crypto_sign_update(&state, bytes_of(header), signed_bytes);
+    crypto_sign_update(&state, bytes_of(kernel), kernel.size());
+}
+
+std::uint64_t number(const Facts& facts, std::string_view word) {
+    return std::strtoull(facts.one(word).c_str(), nullptr, 10);
+}
+
+Facts lines_of(std::string_view header) {
+    header = header.substr(mark.size(), signed_bytes - mark.size());
+    return Facts{header.substr(0, header.find('\0'))};
+}
+
+} // namespace
+
+KeyPair new_keys() {
+    KeyPair keys;
+    if (sodium_init() < 0) std::abort(); // a kernel without random numbers
+    crypto_sign_keypair(keys.open.data(), keys.secret.data());
+    return keys;
+}
+
+std::expected<PublicKey, std::string> key_of(std::string_view digits) {
+    PublicKey key{};
+    std::size_t length = 0;
+    if (sodium_hex2bin(key.data(), key.size(), digits.data(), digits.size(), nullptr, &length, nullptr) !=
+            0 ||
+        length != key.size() || digits.size() != 2 * key.size())
+        return std::unexpected("\"" + std::string{digits} + "\" is no key of 64 hexadecimal digits");
+    return key;
+}
+
+std::string digits_of(const PublicKey& key) {
+    std::array<char, 2 * std::tuple_size_v<PublicKey> + 1> digits{};
+    sodium_bin2hex(digits.data(), digits.size(), key.data(), key.size());
+    return digits.data();
+}
+
+std::uint64_t claimed_bytes(std::string_view header) {
+    if (header.size() < update_header_bytes || !header.starts_with(mark)) return 0;
+    return update_header_bytes + number(lines_of(header), "kernel");
+}
+
+std::string encode(const Update& update, const SecretKey& key) {
+    std::string header{mark};
+    header += "machine " + update.manifest.machine + "\nboard " + update.manifest.board + "\nimage " +
+              std::to_string(update.manifest.version) + "\nleast " + std::to_string(update.manifest.least) +
+              "\nkernel " + std::to_string(update.kernel.size()) + "\n";
+    header.resize(signed_bytes, '\0');
+    crypto_sign_state state;
+    take_in(state, header, update.kernel);
+    std::array<unsigned char, crypto_sign_BYTES> signature{};
+    crypto_sign_final_create(&state, signature.data(), nullptr, key.data());
+    header.append(reinterpret_cast<const char*>(signature.data()), signature.size());
+    return header + update.kernel;
+}
+
+std::expected<Update, std::string> decode(std::string_view bytes, const PublicKey& key) {
+    const std::uint64_t claimed = claimed_bytes(bytes);
+    if (claimed == 0) return std::unexpected("it is no update");
+    if (claimed != bytes.size()) return std::unexpected("it is not whole");
+    const std::string_view kernel = bytes.substr(update_header_bytes);
+    crypto_sign_state state;
+    take_in(state, bytes, kernel);
+    std::array<unsigned char, crypto_sign_BYTES> signature{};
+    std::memcpy(signature.data(), bytes.data() + signed_bytes, signature.size());
+    if (crypto_sign_final_verify(&state, signature.data(), key.data()) != 0)
+        return std::unexpected(
+            "its signature does not fit this box's key: it is somebody else's, or damaged");
+    const Facts facts = lines_of(bytes);
+    return Update{{facts.one("machine"), facts.one("board"),
+                   static_cast<std::uint32_t>(number(facts, "image")),
+                   static_cast<std::uint32_t>(number(facts, "least"))},
+                  std::string{kernel}};
+}
+
+std::string refusal_of(const Manifest& offered, const Manifest& own) {
+    if (offered.machine != own.machine || offered.board != own.board)
+        return "it is for " + offered.machine + " on board " + offered.board + ", and this is " +
+               own.machine + " on board " + own.board;
+    if (offered.version <= own.version)
+        return "it is version " + std::to_string(offered.version) + ", and this box has " +
+               std::to_string(own.version);
+    if (own.version < offered.least)
+        return "it wants version " + std::to_string(offered.least) + " before it, and this box has " +
+               std::to_string(own.version);
+    return {};
+}
+
+} // namespace tappet::box

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A new version as one file, signed: what it is for, and the unified kernel image of a slot. It is written
+// raw onto a stick, so that a box reads no file system that a stranger made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <expected>
+#include <string>
+#include <string_view>
+
+namespace tappet::box {
+
+struct Manifest {
+    std::string machine{};
+    std::string board{};
+    std::uint32_t version = 0; ///< of the image
+    std::uint32_t least = 0;   ///< version that a box must have to take it
+};
+
+struct Update {
+    Manifest manifest{};
+    std::string kernel{}; ///< a slot's tappet.efi
+};
+
+/// Ed25519: the box has the public one in its image, the maker keeps the other.
+using PublicKey = std::array<unsigned char, 32>;
+using SecretKey = std::array<unsigned char, 64>;
+struct KeyPair {
+    PublicKey open{};
+    SecretKey secret{};
+};
+[[nodiscard]] KeyPair new_keys();
+/// 64 hexadecimal digits; nothing of any other text.
+[[nodiscard]] std::expected<PublicKey, std::string> key_of(std::string_view digits);
+[[nodiscard]] std::string digits_of(const PublicKey& key);
+
+inline constexpr std::size_t update_header_bytes = 4096;
+
+/// Whether what stands at the beginning of a disk is an update, and then how long it says that it is: it is
+/// not judged yet.
+[[nodiscard]] std::uint64_t claimed_bytes(std::string_view header);
+
+[[nodiscard]] std::string encode(const Update& update, const SecretKey& key);
+/// The error: who made it does not have the key, or it was changed on its way.
+[[nodiscard]] std::expected<Update, std::string> decode(std::string_view bytes, const PublicKey& key);
+
+/// Empty: a box that runs `own` takes it. Else why not.
+[[nodiscard]] std::string refusal_of(const Manifest& offered, const Manifest& own);
+
+} // namespace tappet::box

@@ -1,0 +1,67 @@
+// A signed update: taken as it was made, and nothing else, whatever byte of it is another.
+#include "board/box/update.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tappet::box {
+namespace {
+
+using testing::HasSubstr;
+
+struct Updates : testing::Test {
+    KeyPair keys = new_keys();
+    Update update{{"carpet-loom", "ipc-x86_64", 7, 3}, "a kernel, and more of it"};
+    std::string bytes = encode(update, keys.secret);
+};
+
+TEST_F(Updates, are_read_as_they_were_made) {
+    const auto read = decode(bytes, keys.open);
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(read->manifest.machine, "carpet-loom");
+    EXPECT_EQ(read->manifest.board, "ipc-x86_64");
+    EXPECT_EQ(read->manifest.version, 7u);
+    EXPECT_EQ(read->manifest.least, 3u);
+    EXPECT_EQ(read->kernel, update.kernel);
+    EXPECT_EQ(claimed_bytes(bytes), bytes.size());
+}
+
+TEST_F(Updates, with_one_byte_changed_are_refused_wherever_it_is) {
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        std::string changed = bytes;
+        changed[at] = static_cast<char>(changed[at] ^ 1);
+        ASSERT_FALSE(decode(changed, keys.open)) << "byte " << at;
+    }
+}
+
+TEST_F(Updates, of_somebody_else_or_cut_short_are_refused) {
+    EXPECT_THAT(decode(bytes, new_keys().open).error(), HasSubstr("does not fit this box's key"));
+    EXPECT_THAT(decode(std::string_view{bytes}.substr(0, bytes.size() - 1), keys.open).error(),
+                HasSubstr("not whole"));
+    EXPECT_THAT(decode("anything", keys.open).error(), HasSubstr("no update"));
+    EXPECT_EQ(claimed_bytes(std::string(update_header_bytes, 'x')), 0u);
+}
+
+TEST_F(Updates, are_taken_by_the_box_they_are_for_when_they_are_newer) {
+    const Manifest own{"carpet-loom", "ipc-x86_64", 6, 0};
+    EXPECT_EQ(refusal_of(update.manifest, own), "");
+    EXPECT_THAT(refusal_of({"carpet-loom", "bench", 7, 3}, own),
+                HasSubstr("it is for carpet-loom on board bench"));
+    EXPECT_THAT(refusal_of({"press", "ipc-x86_64", 7, 3}, own), HasSubstr("it is for press"));
+    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", 6, 3}, own),
+                HasSubstr("it is version 6, and this box has 6"));
+    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", 5, 3}, own), HasSubstr("it is version 5"));
+    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", 9, 7}, own),
+                HasSubstr("it wants version 7 before it"));
+}
+
+TEST(Keys, are_written_in_64_digits) {
+    const KeyPair keys = new_keys();
+    EXPECT_EQ(key_of(digits_of(keys.open)).value(), keys.open);
+    EXPECT_FALSE(key_of(""));
+    EXPECT_FALSE(key_of(digits_of(keys.open).substr(1)));
+    EXPECT_FALSE(key_of(std::string(64, 'g')));
+}
+
+} // namespace
+} // namespace tappet::box
