@@ -35,7 +35,7 @@ const std::vector<Size> sizes{
     {"apps/cut_to_length",    404},
     {"apps/car_tracking",     1937},
     {"toolchain/machine",     3242},
-    {"toolchain/tools",       10418},
+    {"toolchain/tools",       10421},
     {"tests/kernel",         26030},
     {"tests/drivers",         4762},
     {"tests/apps",            4530},
