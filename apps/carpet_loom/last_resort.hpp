@@ -19,7 +19,7 @@ struct LastResort {
     static constexpr auto interface() {
         return facets(
             event<&LastResort::set_brake>("set_brake", "brake on", heard_by(1)),
-            event<&LastResort::close_valve>("close_valve", "valve closed", heard_by(1)),
+            event<&LastResort::close_valve>("close_valve", "valve closed, and no weft let go", heard_by(2)),
             event<&LastResort::quick_stop>("quick_stop", "drives to a stand at once", heard_by(2)),
             operation<&LastResort::act>("act", "nobody else can: how long it was silent", required));
     }

@@ -57,7 +57,9 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(static_cast<int>(Contract::step_limit_exceeded), 401);
     for (const int given_up : {3, 101, 102, 301, 402})
         EXPECT_EQ(find_text(static_cast<Contract>(given_up)), nullptr) << given_up << " had another meaning";
-    EXPECT_EQ(contract_texts.size(), 18u) << "a new contract gets its line here";
+    EXPECT_EQ(static_cast<int>(Contract::not_a_number), 4);
+    EXPECT_EQ(static_cast<int>(Contract::refused_settings), 5);
+    EXPECT_EQ(contract_texts.size(), 20u) << "a new contract gets its line here";
 }
 
 /// As the way to the safe state may: it allocates, which is a breach of its own.
