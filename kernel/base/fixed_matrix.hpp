@@ -15,6 +15,12 @@ template <class T>
 concept FixedSizeEigen = std::is_trivially_destructible_v<T> && (T::SizeAtCompileTime > 0) &&
                          std::same_as<typename T::PlainObject, T>;
 
+/// True when a copy of the bytes is a copy of the value. A struct with fixed-size Eigen members says so
+/// itself:
+///     template <> inline constexpr bool tappet::copied_as_bytes<Wrench> = true;
+template <class T>
+inline constexpr bool copied_as_bytes = std::is_trivially_copyable_v<T> || FixedSizeEigen<T>;
+
 /// What nobody has written yet: T{}, and zero where that would leave the numbers as they are. Real-time.
 template <class T>
 constexpr T default_value() noexcept TAPPET_REALTIME {

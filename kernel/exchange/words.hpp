@@ -18,12 +18,6 @@ namespace tappet {
 /// pairs.
 inline constexpr std::size_t line_pair_bytes = 128;
 
-/// True when a copy of the bytes is a copy of the value. A struct with fixed-size Eigen members says so
-/// itself:
-///     template <> inline constexpr bool tappet::copied_as_bytes<Wrench> = true;
-template <class T>
-inline constexpr bool copied_as_bytes = std::is_trivially_copyable_v<T> || FixedSizeEigen<T>;
-
 template <class T>
 concept Exchangeable = copied_as_bytes<T> && std::is_trivially_destructible_v<T>;
 

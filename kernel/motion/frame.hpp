@@ -2,7 +2,9 @@
 // not compile. A reference is any type, a declared one is enough: struct World; struct Flange;
 #pragma once
 
+#include "kernel/base/fixed_matrix.hpp"
 #include "kernel/base/realtime.hpp"
+#include "kernel/base/type_tag.hpp"
 #include "kernel/motion/rotation.hpp"
 
 #include <Eigen/Core>
@@ -63,3 +65,24 @@ Point<A> operator+(const Point<A>& from, const Vector<A>& by) noexcept TAPPET_RE
 }
 
 } // namespace tappet::motion
+
+// Ports carry them, and observers see their numbers; another reference is another type to a connection.
+namespace tappet {
+
+template <class A>
+inline constexpr bool copied_as_bytes<motion::Point<A>> = true;
+template <class A>
+inline constexpr bool copied_as_bytes<motion::Vector<A>> = true;
+template <class A, class B>
+inline constexpr bool copied_as_bytes<motion::Frame<A, B>> = true;
+
+template <class A>
+inline constexpr auto fields_of<motion::Point<A>> = fields(field<&motion::Point<A>::at>("at", "m"));
+template <class A>
+inline constexpr auto fields_of<motion::Vector<A>> = fields(field<&motion::Vector<A>::along>("along"));
+template <class A, class B>
+inline constexpr auto fields_of<motion::Frame<A, B>> =
+    fields(field<&motion::Frame<A, B>::rotation>("rotation"),
+           field<&motion::Frame<A, B>::position>("position", "m"));
+
+} // namespace tappet

@@ -92,3 +92,21 @@ Twist<B, A, B, A> difference(const Frame<A, B>& from, const Frame<A, B>& to) noe
 }
 
 } // namespace tappet::motion
+
+namespace tappet {
+
+template <class... References>
+inline constexpr bool copied_as_bytes<motion::Twist<References...>> = true;
+template <class... References>
+inline constexpr bool copied_as_bytes<motion::Wrench<References...>> = true;
+
+template <class... References>
+inline constexpr auto fields_of<motion::Twist<References...>> =
+    fields(field<&motion::Twist<References...>::linear>("linear", "m/s"),
+           field<&motion::Twist<References...>::angular>("angular", "rad/s"));
+template <class... References>
+inline constexpr auto fields_of<motion::Wrench<References...>> =
+    fields(field<&motion::Wrench<References...>::force>("force", "N"),
+           field<&motion::Wrench<References...>::torque>("torque", "Nm"));
+
+} // namespace tappet

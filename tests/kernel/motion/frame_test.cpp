@@ -1,4 +1,5 @@
 // Frames, twists and wrenches: what holds whatever their numbers are, and what does not compile.
+#include "kernel/exchange/words.hpp"
 #include "kernel/motion/twist.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
@@ -114,6 +115,21 @@ static_assert(Add<Twist<B, A, D, D>, Twist<C, B, D, D>> && !Add<Twist<B, A, D, D
 static_assert(!Add<Twist<B, A, C, D>, Twist<C, B, D, D>>, "at two points");
 static_assert(!Add<Wrench<A, B, C>, Wrench<A, B, D>>, "along the axes of two frames");
 static_assert(Multiply<Frame<A, B>, Twist<C, D, B, B>> && !Multiply<Frame<A, B>, Twist<C, D, C, B>>);
+
+// They cross between threads, and a connection tells one reference from another.
+static_assert(Exchangeable<Frame<A, B>> && Exchangeable<Twist<B, A, B, A>> && Exchangeable<Wrench<B, B, A>>);
+static_assert(Exchangeable<Point<A>> && Exchangeable<Vector<A>>);
+
+TEST(FramesOnPorts, are_records_of_matrices_and_differ_by_their_references) {
+    const TypeTag& tag = *type_id<Frame<A, B>>;
+    ASSERT_EQ(tag.kind, ValueKind::record);
+    ASSERT_EQ(tag.fields.size(), 2u);
+    EXPECT_EQ(tag.fields[0].name, "rotation");
+    EXPECT_EQ(tag.fields[0].type->rows * tag.fields[0].type->columns, 9u);
+    EXPECT_EQ(tag.fields[1].unit, "m");
+    EXPECT_EQ((type_id<Wrench<B, B, A>>)->fields[1].name, "torque");
+    EXPECT_NE((type_id<Frame<A, B>>), (type_id<Frame<A, C>>));
+}
 
 } // namespace
 } // namespace tappet::motion::test
