@@ -31,6 +31,13 @@ constexpr double cube_root(double x) noexcept TAPPET_REALTIME {
     return y;
 }
 
+/// Numbers that are good by themselves may be too far apart for what is computed of them.
+inline Planned whole(const Profile& profile) noexcept TAPPET_REALTIME {
+    if (!is_number(profile.duration_s()) || !is_number(profile.end().position))
+        return std::unexpected(Refused{Refusal::not_a_number});
+    return profile;
+}
+
 constexpr bool is_limit(double value) noexcept TAPPET_REALTIME { return is_number(value) && value > 0.0; }
 
 } // namespace detail
@@ -60,7 +67,7 @@ inline Planned trapezoid(const AxisState& from, double target, const AxisLimits&
     profile.add(cruise, 0.0, 0.0);
     profile.add(peak / a, -side * a, 0.0);
     profile.rest_at(target);
-    return profile;
+    return detail::whole(profile);
 }
 
 /// From rest to rest with bounded velocity, acceleration and jerk, at most seven pieces (Biagiotti and
@@ -98,7 +105,7 @@ inline Planned jerk_limited(double from, double target, const AxisLimits& limits
     profile.add(flat, -reached, 0.0);
     profile.add(bend, -reached, side * j);
     profile.rest_at(target);
-    return profile;
+    return detail::whole(profile);
 }
 
 /// From any state to rest, wherever that is, in the shortest time that acceleration and jerk leave; at most
@@ -125,7 +132,7 @@ inline Planned stop(const AxisState& from, const AxisLimits& limits) noexcept TA
     profile.add(hold, -side * brake, 0.0);
     profile.add(brake / j, -side * brake, side * j);
     profile.rest_at(profile.end().position);
-    return profile;
+    return detail::whole(profile);
 }
 
 } // namespace tappet::motion

@@ -218,6 +218,10 @@ TEST_F(Trajectories, are_refused_for_what_is_no_number_and_no_limit) {
     EXPECT_EQ(jerk_limited(0.0, 1.0, {1.0, 1.0, -1.0}).error(), Refused{Refusal::limit_not_positive});
     EXPECT_EQ(stop({0, 0, no_number}, good).error(), Refused{Refusal::not_a_number});
     EXPECT_EQ(stop({0, 1, 0}, {1.0, 1.0, 0.0}).error(), Refused{Refusal::limit_not_positive});
+    EXPECT_EQ(trapezoid({0, 1e200, 0}, 1.0, good).error(), Refused{Refusal::not_a_number})
+        << "its square is none";
+    EXPECT_EQ(jerk_limited(0.0, 1e10, {1e-300, 1.0, 1.0}).error(), Refused{Refusal::not_a_number});
+    EXPECT_EQ(stop({0, 0, 1e200}, good).error(), Refused{Refusal::not_a_number});
     Synchronised<3>::Limits limits{good, good, {1.0, 0.0, 1.0}};
     const auto plan = Synchronised<3>::plan({0, 0, 0}, {1, 1, 1}, limits);
     ASSERT_FALSE(plan);
