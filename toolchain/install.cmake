@@ -22,7 +22,9 @@ foreach(library IN ITEMS libmodbus/src libmodbus/configure.ac libmodbus/VERSION 
     endif()
 endforeach()
 # Debian 12 has version 2 in its backports only, which a plain one does not look into.
-install(FILES "${TAPPET_GPIOD_INCLUDE}/gpiod.h" "${TAPPET_GPIOD_ARCHIVE}" DESTINATION "${tappet_share}/foreign/libgpiod")
+file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/libgpiod")
+execute_process(COMMAND dpkg-query -W -f "\${Version}\\n" libgpiod-dev OUTPUT_FILE "${PROJECT_BINARY_DIR}/libgpiod/VERSION" ERROR_QUIET)
+install(FILES "${TAPPET_GPIOD_INCLUDE}/gpiod.h" "${TAPPET_GPIOD_ARCHIVE}" "${PROJECT_BINARY_DIR}/libgpiod/VERSION" DESTINATION "${tappet_share}/foreign/libgpiod")
 # What to read first: the framework's page, the guide and the smallest whole machine.
 install(FILES README.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY toolchain/guide "${PROJECT_BINARY_DIR}/guide" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")

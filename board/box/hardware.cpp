@@ -92,8 +92,8 @@ std::vector<Need> needs_of(const Facts& facts) {
 
 void bring_up(std::vector<Need>& needs, Modules& modules, const Voice& voice,
               std::chrono::milliseconds patience) {
-    constexpr std::chrono::milliseconds pause{10};
-    for (auto waited = std::chrono::milliseconds{0};; waited += pause) {
+    const double until_s = uptime_s() + std::chrono::duration<double>(patience).count();
+    for (std::chrono::milliseconds pause{10};; pause = std::min(2 * pause, std::chrono::milliseconds{250})) {
         if (const auto came = modules.load_what_fits(); !came) voice.say(came.error());
         for (Need& need : needs) {
             if (need.is_up || !need.is_there()) continue;
@@ -103,7 +103,7 @@ void bring_up(std::vector<Need>& needs, Modules& modules, const Voice& voice,
                            : need.what + " is refused: " + done.error() + "; " + need.cure);
         }
         if (std::ranges::all_of(needs, &Need::is_up)) return;
-        if (waited >= patience) break;
+        if (uptime_s() >= until_s) break;
         init::pause_for(pause);
     }
     for (const Need& need : needs)

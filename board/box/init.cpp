@@ -317,9 +317,9 @@ private:
     bool take_update() {
         static_cast<void>(modules_.load_what_fits()); // of a stick that came later
         std::optional<std::string> disk = find_update();
-        for (auto waited = milliseconds{0}; !disk && has_usb_storage() && waited < patience;
-             waited += milliseconds{50}) {
-            init::pause_for(milliseconds{50});
+        const double until_s = uptime_s() + std::chrono::duration<double>(patience).count();
+        while (!disk && has_usb_storage() && uptime_s() < until_s) {
+            init::pause_for(milliseconds{250});
             static_cast<void>(modules_.load_what_fits());
             disk = find_update();
         }

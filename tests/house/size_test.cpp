@@ -35,7 +35,7 @@ const std::vector<Size> sizes{
     {"apps/cut_to_length",    404},
     {"apps/car_tracking",     1937},
     {"toolchain/machine",     3242},
-    {"toolchain/tools",       10421},
+    {"toolchain/tools",       10424},
     {"tests/kernel",         26052},
     {"tests/drivers",         4762},
     {"tests/apps",            4530},

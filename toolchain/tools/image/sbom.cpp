@@ -78,7 +78,12 @@ std::vector<Component> linked_into(const fs::path& list, const fs::path& cache) 
             components.push_back({ours->source, first_line(read_file(cache / ours->source / "VERSION"))});
         else if (ours != std::end(built_here))
             packages.insert(ours->source);
-        else if (path.string().starts_with("/usr/") || path.string().starts_with("/lib/"))
+        else if (word.starts_with('/') && path.extension() == ".a" &&
+                 path.parent_path().parent_path() == fs::weakly_canonical(cache))
+            components.push_back({path.parent_path().filename().string(),
+                                  first_line(read_file(path.parent_path() / "VERSION"))});
+        else if (word.starts_with('/') &&
+                 path.extension() != ".ld") // a program's own parts are named from its build tree on
             files.insert(path.string());
     }
     packages.merge(packages_of(files));

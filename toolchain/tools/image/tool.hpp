@@ -16,11 +16,9 @@ struct Fault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// What an exit code other than 0 means.
-enum class Trouble : std::uint8_t { is_a_fault, is_told };
-
 /// Runs a program of this machine under a clock that stands still, so that what it writes is the same at any
 /// time. Its standard output; a fault carries its last words.
+enum class Trouble : std::uint8_t { is_a_fault, is_told }; ///< told: the caller reads it in what was said
 std::string run_tool(const std::vector<std::string>& words, Trouble trouble = Trouble::is_a_fault);
 
 std::string read_file(const std::filesystem::path& path);
