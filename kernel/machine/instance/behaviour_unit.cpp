@@ -223,7 +223,8 @@ void BehaviourUnit::limit_work(Time now) noexcept TAPPET_REALTIME {
 }
 
 bool BehaviourUnit::has_worked() noexcept TAPPET_REALTIME {
-    return std::exchange(has_worked_, false) | std::exchange(limit_.has_begun, false);
+    has_worked_ |= std::exchange(limit_.has_begun, false);
+    return std::exchange(has_worked_, false);
 }
 
 void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
