@@ -22,7 +22,8 @@ public:
     std::expected<void, Sentence> open(const char* path, Duration within) noexcept;
     /// At times four to eight times as often as it must; else it does nothing.
     void kick(Time now) noexcept;
-    /// Leaves it to the next who opens it, within what is left of the time. Without effect when it is not open.
+    /// Leaves it to the next who opens it, within what is left of the time. Without effect when it is not
+    /// open.
     void hand_over() noexcept;
     /// Ends: nothing is reset. Without effect when it is not open.
     void stand_down() noexcept;

@@ -28,7 +28,8 @@ public:
     Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALTIME;
 
     void advance(Time now) noexcept TAPPET_REALTIME;
-    /// Moves on to before `until`, but no further than to where something leaves it. When it is to be advanced.
+    /// Moves on to before `until`, but no further than to where something leaves it. When it is to be
+    /// advanced.
     Time leap(Time until) noexcept TAPPET_REALTIME;
     /// Nothing leaves the plant before this time unless it is acted upon: a world in virtual time may leap to
     /// it.

@@ -65,7 +65,7 @@ struct BoardImage {
     /// them is there, any other always; what they need comes with them.
     Bounded<std::string_view, 48> modules{};
     Bounded<std::string_view, 4>
-        consoles{}; ///< where kernel, init and firmware speak: "tty0", "ttyS0,115200"
+        consoles{};                      ///< where kernel, init and firmware speak: "tty0", "ttyS0,115200"
     Bounded<BoardNetwork, 4> networks{}; ///< Ethernet interfaces that the box brings up
     int interrupt_priority =
         0; ///< SCHED_FIFO of the bound devices' interrupt threads; 0: as the kernel has them
