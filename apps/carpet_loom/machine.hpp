@@ -168,7 +168,7 @@ inline constexpr auto table = machine("carpet-loom",
         behaviour("loom", compiled<loom_cycle>),
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
                                peers("shaft", "loom"), operations("weft.lift", "weft.weave_carpet"),
-                               events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(16)))),
+                               events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(4)))),
     limits( // whatever a component writes, its drive is told no more than this
         limit("main.target",                 0.0, 700.0, stop_on_breach),
         limit("warp.target",                -5.0,  40.0)));
