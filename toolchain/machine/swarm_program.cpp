@@ -47,7 +47,7 @@ constexpr std::uint64_t most_broken = 10; // then the rest would say the same ag
 
 Sentence replay; // of the seed that runs
 
-Sentence in_ms(Duration time) { return Sentence{time / 1s, ".", (time / 100ms) % 10, " s"}; }
+Sentence in_s(Duration time) { return Sentence{time / 1s, ".", (time / 100ms) % 10, " s"}; }
 
 void tell_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
     TAPPET_ESCAPE("the swarm is over", os::print(Sentence{describe(breach), "\n", replay}.view());
@@ -88,7 +88,7 @@ struct Totals {
         }
     }
     void print(std::string_view name, Duration took) {
-        os::print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_ms(took),
+        os::print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_s(took),
                            ", ", time / std::max(took, Duration{1ms}), " times as fast; ", broken,
                            " broken\n"}
                       .view());
@@ -97,8 +97,8 @@ struct Totals {
         os::print(struck.add(" and ").add(restarts).add(" stops\n").view());
         if (!back.empty()) {
             std::ranges::sort(back);
-            os::print(Sentence{"worked again ", in_ms(back[back.size() / 2]),
-                               " after the last fault in half of them, ", in_ms(back.back()), " at most\n"}
+            os::print(Sentence{"worked again ", in_s(back[back.size() / 2]),
+                               " after the last fault in half of them, ", in_s(back.back()), " at most\n"}
                           .view());
         }
         for (const auto& [what, by] : waited_for)
