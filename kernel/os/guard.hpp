@@ -33,7 +33,8 @@ struct GuardBlock {
     Sentence refusal{};
     Sentence fault{}; ///< that stopped the machine; before ended_well, and before its end
     CrashNote crash{};
-    alignas(16) std::array<std::byte, 64> machines{}; ///< what else the machine keeps there for its guardian
+    alignas(
+        16) std::array<std::byte, 64> machines_own{}; ///< what else the machine keeps there for its guardian
 };
 
 /// Of one process, for its whole life. Not real-time; in the machine's process its supervisor's.
@@ -53,7 +54,7 @@ public:
     std::expected<Side, Sentence> split(int crash_patience_ms = 1000) noexcept;
 
     /// In both, after a split.
-    [[nodiscard]] std::span<std::byte, 64> machines() noexcept { return block_->machines; }
+    [[nodiscard]] std::span<std::byte, 64> machines_own() noexcept { return block_->machines_own; }
 
     // ---- in the machine's process; without a split() they do nothing, and the guardian is not lost
 

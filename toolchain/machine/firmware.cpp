@@ -124,7 +124,7 @@ public:
         if (options_.guarded) {
             const auto side = guard_.split();
             if (!side) return static_cast<int>(fail(Ending::wrong_set_up, side.error()));
-            instance.keep_stop_request_in(guard_.machines());
+            instance.keep_stop_request_in(guard_.machines_own());
             if (*side == os::Guard::Side::guardian) {
                 os::Guard::forget(properties);
                 os::Guard::forget(world);
