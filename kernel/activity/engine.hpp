@@ -97,6 +97,7 @@ struct EnginePlan {
     bool periodic = false;
     bool real_time = true;
     Duration period{};
+    Duration phase{}; ///< of its periods, against those of the clock's beginning
     Duration deadline{};
     Duration budget{}; ///< of a cycle, claimed by the table
     std::int64_t at_most_n = 1;
@@ -195,6 +196,16 @@ public:
     /// Why it could not start while the rest of the machine runs: an input that another activity writes has
     /// no valid value. While it stands.
     [[nodiscard]] LifeAnswer readiness(Time now) noexcept TAPPET_REALTIME;
+    /// A set of parts: bit i is part i.
+    using Parts = std::uint64_t;
+    /// Parts that run by turns with others (thesis 3.1.3): these wait, and nobody starts one alone. From the
+    /// start() of a part before them. Real-time.
+    void rest(Parts waiting) noexcept TAPPET_REALTIME { resting_ = waiting; }
+    /// From a step of a part before them: those parts start from what they read now; or all of them wait on,
+    /// and the answer says which input was in the way. Real-time.
+    [[nodiscard]] LifeAnswer enter(Parts entering) noexcept TAPPET_REALTIME;
+    /// Likewise: they stop, and wait. Real-time.
+    void leave(Parts leaving) noexcept TAPPET_REALTIME;
     /// Its thread hangs or broke a contract, and its stop was run in its place: its components are failed.
     void mark_failed() noexcept TAPPET_REALTIME;
     /// The component that decides itself when it runs, which is then the only one; null: none does.
@@ -302,6 +313,9 @@ private:
     }
     [[nodiscard]] Time earliest_wake() const noexcept TAPPET_REALTIME;
     enum class Rule : std::uint8_t { with_the_machine, alone };
+    [[nodiscard]] bool rests(std::uint32_t part) const noexcept TAPPET_REALTIME {
+        return (resting_ >> part & 1) != 0;
+    }
     [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
     void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;
     void stop_part(std::uint32_t part) noexcept TAPPET_REALTIME;
@@ -360,6 +374,7 @@ private:
     Time ends_at_ = never;       ///< of behaviours that were asked to end; never: they were not
     std::uint32_t awaiting_ = 0; ///< parts that wait for an input
     std::uint32_t ending_ = 0;   ///< parts whose stop waits for the end of their behaviours
+    Parts resting_ = 0;          ///< parts that wait for their turn
     Time next_release_ = never;
     Time lap_{};
     Time ended_{};

@@ -8,6 +8,17 @@ namespace {
 
 constexpr std::uint64_t life_note = 0x6c696665u; // "life": no transition of a state machine has this number
 
+/// The first begin of a period after `now`. All count from the beginning of the clock.
+constexpr Time next_on_grid(Time now, Duration period, Duration phase) noexcept TAPPET_REALTIME {
+    const Duration since = now - (Time{} + phase);
+    const auto whole = since / period - (since % period < Duration::zero() ? 1 : 0);
+    return Time{} + phase + (whole + 1) * period;
+}
+static_assert(next_on_grid(Time{} + 1ms, 1ms, 0ms) == Time{} + 2ms &&
+                  next_on_grid(Time{}, 1ms, 200us) == Time{} + 200us &&
+                  next_on_grid(Time{} + 1700us, 1ms, 200us) == Time{} + 2200us,
+              "the next point lies after now, by a period at most");
+
 } // namespace
 
 Sentence Engine::initialise() {
@@ -41,7 +52,7 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     const RunsActivity here{plan_.activity, &cycle_.now};
     stamps_.renew();
     cycle_.now = cycle_.release = lap_ = ended_ = now;
-    next_release_ = plan_.periodic ? now + plan_.period : never;
+    next_release_ = plan_.periodic ? next_on_grid(now, plan_.period, plan_.phase) : never;
     if (was_stopped_) {
         static_cast<void>(run_messages()); // what came meanwhile reached nobody: each row counts its own
         commands_.reject_sent();
@@ -52,7 +63,9 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     awaiting_ = 0;
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if (plan_.parts[i].state.load(std::memory_order_relaxed) == ComponentState::failed) continue;
-        if (check_inputs(i, Rule::with_the_machine).refusal == LifeRefusal::none) {
+        if (rests(i)) {
+            plan_.parts[i].state.store(ComponentState::stopped, std::memory_order_release);
+        } else if (check_inputs(i, Rule::with_the_machine).refusal == LifeRefusal::none) {
             start_part(i);
         } else {
             plan_.parts[i].state.store(ComponentState::starting, std::memory_order_release);
@@ -279,12 +292,39 @@ LifeAnswer Engine::change(std::uint32_t i, LifeChange wanted) noexcept TAPPET_RE
         stop_part(i);
     }
     if (wanted == LifeChange::stop || is_running(part.state)) return done;
+    if (rests(i))
+        return {LifeOutcome::refused, LifeRefusal::waits_for_its_turn, static_cast<std::uint8_t>(i), 0};
     if (const LifeAnswer inputs = check_inputs(i, Rule::alone); inputs.refusal != LifeRefusal::none)
         return inputs;
     if (part.state.load(std::memory_order_relaxed) == ComponentState::starting) --awaiting_;
     start_part(i);
     start_behaviours(i);
     return done;
+}
+
+LifeAnswer Engine::enter(Parts entering) noexcept TAPPET_REALTIME {
+    resting_ &= ~entering;
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        if ((entering >> i & 1) == 0) continue;
+        const LifeAnswer answer = change(i, LifeChange::start);
+        if (answer.outcome == LifeOutcome::refused) {
+            leave(entering);
+            return answer;
+        }
+        note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(LifeChange::start),
+             cycle_.now);
+    }
+    return {.outcome = LifeOutcome::done};
+}
+
+void Engine::leave(Parts leaving) noexcept TAPPET_REALTIME {
+    resting_ |= leaving;
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        if ((leaving >> i & 1) == 0) continue;
+        static_cast<void>(change(i, LifeChange::stop)); // never refused, but to one that failed: it stands
+        note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(LifeChange::stop),
+             cycle_.now);
+    }
 }
 
 void Engine::start_awaiting() noexcept TAPPET_REALTIME {

@@ -30,6 +30,11 @@ struct Text {
         length = static_cast<std::uint32_t>(from.size());
         return true;
     }
+    /// Real-time. What does not fit is left out.
+    constexpr void append(std::string_view more) noexcept TAPPET_REALTIME {
+        for (const char each : more)
+            if (length < N) characters[length++] = each;
+    }
     [[nodiscard]] constexpr std::string_view view() const noexcept TAPPET_REALTIME {
         return {characters.data(), length};
     }

@@ -48,7 +48,10 @@ struct PortOperations {
     std::size_t shared_bytes;
     std::size_t shared_align;
     void (*place_shared)(void* output, void* memory);
-    void (*link_local)(void* input, const void* output);
+    /// Also while both run by turns with others: in their activity, between two steps.
+    void (*link_local)(void* input, const void* output) noexcept TAPPET_REALTIME;
+    /// The output is as if it had never been written, for readers of its own activity; likewise.
+    void (*forget)(void* output) noexcept TAPPET_REALTIME;
     void (*link_shared)(void* input, const void* output);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
@@ -174,11 +177,14 @@ struct PortAccess {
                 out.settle();
             },
         .link_local =
-            [](void* input, const void* output) {
+            [](void* input, const void* output) noexcept TAPPET_REALTIME {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.local_ = static_cast<const Output<T>*>(output);
+                if (!in.forced_) in.seen_ = 0;
                 in.settle();
             },
+        .forget = [](void* output) noexcept
+        TAPPET_REALTIME { static_cast<Output<T>*>(output)->generation_ = 0; },
         .link_shared =
             [](void* input, const void* output) {
                 static_cast<Input<T>*>(input)->shared_ = static_cast<const Output<T>*>(output)->shared_;

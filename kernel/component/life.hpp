@@ -70,9 +70,10 @@ enum class LifeRefusal : std::uint8_t {
     none,
     input_never_written,
     input_stale,
-    not_initialised,  ///< initialise() refused, or nobody called it since the failure
-    activity_stopped, ///< the activity that runs it does not run
-    thread_lost       ///< its thread hangs or broke a contract
+    not_initialised,   ///< initialise() refused, or nobody called it since the failure
+    activity_stopped,  ///< the activity that runs it does not run
+    thread_lost,       ///< its thread hangs or broke a contract
+    waits_for_its_turn ///< it runs by turns with others, and one of those runs now
 };
 
 /// The answer to a request: the refusal, and where it lies.

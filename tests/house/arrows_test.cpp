@@ -41,6 +41,7 @@ const std::vector<Row> house{
     {"kernel/machine/instance", {"kernel/machine"}},
     {"kernel/machine/worlds",   {"kernel/machine/instance"}},
     {"kernel/limits",     {"kernel/machine/instance"}},
+    {"kernel/control",    {"kernel/machine/instance"}},
     {"kernel/services",   {"kernel/machine/worlds"}},
 
     {"drivers/twin",      {"kernel/component"}},
@@ -53,7 +54,7 @@ const std::vector<Row> house{
 
     {"board/init",        {}},
     {"board/box",         {"board/init", "kernel/os"}},
-    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
+    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
     // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by.
     {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.

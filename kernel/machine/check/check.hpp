@@ -31,10 +31,11 @@ constexpr Sentence check(const MachineView& m, const Board& board, const Binding
         if (Sentence fault = checks::check_behaviours(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_controls(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_devices(m, board, binding); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_schedulability(m, board, binding, r); !fault.empty()) return fault;
         for (std::size_t e = 0; e < m.extras->size(); ++e)
             if (Sentence fault = m.extras->at(e)->check(m, r); !fault.empty()) return fault;
-        if (Sentence fault = checks::check_devices(m, board, binding); !fault.empty()) return fault;
-        return checks::check_schedulability(m, board, binding, r);
+        return {};
     };
     const Sentence fault = first_fault();
     return fault.empty() ? fault : Sentence{m.name, ": ", fault};

@@ -128,6 +128,10 @@ constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
         return of_activity(row.name, " runs no component; add runs(\"...\") or remove the row");
     if (row.periodic() && row.period <= Duration::zero())
         return of_activity(row.name, ": its period is not positive; write every(1ms) or the like");
+    if (row.periodic() && (row.phase < Duration::zero() || row.phase >= row.period))
+        return of_activity(row.name, ": its phase of ", row.phase.count() / 1000,
+                           " us does not lie within its period; write one from 0 us to below ",
+                           row.period.count() / 1000, " us");
     if (row.trigger == Trigger::on_device) {
         const std::size_t driver = find_component(m, row.device);
         if (driver == nowhere) return unknown_to_activity(m, row, row.device);

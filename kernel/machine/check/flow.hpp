@@ -130,7 +130,14 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
     return {};
 }
 
-/// A row against those before it: an input has one writer, a port not too many buffers.
+/// Of two writers of one input: whether a section of the table sees to it that one at a time runs.
+constexpr bool take_turns(const MachineView& m, std::size_t one, std::size_t other) {
+    for (std::size_t e = 0; e < m.extras->size(); ++e)
+        if (m.extras->at(e)->take_turns(m, one, other)) return true;
+    return false;
+}
+
+/// A row against those before it: an input has one writer at a time, a port not too many buffers.
 constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, std::size_t x) {
     const ConnectionRow& row = m.connections[x];
     const Link& link = r.connections[x];
@@ -141,6 +148,7 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
         if (r.connections[j].from == link.from)
             return of_connection(row, " stands in connections(...) twice (rows ", j + 1, " and ", x + 1,
                                  "); remove one");
+        if (!row.buffered && take_turns(m, r.connections[j].from.component, link.from.component)) continue;
         if (!row.buffered)
             return of_connection(row, ": \"", row.to, "\" is written by \"", m.connections[j].from,
                                  "\" already; an input has one writer: remove one row, or use a buffer");

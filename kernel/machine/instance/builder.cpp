@@ -125,6 +125,7 @@ void MachineBuilder::place_engines() {
         engine.periodic = row.periodic();
         engine.real_time = row.real_time;
         engine.period = row.period;
+        engine.phase = row.phase;
         engine.deadline = row.real_time ? row.deadline() : Duration::zero();
         engine.budget = row.budget_each;
         engine.at_most_n = row.at_most_n;

@@ -50,6 +50,10 @@ Sentence MachineLife::describe(std::size_t activity, LifeAnswer answer) const {
                         "\" is not started: its thread hangs, broke a contract or came too late; free its "
                         "processor of other "
                         "real-time work, and restart the machine"};
+    case LifeRefusal::waits_for_its_turn:
+        return Sentence{"component \"", part.name,
+                        "\" is not started: it runs by turns with others of activity \"", plan.name,
+                        "\", and one of those runs; ask the component that hands over between them"};
     case LifeRefusal::input_never_written:
     case LifeRefusal::input_stale: break;
     }

@@ -21,6 +21,7 @@ struct ActivityRow {
     std::string_view name{};
     Trigger trigger = Trigger::background;
     Duration period{};          ///< of every; of background: how often it looks
+    Duration phase{};           ///< of every: after the points of the grid that all periods have
     std::string_view device{};  ///< of on_device: the component whose device wakes it
     std::int64_t at_most_n = 1; ///< sporadic activities: at most n wakes ...
     Duration at_most_per{};     ///< ... in any window of this length
@@ -49,9 +50,18 @@ struct TriggerOption {
     Trigger trigger;
     Duration period;
     std::string_view device{};
+    Duration phase{};
 };
-/// Periodic. Without not_real_time it needs a budget; its deadline is the period unless stated.
-constexpr TriggerOption every(Duration period) noexcept { return {Trigger::every, period, {}}; }
+struct Phase {
+    Duration after;
+};
+/// Each of its periods begins so much later than those of activities without a phase: behind what it reads.
+constexpr Phase phase(Duration after) noexcept { return {after}; }
+/// Periodic. Without not_real_time it needs a budget; its deadline is the period unless stated. The periods
+/// of all activities begin on one grid, whenever each was started: those of 1 ms and of 3 ms meet every 3 ms.
+constexpr TriggerOption every(Duration period, Phase phase = {}) noexcept {
+    return {Trigger::every, period, {}, phase.after};
+}
 /// Sporadic: runs when a message, a connection that wakes, or a timer of its components asks. Needs at_most.
 constexpr TriggerOption on_work() noexcept { return {Trigger::on_work, {}, {}}; }
 /// Sporadic: runs when the device of this component is ready. Needs at_most.
@@ -110,6 +120,7 @@ constexpr void apply(ActivityRow& row, const TriggerOption& option) noexcept {
     give(row, "a trigger", row.has_trigger);
     row.trigger = option.trigger == Trigger::every && !row.real_time ? Trigger::background : option.trigger;
     row.period = option.period;
+    row.phase = option.phase;
     row.device = option.device;
     row.has_trigger = true;
 }

@@ -29,6 +29,11 @@ public:
     /// The first fault of its rows, with its cure; empty: none. After all other sections were found good.
     [[nodiscard]] constexpr virtual Sentence check(const MachineView& table,
                                                    const TableIndexView& index) const = 0;
+    /// Whether two components never run at the same time, so that both may write one input. Before the check,
+    /// when all components and activities were found good.
+    [[nodiscard]] constexpr virtual bool take_turns(const MachineView&, std::size_t, std::size_t) const {
+        return false;
+    }
     /// What it takes of the machine's memory; it begins where any object may stand.
     [[nodiscard]] constexpr virtual std::size_t bytes(const MachineView& table) const = 0;
     /// At start-up, when ports are wired and no component is configured yet. `number`: of this section, for

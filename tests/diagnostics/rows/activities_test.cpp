@@ -40,6 +40,11 @@ constexpr Fault activity_faults[] = {
     {"activity_runs_twice",
      [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft"), runs("tension"))); },
      R"(loom: activity "motion" is given runs twice; keep one)"},
+    {"activity_phase_beyond_its_period",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms, phase(1ms)), budget(120us), runs("shaft", "tension")));
+     },
+     R"(loom: activity "motion": its phase of 1000 us does not lie within its period; write one from 0 us to below 1000 us)"},
     {"activity_runs_nothing", [](Table& m) { m.add(activity("idle", every(10ms), budget(1us))); },
      R"(loom: activity "idle" runs no component; add runs("...") or remove the row)"},
     {"activity_runs_unknown",

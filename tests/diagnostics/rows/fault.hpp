@@ -3,6 +3,7 @@
 // tests/diagnostics/cases show.
 #pragma once
 
+#include "kernel/control/control.hpp"
 #include "tests/diagnostics/copy.hpp"
 
 #include <iosfwd>
@@ -15,12 +16,38 @@
 
 namespace tappet::diagnostics {
 
+/// The section control(...) with rows that a fault may change. It is checked, and never comes to life.
+struct ControlRows final : ExtraSection, ExtraList {
+    std::vector<LevelRow> levels;
+    std::vector<RoleRow> processes;
+    std::vector<ExclusiveRow> exclusives;
+    std::vector<LoopRow> loops;
+
+    [[nodiscard]] control_detail::ControlView rows() const { return {levels, processes, exclusives, loops}; }
+    [[nodiscard]] bool take_turns(const MachineView& m, std::size_t one, std::size_t other) const override {
+        return control_detail::take_turns(exclusives, m.components[one].name, m.components[other].name);
+    }
+    [[nodiscard]] Sentence check(const MachineView& m, const TableIndexView& r) const override {
+        return control_detail::check(rows(), m, r);
+    }
+    [[nodiscard]] std::size_t bytes(const MachineView&) const override { return 0; }
+    void connect(MachineInstance&, std::size_t, std::span<std::byte>) const override {}
+    [[nodiscard]] Sentence describe_stop(std::size_t) const override { return {}; }
+    [[nodiscard]] SectionCount counted(std::span<const std::byte>, std::size_t) const noexcept override {
+        return {};
+    }
+    [[nodiscard]] std::size_t size() const noexcept override { return 1; }
+    [[nodiscard]] const ExtraSection* at(std::size_t) const noexcept override { return this; }
+};
+
 /// The rows of a machine, its board and the binding, as a fault may change them.
 struct Table : Copy {
     Board board;
     Binding binding;
     std::vector<StateRow> states;           ///< of the first behaviour
     std::vector<TransitionRow> transitions; ///< likewise
+    bool is_controlled = false;             ///< the section is there
+    ControlRows control;
 
     Table(const MachineView& machine, const Board& on, const Binding& bound);
     /// What the check says; empty: it is accepted.

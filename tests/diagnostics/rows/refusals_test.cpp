@@ -44,7 +44,9 @@ std::string Table::refusal() const {
         copy.behaviours[0].type.machine.states = states;
         copy.behaviours[0].type.machine.transitions = transitions;
     }
-    return refusal_of(copy.view(), board, binding);
+    MachineView view = copy.view();
+    if (is_controlled) view.extras = &control;
+    return refusal_of(view, board, binding);
 }
 
 Table small_loom() {

@@ -129,7 +129,10 @@ private:
         std::string text;
         switch (row.trigger) {
         case Trigger::every:
-        case Trigger::background: text = "every " + time_text(row.period); break;
+        case Trigger::background:
+            text = "every " + time_text(row.period);
+            if (row.phase != Duration::zero()) text += ", " + time_text(row.phase) + " behind";
+            break;
         case Trigger::on_work: text = "on work"; break;
         case Trigger::on_device: text = "on device of " + std::string{row.device}; break;
         }

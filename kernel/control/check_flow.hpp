@@ -1,0 +1,221 @@
+// Checks of the data flow between roles (thesis 3.1.2, 3.1.3): who may read what, who may call whom, and that
+// everybody leaves something safe behind.
+#pragma once
+
+#include "kernel/control/seats.hpp"
+#include "kernel/machine/check/flow.hpp"
+#include "kernel/machine/check/operations.hpp"
+
+namespace tappet::control_detail {
+
+/// From a level's point of view: where the reader sits.
+enum class Reader : std::uint8_t { same_level, any_level, level_below };
+
+struct DataPath {
+    ControlRole from;
+    ControlRole to;
+    Reader where;
+    std::string_view what;
+    bool of_last_step = false; ///< within one activity the row says delayed
+};
+
+/// All that flows (thesis figures 3.1 and 3.6). What is no line here is refused.
+inline constexpr DataPath data_paths[] = {
+    {ControlRole::sensor, ControlRole::estimator, Reader::any_level, "inputs"},
+    {ControlRole::sensor, ControlRole::generator, Reader::any_level, "inputs"},
+    {ControlRole::sensor, ControlRole::controller, Reader::any_level, "inputs"},
+    {ControlRole::estimator, ControlRole::estimator, Reader::any_level, "the model"},
+    {ControlRole::estimator, ControlRole::generator, Reader::any_level, "the model"},
+    {ControlRole::estimator, ControlRole::controller, Reader::any_level, "the model"},
+    {ControlRole::generator, ControlRole::controller, Reader::same_level, "set points"},
+    {ControlRole::controller, ControlRole::effector, Reader::same_level, "outputs"},
+    {ControlRole::controller, ControlRole::generator, Reader::level_below, "commands"},
+    {ControlRole::controller, ControlRole::estimator, Reader::any_level, "outputs", true},
+    {ControlRole::effector, ControlRole::estimator, Reader::any_level, "what was sent", true},
+    {ControlRole::effector, ControlRole::controller, Reader::any_level, "what was sent", true},
+    {ControlRole::effector, ControlRole::generator, Reader::any_level, "what was sent", true},
+};
+
+/// What is written wrongly most, and what was meant.
+struct WrongPath {
+    ControlRole from;
+    ControlRole to;
+    std::string_view cure;
+};
+inline constexpr WrongPath wrong_paths[] = {
+    {ControlRole::sensor, ControlRole::effector,
+     "put a Controller between them, which makes outputs of inputs"},
+    {ControlRole::estimator, ControlRole::effector,
+     "put a Controller between them, which makes outputs of the model"},
+    {ControlRole::generator, ControlRole::effector,
+     "put a Controller between them, be it one that passes set points on"},
+    {ControlRole::generator, ControlRole::generator,
+     "make one Generator of both, or let a Controller of the level above command it"},
+    {ControlRole::generator, ControlRole::estimator,
+     "an Estimator sees inputs and the outputs of the step before; read those"},
+    {ControlRole::controller, ControlRole::controller,
+     "make two levels of it: the outer Controller commands the inner Generator"},
+    {ControlRole::controller, ControlRole::generator,
+     "a Controller commands the Generator of the level right below its own"},
+    {ControlRole::controller, ControlRole::effector,
+     "a level has its own Controller; let the outer one command the inner Generator"},
+    {ControlRole::generator, ControlRole::controller,
+     "set points stay in their level; let a Controller of the outer level command the inner Generator"},
+};
+
+constexpr bool reaches(const DataPath& path, const Seat& from, const Seat& to) noexcept {
+    if (path.from != from.role || path.to != to.role) return false;
+    if (path.where == Reader::same_level) return from.level == to.level;
+    return path.where == Reader::any_level || to.level == from.level + 1;
+}
+
+/// By any of the roles that the two components have; null: nothing flows there.
+constexpr const DataPath* path_between(const Seats& seats, std::size_t from, std::size_t to) noexcept {
+    for (const Seat& a : seats)
+        for (const Seat& b : seats) {
+            if (a.component != from || b.component != to) continue;
+            for (const DataPath& path : data_paths)
+                if (reaches(path, a, b)) return &path;
+        }
+    return nullptr;
+}
+
+constexpr const Seat& seat_of(const Seats& seats, std::size_t component) noexcept {
+    for (const Seat& each : seats)
+        if (each.component == component) return each;
+    return seats[0];
+}
+
+constexpr Sentence refuse_path(const ControlView& c, const ConnectionRow& row, const Seat& from,
+                               const Seat& to) {
+    Sentence text = checks::of_connection(row, ": ", a_role(from.role));
+    if (from.level != to.level) text.add(" of level \"").add(c.levels[from.level].name).add("\"");
+    text.add(" does not write for ").add(a_role(to.role));
+    if (from.level != to.level) text.add(" of level \"").add(c.levels[to.level].name).add("\"");
+    text.add("; ");
+    for (const WrongPath& each : wrong_paths)
+        if (each.from == from.role && each.to == to.role) return text.add(each.cure);
+    return text.add("a Sensor reads hardware only");
+}
+
+constexpr bool is_driver(const MachineView& m, std::size_t component) noexcept {
+    return !m.components[component].type->device_kind.empty();
+}
+
+/// One end has a role at least.
+constexpr Sentence check_outside(const ConnectionRow& row, const MachineView& m, const Seats& seats,
+                                 std::size_t from, std::size_t to) {
+    const bool from_seat = has_seat(seats, from), to_seat = has_seat(seats, to);
+    if (!from_seat) {
+        for (const Seat& each : seats)
+            if (each.component == to &&
+                (each.role == ControlRole::sensor || each.role == ControlRole::process))
+                return {};
+        return checks::of_connection(
+            row, ": what comes from outside of the control kernel comes by a Sensor, and \"",
+            m.components[to].name, "\" is ", a_role(seat_of(seats, to).role), "; give \"",
+            m.components[from].name, "\" its role in control(...), or let a Sensor bring it");
+    }
+    if (!to_seat && is_driver(m, to)) {
+        for (const Seat& each : seats)
+            if (each.component == from &&
+                (each.role == ControlRole::effector || each.role == ControlRole::process))
+                return {};
+        return checks::of_connection(row,
+                                     ": only an Effector reaches the hardware, within its limits, and \"",
+                                     m.components[from].name, "\" is ", a_role(seat_of(seats, from).role),
+                                     "; let it write for an Effector");
+    }
+    return {};
+}
+
+constexpr Sentence check_row(const ControlView& c, const MachineView& m, const TableIndexView& r,
+                             const Seats& seats, std::size_t x) {
+    const ConnectionRow& row = m.connections[x];
+    const std::size_t from = r.connections[x].from.component, to = r.connections[x].to.component;
+    if (!has_seat(seats, from) && !has_seat(seats, to)) return {};
+    if (!has_seat(seats, from) || !has_seat(seats, to)) return check_outside(row, m, seats, from, to);
+    const Seat& writer = seat_of(seats, from);
+    const Seat& reader = seat_of(seats, to);
+    if (writer.role == ControlRole::process && reader.role != ControlRole::process)
+        return checks::of_connection(
+            row,
+            ": a process component reads all of the data flow and writes none of it, so that "
+            "nobody looks for the writer of a value in two places; let \"",
+            m.components[from].name, "\" command \"", m.components[to].name, "\" by an operation");
+    if (writer.role == ControlRole::process || reader.role == ControlRole::process) return {};
+    const DataPath* path = path_between(seats, from, to);
+    if (path == nullptr) return refuse_path(c, row, writer, reader);
+    const bool crosses = r.activity[from] != r.activity[to];
+    if (path->of_last_step && !crosses && !row.delayed_step)
+        return checks::of_connection(row, ": ", path->what, " reach ", a_role(path->to),
+                                     " from the step before; add delayed");
+    if (crosses && !row.buffered && row.max_age == Duration::zero())
+        return checks::of_connection(
+            row, ": it leads from level \"", c.levels[writer.level].name, "\" to level \"",
+            c.levels[reader.level].name,
+            "\" and does not say what holds when the writer fails; add stale_after(...) "
+            "with hold, substitute(...) or stop_machine");
+    return {};
+}
+
+/// Data-flow components call process components and services; process components call anybody (thesis 3.1.3).
+constexpr Sentence check_calls(const MachineView& m, const TableIndexView& r, const Seats& seats) {
+    for (std::size_t i = 0; i < m.reactions.size(); ++i) {
+        const ReactionRow& row = m.reactions[i];
+        if (row.kind == ReactionKind::when) continue;
+        const std::size_t from = r.reactions[i].from.component, to = r.reactions[i].to.component;
+        if (!has_seat(seats, from) || !has_seat(seats, to)) continue;
+        const Seat& caller = seat_of(seats, from);
+        const Seat& called = seat_of(seats, to);
+        if (caller.role == ControlRole::process || called.role == ControlRole::process) continue;
+        return Sentence{
+            checks::of_use(row),
+            ": ",
+            a_role(caller.role),
+            " does not call ",
+            a_role(called.role),
+            ", so that each can be replaced alone; let a process component call it, or exchange the "
+            "value by ports"};
+    }
+    return {};
+}
+
+/// Each writes for somebody and reads from somebody, and leaves safe values when it stops.
+constexpr Sentence check_seat(const ControlView& c, const MachineView& m, const TableIndexView& r,
+                              const Seats& seats, const Seat& seat) {
+    const LevelRow& level = c.levels[seat.level];
+    const std::string_view name = m.components[seat.component].name;
+    bool reads = false, writes = false;
+    for (std::size_t x = r.connections_into.first[seat.component]; x != nowhere;
+         x = r.connections_into.next[x])
+        reads |= has_seat(seats, r.connections[x].from.component);
+    for (std::size_t x = r.connections_from.first[seat.component]; x != nowhere;
+         x = r.connections_from.next[x])
+        writes = true;
+    if (!reads && seat.role != ControlRole::sensor)
+        return of_level(level, "nothing leads to the ", to_text(seat.role), " \"", name,
+                        "\"; connect an input of it with what it makes its values of");
+    if (!writes && (seat.role != ControlRole::effector || !is_driver(m, seat.component)))
+        return of_level(level, "nobody reads what the ", to_text(seat.role), " \"", name,
+                        "\" writes; connect an output of it, or leave it out");
+    if (writes && m.components[seat.component].type->stop == nullptr && !is_driver(m, seat.component))
+        return of_level(
+            level, "the ", to_text(seat.role), " \"", name,
+            "\" has no stop(), so that others would go on with its last value when it has stopped; "
+            "write safe values there: void stop(const Cycle&) noexcept TAPPET_REALTIME");
+    return {};
+}
+
+constexpr Sentence check_data_flow(const ControlView& c, const MachineView& m, const TableIndexView& r,
+                                   const Seats& seats) {
+    for (std::size_t x = 0; x < m.connections.size(); ++x)
+        if (Sentence fault = check_row(c, m, r, seats, x); !fault.empty()) return fault;
+    if (Sentence fault = check_calls(m, r, seats); !fault.empty()) return fault;
+    for (const Seat& seat : seats)
+        if (seat.level != no_level)
+            if (Sentence fault = check_seat(c, m, r, seats, seat); !fault.empty()) return fault;
+    return {};
+}
+
+} // namespace tappet::control_detail

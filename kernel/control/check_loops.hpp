@@ -1,0 +1,141 @@
+// Checks of loops: gain times period times delay. A loop that cannot be stable does not compile, and one that
+// will overshoot says so.
+#pragma once
+
+#include "kernel/base/decimal.hpp"
+#include "kernel/control/seats.hpp"
+#include "kernel/control/stability.hpp"
+
+#include <limits>
+
+namespace tappet::control_detail {
+
+/// Three digits, with a power of ten where the number is small: 0.148, 7.4e-4.
+constexpr Sentence in_digits(double value) {
+    std::int64_t tens = 0;
+    if (value > 0.0 && value < 0.1)
+        for (; value < 1.0; value *= 10.0) --tens;
+    const Sentence text = decimal(value);
+    return tens == 0 ? text : Sentence{text, "e", tens};
+}
+
+template <class... Pieces>
+constexpr Sentence of_loop(const LoopRow& row, const Pieces&... fault) {
+    return Sentence{"loop \"", row.name, "\": ", fault...};
+}
+
+/// The value that the table gives a property of a number.
+constexpr Sentence find_value(const MachineView& m, std::string_view path, End& end, double& value) {
+    if (Sentence fault = resolve(m, path, FacetKind::property, end); !fault.empty()) return fault;
+    const Facet& facet = facet_at(m, end);
+    if (facet.kind != FacetKind::property || facet.type->kind != ValueKind::real)
+        return Sentence{"\"", path, "\" is no property of a number; name the one that holds the gain"};
+    for (const PropertyRow& each : m.components[end.component].settings)
+        if (same_text(each.name, facet.name)) {
+            value = each.setting.kind == PropertySetting::Kind::integer
+                        ? static_cast<double>(each.setting.integer)
+                        : each.setting.real;
+            return {};
+        }
+    return Sentence{"the table does not say what \"",
+                    path,
+                    "\" is, and it decides whether the loop is stable; add set(\"",
+                    facet.name,
+                    "\", ...) to the row of \"",
+                    m.components[end.component].name,
+                    "\""};
+}
+
+/// Of all ways from a component against the flow to a Sensor, or along it to an Effector: the most steps that
+/// rows delay it by, in which the value waits for the next cycle.
+constexpr std::size_t most_delayed(const MachineView& m, const TableIndexView& r, const Seats& seats,
+                                   std::size_t component, bool along, std::size_t depth = 0) {
+    if (depth > 8) return 0;
+    const std::size_t level = level_of(seats, component);
+    const RowsByComponent& rows = along ? r.connections_from : r.connections_into;
+    std::size_t most = 0;
+    for (std::size_t x = rows.first[component]; x != nowhere; x = rows.next[x]) {
+        const std::size_t next = along ? r.connections[x].to.component : r.connections[x].from.component;
+        ControlRole role = ControlRole::process;
+        for (const Seat& each : seats)
+            if (each.component == next && each.level == level) role = each.role;
+        const bool is_end = role == (along ? ControlRole::effector : ControlRole::sensor);
+        if (!is_end && (along || role != ControlRole::estimator)) continue;
+        std::size_t steps = m.connections[x].delayed_step ? 1 : 0;
+        if (!is_end) steps += most_delayed(m, r, seats, next, along, depth + 1);
+        most = std::max(most, steps);
+    }
+    return most;
+}
+
+/// The dead time in steps beyond the one that sampling takes: rows that delay, and what the wires take.
+constexpr std::size_t dead_samples(const LoopRow& row, const MachineView& m, const TableIndexView& r,
+                                   const Seats& seats, std::size_t component, Duration period) {
+    return most_delayed(m, r, seats, component, false) + most_delayed(m, r, seats, component, true) +
+           static_cast<std::size_t>((row.transport + period - 1ns) / period);
+}
+
+constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const TableIndexView& r,
+                              const Seats& seats) {
+    End end;
+    double gain = 0.0, integral = 0.0;
+    if (row.gain.empty())
+        return of_loop(row, "it has no gain; name the Controller's property: gain(\"...\")");
+    if (Sentence fault = find_value(m, row.gain, end, gain); !fault.empty()) return of_loop(row, fault);
+    const std::size_t component = end.component;
+    bool is_controller = false;
+    for (const Seat& each : seats)
+        is_controller |= each.component == component && each.role == ControlRole::controller;
+    if (!is_controller)
+        return of_loop(row, "\"", m.components[component].name,
+                       "\" is no Controller of a level; name the property of one");
+    if (!row.integral.empty()) {
+        if (Sentence fault = find_value(m, row.integral, end, integral); !fault.empty())
+            return of_loop(row, fault);
+        if (end.component != component)
+            return of_loop(row, "its two gains are of two components; name those of one");
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (!(gain > 0.0 && gain < infinity && integral >= 0.0 && integral < infinity && row.factor > 0.0 &&
+          row.factor < infinity && row.transport >= Duration::zero()))
+        return of_loop(
+            row, "its gains, stiffness and transport are to be positive; a loop that feeds back with the "
+                 "other sign turns it round in the Sensor");
+    const ActivityRow& activity = m.activities[r.activity[component]];
+    const std::size_t dead = dead_samples(row, m, r, seats, component, activity.period);
+    if (dead > max_dead_samples)
+        return of_loop(row, "its transport is more than ", max_dead_samples, " periods; sample more slowly");
+    // A step that begins late by all of its response makes one period so much longer.
+    const Duration jitter{
+        std::max<std::int64_t>(0, r.worst_response_ns[r.activity[component]] - activity.budget_each.count())};
+    const double period = to_seconds(activity.period), longest = to_seconds(activity.period + jitter);
+    const auto with = [&](double seconds) {
+        return SampledLoop{gain * row.factor * seconds, integral * row.factor * seconds * seconds, dead};
+    };
+    const auto say = [&](double bound, std::string_view what, std::string_view otherwise) {
+        return of_loop(row, "gain times period is ", in_digits(with(longest).proportional),
+                       jitter == Duration::zero() ? "" : " in the longest period", ", and ", what, " with ",
+                       dead, dead == 1 ? " step" : " steps", " of delay is ", in_digits(bound), "; set ",
+                       row.gain, " below ", in_digits(bound / (row.factor * longest)), otherwise);
+    };
+    if (!is_stable(with(longest)) || !is_stable(with(period))) {
+        if (with(longest).proportional >= most_stable(dead))
+            return say(most_stable(dead), "the most that is stable", ", or shorten the delay");
+        return of_loop(row, "it is not stable with an integral gain of ", in_digits(integral), "; set ",
+                       row.integral, " lower");
+    }
+    if (!row.may_overshoot && row.integral.empty() &&
+        with(longest).proportional > most_without_overshoot(dead) * (1 + 1e-9))
+        return say(most_without_overshoot(dead), "the most that does not overshoot",
+                   ", or add may_overshoot if that does no harm");
+    return {};
+}
+
+constexpr Sentence check_loops(const ControlView& c, const MachineView& m, const TableIndexView& r,
+                               const Seats& seats) {
+    for (const LoopRow& row : c.loops)
+        if (Sentence fault = check_loop(row, m, r, seats); !fault.empty()) return fault;
+    return {};
+}
+
+} // namespace tappet::control_detail

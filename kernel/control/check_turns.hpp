@@ -1,0 +1,214 @@
+// Checks of components that run by turns (thesis 3.1.3: some need to be executed exclusively): each value has
+// exactly one writer whichever chain runs, and who takes over starts from what is.
+#pragma once
+
+#include "kernel/control/check_flow.hpp"
+
+namespace tappet::control_detail {
+
+template <class... Pieces>
+constexpr Sentence of_exclusive(const ExclusiveRow& row, const Pieces&... fault) {
+    return Sentence{"exclusive \"", row.by, "\": ", fault...};
+}
+
+/// Inputs of one row that several write by turns, and that a hand-over links anew; and those that come from
+/// other activities, whose growing stale makes a chain fall back.
+inline constexpr std::size_t max_links = 16;
+inline constexpr std::size_t max_watched = 16;
+
+constexpr bool is_member(const ExclusiveRow& row, const MachineView& m, std::size_t component) noexcept {
+    return chains_of(row, m.components[component].name) != 0;
+}
+
+/// Whether a row's input is written by turns: another row leads there too.
+constexpr bool is_shared(const TableIndexView& r, std::size_t x) noexcept {
+    const Link& link = r.connections[x];
+    for (std::size_t j = r.connections_into.first[link.to.component]; j != nowhere;
+         j = r.connections_into.next[j])
+        if (j != x && r.connections[j].to == link.to) return true;
+    return false;
+}
+
+constexpr Sentence check_switch(const ExclusiveRow& row, const MachineView& m,
+                                const ComponentType* switch_type) {
+    const std::size_t by = find_component(m, row.by);
+    if (by == nowhere) return of_exclusive(row, unknown_component(m, row.by));
+    if (m.components[by].type != switch_type)
+        return of_exclusive(row, "\"", row.by,
+                            "\" cannot hand over between chains; make it a component<ChainSwitch>");
+    if (row.too_many) return of_exclusive(row, too_many("chains", ExclusiveRow::max_chains));
+    std::size_t fallbacks = 0;
+    for (const ChainRow& each : row.chains) fallbacks += each.is_fallback ? 1 : 0;
+    if (row.chains.size() < 2)
+        return of_exclusive(row, "it has no two chains between which to hand over; add one, or leave it out");
+    if (fallbacks != 1 || !row.chains[0].is_fallback)
+        return of_exclusive(row,
+                            "what runs first, and when a part of a chain fails, is not said once; begin with "
+                            "fallback(\"...\", ...), and let the others be chain(...)");
+    return {};
+}
+
+constexpr Sentence check_member(const ControlView& c, const ExclusiveRow& row, const ChainRow& chain,
+                                std::string_view name, const MachineView& m, const TableIndexView& r,
+                                const Seats& seats) {
+    const std::size_t component = find_component(m, name);
+    if (component == nowhere) return unknown_component(m, name);
+    if (level_of(seats, component) == no_level)
+        return Sentence{"\"", name, "\" has no role in a level; write it there first"};
+    const std::size_t by = find_component(m, row.by);
+    if (r.activity[component] != r.activity[by])
+        return Sentence{"\"",
+                        name,
+                        "\" runs in activity \"",
+                        m.activities[r.activity[component]].name,
+                        "\", but \"",
+                        row.by,
+                        "\" in \"",
+                        m.activities[r.activity[by]].name,
+                        "\"; one hands over in its own activity only, between two steps"};
+    if (r.position[component] < r.position[by])
+        return Sentence{"\"", row.by, "\" runs after \"", name,
+                        "\" and would hand over in the midst of a step; name it first in runs(...)"};
+    if (m.components[component].type->start == nullptr)
+        return Sentence{
+            "\"", name, "\" of chain \"", chain.name,
+            "\" has no start(), so that it would go on where it was when it ran last; write its first "
+            "values there, made of what it reads: void start(const Cycle&) noexcept TAPPET_REALTIME"};
+    for (const BehaviourRow& each : m.behaviours)
+        if (same_text(each.component, name))
+            return Sentence{"\"", name,
+                            "\" has a behaviour, which cannot end within a step; let the process "
+                            "component have it"};
+    for (const ExclusiveRow& other : c.exclusives)
+        if (&other != &row && chains_of(other, name) != 0)
+            return Sentence{"\"", name, "\" is a part of exclusive \"", other.by, "\" too; keep it in one"};
+    return {};
+}
+
+/// Of an input that members write: each chain has one writer of it.
+constexpr Sentence check_one_writer(const ExclusiveRow& row, const MachineView& m, const TableIndexView& r,
+                                    std::size_t x) {
+    const Link& link = r.connections[x];
+    for (std::size_t k = 0; k < row.chains.size(); ++k) {
+        std::size_t writers = 0;
+        for (std::size_t j = 0; j < m.connections.size(); ++j)
+            if (r.connections[j].to == link.to &&
+                (chains_of(row, m.components[r.connections[j].from.component].name) >> k & 1) != 0)
+                ++writers;
+        const unsigned reader = chains_of(row, m.components[link.to.component].name);
+        const bool is_read = reader == 0 || (reader >> k & 1) != 0;
+        if (writers != 1 && is_read)
+            return of_exclusive(row, "while chain \"", row.chains[k].name, "\" runs nobody writes \"",
+                                m.connections[x].to, "\"; add the component that does to the chain");
+    }
+    return {};
+}
+
+constexpr bool same_value(const RowValue& a, const RowValue& b) noexcept {
+    return a.given == b.given && a.number == b.number && a.constant == b.constant;
+}
+
+constexpr Sentence check_shared_inputs(const ExclusiveRow& row, const MachineView& m,
+                                       const TableIndexView& r) {
+    std::size_t links = 0, watched = 0;
+    for (std::size_t x = 0; x < m.connections.size(); ++x) {
+        const Link& link = r.connections[x];
+        const ConnectionRow& own = m.connections[x];
+        if (is_member(row, m, link.to.component) &&
+            r.activity[link.from.component] != r.activity[link.to.component])
+            ++watched;
+        if (!is_member(row, m, link.from.component) || own.buffered || !is_shared(r, x)) continue;
+        if (r.activity[link.from.component] != r.activity[link.to.component])
+            return checks::of_connection(
+                own, ": what is written by turns is read in the writers' activity \"",
+                m.activities[r.activity[link.from.component]].name, "\" only; read what comes of it there");
+        if (Sentence fault = check_one_writer(row, m, r, x); !fault.empty()) return fault;
+        bool is_first = true;
+        for (std::size_t j = 0; j < x; ++j) {
+            if (!(r.connections[j].to == link.to)) continue;
+            is_first = false;
+            const ConnectionRow& other = m.connections[j];
+            if (other.max_age != own.max_age || other.when_stale != own.when_stale ||
+                !same_value(other.substitute, own.substitute) ||
+                !same_value(other.before_first, own.before_first) || other.delayed_step != own.delayed_step ||
+                is_scaled(own) || is_scaled(other))
+                return checks::of_connection(
+                    own, ": it and \"", other.from,
+                    "\" write by turns and say different things of the input; give both "
+                    "rows the same options, and no scale");
+        }
+        links += is_first ? 1 : 0;
+    }
+    if (links > max_links) return of_exclusive(row, too_many("inputs written by turns", max_links));
+    if (watched > max_watched)
+        return of_exclusive(row, too_many("inputs from other activities", max_watched));
+    return {};
+}
+
+/// A Controller that takes over begins with what the Effector sent last.
+constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const MachineView& m,
+                                  const TableIndexView& r, const Seats& seats) {
+    const ComponentRow& own = m.components[seat.component];
+    bool takes_turns = false;
+    for (const ExclusiveRow& row : c.exclusives) takes_turns |= chains_of(row, own.name) != 0;
+    for (std::size_t x = r.connections_into.first[seat.component]; x != nowhere;
+         x = r.connections_into.next[x])
+        takes_turns |= is_shared(r, x) && !m.connections[x].buffered;
+    if (seat.tracked.empty())
+        return takes_turns
+                   ? of_level(c.levels[seat.level], "the Controller \"", own.name,
+                              "\" runs by turns, or those who write for it do, and it does not see what "
+                              "was sent before, so that the axis would jump; connect an Effector's output to "
+                              "an input of it, "
+                              "delayed, and name that: controller(\"",
+                              own.name, "\", tracks(\"...\"))")
+                   : Sentence{};
+    const std::size_t facet = find_facet(own, seat.tracked);
+    if (facet == nowhere || own.type->facets[facet].kind != FacetKind::input)
+        return of_level(c.levels[seat.level], "\"", own.name, "\" has no input \"", seat.tracked,
+                        "\" by which to track; name the one that tells what was sent");
+    for (std::size_t x = r.connections_into.first[seat.component]; x != nowhere;
+         x = r.connections_into.next[x]) {
+        if (r.connections[x].to.facet != facet) continue;
+        for (const Seat& each : seats)
+            if (each.component == r.connections[x].from.component && each.role == ControlRole::effector)
+                return {};
+    }
+    return of_level(
+        c.levels[seat.level], "what \"", own.name, ".", seat.tracked,
+        "\" tracks does not come from an Effector, which alone knows what was sent; connect it there");
+}
+
+constexpr Sentence check_turns(const ControlView& c, const MachineView& m, const TableIndexView& r,
+                               const Seats& seats, const ComponentType* switch_type) {
+    for (const ExclusiveRow& row : c.exclusives) {
+        if (Sentence fault = check_switch(row, m, switch_type); !fault.empty()) return fault;
+        for (std::size_t k = 0; k < row.chains.size(); ++k) {
+            const ChainRow& chain = row.chains[k];
+            if (chain.too_many)
+                return of_exclusive(row, too_many("components in a chain", ChainRow::max_members));
+            for (std::size_t j = 0; j < k; ++j)
+                if (same_text(row.chains[j].name, chain.name))
+                    return of_exclusive(row, "two chains are called \"", chain.name, "\"; rename one");
+            for (const std::string_view name : chain.members)
+                if (Sentence fault = check_member(c, row, chain, name, m, r, seats); !fault.empty())
+                    return of_exclusive(row, fault);
+        }
+        if (Sentence fault = check_shared_inputs(row, m, r); !fault.empty()) return fault;
+    }
+    for (const Seat& seat : seats)
+        if (seat.role == ControlRole::controller)
+            if (Sentence fault = check_tracking(seat, c, m, r, seats); !fault.empty()) return fault;
+    for (const ComponentRow& each : m.components)
+        if (each.type == switch_type) {
+            bool is_named = false;
+            for (const ExclusiveRow& row : c.exclusives) is_named |= same_text(row.by, each.name);
+            if (!is_named)
+                return Sentence{"component \"", each.name,
+                                "\" hands over between chains, and no row says which; add exclusive(\"",
+                                each.name, "\", fallback(...), chain(...)) to control(...)"};
+        }
+    return {};
+}
+
+} // namespace tappet::control_detail

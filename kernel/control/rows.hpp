@@ -1,0 +1,186 @@
+// The control kernel as rows of the table (thesis 3.1): which component has which role, which ones run by
+// turns, and which loops they close.
+//     control(
+//         level("axis",
+//             sensor("drive"), generator("holding"), generator("jogging"), controller("position",
+//             tracks("sent")), effector("limiter")),
+//         process("homing"),
+//         exclusive("mode", fallback("stand", "holding"), chain("jog", "jogging")),
+//         loop("position", gain("position.kp"), transport(2ms)))
+#pragma once
+
+#include "kernel/base/bounded.hpp"
+#include "kernel/base/time.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+/// The stereotypes of thesis 3.1.2.
+enum class ControlRole : std::uint8_t { sensor, estimator, generator, controller, effector, process };
+
+/// With its article.
+constexpr std::string_view a_role(ControlRole role) noexcept {
+    switch (role) {
+    case ControlRole::sensor: return "a Sensor";
+    case ControlRole::estimator: return "an Estimator";
+    case ControlRole::generator: return "a Generator";
+    case ControlRole::controller: return "a Controller";
+    case ControlRole::effector: return "an Effector";
+    case ControlRole::process: return "a process component";
+    }
+    return "?";
+}
+
+constexpr std::string_view to_text(ControlRole role) noexcept {
+    const std::string_view text = a_role(role);
+    return text.substr(text.find(' ') + 1);
+}
+
+struct RoleRow {
+    ControlRole role = ControlRole::process;
+    std::string_view component{};
+    std::string_view tracked{}; ///< of a Controller: the input that tells what was really sent
+};
+
+/// Brings what the hardware measured, in units of the application: the inputs of the control action.
+constexpr RoleRow sensor(std::string_view component) noexcept { return {ControlRole::sensor, component, {}}; }
+/// Makes the model of inputs, and of outputs of the step before.
+constexpr RoleRow estimator(std::string_view component) noexcept {
+    return {ControlRole::estimator, component, {}};
+}
+/// Makes set points of inputs, model, and the command of the level above.
+constexpr RoleRow generator(std::string_view component) noexcept {
+    return {ControlRole::generator, component, {}};
+}
+struct Tracks {
+    std::string_view input{};
+};
+/// The input by which a Controller sees what the Effector really sent in the step before: it starts from that
+/// without a bump, and its integral does not wind up behind the Effector's limits.
+constexpr Tracks tracks(std::string_view input) noexcept { return {input}; }
+/// Makes outputs of set points, inputs and model: those of its level's Effector, or the command of the level
+/// below.
+constexpr RoleRow controller(std::string_view component, Tracks tracked = {}) noexcept {
+    return {ControlRole::controller, component, tracked.input};
+}
+/// Sends outputs to the hardware, within its limits.
+constexpr RoleRow effector(std::string_view component) noexcept {
+    return {ControlRole::effector, component, {}};
+}
+/// Reads all of the data flow and writes none of it: kinematics, homing, the states of the whole. It calls,
+/// is called, and may run in any activity.
+constexpr RoleRow process(std::string_view component) noexcept {
+    return {ControlRole::process, component, {}};
+}
+
+struct LevelRow {
+    static constexpr std::size_t max_roles = 24;
+    std::string_view name{};
+    Bounded<RoleRow, max_roles> roles{};
+    bool too_many = false;
+};
+
+/// One level of a cascade: what runs in one activity, once a period. Levels stand from the outermost to the
+/// innermost; outputs of a Controller are commands of the level below.
+template <class... Roles>
+constexpr LevelRow level(std::string_view name, const Roles&... roles) {
+    LevelRow row{.name = name};
+    ((row.too_many |= !row.roles.push(roles)), ...);
+    return row;
+}
+
+struct ChainRow {
+    static constexpr std::size_t max_members = 12;
+    std::string_view name{};
+    Bounded<std::string_view, max_members> members{};
+    bool too_many = false;
+    bool is_fallback = false;
+};
+
+/// Components of a level that run together, in place of those of the other chains.
+template <class... Names>
+constexpr ChainRow chain(std::string_view name, const Names&... members) {
+    ChainRow row{.name = name};
+    ((row.too_many |= !row.members.push(std::string_view{members})), ...);
+    return row;
+}
+/// The chain that runs first, and again when one of another chain has stopped, or reads from another activity
+/// what has grown stale. When that happens to itself the machine stops.
+template <class... Names>
+constexpr ChainRow fallback(std::string_view name, const Names&... members) {
+    ChainRow row = chain(name, members...);
+    row.is_fallback = true;
+    return row;
+}
+
+struct ExclusiveRow {
+    static constexpr std::size_t max_chains = 8;
+    std::string_view by{}; ///< the component<ChainSwitch> that hands over
+    Bounded<ChainRow, max_chains> chains{};
+    bool too_many = false;
+};
+
+/// Exactly one of the chains runs; `by` is a component<ChainSwitch> in the level's activity, first of all.
+template <class... Chains>
+constexpr ExclusiveRow exclusive(std::string_view by, const Chains&... chains) {
+    ExclusiveRow row{.by = by};
+    ((row.too_many |= !row.chains.push(chains)), ...);
+    return row;
+}
+
+struct LoopRow {
+    std::string_view name{};
+    std::string_view gain{};     ///< "controller.property"
+    std::string_view integral{}; ///< likewise
+    double factor = 1.0;         ///< between what the Controller puts out and the rate of what is measured
+    Duration transport{};
+    bool may_overshoot = false;
+};
+
+struct LoopGain {
+    std::string_view property{};
+};
+/// The property that holds the proportional gain, in 1/s times the plant's unit: a rate for each unit of
+/// error.
+constexpr LoopGain gain(std::string_view property) noexcept { return {property}; }
+struct LoopIntegral {
+    std::string_view property{};
+};
+/// The property that holds the integral gain, for each second.
+constexpr LoopIntegral integral(std::string_view property) noexcept { return {property}; }
+struct LoopFactor {
+    double value;
+};
+/// Of a spring between axis and sensor: what is measured for each unit of way (force in N for a metre).
+constexpr LoopFactor stiffness(double value) noexcept { return {value}; }
+struct LoopTransport {
+    Duration time;
+};
+/// Time from the Effector through hardware and wire back to the Sensor, beyond one period.
+constexpr LoopTransport transport(Duration time) noexcept { return {time}; }
+struct MayOvershoot {};
+/// It will overshoot, and that is known.
+inline constexpr MayOvershoot may_overshoot{};
+
+namespace detail {
+
+constexpr void apply(LoopRow& row, LoopGain option) noexcept { row.gain = option.property; }
+constexpr void apply(LoopRow& row, LoopIntegral option) noexcept { row.integral = option.property; }
+constexpr void apply(LoopRow& row, LoopFactor option) noexcept { row.factor = option.value; }
+constexpr void apply(LoopRow& row, LoopTransport option) noexcept { row.transport = option.time; }
+constexpr void apply(LoopRow& row, MayOvershoot) noexcept { row.may_overshoot = true; }
+
+} // namespace detail
+
+/// A loop around an axis that goes where its rate leads it (an integrator): the compiler sees that
+/// gain, period and delay let it be stable.
+template <class... Options>
+constexpr LoopRow loop(std::string_view name, const Options&... options) {
+    LoopRow row{.name = name};
+    (detail::apply(row, options), ...);
+    return row;
+}
+
+} // namespace tappet

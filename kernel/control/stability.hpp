@@ -1,0 +1,69 @@
+// Whether a sampled loop is stable and whether it overshoots: an integrator behind a dead time of whole
+// samples, under proportional and integral control (Astrom and Wittenmark, Computer-Controlled Systems, 1997,
+// chapter 3; Jury 1964).
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace tappet::control_detail {
+
+/// Samples of dead time that the analysis looks at, at most.
+inline constexpr std::size_t max_dead_samples = 32;
+
+/// x(k+1) = x(k) + T v(k-d), v = Kp e + Ki T sum(e): proportional is Kp T, integral Ki T T.
+struct SampledLoop {
+    double proportional = 0.0;
+    double integral = 0.0;
+    std::size_t dead_samples = 0;
+};
+
+/// Jury's test of z^d (z-1) + L, and with an integral of z^d (z-1)(z-1) + L (z-1) + Li z: all roots inside
+/// the unit circle.
+constexpr bool is_stable(const SampledLoop& loop) noexcept {
+    if (loop.dead_samples > max_dead_samples) return false;
+    std::array<double, max_dead_samples + 3> a{}; // of z to the power of its place
+    const std::size_t d = loop.dead_samples;
+    std::size_t degree = d + 1;
+    if (loop.integral == 0.0) {
+        a[d + 1] += 1.0;
+        a[d] -= 1.0;
+        a[0] += loop.proportional;
+    } else {
+        degree = d + 2;
+        a[d + 2] += 1.0;
+        a[d + 1] -= 2.0;
+        a[d] += 1.0;
+        a[1] += loop.proportional + loop.integral;
+        a[0] -= loop.proportional;
+    }
+    // Each round takes the highest power off; what is left has its roots inside only if this one had.
+    for (; degree > 0; --degree) {
+        const double top = a[degree], bottom = a[0];
+        if (!(bottom < top && bottom > -top)) return false;
+        std::array<double, max_dead_samples + 3> next{};
+        for (std::size_t i = 0; i < degree; ++i) next[i] = a[i + 1] - bottom / top * a[degree - 1 - i];
+        a = next;
+    }
+    return true;
+}
+
+/// The largest proportional gain times period that is stable, without an integral: 2, 1, 0.618, 0.445, ..
+constexpr double most_stable(std::size_t dead_samples) noexcept {
+    double low = 0.0, high = 2.0;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = (low + high) / 2;
+        (is_stable({middle, 0.0, dead_samples}) ? low : high) = middle;
+    }
+    return low;
+}
+
+/// The largest one that does not overshoot: d^d / (d+1)^(d+1).
+constexpr double most_without_overshoot(std::size_t dead_samples) noexcept {
+    double bound = 1.0;
+    const auto d = static_cast<double>(dead_samples);
+    for (std::size_t i = 0; i < dead_samples; ++i) bound *= d / (d + 1.0);
+    return bound / (d + 1.0);
+}
+
+} // namespace tappet::control_detail

@@ -1,0 +1,135 @@
+// The execution engine under virtual time, for tests: two workers that note what they do.
+#pragma once
+
+#include "kernel/activity/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace tappet;
+
+/// What happened, in order, in one list for all.
+struct Log {
+    std::vector<std::string> lines;
+    void add(std::string_view line) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test remembers", lines.emplace_back(line));
+    }
+};
+
+/// A component that takes a given time for each of its functions.
+struct Worker {
+    Log* log = nullptr;
+    os::Clock* clock = nullptr;
+    std::string_view name;
+    Duration load{};
+    Duration reaction_load{};
+    Timer timer;
+    Cycle last{};
+    const Engine* observed = nullptr;
+    std::vector<std::string> unguarded; ///< what it did while observers took its values for whole
+    void note(std::string_view what) noexcept TAPPET_REALTIME {
+        if (observed != nullptr && observed->generation() % 2 == 0)
+            TAPPET_ESCAPE("a test remembers", unguarded.emplace_back(what));
+        TAPPET_ESCAPE("a test remembers", log->lines.push_back(std::string{name} + " " + std::string{what}));
+        clock->consume(load);
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME { note("starts"); }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        last = cycle;
+        note("steps");
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { note("stops"); }
+    void ring(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        last = cycle;
+        note("rings");
+    }
+    void hear() noexcept TAPPET_REALTIME {
+        note("hears");
+        clock->consume(reaction_load);
+    }
+    static constexpr auto interface() {
+        return facets(tappet::timer<&Worker::timer, &Worker::ring>("timer", "rings"),
+                      operation<&Worker::hear>("hear", "hears"));
+    }
+};
+
+struct ExecutionEngine : testing::Test {
+    static constexpr Duration period = 1ms;
+
+    ExecutionEngine() {
+        for (std::size_t i = 0; i < workers.size(); ++i) {
+            workers[i].log = &log;
+            workers[i].clock = &clock;
+            workers[i].name = names[i];
+            parts[i].name = names[i];
+            parts[i].component = &workers[i];
+            parts[i].type = &component_type<Worker>;
+            timers[i] = {&workers[i].timer, detail::TimerCall<&Worker::ring>::operations.fire,
+                         static_cast<std::uint32_t>(i)};
+        }
+        plan.name = "motion";
+        plan.periodic = true;
+        plan.period = period;
+        plan.deadline = period;
+        plan.parts = parts;
+        plan.functions = functions;
+        plan.timers = timers;
+        void* at = storage.data();
+        std::size_t room = storage.size();
+        std::align(Mailbox::alignment, Mailbox::bytes_for(4), at, room);
+        mailboxes[0].place(static_cast<std::byte*>(at), 4, Overflow::reject);
+        engine.inbox().place(mailboxes);
+    }
+    void begin() {
+        engine.place(plan, clock);
+        engine.on_stop(
+            [](void* self, StopReason reason, std::uint64_t detail, const Engine&) noexcept TAPPET_REALTIME {
+                auto& test = *static_cast<ExecutionEngine*>(self);
+                TAPPET_ESCAPE("a test remembers", test.stops.emplace_back(reason, detail));
+            },
+            this);
+        engine.start(clock.now());
+        log.lines.clear();
+    }
+    /// The time of the next cycle comes, and it runs.
+    void next_cycle() {
+        clock.advance_to(engine.next_wake());
+        engine.run(false);
+    }
+    void tell(std::uint32_t part) {
+        Message message;
+        message.run = &OperationCall<&Worker::hear>::run;
+        message.object = &workers[part];
+        message.id = part;
+        ASSERT_TRUE(engine.inbox().post(0, message));
+    }
+    static constexpr std::uint32_t index(std::uint32_t part, FunctionKind kind) {
+        return part * functions_per_part + static_cast<std::uint32_t>(kind);
+    }
+    const EngineStatistics& statistics() const { return engine.statistics(); }
+    const Miss& last_miss() const {
+        return statistics().recent_misses[(statistics().misses - 1) % statistics().recent_misses.size()];
+    }
+
+    Log log;
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    std::array<std::string_view, 2> names{"a", "b"};
+    std::array<Worker, 2> workers{};
+    std::array<EnginePart, 2> parts{};
+    std::array<EngineTimer, 2> timers{};
+    std::array<FunctionTiming, 2 * functions_per_part> functions{};
+    std::vector<std::byte> storage = std::vector<std::byte>(Mailbox::bytes_for(4) + Mailbox::alignment);
+    std::array<Mailbox, 1> mailboxes;
+    EnginePlan plan;
+    Engine engine;
+    std::vector<std::pair<StopReason, std::uint64_t>> stops;
+};
+
+using Lines = std::vector<std::string>;
+
+} // namespace

@@ -1,0 +1,188 @@
+// Components that run by turns: one writer in every cycle, a hand-over within one cycle and without a bump,
+// and what happens when a part fails.
+#include "tests/kernel/control/axis.hpp"
+
+#include "kernel/base/random.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr auto table = axis_machine(control(axis_level, process("watcher"), axis_modes));
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, box>::machine(), clock};
+    VirtualWorld world{instance};
+    Rig() {
+        EXPECT_TRUE(instance.configure({}));
+        EXPECT_EQ(std::string{world.start().view()}, "");
+    }
+    template <class T>
+    T& part(std::string_view name) {
+        return *instance.find<T>(name);
+    }
+    bool run(Duration time) { return world.run_until(clock.now() + time); }
+    ComponentState state(std::string_view name) {
+        return instance.life().state_of(find_component(instance.machine().table, name));
+    }
+    void change(std::string_view name, LifeChange how) {
+        ticket = instance.life().ask_component(find_component(instance.machine().table, name), how);
+    }
+    std::string running() { return std::string{part<ChainSwitch>("mode").chain.last().view()}; }
+    std::string hindered() { return std::string{part<ChainSwitch>("mode").hindered.last().view()}; }
+    /// Asks as a component would, and waits for the end.
+    CommandState ask(const char* chain) {
+        ScriptText name;
+        EXPECT_TRUE(name.assign(chain));
+        auto& call = part<Watcher>("watcher").run;
+        call.reset();
+        EXPECT_TRUE(call.send(name));
+        EXPECT_TRUE(run(4ms));
+        return call.state();
+    }
+    std::size_t writers(std::string_view one, std::string_view other) {
+        return (state(one) == ComponentState::running ? 1u : 0u) +
+               (state(other) == ComponentState::running ? 1u : 0u);
+    }
+    LifeTicket ticket{};
+};
+
+TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(3ms));
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_EQ(rig.state("standing"), ComponentState::running);
+    EXPECT_EQ(rig.state("position"), ComponentState::running);
+    EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
+    EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
+}
+
+TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(3ms));
+    EXPECT_EQ(rig.ask("jog"), CommandState::done);
+    EXPECT_EQ(rig.running(), "jog");
+    EXPECT_EQ(rig.state("standing"), ComponentState::stopped);
+    EXPECT_EQ(rig.state("jogging"), ComponentState::running);
+    EXPECT_EQ(rig.state("position"), ComponentState::running) << "both chains have it: it goes on";
+    EXPECT_EQ(rig.ask("jgo"), CommandState::rejected);
+    EXPECT_EQ(rig.ask("jog"), CommandState::done) << "it runs already";
+    EXPECT_TRUE(rig.run(20ms));
+    EXPECT_EQ(rig.part<Watcher>("watcher").changes, 1u);
+    EXPECT_EQ(rig.instance.observation().counted(0, 1).what, "jog");
+    EXPECT_EQ(rig.instance.observation().counted(0, 1).times, 1u);
+}
+
+// At 1000 instants, from any chain to any other, with the axis under way: in every cycle one of the writers
+// runs, the set point goes on from where the axis is, and the velocity does not jump by more than the loop
+// itself would move it in one step.
+TEST(Turns, leave_one_writer_in_every_cycle_and_no_jump_of_the_velocity) {
+    Rig rig;
+    auto& mode = rig.part<ChainSwitch>("mode");
+    auto& sent = rig.part<Limiter>("limiter");
+    auto& slide = rig.part<Slide>("slide");
+    Random random{7};
+    rig.part<Mover>("jogging").speed = 0.3;
+    EXPECT_TRUE(rig.run(20ms));
+    double before = sent.sent.last();
+    constexpr std::array<const char*, 3> chains{"stand", "jog", "softly"};
+    double worst = 0.0;
+    for (int change = 0; change < 1000; ++change) {
+        ScriptText next;
+        ASSERT_TRUE(next.assign(chains[random.below(3)]));
+        ASSERT_TRUE(mode.run(next));
+        const auto cycles = 1 + random.below(40);
+        for (std::uint64_t i = 0; i < cycles; ++i) {
+            const std::uint64_t steps = sent.cycles;
+            ASSERT_TRUE(rig.run(1ms));
+            ASSERT_EQ(sent.cycles, steps + 1);
+            ASSERT_EQ(rig.writers("standing", "jogging"), 1u);
+            ASSERT_EQ(rig.writers("position", "gentle"), 1u);
+            worst = std::max(worst, std::abs(sent.sent.last() - before));
+            before = sent.sent.last();
+        }
+    }
+    // In one step: kp 20/s times the way of the set point against that of the slide, each at 0.3 m/s for 1
+    // ms, and of what was sent before 5 parts of 1000.
+    EXPECT_LT(worst, 20.0 * (0.3 + 0.3) * step_s + 0.3 * 5.0 * step_s);
+    EXPECT_GT(worst, 1e-4) << "the axis was under way";
+    EXPECT_TRUE(std::isfinite(slide.at));
+}
+
+TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(3ms));
+    rig.part<Mover>("jogging").is_mute =
+        true; // its start() writes nothing: nobody reads what it wrote long ago
+    EXPECT_EQ(rig.ask("jog"), CommandState::failed);
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_EQ(rig.hindered(), "position.target") << "it runs on, and would read what was written long ago";
+    EXPECT_EQ(rig.ask("softly"), CommandState::failed);
+    EXPECT_EQ(rig.hindered(), "gentle.target");
+    EXPECT_EQ(rig.state("standing"), ComponentState::running);
+    EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
+    EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
+    rig.part<Mover>("jogging").is_mute = false;
+    EXPECT_EQ(rig.ask("softly"), CommandState::done);
+    EXPECT_EQ(rig.hindered(), "");
+}
+
+TEST(Turns, fall_back_when_a_part_of_the_chain_stops) {
+    Rig rig;
+    EXPECT_EQ(rig.ask("softly"), CommandState::done);
+    rig.change("jogging", LifeChange::stop);
+    EXPECT_TRUE(rig.run(2ms));
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_EQ(rig.state("standing"), ComponentState::running);
+    EXPECT_TRUE(rig.run(10ms));
+    EXPECT_EQ(rig.part<Watcher>("watcher").fallbacks, 1u);
+    EXPECT_FALSE(rig.instance.stop_asked());
+    EXPECT_EQ(rig.ask("softly"), CommandState::done) << "who was stopped starts with its chain";
+}
+
+TEST(Turns, stop_the_machine_when_the_fallback_itself_fails) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(3ms));
+    rig.change("standing", LifeChange::stop);
+    rig.run(5ms);
+    ASSERT_TRUE(rig.instance.stop_asked());
+    EXPECT_THAT(std::string{rig.instance.describe_stop().view()}, HasSubstr("its fallback \"stand\" failed"));
+}
+
+TEST(Turns, stop_the_machine_when_a_part_stops_that_always_runs) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(3ms));
+    rig.change("encoder", LifeChange::stop);
+    rig.run(5ms);
+    EXPECT_TRUE(rig.instance.stop_asked());
+}
+
+TEST(Turns, are_not_taken_alone) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(3ms));
+    const std::size_t jogging = find_component(rig.instance.machine().table, "jogging");
+    rig.change("jogging", LifeChange::start);
+    EXPECT_TRUE(rig.run(3ms));
+    const LifeAnswer answer = rig.instance.life().answer_of_component(jogging, rig.ticket);
+    EXPECT_EQ(answer.refusal, LifeRefusal::waits_for_its_turn);
+    EXPECT_THAT(std::string{rig.instance.life().describe(0, answer).view()},
+                HasSubstr("it runs by turns with others of activity \"motion\""));
+}
+
+TEST(Turns, begin_anew_with_their_activity) {
+    Rig rig;
+    EXPECT_EQ(rig.ask("softly"), CommandState::done);
+    rig.instance.life().ask_activity(0, LifeChange::restart);
+    EXPECT_TRUE(rig.run(5ms));
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
+    EXPECT_EQ(rig.state("standing"), ComponentState::running);
+}
+
+} // namespace
+} // namespace tappet
