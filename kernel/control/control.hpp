@@ -64,6 +64,14 @@ struct Control final : ExtraSection {
                                             std::size_t other) const override {
         return control_detail::take_turns(exclusives, m.components[one].name, m.components[other].name);
     }
+    /// What is in a loop: an invalid zero would move the axis (thesis 3.1.3: starting).
+    [[nodiscard]] constexpr bool starts_on_valid_inputs(const MachineView& m,
+                                                        std::size_t component) const override {
+        for (const LevelRow& level : levels)
+            for (const RoleRow& role : level.roles)
+                if (same_text(role.component, m.components[component].name)) return true;
+        return false;
+    }
     [[nodiscard]] constexpr Sentence check(const MachineView& m, const TableIndexView& r) const override {
         return control_detail::check(view(), m, r);
     }

@@ -183,6 +183,14 @@ void MachineBuilder::connect_clocks() {
 
 void MachineBuilder::place_needed_inputs() {
     const MachineView& table = machine_.table;
+    // Not the value of the step before: the first step has none.
+    const auto awaits = [&](std::size_t x) {
+        for (std::size_t e = 0; e < table.extras->size(); ++e)
+            if (table.extras->at(e)->starts_on_valid_inputs(table,
+                                                            machine_.index.connections[x].to.component))
+                return !table.connections[x].delayed_step;
+        return false;
+    };
     std::size_t placed[max_activities] = {};
     for (std::size_t x = 0; x < table.connections.size(); ++x) {
         const Link& link = machine_.index.connections[x];
@@ -197,7 +205,7 @@ void MachineBuilder::place_needed_inputs() {
                         .has_initial =
                             table.connections[x].substitute.given || table.connections[x].before_first.given,
                         .same_activity = machine_.index.activity[link.from.component] == reader,
-                        .valid_to_start = input.valid_to_start};
+                        .valid_to_start = input.valid_to_start || awaits(x)};
     }
 }
 

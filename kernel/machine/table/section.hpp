@@ -34,6 +34,11 @@ public:
     [[nodiscard]] constexpr virtual bool take_turns(const MachineView&, std::size_t, std::size_t) const {
         return false;
     }
+    /// Whether a component waits for valid values of all its required inputs before it starts, as if each were
+    /// valid_to_start. Of an accepted table.
+    [[nodiscard]] constexpr virtual bool starts_on_valid_inputs(const MachineView&, std::size_t) const {
+        return false;
+    }
     /// What it takes of the machine's memory; it begins where any object may stand.
     [[nodiscard]] constexpr virtual std::size_t bytes(const MachineView& table) const = 0;
     /// At start-up, when ports are wired and no component is configured yet. `number`: of this section, for

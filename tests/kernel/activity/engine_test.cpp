@@ -2,6 +2,7 @@
 // them.
 #include "tests/kernel/activity/execution_engine.hpp"
 
+namespace tappet {
 namespace {
 
 /// A behaviour that wants a step at a time.
@@ -365,3 +366,4 @@ TEST_F(ExecutionEngine, keeps_its_generation_odd_while_components_start_run_and_
 }
 
 } // namespace
+} // namespace tappet

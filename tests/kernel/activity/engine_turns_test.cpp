@@ -1,6 +1,7 @@
 // When an engine's periods begin, and parts of it that run by turns.
 #include "tests/kernel/activity/execution_engine.hpp"
 
+namespace tappet {
 namespace {
 
 TEST_F(ExecutionEngine, begins_its_periods_on_the_grid_that_all_have_whenever_it_is_started) {
@@ -39,3 +40,4 @@ TEST_F(ExecutionEngine, starts_parts_that_run_by_turns_all_or_none) {
 }
 
 } // namespace
+} // namespace tappet

@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace {
-
-using namespace tappet;
+namespace tappet {
 
 /// What happened, in order, in one list for all.
 struct Log {
@@ -132,4 +130,4 @@ struct ExecutionEngine : testing::Test {
 
 using Lines = std::vector<std::string>;
 
-} // namespace
+} // namespace tappet

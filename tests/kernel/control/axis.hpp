@@ -36,7 +36,13 @@ struct Slide {
     Input<double> driven;
     Output<double> place;
     double at = 0.0;
-    void step(const Cycle&) noexcept TAPPET_REALTIME { place.write(at += driven.get() * step_s); }
+    bool is_silent = false;
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!is_silent) place.write(at);
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!is_silent) place.write(at += driven.get() * step_s);
+    }
     static constexpr auto interface() {
         return facets(input<&Slide::driven>("driven", "m/s", "by the drive"),
                       output<&Slide::place>("place", "m", "of the slide"));

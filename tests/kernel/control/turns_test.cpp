@@ -18,8 +18,9 @@ struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<table, box>::machine(), clock};
     VirtualWorld world{instance};
-    Rig() {
+    explicit Rig(bool measures = true) {
         EXPECT_TRUE(instance.configure({}));
+        part<Slide>("slide").is_silent = !measures;
         EXPECT_EQ(std::string{world.start().view()}, "");
     }
     template <class T>
@@ -60,6 +61,21 @@ TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
     EXPECT_EQ(rig.state("position"), ComponentState::running);
     EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
     EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
+}
+
+/// It has measured nothing until it is told to.
+TEST(Turns, begin_when_every_input_has_a_valid_value_and_not_with_a_zero) {
+    Rig rig{false};
+    EXPECT_TRUE(rig.run(5ms));
+    EXPECT_EQ(rig.state("standing"), ComponentState::starting);
+    EXPECT_EQ(rig.state("limiter"), ComponentState::starting);
+    EXPECT_EQ(rig.part<Limiter>("limiter").cycles, 0u);
+    EXPECT_FALSE(rig.instance.stop_asked()) << "who waits has not failed";
+    rig.part<Slide>("slide").is_silent = false;
+    EXPECT_TRUE(rig.run(3ms));
+    EXPECT_EQ(rig.state("standing"), ComponentState::running);
+    EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
+    EXPECT_GT(rig.part<Limiter>("limiter").cycles, 0u);
 }
 
 TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {

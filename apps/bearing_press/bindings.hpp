@@ -1,0 +1,19 @@
+// Where the press's devices and lines stand on each board.
+#pragma once
+
+#include "kernel/machine/table/binding.hpp"
+
+namespace bearing_press::bindings {
+
+using namespace tappet;
+
+inline constexpr BoundDevice panel =
+    wired("panel-io", "io", line("start", 0), line("stop", 1), line("up", 2), line("down", 3),
+          line("home", 4), line("end_switch", 5), line("lamp", 6));
+
+inline constexpr Binding bench = binding(wired("axis-can", "can0"), panel);
+
+inline constexpr Binding ipc_x86_64 = binding(wired("axis-can", "can0"), panel, place("can", 3),
+                                              place("loops", 3), place("io", 3), place("browser", 0));
+
+} // namespace bearing_press::bindings

@@ -1,0 +1,308 @@
+// The controllers of the press: one axis under a position and a velocity loop, or led by the force it lacks.
+// Down is positive.
+#pragma once
+
+#include "kernel/component/component.hpp"
+#include "kernel/motion/estimators.hpp"
+#include "kernel/motion/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bearing_press {
+
+using namespace tappet;
+
+inline constexpr motion::AxisLimits slide{.velocity = 0.2, .acceleration = 2.0, .jerk = 40.0}; // m, s
+inline constexpr double drive_most = 0.25; // m/s: some more than any path asks for
+
+/// Sensor: the slide's place and the force on it.
+struct Gauge {
+    Input<double> counted, weighed;
+    Output<double> position, force;
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        position.write(counted.get());
+        force.write(weighed.get());
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { force.write(0.0); }
+    static constexpr auto interface() {
+        return facets(
+            input<&Gauge::counted>("counted", "m", "by the drive's encoder"),
+            input<&Gauge::weighed>("weighed", "N", "by the cell"),
+            output<&Gauge::position>("position", "m", "of the slide, from where it was switched on"),
+            output<&Gauge::force>("force", "N", "of the slide on what lies below"));
+    }
+};
+
+/// Estimator: how fast the slide is.
+struct Speed {
+    Input<double> position;
+    Output<double> velocity;
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        filter_ = motion::AlphaBeta{gains};
+        velocity.write(0.0);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        filter_.sample(position.get(), cycle.release);
+        velocity.write(filter_.velocity());
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Speed::position>("position", "m", "of the slide"),
+                      output<&Speed::velocity>("velocity", "m/s", "of the slide"));
+    }
+
+private:
+    static constexpr auto gains = motion::AlphaBetaGains::critically_damped(0.7);
+    motion::AlphaBeta filter_{gains};
+};
+
+/// Generator: comes to rest from whatever speed, and stays there.
+struct Standing {
+    Input<double> position, sent;
+    Output<double> target, speed;
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        began_ = cycle.now;
+        const motion::AxisState from{.position = position.get(), .velocity = sent.get()};
+        profile_ = motion::stop(from, slide).value_or(motion::Profile{{.position = from.position}});
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const motion::AxisState next = profile_.at(cycle.now - began_);
+        target.write(next.position);
+        speed.write(next.velocity);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Standing::position>("position", "m", "of the slide"),
+                      input<&Standing::sent>("sent", "m/s", "to the drive in the step before"),
+                      output<&Standing::target>("target", "m", "the next place"),
+                      output<&Standing::speed>("speed", "m/s", "there"));
+    }
+
+private:
+    motion::Profile profile_;
+    Time began_{};
+};
+
+/// Generator: on at a constant speed, until another one takes over.
+struct Jogging {
+    Input<double> position, sent;
+    Output<double> target, speed;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { put(position.get(), sent.get()); }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const double h = to_seconds(cycle.period);
+        const double now =
+            speed_ + std::clamp(wanted_ - speed_, -slide.acceleration * h, slide.acceleration * h);
+        put(at_ + now * h, now);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
+    void at(double wanted) noexcept TAPPET_REALTIME {
+        wanted_ = std::clamp(wanted, -slide.velocity, slide.velocity);
+    }
+    static constexpr auto interface() {
+        return facets(input<&Jogging::position>("position", "m", "of the slide"),
+                      input<&Jogging::sent>("sent", "m/s", "to the drive in the step before"),
+                      output<&Jogging::target>("target", "m", "the next place"),
+                      output<&Jogging::speed>("speed", "m/s", "there"),
+                      operation<&Jogging::at>("at", "so fast, m/s"));
+    }
+
+private:
+    void put(double place, double now) noexcept TAPPET_REALTIME {
+        target.write(at_ = place);
+        speed.write(speed_ = now);
+    }
+    double at_ = 0.0, speed_ = 0.0, wanted_ = 0.0;
+};
+
+/// Generator: from rest to a place, with bounded jerk.
+struct Path {
+    Input<double> position;
+    Output<double> target, speed;
+    Event<> arrived;
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        profile_ = motion::Profile{{.position = position.get()}};
+        is_under_way_ = false;
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        if (begins_) began_ = cycle.now;
+        begins_ = false;
+        const motion::AxisState next = profile_.at(cycle.now - began_);
+        target.write(next.position);
+        speed.write(next.velocity);
+        if (!is_under_way_ || std::abs(position.get() - profile_.end().position) > 20e-6) return;
+        is_under_way_ = false;
+        arrived.emit();
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
+    /// From rest; on the way to another place it is not heard.
+    void aim(double place) noexcept TAPPET_REALTIME {
+        const auto planned = motion::jerk_limited(target.last(), place, slide);
+        if (is_under_way_ || !planned) return;
+        profile_ = *planned;
+        is_under_way_ = begins_ = true;
+    }
+    static constexpr auto interface() {
+        return facets(input<&Path::position>("position", "m", "of the slide"),
+                      output<&Path::target>("target", "m", "the next place"),
+                      output<&Path::speed>("speed", "m/s", "there"),
+                      event<&Path::arrived>("arrived", "the slide is there, within 20 um"),
+                      operation<&Path::aim>("aim", "go there, m; heard at rest"));
+    }
+
+private:
+    motion::Profile profile_;
+    Time began_{};
+    bool is_under_way_ = false, begins_ = false;
+};
+
+/// Controller of places: proportional, and the speed of the path beforehand.
+struct Place {
+    Input<double> target, speed, position, sent;
+    Output<double> velocity;
+    Property<double> kp{20.0};
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        bump_ = sent.get() - wanted(); // fades, so that nothing jumps
+        velocity.write(sent.get());
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        bump_ -= bump_ * kp.get() * to_seconds(cycle.period);
+        velocity.write(wanted() + bump_);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Place::target>("target", "m", "the next place"),
+                      input<&Place::speed>("speed", "m/s", "of the target"),
+                      input<&Place::position>("position", "m", "of the slide"),
+                      input<&Place::sent>("sent", "m/s", "to the drive in the step before"),
+                      output<&Place::velocity>("velocity", "m/s", "wanted"),
+                      property<&Place::kp>("kp", "1/s", "speed for a metre of error", range(1.0, 80.0)));
+    }
+
+private:
+    [[nodiscard]] double wanted() noexcept TAPPET_REALTIME {
+        return speed.get() + kp.get() * (target.get() - position.get());
+    }
+    double bump_ = 0.0;
+};
+
+/// Generator and Controller of force in one: down, as fast as force is lacking.
+struct Approach {
+    Input<double> position;
+    Output<double> target;
+    Property<double> force{2000.0};
+    void start(const Cycle&) noexcept TAPPET_REALTIME { target.write(force.get()); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME { target.write(force.get()); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { target.write(0.0); }
+    static constexpr auto interface() {
+        return facets(
+            input<&Approach::position>("position", "m", "of the slide"),
+            output<&Approach::target>("target", "N", "with which it shall press"),
+            property<&Approach::force>("force", "N", "of a bearing that is seated", range(100.0, 5000.0)));
+    }
+};
+
+/// Controller of force: a velocity for the force that is lacking.
+struct Press {
+    Input<double> target, force, sent;
+    Output<double> velocity;
+    Event<> seated;
+    Property<double> kf{1e-5};
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        since_ = never;
+        velocity.write(sent.get());
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const double lacking = target.get() - force.get();
+        velocity.write(std::clamp(kf.get() * lacking, -slide.velocity, slide.velocity));
+        if (std::abs(lacking) > 0.02 * target.get())
+            since_ = never;
+        else if (since_ == never)
+            since_ = cycle.now;
+        else if (cycle.now - since_ >= 100ms)
+            seated.emit(), since_ = never;
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
+    static constexpr auto interface() {
+        return facets(
+            input<&Press::target>("target", "N", "with which it shall press"),
+            input<&Press::force>("force", "N", "with which it does"),
+            input<&Press::sent>("sent", "m/s", "to the drive in the step before"),
+            output<&Press::velocity>("velocity", "m/s", "wanted"),
+            event<&Press::seated>("seated", "the force is within 2 % for 100 ms"),
+            property<&Press::kf>("kf", "m/s/N", "speed for a newton that lacks", range(1e-7, 2e-5)));
+    }
+
+private:
+    Time since_ = never;
+};
+
+/// Generator of the inner level: what the outer one commands, within twice the slide's acceleration.
+struct Ramp {
+    Input<double> command, sent;
+    Output<double> target;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { target.write(at_ = sent.get()); }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const double most = 2.0 * slide.acceleration * to_seconds(cycle.period);
+        target.write(at_ += std::clamp(command.get() - at_, -most, most));
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { target.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Ramp::command>("command", "m/s", "of the outer level"),
+                      input<&Ramp::sent>("sent", "m/s", "to the drive in the step before"),
+                      output<&Ramp::target>("target", "m/s", "the next speed"));
+    }
+
+private:
+    double at_ = 0.0;
+};
+
+/// Controller of the inner level: the speed itself, and what the drive lacks of it, summed up. What the
+/// Effector cut off is not summed.
+struct Trim {
+    Input<double> target, velocity, sent;
+    Output<double> wanted;
+    Property<double> ki{2.0};
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        sum_ = 0.0;
+        wanted.write(sent.get());
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const double now = wanted.last();
+        if (sent.get() == now) sum_ += ki.get() * (target.get() - velocity.get()) * to_seconds(cycle.period);
+        sum_ = std::clamp(sum_, -most, most);
+        wanted.write(target.get() + sum_);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { wanted.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Trim::target>("target", "m/s", "the next speed"),
+                      input<&Trim::velocity>("velocity", "m/s", "of the slide"),
+                      input<&Trim::sent>("sent", "m/s", "to the drive in the step before"),
+                      output<&Trim::wanted>("wanted", "m/s", "of the drive"),
+                      property<&Trim::ki>("ki", "1/s", "of what the drive lacks", range(0.0, 10.0)));
+    }
+
+private:
+    static constexpr double most = 0.01; // m/s
+    double sum_ = 0.0;
+};
+
+/// Effector: to the drive, within its limits.
+struct Drive {
+    Input<double> wanted;
+    Output<double> velocity;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        velocity.write(std::clamp(wanted.get(), -drive_most, drive_most));
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Drive::wanted>("wanted", "m/s", "of the drive"),
+                      output<&Drive::velocity>("velocity", "m/s", "sent"));
+    }
+};
+
+} // namespace bearing_press

@@ -1,0 +1,122 @@
+// The bearing press with its plant under virtual time: each bearing is seated with its force, nothing jumps
+// when another controller takes over, and what fails leaves the slide at rest.
+#include "apps/bearing_press/axis.hpp"
+#include "kernel/control/chain_switch.hpp"
+#include "toolchain/machine/test.hpp"
+
+namespace bearing_press {
+namespace {
+
+struct BearingPress : MachineTest, testing::WithParamInterface<std::uint64_t> {
+    BearingPress() : MachineTest{GetParam()} {}
+    [[nodiscard]] std::string_view state() {
+        const auto path = run.instance().state_machine_of("axis")->path();
+        return path.empty() ? std::string_view{} : path[0];
+    }
+    [[nodiscard]] std::string_view chain() {
+        return run.instance().find<ChainSwitch>("mode")->chain.last().view();
+    }
+    bool comes_to(std::string_view wanted, Duration within = 10s) {
+        return run.run_until([&] { return state() == wanted; }, within);
+    }
+    bool stands() {
+        return run.run_until([this] { return std::abs(plant.speed()) < 1e-4; }, 1s);
+    }
+    void change(std::string_view component, LifeChange how) {
+        run.instance().life().ask_component(find_component(run.instance().machine().table, component), how);
+    }
+};
+
+TEST_P(BearingPress, seats_each_bearing_with_its_force_and_not_more) {
+    ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s)) << plant.bearings() << ' ' << state();
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+    EXPECT_LT(plant.worst_force(), 1.005 * Plant::seat_force)
+        << "the loop does not overshoot, as the table says";
+    EXPECT_GT(plant.worst_force(), 0.98 * Plant::seat_force);
+    EXPECT_LE(plant.worst_speed(), drive_most);
+    EXPECT_EQ(run.instance().find<Axis>("axis")->seated.last(), plant.bearings());
+}
+
+// The bound: what the inner ramp may change, through a drive that lags by 4 ms.
+TEST_P(BearingPress, is_never_jolted_by_a_hand_over) {
+    ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s));
+    EXPECT_GT(run.instance().observation().counted(0, 3).times, 2u) << "hand-overs to the press";
+    EXPECT_LT(plant.worst_jolt(), 2.0 * slide.acceleration * 1.1);
+}
+
+TEST_P(BearingPress, comes_to_rest_when_stop_is_pressed_at_any_time_of_the_cycle) {
+    plant.work(false);
+    for (int i = 0; i < 12; ++i) {
+        plant.work(true);
+        ASSERT_TRUE(comes_to("DiscreteMotion")) << state();
+        run.run_for(37ms * (i + 1));
+        plant.press("stop", true);
+        plant.work(false);
+        ASSERT_TRUE(stands());
+        run.run_for(200ms);
+        EXPECT_TRUE(state() == "Standstill" || state() == "Pressing" || state() == "Returning") << state();
+        plant.press("stop", false);
+        run.run_for(50ms);
+        plant.press("stop", true); // one that was pressed while nothing could be stopped
+        run.run_for(50ms);
+        plant.press("stop", false);
+        ASSERT_TRUE(comes_to("Standstill")) << state();
+    }
+}
+
+TEST_P(BearingPress, jogs_while_a_button_is_held) {
+    ASSERT_TRUE(comes_to("Standstill"));
+    plant.work(false);
+    run.run_for(500ms);
+    ASSERT_TRUE(comes_to("Standstill"));
+    ASSERT_TRUE(stands());
+    const double before = plant.place();
+    plant.press("down", true);
+    ASSERT_TRUE(comes_to("ContinuousMotion"));
+    EXPECT_EQ((run.run_for(1s), chain()), "jog");
+    EXPECT_NEAR(plant.place() - before, 0.02, 0.003);
+    plant.press("down", false);
+    ASSERT_TRUE(comes_to("Standstill"));
+    const double there = plant.place();
+    run.run_for(500ms);
+    EXPECT_NEAR(plant.place(), there, 1e-4);
+}
+
+TEST_P(BearingPress, falls_back_and_comes_to_rest_when_a_controller_stops) {
+    ASSERT_TRUE(run.run_until([this] { return chain() == "press"; }, 20s));
+    change("press", LifeChange::stop);
+    run.run_for(2ms);
+    EXPECT_EQ(chain(), "stand");
+    EXPECT_TRUE(comes_to("ErrorStop", 100ms)) << state();
+    EXPECT_TRUE(stands());
+    EXPECT_LE(plant.worst_force(), 1.02 * Plant::seat_force);
+}
+
+TEST_P(BearingPress, stops_the_axis_when_its_drive_falls_silent) {
+    ASSERT_TRUE(comes_to("DiscreteMotion", 20s));
+    plant.work(false);
+    run.run_for(100ms);
+    plant.silence_drive();
+    run.run_for(40ms);
+    EXPECT_EQ(state(), "ErrorStop");
+    EXPECT_TRUE(stands());
+}
+
+TEST_P(BearingPress, stops_at_an_end_switch_and_goes_on_when_it_is_free_and_started) {
+    ASSERT_TRUE(comes_to("Standstill"));
+    plant.work(false);
+    ASSERT_TRUE(comes_to("Standstill"));
+    plant.hold_end_switch(true);
+    plant.work(true);
+    ASSERT_TRUE(comes_to("ErrorStop")) << "as soon as it moves by itself";
+    plant.work(false);
+    EXPECT_TRUE(stands());
+    plant.hold_end_switch(false);
+    plant.work(true);
+    EXPECT_TRUE(run.run_until([this] { return plant.bearings() > 0; }, 20s)) << state();
+}
+
+INSTANTIATE_TEST_SUITE_P(seeds, BearingPress, testing::Values(1, 2, 3));
+
+} // namespace
+} // namespace bearing_press
