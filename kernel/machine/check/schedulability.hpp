@@ -38,6 +38,9 @@ struct TaskTiming {
     std::int64_t deadline_ns = 0;
     std::int64_t jitter_ns = 0;
     std::int64_t blocking_ns = 0;
+    std::int64_t phase_ns = -1; ///< of its arrivals on the grid that all periods have; below nought: on none
+
+    [[nodiscard]] constexpr bool is_on_grid() const noexcept { return phase_ns >= 0 && jitter_ns == 0; }
 };
 
 /// A data frame of classical CAN, sent once a period at most. CAN FD, with its two bit rates, is another

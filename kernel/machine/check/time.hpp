@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
-#include "kernel/machine/check/schedulability.hpp"
+#include "kernel/machine/check/on_grid.hpp"
 #include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 
@@ -51,8 +51,9 @@ constexpr Response worst_response(const MachineView& m, std::span<const std::siz
             const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
             tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
                               other.deadline().count()};
+            if (other.trigger == Trigger::every) tasks[count - 1].phase_ns = other.phase.count();
         }
-    return response_time(std::span{tasks}.first(count), count - 1);
+    return response_time_on_grid(std::span{tasks}.first(count), count - 1);
 }
 
 /// Fills the worst response times.

@@ -11,6 +11,7 @@
 #include "drivers/modbus/client.hpp"
 #include "drivers/modbus/far_end.hpp"
 #include "drivers/plant/plant.hpp"
+#include "kernel/control/control.hpp"
 #include "kernel/limits/limits.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/table/compiled.hpp"

@@ -1,5 +1,5 @@
 // Response-time analysis against worked examples and a simulation.
-#include "kernel/machine/check/schedulability.hpp"
+#include "kernel/machine/check/on_grid.hpp"
 
 #include "kernel/base/random.hpp"
 
@@ -134,7 +134,8 @@ std::int64_t simulated_worst(std::span<const TaskTiming> tasks, std::size_t inde
     std::int64_t longest = 0;
     for (std::int64_t now = 0; now < until; ++now) {
         for (std::size_t i = 0; i <= index; ++i) {
-            const std::int64_t arrival = states[i].jobs_done * tasks[i].period_ns;
+            const std::int64_t arrival =
+                states[i].jobs_done * tasks[i].period_ns + std::max<std::int64_t>(0, tasks[i].phase_ns);
             if (arrival > now) continue;
             if (++states[i].done_of_job == tasks[i].budget_ns) {
                 if (i == index) longest = std::max(longest, now + 1 - arrival);
@@ -145,6 +146,50 @@ std::int64_t simulated_worst(std::span<const TaskTiming> tasks, std::size_t inde
         }
     }
     return longest;
+}
+
+TEST(ResponseTimeOnGrid, is_that_of_one_alone_when_phases_keep_them_apart) {
+    std::array<TaskTiming, 2> tasks{task(400, 1000), task(300, 1000)};
+    EXPECT_EQ(response_time(tasks, 1), worst(700));
+    tasks[0].phase_ns = 0;
+    tasks[1].phase_ns = 0;
+    EXPECT_EQ(response_time_on_grid(tasks, 1), worst(700));
+    tasks[1].phase_ns = 400;
+    EXPECT_EQ(response_time_on_grid(tasks, 1), worst(300));
+    tasks[1].phase_ns = 300;
+    EXPECT_EQ(response_time_on_grid(tasks, 1), worst(400));
+    tasks[0].phase_ns = -1; // it comes when it wants
+    EXPECT_EQ(response_time_on_grid(tasks, 1), worst(700));
+}
+
+TEST(ResponseTimeOnGrid, bounds_a_simulation_and_is_never_worse_than_without_phases) {
+    Random random{11};
+    constexpr std::array<std::int64_t, 5> periods{6, 12, 18, 24, 36};
+    int shorter = 0, exact = 0, all = 0;
+    for (int round = 0; round < 400; ++round) {
+        std::vector<TaskTiming> tasks;
+        double load = 0;
+        for (int i = 0; i < 4; ++i) {
+            const std::int64_t period = periods[random.below(periods.size())];
+            const std::int64_t budget = random.between(1, period / 3);
+            load += static_cast<double>(budget) / static_cast<double>(period);
+            if (load > 0.95) break;
+            tasks.push_back(task(budget, period));
+            tasks.back().phase_ns = random.between(0, period - 1);
+        }
+        for (std::size_t i = 0; i < tasks.size(); ++i) {
+            const std::int64_t seen = simulated_worst(tasks, i, 5'000);
+            const Response on_grid = response_time_on_grid(tasks, i);
+            ASSERT_TRUE(on_grid.bounded);
+            ASSERT_GE(on_grid.worst_ns, seen) << "round " << round << " task " << i;
+            ASSERT_LE(on_grid.worst_ns, response_time(tasks, i).worst_ns);
+            shorter += on_grid.worst_ns < response_time(tasks, i).worst_ns ? 1 : 0;
+            exact += on_grid.worst_ns == seen ? 1 : 0;
+            ++all;
+        }
+    }
+    EXPECT_GT(shorter, all / 10) << "phases help";
+    EXPECT_GT(exact, all / 2) << "and the bound is near";
 }
 
 TEST(ResponseTime, agrees_with_a_simulation_of_random_task_sets) {
