@@ -214,7 +214,7 @@ struct PortAccess {
                 in.max_age_ = policy.max_age;
                 in.settle();
                 in.when_stale_ = policy.when_stale;
-                if constexpr (std::is_floating_point_v<T>) in.scale_.factor = policy.scale;
+                if constexpr (std::is_floating_point_v<T>) in.scale_ = {policy.scale, policy.between};
                 in.substitute_ = value_in<T>(policy.substitute);
                 in.before_first_ =
                     value_in<T>(policy.before_first.given ? policy.before_first : policy.substitute);

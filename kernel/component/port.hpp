@@ -6,6 +6,7 @@
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
 #include "kernel/component/current.hpp"
+#include "kernel/component/rate_transition.hpp"
 #include "kernel/exchange/data_object.hpp"
 
 #include <algorithm>
@@ -35,12 +36,15 @@ struct InputPolicy {
     WhenStale when_stale = WhenStale::hold;
     RowValue substitute{};
     RowValue before_first{};
-    double scale = 1; ///< of a floating number that comes from another data object
+    double scale = 1;                 ///< of a floating number that comes from another data object
+    BetweenValues* between = nullptr; ///< likewise; null: the last value is held
 };
 
-/// Of an input: what each new value is multiplied by. What is no floating number has none.
+/// Of an input: what each new value is multiplied by, and what is made of it between two. What is no floating
+/// number has neither.
 struct Scale {
     double factor = 1;
+    BetweenValues* between = nullptr;
 };
 struct NoScale {};
 
@@ -233,10 +237,15 @@ private:
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
     /// writer leaves the last good value, which is then old.
     bool fetch() noexcept TAPPET_REALTIME {
-        if (shared_ == nullptr || forced_ || !shared_->read(cache_, cached_generation_)) return false;
-        if constexpr (std::is_floating_point_v<T>)
-            cache_.value = static_cast<T>(cache_.value * scale_.factor);
-        return true;
+        if (shared_ == nullptr || forced_) return false;
+        const bool is_new = shared_->read(cache_, cached_generation_);
+        if constexpr (std::is_floating_point_v<T>) {
+            if (is_new) cache_.value = static_cast<T>(cache_.value * scale_.factor);
+            if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
+                cache_.value = static_cast<T>(
+                    scale_.between->at(*now_, is_new, static_cast<double>(cache_.value), cache_.stamp));
+        }
+        return is_new;
     }
     Flow judge() noexcept TAPPET_REALTIME {
         if (forced_) [[unlikely]] {

@@ -156,6 +156,12 @@ constexpr Sentence check_row(const ControlView& c, const MachineView& m, const T
             c.levels[reader.level].name,
             "\" and does not say what holds when the writer fails; add stale_after(...) "
             "with hold, substitute(...) or stop_machine");
+    if (writer.level != reader.level && path->from == ControlRole::controller &&
+        path->to == ControlRole::generator && row.transition == RateTransition::unsaid &&
+        m.activities[r.activity[from]].period != m.activities[r.activity[to]].period)
+        return checks::of_connection(
+            row, ": a command of a slower level reaches the faster one in steps or on a line; "
+                 "add in_steps, interpolated (later by a period) or extrapolated");
     return {};
 }
 

@@ -101,6 +101,25 @@ constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view op
     return {};
 }
 
+/// A row between two rates: both ends have a period, and one is a multiple of the other.
+constexpr Sentence check_transition(const MachineView& m, const ConnectionRow& row, const Facet& to,
+                                    std::size_t writer, std::size_t reader) {
+    if (row.transition == RateTransition::unsaid) return {};
+    const ActivityRow& from = m.activities[writer];
+    const ActivityRow& into = m.activities[reader];
+    if (from.trigger != Trigger::every || into.trigger != Trigger::every || into.period >= from.period ||
+        from.period % into.period != Duration::zero())
+        return of_connection(
+            row,
+            ": in_steps, interpolated and extrapolated are for a reader whose period divides "
+            "the longer one of the writer; activity \"",
+            from.name, "\" and activity \"", into.name, "\" are not such; remove it, or change a period");
+    if (has_values_between(row) && (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic))
+        return of_connection(row, ": between two values of ", row.buffered ? "a buffer" : to.type->name,
+                             " lie none; write in_steps, or connect a floating number");
+    return {};
+}
+
 constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row, const Facet& to,
                                   std::size_t writer, std::size_t reader) {
     if (row.buffered && row.capacity == 0)
@@ -108,6 +127,7 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
     if (row.buffered && (row.max_age != Duration::zero() || row.stale_answers != 0 || row.before_first.given))
         return of_connection(
             row, ": values in a buffer have no age and no initial value; remove what says so from the row");
+    if (Sentence fault = check_transition(m, row, to, writer, reader); !fault.empty()) return fault;
     if (Sentence fault = check_row_value(row, "substitute", row.substitute, to); !fault.empty()) return fault;
     if (Sentence fault = check_row_value(row, "initially", row.before_first, to); !fault.empty())
         return fault;

@@ -59,9 +59,13 @@ void MachineBuilder::connect_row(std::size_t x) {
         from.port->link_shared(instance_.facet(link.to), instance_.facet(link.from));
     else
         from.port->link_local(instance_.facet(link.to), instance_.facet(link.from));
+    BetweenValues* between = nullptr;
+    if (has_values_between(row))
+        between = new (instance_.at<BetweenValues>(plan.between_at)) BetweenValues{
+            row.transition, machine_.table.activities[machine_.index.activity[link.from.component]].period};
     from.port->set_policy(instance_.facet(link.to),
                           {row.max_age, row.when_stale, row.substitute, row.before_first,
-                           checks::factor_of(row, from, facet_at(machine_.table, link.to))});
+                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between});
 }
 
 void MachineBuilder::add_waker(std::size_t x) {

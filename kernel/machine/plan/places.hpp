@@ -70,6 +70,7 @@ struct ConnectionPlan {
     bool shared = false;         ///< across activities, or scaled on its way
     bool first_of_output = true; ///< the row that places the shared data object
     std::size_t waker_at = nowhere;
+    std::size_t between_at = nowhere;
 };
 
 struct SubscriptionPlan {

@@ -76,6 +76,7 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
             if (plan.first_of_output) plan.memory_at = layout.take(port.shared_bytes, port.shared_align);
         }
         if (row.wakes_reader) plan.waker_at = layout.take<WakerNode>();
+        if (has_values_between(row)) plan.between_at = layout.take<BetweenValues>();
         if (is_guarded(row)) ++p.activities[reader].guarded_count;
         if (is_needed_input(m, row, link)) ++p.activities[reader].input_count;
     }

@@ -28,6 +28,7 @@ struct ConnectionRow {
     bool delayed_step = false;
     double scale = 0; ///< 0: none is given
     bool converted = false;
+    RateTransition transition = RateTransition::unsaid;
 };
 
 namespace detail {
@@ -88,6 +89,14 @@ constexpr Scaled scaled(double factor) noexcept { return {factor}; }
 struct Converted {};
 /// Likewise, and the factor leads from the unit of the output to the unit of the input.
 inline constexpr Converted converted{};
+/// Of a slower writer: the reader gets its last value until the next one comes. What is done when nothing is
+/// said; commands from one level of control to another say it.
+inline constexpr RateTransition in_steps = RateTransition::hold;
+/// Of a slower writer, of floating numbers: a line from value to value, in the reader's own cycles; later by
+/// one of the writer's periods.
+inline constexpr RateTransition interpolated = RateTransition::interpolate;
+/// Likewise: the line through the last two values, for one of the writer's periods.
+inline constexpr RateTransition extrapolated = RateTransition::extrapolate;
 /// Of a full buffer: what comes is not taken, and counted. The default.
 inline constexpr Overflow reject_newest = Overflow::reject;
 /// Of a full buffer: what waits longest gives way, and is counted.
@@ -98,6 +107,10 @@ constexpr bool is_guarded(const ConnectionRow& row) noexcept {
     return row.max_age > Duration::zero() && (row.when_stale == WhenStale::stop || row.wakes_reader);
 }
 
+/// Whether values are made between those that are written.
+constexpr bool has_values_between(const ConnectionRow& row) noexcept {
+    return row.transition == RateTransition::interpolate || row.transition == RateTransition::extrapolate;
+}
 constexpr bool is_scaled(const ConnectionRow& row) noexcept { return row.scale != 0 || row.converted; }
 
 namespace detail {
@@ -115,6 +128,7 @@ constexpr void apply(ConnectionRow& row, Substitute option) noexcept {
     ++row.stale_answers;
 }
 constexpr void apply(ConnectionRow& row, Initially option) noexcept { row.before_first = option.value; }
+constexpr void apply(ConnectionRow& row, RateTransition option) noexcept { row.transition = option; }
 constexpr void apply(ConnectionRow& row, Wakes) noexcept { row.wakes_reader = true; }
 constexpr void apply(ConnectionRow& row, Delayed) noexcept { row.delayed_step = true; }
 constexpr void apply(ConnectionRow& row, Overflow option) noexcept { row.overflow = option; }

@@ -1,0 +1,56 @@
+// What an input makes of a slower writer's values in its own cycles (Franklin, Powell and Workman, Digital
+// Control of Dynamic Systems, 1998, chapter 6: holds of order nought and one).
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tappet {
+
+enum class RateTransition : std::uint8_t {
+    unsaid,      ///< as hold
+    hold,        ///< the last value: steps, without delay
+    interpolate, ///< a line to the last value, in one period of the writer: no steps, late by that period
+    extrapolate  ///< the line through the last two, for one period: neither, and beyond what was written
+};
+
+/// Of one floating input. Real-time, in its activity.
+class BetweenValues {
+public:
+    BetweenValues(RateTransition how, Duration period) noexcept : how_{how}, period_{period} {}
+
+    /// The value at `now`, after `written` came, which was true at `stamp`; or after none did.
+    [[nodiscard]] double at(Time now, bool is_new, double written, Time stamp) noexcept TAPPET_REALTIME {
+        if (is_new) take(now, written, stamp);
+        const Duration since = std::clamp(now - began_, Duration{}, period_);
+        return from_ + slope_ * to_seconds(since);
+    }
+
+private:
+    void take(Time now, double written, Time stamp) noexcept TAPPET_REALTIME {
+        const double seconds = to_seconds(period_);
+        if (how_ == RateTransition::interpolate) {
+            from_ = is_first_ ? written
+                              : from_ + slope_ * to_seconds(std::clamp(now - began_, Duration{}, period_));
+            slope_ = (written - from_) / seconds;
+            began_ = now;
+        } else {
+            slope_ = is_first_ || stamp <= began_ ? 0.0 : (written - from_) / to_seconds(stamp - began_);
+            from_ = written;
+            began_ = stamp;
+        }
+        is_first_ = false;
+    }
+
+    RateTransition how_;
+    Duration period_;
+    bool is_first_ = true;
+    double from_ = 0.0;
+    double slope_ = 0.0; ///< for each second
+    Time began_{};
+};
+
+} // namespace tappet

@@ -1,0 +1,59 @@
+// Values between those of a slower writer: held, on a line to the last one, or beyond the last two.
+#include "kernel/component/rate_transition.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+/// A writer of a ramp of 1 each 4 ms, from 1 at 0 ms on; the reader looks each millisecond, and the value is
+/// there when it looks.
+struct Reader {
+    explicit Reader(RateTransition how) : between{how, 4ms} {}
+    double at_ms(int ms) {
+        const bool is_new = ms % 4 == 0 && ms < silent_from;
+        if (is_new) written = 1.0 + ms / 4, stamp = Time{} + Duration{1ms} * ms;
+        return between.at(Time{} + Duration{1ms} * ms, is_new, written, stamp);
+    }
+    BetweenValues between;
+    double written = 0.0;
+    Time stamp{};
+    int silent_from = 1000;
+};
+
+TEST(RateTransitions, interpolate_without_a_step_and_later_by_one_period) {
+    Reader reader{RateTransition::interpolate};
+    double before = reader.at_ms(0);
+    EXPECT_EQ(before, 1.0) << "the first value is as it is";
+    for (int ms = 1; ms < 40; ++ms) {
+        const double now = reader.at_ms(ms);
+        EXPECT_LE(now - before, 0.25 + 1e-12) << ms;
+        EXPECT_NEAR(now, ms < 4 ? 1.0 : 1.0 + (ms - 4) / 4.0, 1e-12) << ms;
+        before = now;
+    }
+}
+
+TEST(RateTransitions, extrapolate_without_delay) {
+    Reader reader{RateTransition::extrapolate};
+    static_cast<void>(reader.at_ms(0));
+    for (int ms = 1; ms < 40; ++ms) {
+        const double now = reader.at_ms(ms);
+        EXPECT_NEAR(now, ms < 4 ? 1.0 : 1.0 + ms / 4.0, 1e-12) << ms;
+    }
+}
+
+TEST(RateTransitions, go_on_for_one_period_of_a_writer_that_falls_silent) {
+    Reader ahead{RateTransition::extrapolate};
+    Reader behind{RateTransition::interpolate};
+    ahead.silent_from = behind.silent_from = 9;
+    for (int ms = 0; ms < 60; ++ms) {
+        const double far = ahead.at_ms(ms), near = behind.at_ms(ms);
+        if (ms >= 12) {
+            EXPECT_NEAR(far, 4.0, 1e-12) << "one period beyond the last value";
+            EXPECT_NEAR(near, 3.0, 1e-12) << "the last value";
+        }
+    }
+}
+
+} // namespace
+} // namespace tappet

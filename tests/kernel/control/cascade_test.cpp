@@ -1,0 +1,102 @@
+// A level that commands a faster one: the command arrives as the row says, and its silence does too.
+#include "tests/kernel/control/axis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace tappet {
+namespace {
+
+/// The outer level: a set point on the move, and a Controller that passes its speed on.
+struct Outer {
+    Input<double> measured;
+    Output<double> command;
+    double at = 0.0;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { command.write(at); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME { command.write(at += 0.04); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { command.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Outer::measured>("measured", "m", "the place"),
+                      output<&Outer::command>("command", "m", "the next place"));
+    }
+};
+
+/// The inner Generator, which remembers what it was commanded.
+struct Inner {
+    Input<double> command;
+    Output<double> target;
+    std::vector<double> seen = std::vector<double>(1000);
+    std::size_t count = 0;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { target.write(command.get()); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        const double now = command.get();
+        if (count < seen.size()) seen[count++] = now;
+        target.write(now);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(input<&Inner::command>("command", "m", "of the outer level"),
+                      output<&Inner::target>("target", "m", "the next place"));
+    }
+};
+
+template <RateTransition how>
+constexpr auto cascade = machine(
+    "cascade",
+    components(component<Slide>("slide"), component<Encoder>("encoder"), component<Outer>("outer"),
+               component<Inner>("inner"), component<Follower>("position", set("kp", 100.0)),
+               component<Limiter>("limiter")),
+    activities(activity("slow", every(4ms), budget(50us), runs("outer")),
+               activity("fast", every(1ms, phase(100us)), budget(50us),
+                        runs("slide", "encoder", "inner", "position", "limiter"))),
+    connections(data("slide.place", "encoder.counted"),
+                data("encoder.position", "outer.measured", stale_after(20ms), hold),
+                data("outer.command", "inner.command", how, stale_after(20ms), stop_machine),
+                data("inner.target", "position.target"), data("encoder.position", "position.measured"),
+                data("limiter.sent", "position.sent", delayed), data("position.velocity", "limiter.velocity"),
+                data("limiter.sent", "slide.driven", delayed)),
+    reactions(), behaviours(),
+    control(
+        level("outside", controller("outer")),
+        level("inside", sensor("encoder"), generator("inner"), controller("position"), effector("limiter")),
+        loop("place", gain("position.kp"))));
+
+template <RateTransition how>
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<cascade<how>, box>::machine(), clock};
+    VirtualWorld world{instance};
+    Inner* inner = nullptr;
+    Rig() {
+        EXPECT_TRUE(instance.configure({}));
+        EXPECT_EQ(std::string{world.start().view()}, "");
+        inner = instance.template find<Inner>("inner");
+    }
+    /// The largest change of the command from step to step, once all is under way.
+    double largest_step(Duration time) {
+        EXPECT_TRUE(world.run_until(clock.now() + time));
+        double largest = 0.0;
+        for (std::size_t i = 20; i < inner->count; ++i)
+            largest = std::max(largest, inner->seen[i] - inner->seen[i - 1]);
+        return largest;
+    }
+};
+
+TEST(Cascade, is_commanded_in_steps_or_on_a_line_as_its_row_says) {
+    EXPECT_NEAR(Rig<in_steps>{}.largest_step(200ms), 0.04, 1e-9);
+    EXPECT_NEAR(Rig<interpolated>{}.largest_step(200ms), 0.01, 1e-9);
+    EXPECT_NEAR(Rig<extrapolated>{}.largest_step(200ms), 0.01, 1e-9);
+}
+
+TEST(Cascade, does_what_its_row_says_when_the_outer_level_stops) {
+    Rig<interpolated> rig;
+    EXPECT_TRUE(rig.world.run_until(rig.clock.now() + 50ms));
+    rig.instance.life().ask_component(find_component(rig.instance.machine().table, "outer"),
+                                      LifeChange::stop);
+    rig.world.run_until(rig.clock.now() + 50ms);
+    EXPECT_TRUE(rig.instance.stop_asked()) << "stop_machine";
+}
+
+} // namespace
+} // namespace tappet
