@@ -72,7 +72,8 @@ struct Axis {
     [[nodiscard]] bool may_cycle() noexcept TAPPET_REALTIME { return stands() && is_homed.last(); }
     [[nodiscard]] bool is_let_go() noexcept TAPPET_REALTIME { return !up.get() && !down.get(); }
     [[nodiscard]] bool has_failed() noexcept TAPPET_REALTIME {
-        return !follows_ || lines_faulted.get() || bus_faulted.get() || run.state() == CommandState::failed;
+        return !follows_ || lines_faulted.get() || bus_faulted.get() || run.state() == CommandState::failed ||
+               run.state() == CommandState::rejected;
     }
     [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME { return has_failed() || end_switch.get(); }
     /// Empty: nothing stands in the way of power.

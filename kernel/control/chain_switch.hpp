@@ -24,6 +24,8 @@ public:
 
     void start(const Cycle&) noexcept TAPPET_REALTIME;
     void step(const Cycle&) noexcept TAPPET_REALTIME;
+    /// Nobody hands over any more: no chain runs.
+    void stop(const Cycle&) noexcept TAPPET_REALTIME;
 
     bool run(const ScriptText& name) noexcept TAPPET_REALTIME;
     CommandProgress has_run(const ScriptText& name) noexcept TAPPET_REALTIME;
@@ -51,6 +53,7 @@ private:
 
     control_detail::Turns* turns_ = nullptr;
     std::size_t wanted_ = 0;
+    bool is_first_step_ = true;
 };
 
 } // namespace tappet

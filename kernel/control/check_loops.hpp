@@ -83,6 +83,7 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
         return of_loop(row, "it has no gain; name the Controller's property: gain(\"...\")");
     if (Sentence fault = find_value(m, row.gain, end, gain); !fault.empty()) return of_loop(row, fault);
     const std::size_t component = end.component;
+    const Range by_hand = facet_at(m, end).range;
     bool is_controller = false;
     for (const Seat& each : seats)
         is_controller |= each.component == component && each.role == ControlRole::controller;
@@ -128,6 +129,14 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
         with(longest).proportional > most_without_overshoot(dead) * (1 + 1e-9))
         return say(most_without_overshoot(dead), "the most that does not overshoot",
                    ", or add may_overshoot if that does no harm");
+    // A properties file, a script and people set it within its range while the machine runs.
+    const double highest = by_hand.high * row.factor * longest;
+    if (!(by_hand.low >= 0.0) || !is_stable({highest, with(longest).integral, dead}))
+        return of_loop(row, "people may set ", row.gain, by_hand.high < infinity ? " to " : "",
+                       by_hand.high < infinity ? in_digits(by_hand.high) : Sentence{},
+                       " while it runs, and what is stable ends below ",
+                       in_digits(most_stable(dead) / (row.factor * longest)),
+                       "; give the property a range from 0 to less than that");
     return {};
 }
 

@@ -212,6 +212,7 @@ void ChainSwitch::tell() noexcept TAPPET_REALTIME {
 void ChainSwitch::start(const Cycle&) noexcept TAPPET_REALTIME {
     turns_->begin();
     wanted_ = 0;
+    is_first_step_ = true;
     hindered.write({});
     tell();
 }
@@ -231,7 +232,13 @@ void ChainSwitch::take_over(std::size_t next) noexcept TAPPET_REALTIME {
     tell();
 }
 
+void ChainSwitch::stop(const Cycle&) noexcept TAPPET_REALTIME { turns_->engine->leave(turns_->all()); }
+
 void ChainSwitch::step(const Cycle&) noexcept TAPPET_REALTIME {
+    // Those of the fallback started with their activity, unless this component was started alone.
+    if (is_first_step_ && turns_->failed_part(turns_->members[0]) != Turns::nobody)
+        static_cast<void>(turns_->engine->enter(turns_->members[0])); // or it has failed: see below
+    is_first_step_ = false;
     const std::size_t running = turns_->running.load(std::memory_order_relaxed);
     if (const std::uint32_t part = turns_->failed_part(turns_->level); part != Turns::nobody)
         return turns_->ask_stop(part);

@@ -406,8 +406,17 @@ constexpr Fault loop_faults[] = {
      [](Table& m) { m.components[5] = component<Follower>("position", set("kp", -2.0)); },
      R"(axis: loop "place": its gains, stiffness and transport are to be positive; a loop that feeds back with the other sign turns it round in the Sensor)"},
     {"loop_that_is_not_stable",
-     [](Table& m) { m.components[5] = component<Follower>("position", set("kp", 1200)); },
-     R"(axis: loop "place": gain times period is 1.2, and the most that is stable with 1 step of delay is 1; set position.kp below 1000, or shorten the delay)"},
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 700.0));
+         m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
+     },
+     R"(axis: loop "place": gain times period is 0.7, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 618.034, or shorten the delay)"},
+    {"loop_with_a_range_beyond_it",
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 100.0));
+         m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
+     },
+     R"(axis: loop "place": people may set position.kp to 999.9 while it runs, and what is stable ends below 618.034; give the property a range from 0 to less than that)"},
     {"loop_that_overshoots",
      [](Table& m) { m.components[5] = component<Follower>("position", set("kp", 300.0)); },
      R"(axis: loop "place": gain times period is 0.3, and the most that does not overshoot with 1 step of delay is 0.25; set position.kp below 250, or add may_overshoot if that does no harm)"},

@@ -98,11 +98,12 @@ struct Follower {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
     static constexpr auto interface() {
-        return facets(input<&Follower::target>("target", "m", "the next place"),
-                      input<&Follower::measured>("measured", "m", "the place"),
-                      input<&Follower::sent>("sent", "m/s", "in the step before"),
-                      output<&Follower::velocity>("velocity", "m/s", "wanted"),
-                      property<&Follower::kp>("kp", "1/s", "speed for each unit of the error"));
+        return facets(
+            input<&Follower::target>("target", "m", "the next place"),
+            input<&Follower::measured>("measured", "m", "the place"),
+            input<&Follower::sent>("sent", "m/s", "in the step before"),
+            output<&Follower::velocity>("velocity", "m/s", "wanted"),
+            property<&Follower::kp>("kp", "1/s", "speed for each unit of the error", range(0.0, 999.9)));
     }
 };
 

@@ -178,6 +178,23 @@ TEST(Turns, stop_the_machine_when_a_part_stops_that_always_runs) {
     EXPECT_TRUE(rig.instance.stop_asked());
 }
 
+TEST(Turns, end_with_the_component_that_hands_over_and_begin_with_it) {
+    Rig rig;
+    EXPECT_EQ(rig.ask("softly"), CommandState::done);
+    rig.change("mode", LifeChange::stop);
+    EXPECT_TRUE(rig.run(3ms));
+    EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
+    EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
+    EXPECT_EQ(rig.part<Limiter>("limiter").sent.last(), 0.0);
+    EXPECT_EQ(rig.ask("stand"), CommandState::rejected);
+    rig.change("mode", LifeChange::start);
+    EXPECT_TRUE(rig.run(3ms));
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_EQ(rig.state("standing"), ComponentState::running);
+    EXPECT_EQ(rig.state("position"), ComponentState::running);
+    EXPECT_EQ(rig.ask("softly"), CommandState::done);
+}
+
 TEST(Turns, are_not_taken_alone) {
     Rig rig;
     EXPECT_TRUE(rig.run(3ms));
