@@ -15,7 +15,7 @@ namespace bearing_press {
 struct Axis {
     Input<std::int64_t> statusword;
     Input<double> position, velocity;
-    Input<bool> home, end_switch, up, down, lines_faulted, bus_faulted;
+    Input<bool> home, upper_end, lower_end, up, down, stop_held, lines_faulted, bus_faulted;
     Output<std::int64_t> controlword, seated;
     Output<bool> lamp, is_homed;
     Event<double> jog_at, aim;
@@ -30,7 +30,8 @@ struct Axis {
         controlword.write(drive_.controlword(status));
         follows_ = canopen::drive_state(status) == canopen::DriveState::operation_enabled;
         if (in_flight(run.state())) return;
-        if (asked_ != wanted_) {
+        if (asked_ != wanted_ &&
+            (follows_ || !needs_power_)) { // a drive without power would be led, and jump
             run.reset();
             if (run.send(wanted_)) asked_ = wanted_;
         } else if (run.state() == CommandState::done && tells_ != nullptr) { // only who runs hears it
@@ -44,14 +45,19 @@ struct Axis {
     }
 
     // ---- entries
-    void disable() noexcept TAPPET_REALTIME { become(canopen::DriveGoal::quick_stop, "stand"); }
+    /// What moves meanwhile is not counted by anybody.
+    void disable() noexcept TAPPET_REALTIME {
+        is_homed.write(false);
+        become(canopen::DriveGoal::quick_stop, "off");
+    }
     void halt() noexcept TAPPET_REALTIME { become(canopen::DriveGoal::enabled, "stand"); }
     /// Towards the edge of the home switch, from whichever side.
     void seek() noexcept TAPPET_REALTIME {
         become(canopen::DriveGoal::enabled, "jog", &jog_at, home.get() ? homing_speed : -homing_speed);
     }
     void jog() noexcept TAPPET_REALTIME {
-        become(canopen::DriveGoal::enabled, "jog", &jog_at, down.get() ? jog_speed : -jog_speed);
+        jogs_down_ = down.get();
+        become(canopen::DriveGoal::enabled, "jog", &jog_at, jogs_down_ ? jog_speed : -jog_speed);
     }
     void go_down() noexcept TAPPET_REALTIME { go_to(above); }
     void go_up() noexcept TAPPET_REALTIME { go_to(rest); }
@@ -65,21 +71,31 @@ struct Axis {
     }
     void count() noexcept TAPPET_REALTIME { seated.write(++seated_); }
     [[nodiscard]] bool may_enable() noexcept TAPPET_REALTIME { return obstacle().empty(); }
+    [[nodiscard]] bool has_power() noexcept TAPPET_REALTIME { return follows_; }
     [[nodiscard]] bool stands() noexcept TAPPET_REALTIME {
-        return follows_ && std::abs(velocity.get()) < 1e-3;
+        return follows_ && std::abs(velocity.get()) < 1e-3 && run.state() == CommandState::done;
     }
-    [[nodiscard]] bool may_home() noexcept TAPPET_REALTIME { return stands() && !is_homed.last(); }
-    [[nodiscard]] bool may_cycle() noexcept TAPPET_REALTIME { return stands() && is_homed.last(); }
-    [[nodiscard]] bool is_let_go() noexcept TAPPET_REALTIME { return !up.get() && !down.get(); }
+    [[nodiscard]] bool may_move() noexcept TAPPET_REALTIME { return stands() && obstacle().empty(); }
+    [[nodiscard]] bool may_home() noexcept TAPPET_REALTIME {
+        return may_move() && !is_homed.last() && !at_end();
+    }
+    [[nodiscard]] bool may_cycle() noexcept TAPPET_REALTIME {
+        return may_move() && is_homed.last() && !at_end();
+    }
+    /// The button is let go, or the slide is at the end to which it leads.
+    [[nodiscard]] bool jogs_no_more() noexcept TAPPET_REALTIME {
+        return jogs_down_ ? !down.get() || lower_end.get() : !up.get() || upper_end.get();
+    }
     [[nodiscard]] bool has_failed() noexcept TAPPET_REALTIME {
         return !follows_ || lines_faulted.get() || bus_faulted.get() || run.state() == CommandState::failed ||
                run.state() == CommandState::rejected;
     }
-    [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME { return has_failed() || end_switch.get(); }
-    /// Empty: nothing stands in the way of power.
+    [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME { return has_failed() || at_end(); }
+    /// Empty: nothing stands in the way of a start.
     [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
         if (lines_faulted.get()) return "the lines cannot be relied on";
-        return bus_faulted.get() ? "the CAN bus cannot be relied on" : "";
+        if (bus_faulted.get()) return "the CAN bus cannot be relied on";
+        return stop_held.get() ? "stop is pressed" : "";
     }
 
     static constexpr auto interface() {
@@ -87,7 +103,9 @@ struct Axis {
                       input<&Axis::position>("position", "m", "of the slide"),
                       input<&Axis::velocity>("velocity", "m/s", "of the slide"),
                       input<&Axis::home>("home", "", "the slide is above zero"),
-                      input<&Axis::end_switch>("end_switch", "", "the slide is at an end"),
+                      input<&Axis::upper_end>("upper_end", "", "the slide is at that end"),
+                      input<&Axis::lower_end>("lower_end", "", "the slide is at that end"),
+                      input<&Axis::stop_held>("stop_held", "", "the button is held"),
                       input<&Axis::up>("up", "", "the button is held"),
                       input<&Axis::down>("down", "", "the button is held"),
                       input<&Axis::lines_faulted>("lines_faulted", "", "nobody knows what the switches say"),
@@ -108,12 +126,14 @@ private:
     void become(canopen::DriveGoal goal, std::string_view chain, Event<double>* tells = nullptr,
                 double value = 0.0) noexcept TAPPET_REALTIME {
         drive_.want(goal);
+        needs_power_ = goal == canopen::DriveGoal::enabled;
         lamp.write(goal == canopen::DriveGoal::enabled);
         asked_ = {};                              // anew, also the same: it may have fallen back meanwhile
         static_cast<void>(wanted_.assign(chain)); // shorter than any text
         tells_ = tells;
         value_ = value;
     }
+    [[nodiscard]] bool at_end() noexcept TAPPET_REALTIME { return upper_end.get() || lower_end.get(); }
     void go_to(double place) noexcept TAPPET_REALTIME {
         become(canopen::DriveGoal::enabled, "path", &aim, zero_ + place);
     }
@@ -122,7 +142,7 @@ private:
     ScriptText wanted_{}, asked_{};
     Event<double>* tells_ = nullptr; ///< what the chain is told when it runs
     double value_ = 0.0;
-    bool follows_ = false;
+    bool follows_ = false, needs_power_ = false, jogs_down_ = false;
     double zero_ = 0.0;
     std::int64_t seated_ = 0;
 };
@@ -131,6 +151,7 @@ private:
 inline constexpr auto axis_states = state_machine<Axis>("axis_states",
     states( // PLCopen, Function blocks for motion control, 2.1
         state("Disabled",         initial, entry<&Axis::disable>),
+        state("Enabling",         entry<&Axis::halt>),
         state("Standstill",       entry<&Axis::halt>),
         state("Homing",           entry<&Axis::seek>),
         state("ContinuousMotion", entry<&Axis::jog>),
@@ -141,31 +162,40 @@ inline constexpr auto axis_states = state_machine<Axis>("axis_states",
         state("ErrorStop",        entry<&Axis::disable>),
         state("safe",             final, entry<&Axis::disable>)),
     transitions(
-        transition("Disabled",         "Stopping",         on("io.start.rises"), guard<&Axis::may_enable>.because<&Axis::obstacle>("the drive gets no power"), then<&Axis::acknowledge>),
-        transition("ErrorStop",        "Stopping",         on("io.start.rises"), guard<&Axis::may_enable>.because<&Axis::obstacle>("the drive gets no power"), then<&Axis::acknowledge>),
+        transition("Disabled",         "Enabling",         on("io.start.rises"), guard<&Axis::may_enable>.because<&Axis::obstacle>("the drive gets no power"), then<&Axis::acknowledge>),
+        transition("ErrorStop",        "Enabling",         on("io.start.rises"), guard<&Axis::may_enable>.because<&Axis::obstacle>("the drive gets no power"), then<&Axis::acknowledge>),
+        transition("Enabling",         "Stopping",         guard<&Axis::has_power>),
+        transition("Enabling",         "ErrorStop",        after(1s), because("the drive takes no power")),
         transition("Stopping",         "Standstill",       guard<&Axis::stands>),
         transition("Standstill",       "Homing",           on("io.start.rises"), guard<&Axis::may_home>),
-        transition("Standstill",       "DiscreteMotion",   on("io.start.rises"), guard<&Axis::may_cycle>.because("the slide moves, or the drive has no power")),
-        transition("Standstill",       "ContinuousMotion", on("io.up.rises"),    guard<&Axis::stands>),
-        transition("Standstill",       "ContinuousMotion", on("io.down.rises"),  guard<&Axis::stands>),
-        transition("ContinuousMotion", "Stopping",         guard<&Axis::is_let_go>),
+        transition("Standstill",       "DiscreteMotion",   on("io.start.rises"), guard<&Axis::may_cycle>.because<&Axis::obstacle>("the slide moves, or is at an end")),
+        transition("Standstill",       "ContinuousMotion", on("io.up.rises"),    guard<&Axis::may_move>),
+        transition("Standstill",       "ContinuousMotion", on("io.down.rises"),  guard<&Axis::may_move>),
+        transition("ContinuousMotion", "Stopping",         guard<&Axis::jogs_no_more>),
         transition("Homing",           "Stopping",         on("io.home.rises"), then<&Axis::take_zero>),
         transition("Homing",           "Stopping",         on("io.home.falls"), then<&Axis::take_zero>),
         transition("DiscreteMotion",   "Pressing",         on("path.arrived")),
         transition("Pressing",         "Returning",        on("press.seated"), then<&Axis::count>),
         transition("Returning",        "Standstill",       on("path.arrived")),
         transition("Homing",           "Stopping",         on("io.stop.rises"), because("stop was pressed")),
+        transition("ContinuousMotion", "Stopping",         on("io.stop.rises"), because("stop was pressed")),
         transition("DiscreteMotion",   "Stopping",         on("io.stop.rises"), because("stop was pressed")),
         transition("Pressing",         "Stopping",         on("io.stop.rises"), because("stop was pressed")),
         transition("Returning",        "Stopping",         on("io.stop.rises"), because("stop was pressed")),
-        transition("ContinuousMotion", "ErrorStop",        guard<&Axis::has_failed>,   because("drive, lines, bus or a controller failed")),
         transition("Standstill",       "ErrorStop",        guard<&Axis::has_failed>,   because("drive, lines, bus or a controller failed")),
+        transition("Stopping",         "ErrorStop",        guard<&Axis::has_failed>,   because("drive, lines, bus or a controller failed")),
+        transition("ContinuousMotion", "ErrorStop",        guard<&Axis::has_failed>,   because("drive, lines, bus or a controller failed")),
         transition("Homing",           "ErrorStop",        guard<&Axis::is_in_danger>, because("a failure, or an end switch")),
         transition("DiscreteMotion",   "ErrorStop",        guard<&Axis::is_in_danger>, because("a failure, or an end switch")),
         transition("Pressing",         "ErrorStop",        guard<&Axis::is_in_danger>, because("a failure, or an end switch")),
         transition("Returning",        "ErrorStop",        guard<&Axis::is_in_danger>, because("a failure, or an end switch")),
-        transition("DiscreteMotion",   "ErrorStop",        on("mode.fell_back"), because("a controller failed")),
-        transition("Pressing",         "ErrorStop",        on("mode.fell_back"), because("a controller failed"))));
+        transition("Standstill",       "ErrorStop",        on("mode.fell_back"), because("a controller stopped")),
+        transition("Stopping",         "ErrorStop",        on("mode.fell_back"), because("a controller stopped")),
+        transition("ContinuousMotion", "ErrorStop",        on("mode.fell_back"), because("a controller stopped")),
+        transition("Homing",           "ErrorStop",        on("mode.fell_back"), because("a controller stopped")),
+        transition("DiscreteMotion",   "ErrorStop",        on("mode.fell_back"), because("a controller stopped")),
+        transition("Pressing",         "ErrorStop",        on("mode.fell_back"), because("a controller stopped")),
+        transition("Returning",        "ErrorStop",        on("mode.fell_back"), because("a controller stopped"))));
 // clang-format on
 
 } // namespace bearing_press

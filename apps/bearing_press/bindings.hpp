@@ -9,7 +9,7 @@ using namespace tappet;
 
 inline constexpr BoundDevice panel =
     wired("panel-io", "io", line("start", 0), line("stop", 1), line("up", 2), line("down", 3),
-          line("home", 4), line("end_switch", 5), line("lamp", 6));
+          line("home", 4), line("upper_end", 5), line("lower_end", 6), line("lamp", 7));
 
 inline constexpr Binding bench = binding(wired("axis-can", "can0"), panel);
 

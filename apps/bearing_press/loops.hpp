@@ -58,6 +58,23 @@ private:
     motion::AlphaBeta filter_{gains};
 };
 
+/// Generator: wherever the slide is, there it shall be; for a drive without power.
+struct Idle {
+    Input<double> position;
+    Output<double> target, speed;
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        target.write(position.get());
+        speed.write(0.0);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
+    static constexpr auto interface() {
+        return facets(input<&Idle::position>("position", "m", "of the slide"),
+                      output<&Idle::target>("target", "m", "the same"),
+                      output<&Idle::speed>("speed", "m/s", "none"));
+    }
+};
+
 /// Generator: comes to rest from whatever speed, and stays there.
 struct Standing {
     Input<double> position, sent;
@@ -90,7 +107,10 @@ private:
 struct Jogging {
     Input<double> position, sent;
     Output<double> target, speed;
-    void start(const Cycle&) noexcept TAPPET_REALTIME { put(position.get(), sent.get()); }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        wanted_ = 0.0;
+        put(position.get(), sent.get());
+    }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double h = to_seconds(cycle.period);
         const double now =

@@ -26,7 +26,8 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("up", gpio::debounce(5ms)),
     gpio::sensor("down", gpio::debounce(5ms)),
     gpio::sensor("home"),      // active above the edge that is zero
-    gpio::sensor("end_switch"), // either end of the slide
+    gpio::sensor("upper_end"), // the ends of the slide's way
+    gpio::sensor("lower_end"),
     gpio::output("lamp", gpio::safe(false)));
 // clang-format on
 

@@ -34,7 +34,7 @@ public:
         speed_ += (asked - speed_) * std::min(1.0, dt / lag);
         place_ += (before + speed_) / 2 * dt;
         worst_speed_ = std::max(worst_speed_, std::abs(speed_));
-        if (dt > 0.0) worst_jolt_ = std::max(worst_jolt_, std::abs(speed_ - before) / dt);
+        if (dt > 0.0 && enabled_) worst_jolt_ = std::max(worst_jolt_, std::abs(speed_ - before) / dt);
         const double force = stiffness * std::max(0.0, place_ - bearing_);
         worst_force_ = std::max(worst_force_, force);
         if (force > 0.98 * seat_force) is_seated_ = true;
@@ -45,7 +45,8 @@ public:
         can.set("axis.position", std::round((place_ - switched_on_at) * 1e6) * 1e-6);
         can.set("cell.force", force + (random_.unit() - 0.5));
         io.set("home", place_ < zero_);
-        io.set("end_switch", end_ || place_ < -0.005 || place_ > 0.3);
+        io.set("upper_end", place_ < -0.005);
+        io.set("lower_end", end_ || place_ > 0.3);
         operate();
         return now + 1ms;
     }
@@ -56,7 +57,8 @@ public:
         if (bearings_ < wanted) return Sentence{"only ", bearings_, " bearings were seated"};
         if (worst_force_ > 1.02 * seat_force)
             return Sentence{"a bearing was pressed by more than 2 % too much"};
-        if (worst_speed_ > drive_most) return Sentence{"the slide was faster than it may be"};
+        if (worst_speed_ > 1.1 * slide.velocity) return Sentence{"the slide was faster than it may be"};
+        if (worst_jolt_ > most_jolt) return Sentence{"the slide was jolted"};
         return {};
     }
     [[nodiscard]] std::uint64_t digest() const override { return std::bit_cast<std::uint64_t>(place_); }
@@ -73,8 +75,9 @@ public:
         if (button == "down") down_ = pressed;
     }
     void work(bool works) { operator_works_ = works; }
-    void hold_end_switch(bool active) { end_ = active; }
+    void hold_lower_end(bool active) { end_ = active; }
     void silence_drive() { can.send_every("axis", Duration::zero()); }
+    void forget_jolts() { worst_jolt_ = 0.0; }
     [[nodiscard]] double place() const { return place_ - zero_; }
     [[nodiscard]] double speed() const { return speed_; }
     [[nodiscard]] double worst_speed() const { return worst_speed_; }
@@ -82,8 +85,9 @@ public:
     [[nodiscard]] double worst_jolt() const { return worst_jolt_; } ///< m/s2
     [[nodiscard]] std::int64_t bearings() const { return bearings_; }
 
-    static constexpr double stiffness = 2.0e6;   // N/m
-    static constexpr double seat_force = 2000.0; // N
+    static constexpr double stiffness = 2.0e6;                    // N/m
+    static constexpr double seat_force = 2000.0;                  // N
+    static constexpr double most_jolt = 2.2 * slide.acceleration; // m/s2: the inner level's, and a tenth
     static constexpr std::int64_t wanted = 3;
 
 private:

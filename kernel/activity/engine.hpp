@@ -198,12 +198,17 @@ public:
     [[nodiscard]] LifeAnswer readiness(Time now) noexcept TAPPET_REALTIME;
     /// A set of parts: bit i is part i.
     using Parts = std::uint64_t;
-    /// Parts that run by turns with others (thesis 3.1.3): these wait, and nobody starts one alone. From the
-    /// start() of a part before them. Real-time.
-    void rest(Parts waiting) noexcept TAPPET_REALTIME { resting_ = waiting; }
+    /// Of parts that run by turns (thesis 3.1.3) some wait, and nobody starts one alone. From the start() of
+    /// a part before them. Real-time.
+    void rest(Parts waiting, Parts of_all) noexcept TAPPET_REALTIME {
+        resting_ = (resting_ & ~of_all) | waiting;
+    }
     /// From a step of a part before them: those parts start from what they read now; or all of them wait on,
     /// and the answer says which input was in the way. Real-time.
     [[nodiscard]] LifeAnswer enter(Parts entering) noexcept TAPPET_REALTIME;
+    /// Likewise, of parts that run and run on: from what they read now. Refused: some have not begun anew.
+    /// Real-time.
+    [[nodiscard]] LifeAnswer begin_anew(Parts running) noexcept TAPPET_REALTIME;
     /// Likewise: they stop, and wait. Real-time.
     void leave(Parts leaving) noexcept TAPPET_REALTIME;
     /// Its thread hangs or broke a contract, and its stop was run in its place: its components are failed.

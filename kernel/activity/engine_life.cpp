@@ -317,6 +317,17 @@ LifeAnswer Engine::enter(Parts entering) noexcept TAPPET_REALTIME {
     return {.outcome = LifeOutcome::done};
 }
 
+LifeAnswer Engine::begin_anew(Parts running) noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        const EnginePart& part = plan_.parts[i];
+        if ((running >> i & 1) == 0 || !is_running(part.state)) continue;
+        if (const LifeAnswer inputs = check_inputs(i, Rule::alone); inputs.refusal != LifeRefusal::none)
+            return inputs;
+        if (part.type->start != nullptr) part.type->start(part.component, cycle_);
+    }
+    return {.outcome = LifeOutcome::done};
+}
+
 void Engine::leave(Parts leaving) noexcept TAPPET_REALTIME {
     resting_ |= leaving;
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {

@@ -32,6 +32,8 @@ public:
 private:
     void take(Time now, double written, Time stamp) noexcept TAPPET_REALTIME {
         const double seconds = to_seconds(period_);
+        is_first_ |=
+            now - began_ > 2 * period_; // nobody read it meanwhile: a line from there leads from the past
         if (how_ == RateTransition::interpolate) {
             from_ = is_first_ ? written
                               : from_ + slope_ * to_seconds(std::clamp(now - began_, Duration{}, period_));

@@ -48,7 +48,8 @@ public:
     }
 
 private:
-    void take_over(std::size_t next) noexcept TAPPET_REALTIME;
+    /// The part that hinders it; nobody: it is done.
+    std::uint32_t take_over(std::size_t next) noexcept TAPPET_REALTIME;
     void tell() noexcept TAPPET_REALTIME;
 
     control_detail::Turns* turns_ = nullptr;

@@ -116,24 +116,37 @@ constexpr Sentence check_outside(const ConnectionRow& row, const MachineView& m,
             m.components[to].name, "\" is ", a_role(seat_of(seats, to).role), "; give \"",
             m.components[from].name, "\" its role in control(...), or let a Sensor bring it");
     }
-    if (!to_seat && is_driver(m, to)) {
-        for (const Seat& each : seats)
-            if (each.component == from &&
-                (each.role == ControlRole::effector || each.role == ControlRole::process))
-                return {};
-        return checks::of_connection(row,
-                                     ": only an Effector reaches the hardware, within its limits, and \"",
-                                     m.components[from].name, "\" is ", a_role(seat_of(seats, from).role),
-                                     "; let it write for an Effector");
-    }
-    return {};
+    if (to_seat) return {};
+    for (const Seat& each : seats)
+        if (each.component == from &&
+            (each.role == ControlRole::effector || each.role == ControlRole::process))
+            return {};
+    const std::string_view reader = m.components[to].name;
+    return is_driver(m, to)
+               ? checks::of_connection(row,
+                                       ": only an Effector reaches the hardware, within its limits, and \"",
+                                       m.components[from].name, "\" is ", a_role(seat_of(seats, from).role),
+                                       "; let it write for an Effector")
+               : checks::of_connection(row, ": \"", reader,
+                                       "\" has no role in control(...), so that nobody sees where "
+                                       "the value goes on to; add process(\"",
+                                       reader, "\") if it only looks");
 }
 
 constexpr Sentence check_row(const ControlView& c, const MachineView& m, const TableIndexView& r,
                              const Seats& seats, std::size_t x) {
     const ConnectionRow& row = m.connections[x];
     const std::size_t from = r.connections[x].from.component, to = r.connections[x].to.component;
-    if (!has_seat(seats, from) && !has_seat(seats, to)) return {};
+    const bool crosses = r.activity[from] != r.activity[to];
+    if (level_of(seats, from) == no_level && level_of(seats, to) == no_level) return {}; // nothing of a loop
+    const bool is_looked_at =
+        has_seat(seats, to) && level_of(seats, to) == no_level; // by a process component
+    if (crosses && !row.buffered && row.max_age == Duration::zero() && !is_looked_at)
+        return checks::of_connection(
+            row, ": it leads from activity \"", m.activities[r.activity[from]].name, "\" to \"",
+            m.activities[r.activity[to]].name,
+            "\" in a loop and does not say what holds when the writer falls silent; add "
+            "stale_after(...) with hold, substitute(...) or stop_machine");
     if (!has_seat(seats, from) || !has_seat(seats, to)) return check_outside(row, m, seats, from, to);
     const Seat& writer = seat_of(seats, from);
     const Seat& reader = seat_of(seats, to);
@@ -146,16 +159,9 @@ constexpr Sentence check_row(const ControlView& c, const MachineView& m, const T
     if (writer.role == ControlRole::process || reader.role == ControlRole::process) return {};
     const DataPath* path = path_between(seats, from, to);
     if (path == nullptr) return refuse_path(c, row, writer, reader);
-    const bool crosses = r.activity[from] != r.activity[to];
     if (path->of_last_step && !crosses && !row.delayed_step)
         return checks::of_connection(row, ": ", path->what, " reach ", a_role(path->to),
                                      " from the step before; add delayed");
-    if (crosses && !row.buffered && row.max_age == Duration::zero())
-        return checks::of_connection(
-            row, ": it leads from level \"", c.levels[writer.level].name, "\" to level \"",
-            c.levels[reader.level].name,
-            "\" and does not say what holds when the writer fails; add stale_after(...) "
-            "with hold, substitute(...) or stop_machine");
     if (writer.level != reader.level && path->from == ControlRole::controller &&
         path->to == ControlRole::generator && row.transition == RateTransition::unsaid &&
         m.activities[r.activity[from]].period != m.activities[r.activity[to]].period)

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/base/decimal.hpp"
-#include "kernel/control/seats.hpp"
+#include "kernel/control/check_flow.hpp"
 #include "kernel/control/stability.hpp"
 
 #include <limits>
@@ -46,23 +46,36 @@ constexpr Sentence find_value(const MachineView& m, std::string_view path, End& 
                     "\""};
 }
 
-/// Of all ways from a component against the flow to a Sensor, or along it to an Effector: the most steps that
-/// rows delay it by, in which the value waits for the next cycle.
+/// The steps of the Controller's period by which a row makes a value late.
+constexpr std::size_t steps_late(const MachineView& m, const TableIndexView& r, std::size_t x,
+                                 Duration period) {
+    const ConnectionRow& row = m.connections[x];
+    const std::size_t from = r.activity[r.connections[x].from.component];
+    const std::size_t into = r.activity[r.connections[x].to.component];
+    Duration late = row.delayed_step ? m.activities[into].period : Duration::zero();
+    if (from != into) late += m.activities[into].period; // it waits for the reader's next cycle
+    if (row.transition == RateTransition::interpolate) late += m.activities[from].period;
+    return static_cast<std::size_t>((late + period - 1ns) / period);
+}
+
+/// Of all ways from a Controller against the flow to Sensors, or along it to Effectors, of any level: the
+/// most steps by which rows make values late.
 constexpr std::size_t most_delayed(const MachineView& m, const TableIndexView& r, const Seats& seats,
-                                   std::size_t component, bool along, std::size_t depth = 0) {
+                                   std::size_t component, bool along, Duration period,
+                                   std::size_t depth = 0) {
     if (depth > 8) return 0;
-    const std::size_t level = level_of(seats, component);
     const RowsByComponent& rows = along ? r.connections_from : r.connections_into;
     std::size_t most = 0;
     for (std::size_t x = rows.first[component]; x != nowhere; x = rows.next[x]) {
-        const std::size_t next = along ? r.connections[x].to.component : r.connections[x].from.component;
-        ControlRole role = ControlRole::process;
-        for (const Seat& each : seats)
-            if (each.component == next && each.level == level) role = each.role;
-        const bool is_end = role == (along ? ControlRole::effector : ControlRole::sensor);
-        if (!is_end && (along || role != ControlRole::estimator)) continue;
-        std::size_t steps = m.connections[x].delayed_step ? 1 : 0;
-        if (!is_end) steps += most_delayed(m, r, seats, next, along, depth + 1);
+        const Link& link = r.connections[x];
+        const DataPath* path = path_between(seats, link.from.component, link.to.component);
+        // What was sent, set points and the model of outputs close other loops.
+        if (path == nullptr || path->of_last_step || (!along && path->from == ControlRole::generator))
+            continue;
+        std::size_t steps = steps_late(m, r, x, period);
+        if (path->to != ControlRole::effector && path->from != ControlRole::sensor)
+            steps += most_delayed(m, r, seats, along ? link.to.component : link.from.component, along, period,
+                                  depth + 1);
         most = std::max(most, steps);
     }
     return most;
@@ -71,7 +84,8 @@ constexpr std::size_t most_delayed(const MachineView& m, const TableIndexView& r
 /// The dead time in steps beyond the one that sampling takes: rows that delay, and what the wires take.
 constexpr std::size_t dead_samples(const LoopRow& row, const MachineView& m, const TableIndexView& r,
                                    const Seats& seats, std::size_t component, Duration period) {
-    return most_delayed(m, r, seats, component, false) + most_delayed(m, r, seats, component, true) +
+    return most_delayed(m, r, seats, component, false, period) +
+           most_delayed(m, r, seats, component, true, period) +
            static_cast<std::size_t>((row.transport + period - 1ns) / period);
 }
 
@@ -84,6 +98,7 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     if (Sentence fault = find_value(m, row.gain, end, gain); !fault.empty()) return of_loop(row, fault);
     const std::size_t component = end.component;
     const Range by_hand = facet_at(m, end).range;
+    Range integral_by_hand{0.0, 0.0};
     bool is_controller = false;
     for (const Seat& each : seats)
         is_controller |= each.component == component && each.role == ControlRole::controller;
@@ -93,6 +108,7 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     if (!row.integral.empty()) {
         if (Sentence fault = find_value(m, row.integral, end, integral); !fault.empty())
             return of_loop(row, fault);
+        integral_by_hand = facet_at(m, end).range;
         if (end.component != component)
             return of_loop(row, "its two gains are of two components; name those of one");
     }
@@ -125,18 +141,25 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
         return of_loop(row, "it is not stable with an integral gain of ", in_digits(integral), "; set ",
                        row.integral, " lower");
     }
-    if (!row.may_overshoot && row.integral.empty() &&
-        with(longest).proportional > most_without_overshoot(dead) * (1 + 1e-9))
+    if (!row.may_overshoot && integral > 0.0)
+        return of_loop(row,
+                       "with an integral around an axis it overshoots after each step of the set point; add "
+                       "may_overshoot if that does no harm, or leave the integral out");
+    if (!row.may_overshoot && with(longest).proportional > most_without_overshoot(dead) * (1 + 1e-9))
         return say(most_without_overshoot(dead), "the most that does not overshoot",
                    ", or add may_overshoot if that does no harm");
-    // A properties file, a script and people set it within its range while the machine runs.
-    const double highest = by_hand.high * row.factor * longest;
-    if (!(by_hand.low >= 0.0) || !is_stable({highest, with(longest).integral, dead}))
-        return of_loop(row, "people may set ", row.gain, by_hand.high < infinity ? " to " : "",
-                       by_hand.high < infinity ? in_digits(by_hand.high) : Sentence{},
-                       " while it runs, and what is stable ends below ",
-                       in_digits(most_stable(dead) / (row.factor * longest)),
-                       "; give the property a range from 0 to less than that");
+    // A properties file, a script and people set them within their ranges while the machine runs.
+    for (const double kp : {by_hand.low, by_hand.high})
+        for (const double ki : {integral_by_hand.low, integral_by_hand.high}) {
+            const SampledLoop extreme{kp * row.factor * longest, ki * row.factor * longest * longest, dead};
+            if ((kp == 0.0 && ki == 0.0) || (kp > 0.0 && is_stable(extreme))) continue;
+            return of_loop(row, "people may set ", row.gain, kp < infinity ? " to " : " to anything",
+                           kp < infinity ? in_digits(kp) : Sentence{}, row.integral.empty() ? "" : " beside ",
+                           row.integral.empty() ? Sentence{} : Sentence{in_digits(ki), " of ", row.integral},
+                           " while it runs, which is not stable; give ",
+                           row.integral.empty() ? "it a range" : "both a range", " of gains that are, below ",
+                           in_digits(most_stable(dead) / (row.factor * longest)));
+        }
     return {};
 }
 

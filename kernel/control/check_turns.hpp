@@ -163,6 +163,11 @@ constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const 
                               "delayed, and name that: controller(\"",
                               own.name, "\", tracks(\"...\"))")
                    : Sentence{};
+    if (takes_turns && own.type->start == nullptr)
+        return of_level(
+            c.levels[seat.level], "the Controller \"", own.name,
+            "\" tracks what was sent and has no start() in which it would begin there; write its first "
+            "output there: void start(const Cycle&) noexcept TAPPET_REALTIME");
     const std::size_t facet = find_facet(own, seat.tracked);
     if (facet == nowhere || own.type->facets[facet].kind != FacetKind::input)
         return of_level(c.levels[seat.level], "\"", own.name, "\" has no input \"", seat.tracked,

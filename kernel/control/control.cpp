@@ -46,8 +46,8 @@ void find_inputs(const ControlView& control, MachineInstance& machine, Turns& tu
         if (accepted.table.connections[x].buffered) continue;
         void* const input = machine.facet(link.to);
         const PortOperations* const port = facet_at(accepted.table, link.to).port;
-        const unsigned reader = chains_of(*turns.rows, accepted.table.components[link.to.component].name);
-        if (reader != 0 &&
+        const bool is_member = chains_of(*turns.rows, accepted.table.components[link.to.component].name) != 0;
+        if (is_member &&
             accepted.index.activity[link.from.component] != accepted.index.activity[link.to.component])
             static_cast<void>( // they were counted by the check
                 turns.watched.push({input, port, accepted.plan.part_of[link.to.component]}));
@@ -101,25 +101,25 @@ void Turns::link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REA
 
 void Turns::begin() noexcept TAPPET_REALTIME {
     link(0, members[0]);
-    engine->rest(all() & ~members[0]);
+    engine->rest(all() & ~members[0], all());
     running.store(0, std::memory_order_release);
 }
 
 LifeAnswer Turns::hand_over(std::size_t next) noexcept TAPPET_REALTIME {
     const std::size_t now = running.load(std::memory_order_relaxed);
-    // They leave and enter too: from what was sent, so that a set point that is another's makes no jump.
     const Engine::Parts again = told_by_another(now, next);
-    const Engine::Parts entering = (members[next] & ~members[now]) | again;
+    const Engine::Parts entering = members[next] & ~members[now];
     link(next, entering);
-    engine->leave(again);
     LifeAnswer answer = engine->enter(entering);
     if (answer.outcome != LifeOutcome::refused) {
         answer = find_unwritten(next);
+        // From what was sent, so that a set point that is another's makes no jump.
+        if (answer.outcome != LifeOutcome::refused) answer = engine->begin_anew(again);
         if (answer.outcome == LifeOutcome::refused) engine->leave(entering);
     }
     if (answer.outcome == LifeOutcome::refused) {
         link(now, 0);
-        static_cast<void>(engine->enter(again)); // it ran on these inputs a moment ago
+        static_cast<void>(engine->begin_anew(again)); // they ran on these inputs a moment ago
         return answer;
     }
     engine->leave(members[now] & ~members[next]);
@@ -159,7 +159,17 @@ std::uint32_t Turns::failed_part(Engine::Parts among) const noexcept TAPPET_REAL
 }
 
 void Turns::ask_stop(std::uint32_t part) noexcept TAPPET_REALTIME {
-    machine->ask_section_stop(section, row << 16 | part, engine);
+    machine->ask_section_stop(section, row << 16 | machine_part(part), engine);
+}
+
+std::size_t Turns::machine_part(std::uint32_t part) const noexcept TAPPET_REALTIME {
+    std::size_t place = 0;
+    for (const LevelRow& each : levels)
+        for (const RoleRow& role : each.roles) {
+            if (role.component == engine->plan().parts[part].name) return place;
+            ++place;
+        }
+    return place;
 }
 
 void connect(const ControlView& control, MachineInstance& machine, std::size_t section,
@@ -171,6 +181,7 @@ void connect(const ControlView& control, MachineInstance& machine, std::size_t s
         turns->section = section;
         turns->row = i;
         turns->rows = &control.exclusives[i];
+        turns->levels = control.levels;
         const std::size_t by = find_component(accepted.table, turns->rows->by);
         const std::size_t activity = accepted.index.activity[by];
         turns->engine = &machine.engines()[activity];
@@ -181,9 +192,20 @@ void connect(const ControlView& control, MachineInstance& machine, std::size_t s
 }
 
 Sentence describe_stop(const ControlView& control, std::size_t row) {
-    return Sentence{"exclusive \"", control.exclusives[row >> 16].by, "\": its fallback \"",
-                    control.exclusives[row >> 16].chains[0].name,
-                    "\" failed, or a part of its level that always runs"};
+    std::size_t place = row & 0xFFFF;
+    std::string_view part{};
+    for (const LevelRow& level : control.levels) {
+        if (part.empty() && place < level.roles.size()) part = level.roles[place].component;
+        place -= std::min(place, level.roles.size());
+    }
+    const ExclusiveRow& exclusive = control.exclusives[row >> 16];
+    return Sentence{"exclusive \"",
+                    exclusive.by,
+                    "\": \"",
+                    part,
+                    "\" stopped, could not start, or reads what is stale, and \"",
+                    exclusive.chains[0].name,
+                    "\" cannot run without it; see why, and start the machine again"};
 }
 
 SectionCount counted(const ControlView& control, std::span<const std::byte> memory,
@@ -217,7 +239,7 @@ void ChainSwitch::start(const Cycle&) noexcept TAPPET_REALTIME {
     tell();
 }
 
-void ChainSwitch::take_over(std::size_t next) noexcept TAPPET_REALTIME {
+std::uint32_t ChainSwitch::take_over(std::size_t next) noexcept TAPPET_REALTIME {
     const LifeAnswer answer = turns_->hand_over(next);
     ScriptText hindrance;
     if (answer.outcome == LifeOutcome::refused) {
@@ -230,6 +252,7 @@ void ChainSwitch::take_over(std::size_t next) noexcept TAPPET_REALTIME {
     }
     hindered.write(hindrance);
     tell();
+    return answer.outcome == LifeOutcome::refused ? answer.part : Turns::nobody;
 }
 
 void ChainSwitch::stop(const Cycle&) noexcept TAPPET_REALTIME { turns_->engine->leave(turns_->all()); }
@@ -244,14 +267,16 @@ void ChainSwitch::step(const Cycle&) noexcept TAPPET_REALTIME {
         return turns_->ask_stop(part);
     if (const std::uint32_t part = turns_->failed_part(turns_->members[running]); part != Turns::nobody) {
         wanted_ = 0;
-        if (running != 0) take_over(0);
+        if (running != 0) static_cast<void>(take_over(0)); // looked at below
         if (running == 0 || turns_->running.load(std::memory_order_relaxed) != 0)
             return turns_->ask_stop(part);
         fell_back.emit();
         return;
     }
     if (wanted_ == running) return;
-    take_over(wanted_);
+    const std::uint32_t hinders = take_over(wanted_);
+    // Who wants the fallback wants rest: what runs is not to run on.
+    if (hinders != Turns::nobody && wanted_ == 0) turns_->ask_stop(hinders);
     wanted_ = turns_->running.load(std::memory_order_relaxed);
     if (wanted_ != running) handed_over.emit();
 }

@@ -64,13 +64,15 @@ struct Control final : ExtraSection {
                                             std::size_t other) const override {
         return control_detail::take_turns(exclusives, m.components[one].name, m.components[other].name);
     }
-    /// What is in a loop: an invalid zero would move the axis (thesis 3.1.3: starting).
-    [[nodiscard]] constexpr bool starts_on_valid_inputs(const MachineView& m,
-                                                        std::size_t component) const override {
-        for (const LevelRow& level : levels)
-            for (const RoleRow& role : level.roles)
-                if (same_text(role.component, m.components[component].name)) return true;
-        return false;
+    /// What is in a loop waits for all it reads but for what is of the step before: an invalid zero would
+    /// move the axis (thesis 3.1.3: starting).
+    [[nodiscard]] constexpr bool awaits(const MachineView& m, std::size_t from,
+                                        std::size_t to) const override {
+        control_detail::Seats seats;
+        static_cast<void>(control_detail::take_seats(view(), m, seats).empty()); // was checked
+        if (control_detail::level_of(seats, to) == control_detail::no_level) return false;
+        const control_detail::DataPath* path = control_detail::path_between(seats, from, to);
+        return path == nullptr || !path->of_last_step;
     }
     [[nodiscard]] constexpr Sentence check(const MachineView& m, const TableIndexView& r) const override {
         return control_detail::check(view(), m, r);

@@ -45,6 +45,7 @@ struct Turns {
     std::size_t row = 0;
     Engine* engine = nullptr;
     const ExclusiveRow* rows = nullptr; ///< the row itself
+    std::span<const LevelRow> levels;
     std::array<Engine::Parts, ExclusiveRow::max_chains> members{};
     Engine::Parts level = 0; ///< of the level's parts those that always run
     Bounded<SharedInput, max_links> shared{};
@@ -74,6 +75,8 @@ struct Turns {
     static constexpr std::uint32_t nobody = ~std::uint32_t{0};
     [[nodiscard]] std::uint32_t failed_part(Engine::Parts among) const noexcept TAPPET_REALTIME;
     void ask_stop(std::uint32_t part) noexcept TAPPET_REALTIME;
+    /// Its place among the roles of all levels.
+    [[nodiscard]] std::size_t machine_part(std::uint32_t part) const noexcept TAPPET_REALTIME;
 };
 
 } // namespace control_detail

@@ -38,6 +38,20 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
     }
 }
 
+/// No timer of a component, and no time-out of a behaviour, wakes it off the grid.
+constexpr bool runs_by_its_period_alone(const MachineView& m, const ActivityRow& row) {
+    if (row.trigger != Trigger::every) return false;
+    for (const auto& name : row.runs) {
+        const std::size_t c = find_component(m, name);
+        if (c == nowhere || has_facet(m.components[c].type,
+                                      [](const Facet& facet) { return facet.kind == FacetKind::timer; }))
+            return false;
+        for (const BehaviourRow& each : m.behaviours)
+            if (same_text(each.component, name)) return false;
+    }
+    return true;
+}
+
 /// Of one activity that is real-time, by the ranks and the processors of all; deadlines are not looked at.
 constexpr Response worst_response(const MachineView& m, std::span<const std::size_t> rank,
                                   std::span<const int> processors, std::size_t a) {
@@ -51,7 +65,7 @@ constexpr Response worst_response(const MachineView& m, std::span<const std::siz
             const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
             tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
                               other.deadline().count()};
-            if (other.trigger == Trigger::every) tasks[count - 1].phase_ns = other.phase.count();
+            if (runs_by_its_period_alone(m, other)) tasks[count - 1].phase_ns = other.phase.count();
         }
     return response_time_on_grid(std::span{tasks}.first(count), count - 1);
 }

@@ -185,9 +185,9 @@ void MachineBuilder::place_needed_inputs() {
     const MachineView& table = machine_.table;
     // Not the value of the step before: the first step has none.
     const auto awaits = [&](std::size_t x) {
+        const Link& link = machine_.index.connections[x];
         for (std::size_t e = 0; e < table.extras->size(); ++e)
-            if (table.extras->at(e)->starts_on_valid_inputs(table,
-                                                            machine_.index.connections[x].to.component))
+            if (table.extras->at(e)->awaits(table, link.from.component, link.to.component))
                 return !table.connections[x].delayed_step;
         return false;
     };

@@ -34,9 +34,10 @@ public:
     [[nodiscard]] constexpr virtual bool take_turns(const MachineView&, std::size_t, std::size_t) const {
         return false;
     }
-    /// Whether a component waits for valid values of all its required inputs before it starts, as if each were
-    /// valid_to_start. Of an accepted table.
-    [[nodiscard]] constexpr virtual bool starts_on_valid_inputs(const MachineView&, std::size_t) const {
+    /// Whether a component waits, before it starts, for a valid value of another one in a required input, as if
+    /// that were valid_to_start. Of an accepted table.
+    [[nodiscard]] constexpr virtual bool awaits(const MachineView&, std::size_t /*from*/,
+                                                std::size_t /*to*/) const {
         return false;
     }
     /// What it takes of the machine's memory; it begins where any object may stand.

@@ -33,15 +33,15 @@ TEST_P(BearingPress, seats_each_bearing_with_its_force_and_not_more) {
     EXPECT_LT(plant.worst_force(), 1.005 * Plant::seat_force)
         << "the loop does not overshoot, as the table says";
     EXPECT_GT(plant.worst_force(), 0.98 * Plant::seat_force);
-    EXPECT_LE(plant.worst_speed(), drive_most);
+    EXPECT_LT(plant.worst_speed(), 1.1 * slide.velocity);
     EXPECT_EQ(run.instance().find<Axis>("axis")->seated.last(), plant.bearings());
 }
 
 // The bound: what the inner ramp may change, through a drive that lags by 4 ms.
 TEST_P(BearingPress, is_never_jolted_by_a_hand_over) {
     ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s));
-    EXPECT_GT(run.instance().observation().counted(0, 3).times, 2u) << "hand-overs to the press";
-    EXPECT_LT(plant.worst_jolt(), 2.0 * slide.acceleration * 1.1);
+    EXPECT_GT(run.instance().observation().counted(0, 4).times, 2u) << "hand-overs to the press";
+    EXPECT_LT(plant.worst_jolt(), Plant::most_jolt);
 }
 
 TEST_P(BearingPress, comes_to_rest_when_stop_is_pressed_at_any_time_of_the_cycle) {
@@ -62,6 +62,58 @@ TEST_P(BearingPress, comes_to_rest_when_stop_is_pressed_at_any_time_of_the_cycle
         plant.press("stop", false);
         ASSERT_TRUE(comes_to("Standstill")) << state();
     }
+}
+
+TEST_P(BearingPress, is_not_jolted_when_power_comes_back_after_a_stop_in_mid_path) {
+    ASSERT_TRUE(comes_to("DiscreteMotion", 20s));
+    run.run_for(400ms);
+    ASSERT_GT(plant.speed(), 0.1) << "at speed";
+    plant.hold_lower_end(true); // the drive brakes by itself, harder than any path
+    ASSERT_TRUE(comes_to("ErrorStop", 100ms));
+    plant.work(false);
+    ASSERT_TRUE(stands());
+    plant.hold_lower_end(false);
+    plant.forget_jolts();
+    plant.work(true);
+    const std::int64_t before = plant.bearings();
+    ASSERT_TRUE(run.run_until([&] { return plant.bearings() > before; }, 40s))
+        << state() << ": it finds its zero anew";
+    EXPECT_LT(plant.worst_jolt(), Plant::most_jolt);
+}
+
+TEST_P(BearingPress, does_not_start_while_stop_is_held_and_stops_jogging_by_it) {
+    ASSERT_TRUE(comes_to("Standstill"));
+    plant.press("stop", true);
+    run.run_for(2s);
+    EXPECT_EQ(state(), "Standstill");
+    EXPECT_EQ(run.instance().find<Axis>("axis")->obstacle(), "stop is pressed");
+    plant.work(false);
+    plant.press("stop", false);
+    run.run_for(50ms);
+    plant.press("down", true);
+    ASSERT_TRUE(comes_to("ContinuousMotion", 1s));
+    run.run_for(200ms);
+    plant.press("stop", true);
+    ASSERT_TRUE(comes_to("Standstill", 1s));
+    EXPECT_TRUE(stands());
+}
+
+TEST_P(BearingPress, stops_jogging_at_the_end_to_which_it_leads_and_jogs_away_from_it) {
+    ASSERT_TRUE(comes_to("Standstill"));
+    plant.work(false);
+    run.run_for(100ms);
+    ASSERT_TRUE(comes_to("Standstill"));
+    plant.hold_lower_end(true);
+    plant.press("down", true);
+    run.run_for(300ms);
+    EXPECT_NEAR(plant.speed(), 0.0, 1e-3);
+    plant.press("down", false);
+    ASSERT_TRUE(comes_to("Standstill", 1s));
+    plant.press("up", true);
+    run.run_for(300ms);
+    EXPECT_NEAR(plant.speed(), -0.02, 2e-3);
+    plant.press("up", false);
+    ASSERT_TRUE(comes_to("Standstill", 1s));
 }
 
 TEST_P(BearingPress, jogs_while_a_button_is_held) {
@@ -86,7 +138,7 @@ TEST_P(BearingPress, falls_back_and_comes_to_rest_when_a_controller_stops) {
     ASSERT_TRUE(run.run_until([this] { return chain() == "press"; }, 20s));
     change("press", LifeChange::stop);
     run.run_for(2ms);
-    EXPECT_EQ(chain(), "stand");
+    EXPECT_EQ(chain(), "off");
     EXPECT_TRUE(comes_to("ErrorStop", 100ms)) << state();
     EXPECT_TRUE(stands());
     EXPECT_LE(plant.worst_force(), 1.02 * Plant::seat_force);
@@ -102,17 +154,12 @@ TEST_P(BearingPress, stops_the_axis_when_its_drive_falls_silent) {
     EXPECT_TRUE(stands());
 }
 
-TEST_P(BearingPress, stops_at_an_end_switch_and_goes_on_when_it_is_free_and_started) {
+TEST_P(BearingPress, does_not_start_by_itself_at_an_end_and_goes_on_when_it_is_free) {
     ASSERT_TRUE(comes_to("Standstill"));
-    plant.work(false);
-    ASSERT_TRUE(comes_to("Standstill"));
-    plant.hold_end_switch(true);
-    plant.work(true);
-    ASSERT_TRUE(comes_to("ErrorStop")) << "as soon as it moves by itself";
-    plant.work(false);
-    EXPECT_TRUE(stands());
-    plant.hold_end_switch(false);
-    plant.work(true);
+    plant.hold_lower_end(true);
+    run.run_for(3s);
+    EXPECT_EQ(state(), "Standstill");
+    plant.hold_lower_end(false);
     EXPECT_TRUE(run.run_until([this] { return plant.bearings() > 0; }, 20s)) << state();
 }
 

@@ -40,7 +40,6 @@ struct Asked {
     Input<double> target;
     Output<double> velocity;
     double far() noexcept TAPPET_REALTIME { return target.get(); }
-    void start(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
     void step(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(target.get()); }
     static constexpr auto interface() {
@@ -167,7 +166,10 @@ constexpr Fault cascade_faults[] = {
     {"cascade_of_nothing", [](Table& m) { m.control.levels.clear(); },
      R"(cascade: control: it has no level, and so no loop; add level("...", ...))"},
     {"cascade_upside_down",
-     [](Table& m) { m.put(activity("slow", every(500us), budget(50us), runs("path", "outer"))); },
+     [](Table& m) {
+         m.put(activity("slow", every(500us), budget(50us), runs("path", "outer")));
+         m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), stop_machine));
+     },
      R"(cascade: level "inside": it runs every 1000 us, slower than level "outside" above it, which runs every 500 us; an inner loop is the faster one: exchange the levels, or their periods)"},
 
     {"one_chain",
@@ -186,11 +188,14 @@ constexpr Fault cascade_faults[] = {
      },
      R"(cascade: loop "place": gain times period is 0.3, and the most that does not overshoot with 1 step of delay is 0.25; set inner.kp below 250, or add may_overshoot if that does no harm)"},
     {"cascade_periods",
-     [](Table& m) { m.put(activity("slow", every(2500us), budget(50us), runs("path", "outer"))); },
+     [](Table& m) {
+         m.put(activity("slow", every(2500us), budget(50us), runs("path", "outer")));
+         m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), stop_machine));
+     },
      R"(cascade: level "inside": its period of 1000 us does not divide that of level "outside" above it, 2500 us, so that not every command would hold for as many steps; choose periods of which one is a multiple of the other)"},
     {"cascade_without_staleness",
      [](Table& m) { m.put(data("outer.velocity", "ramp.measured", scaled(1.0))); },
-     R"(cascade: connection "outer.velocity" -> "ramp.measured": it leads from level "outside" to level "inside" and does not say what holds when the writer fails; add stale_after(...) with hold, substitute(...) or stop_machine)"},
+     R"(cascade: connection "outer.velocity" -> "ramp.measured": it leads from activity "slow" to "fast" in a loop and does not say what holds when the writer falls silent; add stale_after(...) with hold, substitute(...) or stop_machine)"},
     {"command_in_steps",
      [](Table& m) { m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), hold)); },
      R"(cascade: connection "outer.velocity" -> "ramp.measured": a command of a slower level reaches the faster one in steps or on a line; add in_steps, interpolated (later by a period) or extrapolated)"},
@@ -289,6 +294,21 @@ constexpr Fault flow_faults[] = {
          m.add(data("position.velocity", "drive.driven", stale_after(20ms)));
      },
      R"(axis: connection "position.velocity" -> "drive.driven": only an Effector reaches the hardware, within its limits, and "position" is a Controller; let it write for an Effector)"},
+    {"reader_without_a_role",
+     [](Table& m) {
+         place(m, component<Observer>("model"));
+         m.add(data("encoder.position", "model.measured"));
+     },
+     R"(axis: connection "encoder.position" -> "model.measured": "model" has no role in control(...), so that nobody sees where the value goes on to; add process("model") if it only looks)"},
+    {"driver_that_falls_silent",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), budget(100us),
+                        runs("mode", "encoder", "standing", "jogging", "position", "gentle", "limiter")));
+         m.add(activity("wire", every(1ms), budget(10us), runs("slide")));
+         for (ConnectionRow& row : m.connections)
+             if (row.to == "slide.driven") row = data(row.from, row.to, stale_after(5ms), substitute(0.0));
+     },
+     R"(axis: connection "slide.place" -> "encoder.counted": it leads from activity "wire" to "motion" in a loop and does not say what holds when the writer falls silent; add stale_after(...) with hold, substitute(...) or stop_machine)"},
     {"controller_called_by_generator",
      [](Table& m) {
          place(m, component<Careless>("path"));
@@ -306,6 +326,7 @@ constexpr Fault flow_faults[] = {
          place(m, component<Asked>("second"));
          m.add(data("path.target", "second.target"));
          seat(m, generator("path"));
+         seat(m, controller("second"));
      },
      R"(axis: level "axis": nothing leads to the Generator "path"; connect an input of it with what it makes its values of)"},
     {"nobody_reads_estimator",
@@ -384,6 +405,18 @@ constexpr Fault turn_faults[] = {
      R"(axis: connection "standing.target" -> "watcher.measured": what is written by turns is read in the writers' activity "motion" only; read what comes of it there)"},
     {"controller_that_does_not_track", [](Table& m) { m.control.levels[0].roles[4] = controller("gentle"); },
      R"(axis: level "axis": the Controller "gentle" runs by turns, or those who write for it do, and it does not see what was sent before, so that the axis would jump; connect an Effector's output to an input of it, delayed, and name that: controller("gentle", tracks("...")))"},
+    {"tracks_without_start",
+     [](Table& m) {
+         m.control.exclusives[0].chains[0] = fallback("stand", "standing");
+         m.control.exclusives[0].chains[1] = chain("jog", "jogging");
+         m.control.exclusives[0].chains.used = 2;
+         m.components[6] = component<Asked>("gentle");
+         std::erase_if(m.connections, [](const ConnectionRow& row) {
+             return row.to == "gentle.measured" || row.to == "gentle.sent" || row.from == "gentle.velocity";
+         });
+         m.control.levels[0].roles[4] = controller("gentle", tracks("target"));
+     },
+     R"(axis: level "axis": the Controller "gentle" tracks what was sent and has no start() in which it would begin there; write its first output there: void start(const Cycle&) noexcept TAPPET_REALTIME)"},
     {"tracks_no_input",
      [](Table& m) { m.control.levels[0].roles[4] = controller("gentle", tracks("velocity")); },
      R"(axis: level "axis": "gentle" has no input "velocity" by which to track; name the one that tells what was sent)"},
@@ -403,7 +436,7 @@ constexpr Fault loop_faults[] = {
     {"loop_of_a_gain_unsaid", [](Table& m) { m.components[5] = component<Follower>("position"); },
      R"(axis: loop "place": the table does not say what "position.kp" is, and it decides whether the loop is stable; add set("kp", ...) to the row of "position")"},
     {"loop_turned_round",
-     [](Table& m) { m.components[5] = component<Follower>("position", set("kp", -2.0)); },
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), stiffness(-1.0)); },
      R"(axis: loop "place": its gains, stiffness and transport are to be positive; a loop that feeds back with the other sign turns it round in the Sensor)"},
     {"loop_that_is_not_stable",
      [](Table& m) {
@@ -416,7 +449,7 @@ constexpr Fault loop_faults[] = {
          m.components[5] = component<Follower>("position", set("kp", 100.0));
          m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
      },
-     R"(axis: loop "place": people may set position.kp to 999.9 while it runs, and what is stable ends below 618.034; give the property a range from 0 to less than that)"},
+     R"(axis: loop "place": people may set position.kp to 999.9 while it runs, which is not stable; give it a range of gains that are, below 618.034)"},
     {"loop_that_overshoots",
      [](Table& m) { m.components[5] = component<Follower>("position", set("kp", 300.0)); },
      R"(axis: loop "place": gain times period is 0.3, and the most that does not overshoot with 1 step of delay is 0.25; set position.kp below 250, or add may_overshoot if that does no harm)"},
@@ -426,6 +459,11 @@ constexpr Fault loop_faults[] = {
          m.control.loops[0] = loop("contact", gain("position.kp"), stiffness(2.0e5), transport(2ms));
      },
      R"(axis: loop "contact": gain times period is 0.63, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 3.09e-3, or shorten the delay)"},
+    {"loop_that_overshoots_by_its_integral",
+     [](Table& m) {
+         m.control.loops[0] = loop("place", gain("position.kp"), integral("position.kp"), transport(1ms));
+     },
+     R"(axis: loop "place": with an integral around an axis it overshoots after each step of the set point; add may_overshoot if that does no harm, or leave the integral out)"},
     {"loop_with_too_much_integral",
      [](Table& m) {
          m.control.loops[0] =

@@ -25,7 +25,7 @@ TEST_F(ExecutionEngine, begins_them_behind_the_grid_by_its_phase) {
 
 TEST_F(ExecutionEngine, starts_parts_that_run_by_turns_all_or_none) {
     begin();
-    engine.rest(0b10);
+    engine.rest(0b10, 0b10);
     engine.leave(0b10);
     next_cycle();
     EXPECT_EQ(log.lines, (Lines{"b stops", "a steps"}));

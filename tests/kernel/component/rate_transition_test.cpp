@@ -42,6 +42,14 @@ TEST(RateTransitions, extrapolate_without_delay) {
     }
 }
 
+TEST(RateTransitions, begin_anew_when_nobody_read_for_a_while) {
+    for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
+        Reader reader{how};
+        for (int ms = 0; ms < 20; ++ms) static_cast<void>(reader.at_ms(ms));
+        EXPECT_EQ(reader.at_ms(400), 101.0) << "as it is written, and not from where it was";
+    }
+}
+
 TEST(RateTransitions, go_on_for_one_period_of_a_writer_that_falls_silent) {
     Reader ahead{RateTransition::extrapolate};
     Reader behind{RateTransition::interpolate};

@@ -148,6 +148,26 @@ TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
     EXPECT_EQ(rig.hindered(), "");
 }
 
+TEST(Turns, asked_for_before_anything_was_measured_leave_all_waiting) {
+    Rig rig{false};
+    EXPECT_EQ(rig.ask("softly"), CommandState::failed);
+    EXPECT_FALSE(rig.instance.stop_asked());
+    rig.part<Slide>("slide").is_silent = false;
+    EXPECT_TRUE(rig.run(3ms));
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_EQ(rig.state("position"), ComponentState::running);
+}
+
+TEST(Turns, stop_the_machine_when_the_fallback_is_asked_for_and_cannot_start) {
+    Rig rig;
+    EXPECT_EQ(rig.ask("jog"), CommandState::done);
+    rig.part<Mover>("standing").is_mute = true;
+    ScriptText stand{"stand"};
+    EXPECT_TRUE(rig.part<ChainSwitch>("mode").run(stand));
+    rig.run(4ms);
+    EXPECT_TRUE(rig.instance.stop_asked()) << "who asks for rest does not get motion";
+}
+
 TEST(Turns, fall_back_when_a_part_of_the_chain_stops) {
     Rig rig;
     EXPECT_EQ(rig.ask("softly"), CommandState::done);
@@ -167,7 +187,8 @@ TEST(Turns, stop_the_machine_when_the_fallback_itself_fails) {
     rig.change("standing", LifeChange::stop);
     rig.run(5ms);
     ASSERT_TRUE(rig.instance.stop_asked());
-    EXPECT_THAT(std::string{rig.instance.describe_stop().view()}, HasSubstr("its fallback \"stand\" failed"));
+    EXPECT_THAT(std::string{rig.instance.describe_stop().view()},
+                HasSubstr("\"standing\" stopped, could not start"));
 }
 
 TEST(Turns, stop_the_machine_when_a_part_stops_that_always_runs) {
