@@ -15,6 +15,7 @@
 namespace tappet {
 
 struct Controlled; ///< kernel/machine/instance/controlled.hpp
+struct ScriptUnit; ///< kernel/script/unit.hpp
 
 // clang-format off
 /// A component is a plain struct. What it has of the following is used, in this order of its life; a member
@@ -51,8 +52,7 @@ struct ComponentType {
     bool watches_life = false;   ///< its row names an activity or an output with watches(...)
     bool slot_required = false;  ///< room for a behaviour that is loaded later
     Controls controls = Controls::nothing; ///< its row names another component with controls(...)
-    std::string_view script{};             ///< of the behaviour that it controls; empty: whatever there is
-    const void* script_rows = nullptr;     ///< its instances: another script may have its name
+    const ScriptUnit* script = nullptr;    ///< of the behaviour that it controls; null: whatever there is
     std::string_view instance{};           ///< in that script
     NeverRun never_run{};                  ///< what the table's check refuses
     void (*construct)(void* memory) = nullptr;
@@ -96,8 +96,7 @@ constexpr ComponentType describe() {
         type.controls = T::controls;
         type.control = [](void* c, const Controlled& controlled) { static_cast<T*>(c)->control(controlled); };
         if constexpr (T::controls == ComponentType::Controls::behaviour) {
-            type.script = T::script_name;
-            type.script_rows = T::script_rows;
+            type.script = T::script_unit;
             type.instance = T::instance_name;
         }
     }

@@ -69,4 +69,24 @@ constexpr TypeId script_type(TypeId stored) noexcept {
     }
 }
 
+/// The last part of a C++ name: "Pose" of "car::Pose".
+constexpr std::string_view short_name(std::string_view name) noexcept {
+    const std::size_t template_at = name.find('<');
+    const std::size_t colon = name.substr(0, template_at).rfind(':');
+    return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+/// As scripts spell a type.
+constexpr std::string_view type_name(TypeId type) noexcept {
+    if (type == nullptr) return "nothing";
+    switch (type->kind) {
+    case ValueKind::boolean: return "bool";
+    case ValueKind::integer:
+    case ValueKind::natural: return "int";
+    case ValueKind::real: return "double";
+    case ValueKind::duration: return "duration";
+    case ValueKind::text: return "text";
+    default: return short_name(type->name);
+    }
+}
+
 } // namespace tappet

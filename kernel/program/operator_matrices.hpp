@@ -83,20 +83,22 @@ inline constexpr std::string_view matrix_names[most_matrix_rows][most_matrix_row
     {"double[2][1]", "double[2][2]", "double[2][3]", "double[2][4]"},
     {"double[3][1]", "double[3][2]", "double[3][3]", "double[3][4]"},
     {"double[4][1]", "double[4][2]", "double[4][3]", "double[4][4]"}};
-inline constexpr auto matrix_tags = [] {
-    std::array<std::array<TypeTag, most_matrix_rows>, most_matrix_rows> tags{};
-    for (std::size_t i = 0; i < most_matrix_rows; ++i)
-        for (std::size_t j = 0; j < most_matrix_rows; ++j) {
-            TypeTag& tag = tags[i][j];
-            tag.name = matrix_names[i][j];
-            tag.size = (i + 1) * (j + 1) * sizeof(double);
-            tag.align = alignof(double);
-            tag.kind = ValueKind::matrix;
-            tag.element = script_double;
-            tag.rows = i + 1, tag.columns = j + 1;
-        }
-    return tags;
+template <std::size_t rows, std::size_t columns>
+inline constexpr TypeTag matrix_tag = [] {
+    TypeTag tag;
+    tag.name = matrix_names[rows - 1][columns - 1];
+    tag.size = rows * columns * sizeof(double);
+    tag.align = alignof(double);
+    tag.kind = ValueKind::matrix;
+    tag.element = script_double;
+    tag.rows = rows, tag.columns = columns;
+    return tag;
 }();
+/// Row by row.
+inline constexpr auto matrix_tags = []<std::size_t... i>(std::index_sequence<i...>) {
+    return std::array<TypeId, sizeof...(i)>{
+        &matrix_tag<i / most_matrix_rows + 1, i % most_matrix_rows + 1>...};
+}(std::make_index_sequence<most_matrix_rows * most_matrix_rows>{});
 
 } // namespace tappet::detail
 
@@ -106,7 +108,7 @@ namespace tappet {
 constexpr TypeId matrix_type(std::size_t rows, std::size_t columns) noexcept {
     if (rows == 0 || columns == 0 || rows > detail::most_matrix_rows || columns > detail::most_matrix_rows)
         return nullptr;
-    return &detail::matrix_tags[rows - 1][columns - 1];
+    return detail::matrix_tags[(rows - 1) * detail::most_matrix_rows + columns - 1];
 }
 
 } // namespace tappet

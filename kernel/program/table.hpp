@@ -101,7 +101,13 @@ struct ProgramRow {
     bool may_wait = false;     ///< it may need more than one step; otherwise it is atomic
 };
 
-enum class VariableKind : std::uint8_t { parameter, variable, constant, argument };
+enum class VariableKind : std::uint8_t {
+    parameter,
+    variable,
+    constant,
+    argument,
+    result ///< of a program, to who commanded it
+};
 
 /// A named value of a program or state machine: a property of it to its peers (thesis 5.1.6).
 struct VariableRow {

@@ -30,12 +30,21 @@ public:
     }
 
 private:
-    /// "program name { ... }": one instance of its own type; "program name(type parameter, ...) { ... }"
-    /// waits for its task's command.
+    /// "program name { ... }": one instance of its own type; "program [type] name(type parameter, ...)
+    /// { ... }" waits for its task's command and, with a type, answers it.
     constexpr void parse_named_program() {
         advance();
-        const Token name = need_name("the name of the program");
-        make_program(name, name.text, false);
+        Token name = need_word("the name of the program, or the type of its result");
+        TypeId result = nullptr;
+        if (ok() && is(Sign::name)) {
+            result = find_type(name.text);
+            if (result == nullptr) fail(name, {"found \"", quoted(name.text), "\", expected a type"});
+            name = token_;
+            advance();
+        }
+        if (ok() && name.sign != Sign::name)
+            fail(name, {"found \"", quoted(name.text), "\", expected the name of the program"});
+        make_program(name, name.text, false, result);
         need(Sign::close_brace, "\"}\"");
     }
     constexpr void parse_program_parameters() {
@@ -52,9 +61,9 @@ private:
             return fail_expected("StateMachine, RootStateMachine, program or function");
         std::string_view name = file_.substr(file_.rfind('/') + 1);
         name = name.substr(0, name.find('.'));
-        make_program(token_, name, true);
+        make_program(token_, name, true, nullptr);
     }
-    constexpr void make_program(const Token& at, std::string_view name, bool to_the_end) {
+    constexpr void make_program(const Token& at, std::string_view name, bool to_the_end, TypeId result) {
         if (!ok()) return;
         begin_type();
         BehaviourType type;
@@ -62,9 +71,19 @@ private:
         const std::size_t symbols = symbols_used_;
         const bool on_command = !to_the_end && take(Sign::open_round);
         if (on_command) parse_program_parameters();
+        Frame frame{.result = result};
+        if (result != nullptr) {
+            if (!on_command)
+                return fail(at, {"nobody asks \"", quoted(name),
+                                 "\" for its result; give it a list of "
+                                 "parameters, which may be empty"});
+            static_cast<void>(add_variable(result->size, frame.slot));
+            add(variables_, VariableRow{keep({"return"}), result, frame.slot, VariableKind::result},
+                "variables");
+        }
         if (!to_the_end) need(Sign::open_brace, "\"{\"");
         exports_variables_ = true;
-        const ProgramIndex program = parse_program({name}, to_the_end);
+        const ProgramIndex program = parse_program({name}, to_the_end, frame);
         exports_variables_ = false;
         symbols_used_ = symbols;
         if (ok() && program == no_program) return fail(at, {"the program has no statement"});

@@ -193,24 +193,6 @@ protected:
 
     // ---- types
 
-    /// The last part of a C++ name: "Pose" of "car::Pose".
-    static constexpr std::string_view short_name(std::string_view name) noexcept {
-        const std::size_t template_at = name.find('<');
-        const std::size_t colon = name.substr(0, template_at).rfind(':');
-        return colon == std::string_view::npos ? name : name.substr(colon + 1);
-    }
-    static constexpr std::string_view type_name(TypeId type) noexcept {
-        if (type == nullptr) return "nothing";
-        switch (type->kind) {
-        case ValueKind::boolean: return "bool";
-        case ValueKind::integer:
-        case ValueKind::natural: return "int";
-        case ValueKind::real: return "double";
-        case ValueKind::duration: return "duration";
-        case ValueKind::text: return "text";
-        default: return short_name(type->name);
-        }
-    }
     static constexpr bool is_named(TypeId type, std::string_view name) noexcept {
         const std::string_view own = short_name(type->name);
         return own.size() == name.size() && lower_case(own[0]) == lower_case(name[0]) &&

@@ -5,6 +5,14 @@
 
 namespace tappet::script_detail {
 
+/// Of a program, or of a function that is expanded in it.
+struct Frame {
+    TypeId result = nullptr;
+    DataOffset slot = no_data; ///< of the result
+    Chain exits = no_chain;
+    bool is_function = false;
+};
+
 class Statements : protected Flow {
 protected:
     using Flow::Flow;
@@ -94,9 +102,8 @@ protected:
     }
     /// The statements of a program, up to the closing brace that is not theirs.
     constexpr ProgramIndex parse_program(std::initializer_list<std::string_view> name,
-                                         bool to_the_end = false) {
+                                         bool to_the_end = false, Frame frame = {}) {
         const ProgramIndex number = begin_program(name);
-        Frame frame;
         frame_ = &frame;
         loop_ = nullptr;
         const std::size_t symbols = symbols_used_, scope = scope_;
@@ -108,6 +115,9 @@ protected:
         symbols_used_ = symbols;
         scope_ = scope;
         frame_ = nullptr;
+        if (ok() && frame.result != nullptr && (pending_ != no_chain || frame.exits == no_chain))
+            fail(token_, {"found the end of a program that gives a result; end each way through it with "
+                          "\"return\" and a value"});
         return end_program(number, frame.exits);
     }
     /// "function [type] name (type name, ...) { ... }"
@@ -167,14 +177,6 @@ protected:
         Chain breaks = no_chain;
         Chain continues = no_chain;
     };
-    /// Of the program, or of the function that is expanded in it.
-    struct Frame {
-        TypeId result = nullptr;
-        DataOffset slot = no_data;
-        Chain exits = no_chain;
-        bool is_function = false;
-    };
-
     /// Whether properties of the program: its outermost variables (thesis 5.1.6).
     bool exports_variables_ = false;
 
@@ -330,12 +332,12 @@ private:
     constexpr void parse_return(const Token& at) {
         begin_action();
         if (frame_ == nullptr) return fail(at, {"found \"return\" outside of a program"});
-        if (frame_->is_function && frame_->result != nullptr) {
+        if (frame_->result != nullptr) {
             const Token where = token_;
             store(where, parse_expression(frame_->result), frame_->result, frame_->slot,
-                  " as the function returns");
+                  frame_->is_function ? " as the function returns" : " as the program returns");
         } else if (!is(Sign::semicolon) && !is(Sign::close_brace) && !is(Sign::end)) {
-            return fail(token_, {"found a value, but ", frame_->is_function ? "the function" : "a program",
+            return fail(token_, {"found a value, but the ", frame_->is_function ? "function" : "program",
                                  " returns nothing"});
         }
         join(frame_->exits, add_arc(end_action(at)));

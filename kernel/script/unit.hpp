@@ -20,6 +20,12 @@ struct BehaviourType {
     StateMachineTable machine{}; ///< without states: a program alone, tables.programs[0]
 
     [[nodiscard]] constexpr bool is_program() const noexcept { return machine.states.empty(); }
+    /// How many it has; they stand before all other variables.
+    [[nodiscard]] constexpr std::size_t parameters() const noexcept {
+        std::size_t count = 0;
+        for (const VariableRow& row : tables.variables) count += row.kind == VariableKind::parameter ? 1 : 0;
+        return count;
+    }
 };
 
 /// RootStateMachine, SubStateMachine or program: one set of data of a type (thesis listings 5.5, 5.6).

@@ -5,13 +5,18 @@
 
 namespace tappet::checks {
 
-/// The behaviour row that a task controls; nowhere: there is none. One that drives goes before a slot.
+/// The behaviour row that a task controls; nowhere: there is none. What is compiled from the task's own
+/// script goes before a slot; of a task without one whatever drives does.
 constexpr std::size_t controlled_behaviour(const MachineView& m, const ComponentRow& task) {
+    const ScriptUnit* const script = task.type->script;
     std::size_t found = nowhere;
     for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
         const BehaviourRow& row = m.behaviours[b];
-        if (row.component != task.controlled || (row.is_slot() && !task.type->script.empty())) continue;
-        if (found == nowhere || !row.is_slot()) found = b;
+        if (row.component != task.controlled) continue;
+        const bool is_its_own =
+            !row.is_slot() && (script == nullptr || row.unit().instances.data() == script->instances.data());
+        if (found == nowhere || is_its_own || (row.is_slot() && script != nullptr)) found = b;
+        if (is_its_own) break;
     }
     return found;
 }
@@ -27,16 +32,16 @@ constexpr Sentence check_task(const MachineView& m, const TableIndexView& r, std
     const ComponentRow& task = m.components[c];
     const std::size_t b = controlled_behaviour(m, task);
     if (b == nowhere)
-        return of_component(task.name, " controls \"", task.controlled, "\", which no behaviour ",
-                            task.type->script.empty() ? "" : "that is compiled with the machine ",
-                            "drives; add behaviour(\"", task.controlled, "\", ...) to behaviours(...)");
+        return of_component(task.name, " controls \"", task.controlled,
+                            "\", which no behaviour drives; add behaviour(\"", task.controlled,
+                            "\", ...) to behaviours(...)");
     const BehaviourRow& row = m.behaviours[b];
-    const ScriptUnit unit = row.unit();
-    if (task.type->script_rows != nullptr && unit.instances.data() != task.type->script_rows)
-        return of_component(task.name, " is a task of script \"", task.type->script, "\" but \"",
+    const ScriptUnit unit = row.is_slot() && task.type->script != nullptr ? *task.type->script : row.unit();
+    if (task.type->script != nullptr && unit.instances.data() != task.type->script->instances.data())
+        return of_component(task.name, " is a task of script \"", task.type->script->name, "\" but \"",
                             row.component, "\" is driven by \"", unit.name,
                             "\"; make it BehaviourTask<...> of that script");
-    if (!row.is_slot() && controlled_instance(unit, task) == nowhere) {
+    if (controlled_instance(unit, task) == nowhere) {
         Nearest nearest{task.type->instance};
         for (const BehaviourInstance& each : unit.instances) nearest.consider(each.name);
         Sentence text = of_component(task.name, " is the task of \"", task.type->instance,

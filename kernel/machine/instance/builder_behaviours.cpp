@@ -44,6 +44,7 @@ void MachineBuilder::connect_controls() {
         if (row.type->control == nullptr) continue;
         Controlled controlled;
         controlled.life = &instance_.life();
+        controlled.name = row.name;
         controlled.component = find_component(machine_.table, row.controlled);
         if (row.type->controls == ComponentType::Controls::behaviour) {
             const std::size_t b = checks::controlled_behaviour(machine_.table, row);

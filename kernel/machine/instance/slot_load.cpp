@@ -68,6 +68,9 @@ Sentence BehaviourSlot::compile(std::size_t characters, std::string_view name) {
                             place_.events, *place_.machine, place_.component);
         !fault.empty())
         return Sentence{bank.name.view(), ": ", fault};
+    for (SlotTask* task = tasks_; task != nullptr; task = task->next)
+        if (Sentence fault = task->fit(outcome.unit, number); !fault.empty())
+            return Sentence{bank.name.view(), ": ", fault};
     bank.unit.connect_links();
     bank.unit.trace(place_.trace, place_.engine);
     bank.filled = true;

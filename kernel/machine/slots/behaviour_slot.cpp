@@ -75,10 +75,12 @@ void BehaviourSlot::start(Time now) noexcept TAPPET_REALTIME {
 void BehaviourSlot::stop(Time now) noexcept TAPPET_REALTIME {
     runs_ = false;
     if (BehaviourUnit* unit = active(); unit != nullptr) unit->finish(now, "its component stops");
+    exchange();
 }
 
 void BehaviourSlot::step_programs(Time now) noexcept TAPPET_REALTIME {
     if (BehaviourUnit* unit = active(); unit != nullptr) unit->step_programs(now);
+    exchange();
 }
 
 bool BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
@@ -93,6 +95,7 @@ bool BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
     if (unit == nullptr) return before != phase();
     const bool worked = unit->step(now);
     judge(now);
+    exchange();
     return worked || before != phase() || before == SlotPhase::handing_over;
 }
 
@@ -121,7 +124,12 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     steps_left_ = place_.row->slot.trial;
     bases_left_ = 2;
     connect(true);
-    if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->start(now);
+    BehaviourUnit* const unit = active();
+    if (unit == nullptr) return;
+    // What is taken back left no traces: the old one finds its variables as they were.
+    for (SlotTask* task = tasks_; task != nullptr; task = task->next)
+        is_roll_back_ ? task->take(*unit, bank()) : task->give(*unit, bank());
+    if (runs_) unit->start(now);
 }
 
 std::uint64_t BehaviourSlot::misses() const noexcept TAPPET_REALTIME {
@@ -179,6 +187,7 @@ void BehaviourSlot::dispatch(std::size_t event, const std::byte* packed, Time no
     if (phase() == SlotPhase::waiting && moment_.kind == SlotMoment::Kind::event && moment_.event == event)
         hand_over(now);
     if (BehaviourUnit* unit = active(); unit != nullptr && runs_) unit->dispatch(event, packed, now);
+    exchange();
 }
 
 } // namespace tappet

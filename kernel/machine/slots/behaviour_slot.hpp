@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernel/component/event_handle.hpp"
-#include "kernel/machine/slots/behaviour_unit.hpp"
+#include "kernel/machine/slots/slot_task.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -66,6 +66,11 @@ public:
     };
     /// By start-up.
     void place(const Place& place);
+    /// By start-up: a task of what is loaded. From now on nothing is that does not fit it.
+    void add(SlotTask& task) noexcept {
+        task.next = tasks_;
+        tasks_ = &task;
+    }
 
     // ---- in a background activity, one at a time; not real-time
 
@@ -125,6 +130,18 @@ public:
     void stop(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
     void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
+    /// Of a task, in what is at work: something is.
+    [[nodiscard]] UnitPart& part_of(const SlotTask& task) noexcept TAPPET_REALTIME {
+        return task.part(*active(), bank());
+    }
+    [[nodiscard]] std::byte* variable_of(const SlotTask& task, std::size_t i) noexcept TAPPET_REALTIME {
+        return task.variable(*active(), bank(), i);
+    }
+    /// The properties of all tasks and the variables behind them become the same again.
+    void exchange() noexcept TAPPET_REALTIME {
+        if (BehaviourUnit* const unit = active(); unit != nullptr)
+            for (SlotTask* task = tasks_; task != nullptr; task = task->next) task->exchange(*unit, bank());
+    }
 
 private:
     static constexpr int none = -1;
@@ -133,6 +150,9 @@ private:
         bool filled = false;
         Text<48> name{}; ///< of the script's file
     };
+    [[nodiscard]] std::size_t bank() const noexcept TAPPET_REALTIME {
+        return static_cast<std::size_t>(active_.load(std::memory_order_relaxed));
+    }
     [[nodiscard]] int spare() const noexcept TAPPET_REALTIME {
         return active_.load(std::memory_order_relaxed) == 0 ? 1 : 0;
     }
@@ -150,6 +170,7 @@ private:
     Bank banks_[2]{};
     std::array<Reachable, Slot::max_names + 1> reachable_{};
     std::size_t reachable_count_ = 0;
+    SlotTask* tasks_ = nullptr;
     // Written by the background while no change is on its way, read by obey().
     Change asked_change_ = Change::take_over;
     SlotMoment asked_moment_{};

@@ -4,14 +4,17 @@
 //
 //     component<BehaviourTask<weft_script, "feed">>("feeding", controls("weft"), set("speed", 0.5)),
 //     uses("console.feed", "feeding.run")          // program feed(int pieces, double speed) { ... } of it
+//
+// Controlled by it is what drives the component: that script, compiled with the machine, or whatever of its
+// shape was loaded into the component's slot.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/machine/instance/controlled.hpp"
 #include "kernel/machine/slots/behaviour_action.hpp"
-#include "kernel/program/operator_kinds.hpp"
 #include "kernel/script/unit.hpp"
+#include "kernel/services/tasks/task_values.hpp"
 
 namespace tappet {
 
@@ -85,7 +88,7 @@ protected:
         if (part == nullptr || !controlled_.active()->may_begin() || !is_at_rest(*part)) return false;
         return !is_in_error(*part) || acts(BehaviourAction::stop);
     }
-    [[nodiscard]] std::byte* data() noexcept TAPPET_REALTIME { return controlled_.behaviour()->data; }
+    Controlled controlled_{};
 
 private:
     static bool is_in_error(const UnitPart& part) noexcept TAPPET_REALTIME {
@@ -115,19 +118,33 @@ private:
         return no_state;
     }
 
-    Controlled controlled_{};
     const UnitPart* commanded_ = nullptr;
 };
 
-/// The C++ type of a script's variable that may be a property or a parameter from outside; void: of no other.
-template <TypeId id>
-using TaskValue = std::conditional_t<
-    id == script_bool, bool,
-    std::conditional_t<
-        id == script_int, ScriptInt,
-        std::conditional_t<id == script_double, double,
-                           std::conditional_t<id == script_duration, Duration,
-                                              std::conditional_t<id == script_text, ScriptText, void>>>>>;
+/// The numbers of the variables that a task of that instance knows: its properties, and of a program its
+/// result.
+template <const auto& script, std::size_t number, std::size_t... i>
+constexpr auto task_variables(std::index_sequence<i...>) {
+    constexpr const BehaviourInstance& instance = script.instances[number];
+    constexpr const BehaviourType& type = script.types[instance.type];
+    [[maybe_unused]] constexpr auto is_wanted = [](const VariableRow& row) {
+        if (row.name.empty() || row.at == no_data) return false;
+        return row.kind == VariableKind::parameter || row.kind == VariableKind::result ||
+               (row.kind == VariableKind::variable && !type.is_program());
+    };
+    [[maybe_unused]] constexpr std::array<bool, sizeof...(i)> wanted{is_wanted(type.tables.variables[i])...};
+    constexpr std::array<bool, sizeof...(i)> known{
+        (wanted[i] && task_property<type.tables.variables[i].type> != nullptr)...};
+    static_assert(
+        !instance.on_command ||
+            ((!wanted[i] || !std::is_void_v<TaskValue<type.tables.variables[i].type>>) && ...),
+        "a program that is told to run from outside takes and gives bool, int, double, duration and text");
+    std::array<std::uint16_t, (std::size_t{0} + ... + known[i])> numbers{};
+    std::size_t at = 0;
+    for (std::size_t v = 0; v < sizeof...(i); ++v)
+        if (known[v]) numbers[at++] = static_cast<std::uint16_t>(v);
+    return numbers;
+}
 
 } // namespace detail
 
@@ -135,17 +152,20 @@ using TaskValue = std::conditional_t<
 inline constexpr ScriptUnit any_script{};
 
 /// In the table: component<BehaviourTask<script, "instance">>("name", controls("component")), in the activity
-/// of that component. `script`: the ScriptUnit that drives it; without one the task has commands and methods
-/// alone, which serve the first program or machine that it finds. Properties are the variables and parameters
-/// of a machine and the parameters of a program (whose variables begin anew with it), as far as they are
-/// bool, int, double, duration or text; they may be set by the row and kept in a properties file. `run` of a
-/// program gives them anew, `start` takes them as they are. Commands and methods are real-time.
+/// of that component. `script`: the ScriptUnit that drives it, or of which the scripts for its slot have the
+/// shape: an instance of that name with those variables and parameters; others are refused when they are
+/// loaded. Without one the task has commands and methods alone, which serve the first program or machine that
+/// it finds. Properties are the variables and parameters of a machine and the parameters of a program (whose
+/// variables begin anew with it), but for those of records; they may be set by the row and kept in a
+/// properties file. Those of a slot stay while behaviours come and go: one that takes
+/// over is given them, one that is taken back has changed none. `run` of a program gives its parameters anew
+/// and, where it has one, tells its result; `start` takes them as they are. Commands and methods are
+/// real-time.
 template <const auto& script = any_script, text instance = "">
 struct BehaviourTask : detail::AnyBehaviourTask {
     static constexpr bool knows_script = !script.types.empty();
-    static constexpr std::string_view script_name = script.name;
+    static constexpr const ScriptUnit* script_unit = knows_script ? &script : nullptr;
     static constexpr std::string_view instance_name = instance.view();
-    static constexpr const void* script_rows = script.instances.data();
     static_assert(knows_script || instance_name.empty(),
                   "name the script whose instance this is the task of");
     static constexpr std::size_t number = [] {
@@ -159,6 +179,21 @@ struct BehaviourTask : detail::AnyBehaviourTask {
     static constexpr bool may_be_machine = type == nullptr || !type->is_program();
     static constexpr bool is_command = type != nullptr && script.instances[number].on_command;
 
+    void control(const Controlled& controlled) noexcept {
+        AnyBehaviourTask::control(controlled);
+        if constexpr (knows_script)
+            if (controlled.slot != nullptr) {
+                in_slot_.place(controlled.name, {&script.instances[number], type, known},
+                               {values_, seen_, places_});
+                controlled.slot->add(in_slot_);
+                controlled_.task = &in_slot_;
+            }
+    }
+    /// What was set goes to the behaviour that is loaded.
+    void changed() noexcept TAPPET_REALTIME {
+        if (controlled_.slot != nullptr) controlled_.slot->exchange();
+    }
+
     static constexpr auto interface() {
         std::array<Facet, facet_count> all{};
         std::size_t at = 0;
@@ -168,47 +203,58 @@ struct BehaviourTask : detail::AnyBehaviourTask {
 
 private:
     using Self = BehaviourTask;
-    template <std::size_t i> using Value = detail::TaskValue<type->tables.variables[i].type>;
-    template <std::size_t i>
-    static constexpr bool is_parameter = type->tables.variables[i].kind == VariableKind::parameter;
-
-    // ---- a program that is a command: its parameters
-
-    static constexpr std::size_t parameters = [] {
-        std::size_t count = 0;
-        if constexpr (is_command)
-            for (const VariableRow& each : type->tables.variables)
-                count += each.kind == VariableKind::parameter;
-        return count;
+    static constexpr auto known = [] {
+        if constexpr (knows_script)
+            return detail::task_variables<script, number>(
+                std::make_index_sequence<type->tables.variables.size()>{});
+        else
+            return std::array<std::uint16_t, 0>{};
     }();
-    // They stand before all other variables.
-    template <class> struct Run;
-    template <std::size_t... i> struct Run<std::index_sequence<i...>> {
-        static_assert(
-            (!std::is_void_v<Value<i>> && ...),
-            "a program that is told to run from outside takes bool, int, double, duration and text");
-        using Pack = detail::Packing<Value<i>...>;
+    template <std::size_t i> using Value = detail::TaskValue<type->tables.variables[known[i]].type>;
+
+    /// Of what is loaded, in the behaviour; else of the component itself. Something is.
+    [[nodiscard]] std::byte* variable(std::size_t i) noexcept TAPPET_REALTIME {
+        if (controlled_.slot != nullptr) return controlled_.slot->variable_of(in_slot_, i);
+        return controlled_.behaviour()->data + type->tables.variables[known[i]].at;
+    }
+
+    // ---- a program that is a command: its parameters, which stand before all other variables, and its
+    // result
+
+    static constexpr std::size_t parameters = is_command ? type->parameters() : 0;
+    static constexpr bool gives_result = is_command && known.size() != parameters;
+    template <class, class...> struct Run;
+    template <std::size_t... i, class... R> struct Run<std::index_sequence<i...>, R...> {
+        using Pack = detail::Packing<Value<i>..., R&...>;
         static bool begin(void* component, [[maybe_unused]] std::byte* values) noexcept TAPPET_REALTIME {
             auto& task = *static_cast<Self*>(component);
             if (!task.is_free()) return false;
-            (std::memcpy(task.data() + type->tables.variables[i].at, values + Pack::offsets[i],
-                         sizeof(Value<i>)),
-             ...);
+            (std::memcpy(task.variable(i), values + Pack::offsets[i], sizeof(Value<i>)), ...);
             return task.start_it();
         }
-        static CommandProgress progress(void* component, std::byte*) noexcept TAPPET_REALTIME {
-            return static_cast<Self*>(component)->has_ended();
+        static CommandProgress progress(void* component, [[maybe_unused]] std::byte* values) noexcept
+            TAPPET_REALTIME {
+            auto& task = *static_cast<Self*>(component);
+            const CommandProgress progress = task.has_ended();
+            if constexpr (gives_result)
+                if (progress == CommandProgress::done)
+                    std::memcpy(values + Pack::input_bytes, task.variable(parameters), Pack::result_bytes);
+            return progress;
         }
-        static constexpr CommandOperations operations{
-            type_id<Arguments<Value<i>...>>, type_id<Arguments<>>, Pack::input_bytes, 0, &begin, &progress};
+        static constexpr CommandOperations operations{type_id<typename Pack::Inputs>,
+                                                      type_id<typename Pack::Results>,
+                                                      Pack::input_bytes,
+                                                      Pack::result_bytes,
+                                                      &begin,
+                                                      &progress};
         static constexpr Facet facet{.name = "run",
                                      .doc = "executes it with these parameters, to its end",
                                      .kind = FacetKind::command,
-                                     .type = type_id<Arguments<Value<i>...>>,
+                                     .type = type_id<Arguments<Value<i>..., Result<R>...>>,
                                      .command = &operations};
     };
 
-    // ---- variables
+    // ---- properties
 
     static constexpr bool is_command_name(std::string_view name) {
         for (const std::string_view each : {"start", "stop", "pause", "step", "reset", "run", "deactivate",
@@ -216,23 +262,24 @@ private:
             if (each == name) return true;
         return false;
     }
-    static void* variable_at(void* component, std::size_t offset) noexcept {
-        return static_cast<Self*>(component)->data() + offset;
+    /// Of a slot they lie here: what is loaded comes and goes.
+    static void* property_at(void* component, std::size_t i) noexcept {
+        auto& task = *static_cast<Self*>(component);
+        if (task.controlled_.slot == nullptr) return task.variable(i);
+        return task.values_.data() + TaskShape::place_of(*type, known[i]);
     }
     template <std::size_t i, class Visit> static constexpr void visit_variable(const Visit& visitor) {
-        constexpr VariableRow row = type->tables.variables[i];
-        if constexpr (!row.name.empty() && row.at != no_data &&
-                      (is_parameter<i> || (row.kind == VariableKind::variable && !type->is_program())) &&
-                      !std::is_void_v<Value<i>>) {
+        constexpr VariableRow row = type->tables.variables[known[i]];
+        if constexpr (row.kind != VariableKind::result) {
             static_assert(!is_command_name(row.name), "a variable of the script has the name of a command or "
                                                       "method of its task; rename it in the script");
             visitor(Facet{.name = row.name,
-                          .doc = is_parameter<i> ? "a parameter" : "a variable",
+                          .doc = row.kind == VariableKind::parameter ? "a parameter" : "a variable",
                           .kind = FacetKind::property,
                           .type = row.type,
-                          .index = row.at,
-                          .at = &variable_at,
-                          .property = &detail::PropertyAccess<Value<i>>::operations});
+                          .index = i,
+                          .at = &property_at,
+                          .property = detail::task_property<row.type>});
         }
     }
     template <class Visit, std::size_t... i>
@@ -256,15 +303,23 @@ private:
                 "request", "the transition to a state, if its guard holds"));
             visitor(method<&Self::is_in>("is_in", "that state is active"));
         }
-        if constexpr (is_command) visitor(Run<std::make_index_sequence<parameters>>::facet);
-        if constexpr (knows_script)
-            visit_variables(visitor, std::make_index_sequence<type->tables.variables.size()>{});
+        if constexpr (gives_result)
+            visitor(Run<std::make_index_sequence<parameters>, Value<parameters>>::facet);
+        else if constexpr (is_command)
+            visitor(Run<std::make_index_sequence<parameters>>::facet);
+        visit_variables(visitor, std::make_index_sequence<known.size()>{});
     }
     static constexpr std::size_t facet_count = [] {
         std::size_t count = 0;
         visit([&](const Facet&) { ++count; });
         return count;
     }();
+
+    // Of a task of a slot.
+    static constexpr std::size_t value_bytes = knows_script ? TaskShape::value_bytes(*type) : 0;
+    SlotTask in_slot_{};
+    alignas(data_alignment) std::array<std::byte, value_bytes> values_{}, seen_{};
+    std::array<DataOffset, 2 * known.size()> places_{};
 };
 
 } // namespace tappet

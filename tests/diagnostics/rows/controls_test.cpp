@@ -68,12 +68,12 @@ constexpr Fault control_faults[] = {
     {"task_of_what_has_no_behaviour",
      [](Table& m) { m.put(component<BehaviourTask<>>("feeding", controls("lamps"))); },
      R"(loom: component "feeding" controls "lamps", which no behaviour drives; add behaviour("lamps", ...) to behaviours(...))"},
-    {"task_of_what_is_loaded_later",
+    {"task_of_an_unknown_program_of_a_slot",
      [](Table& m) {
-         m.add(behaviour("tension", slot(nodes(20), data_bytes(100), depth(1))));
-         m.put(component<BehaviourTask<weaving, "feed">>("feeding", controls("tension")));
+         m.add(behaviour("lamps", slot(nodes(20), data_bytes(100), depth(1))));
+         m.put(component<BehaviourTask<weaving, "fed">>("feeding", controls("lamps")));
      },
-     R"(loom: component "feeding" controls "tension", which no behaviour that is compiled with the machine drives; add behaviour("tension", ...) to behaviours(...))"},
+     R"(loom: component "feeding" is the task of "fed", which script "weaving.osd" does not have; did you mean "feed"?)"},
     {"task_of_another_script", [](Table& m) { m.behaviours[0] = behaviour("weft", other, {}); },
      R"(loom: component "feeding" is a task of script "weaving.osd" but "weft" is driven by "other.osd"; make it BehaviourTask<...> of that script)"},
     {"task_of_an_unknown_program",

@@ -15,42 +15,61 @@
 #include <gmock/gmock.h>
 
 namespace tappet::bakery {
+
+enum class Colour : std::uint8_t { red, green };
+
+} // namespace tappet::bakery
+
+template <>
+inline constexpr auto tappet::names_of<tappet::bakery::Colour> =
+    std::array<std::string_view, 2>{"red", "green"};
+
+namespace tappet::bakery {
 namespace {
 
 using testing::ElementsAre;
 
+struct Lamp {
+    Property<Colour> colour{Colour::red};
+    static constexpr auto interface() {
+        return facets(property<&Lamp::colour>("colour", "", "in which it shines"));
+    }
+};
+
 constexpr ScriptSource baking{"baking.osd", R"(
 StateMachine Baking {
     param double heat = 150.0
-    var int count = 7; var text words = "none"; var bool open = false; var duration since; var vector3 place;
+    var int count = 7; var text words = "none"; var bool open = false; var duration since; var vector3 place; var colour next = green;
     const int fixed = 3;
     initial state Cold {
         transition oven.tick() if count > 8 then { do oven.note(count); } select Hot
     }
     state Hot {
-        entry { set oven.target = heat; }
+        entry { set oven.target = heat; set lamp.colour = next; }
         transition oven.tick() select Cold
     }
     final state Off { entry { do feeder.feed(3); do oven.note(99); } }
 }
 RootStateMachine Baking baking
-program loaves(int number, double weight = 0.5) {
+program int loaves(int number, double weight = 0.5) {
     var int made = 0;
     while (made < number) { do oven.note(made + int(weight * 100)); set made = made + 1; yield; }
     if (number == 3) then { do oven.note(-1); }
+    return made * 10;
 }
 program clean() { do oven.note(500); }
 program always { while true { yield; } }
 )"};
-constexpr auto reach = script_reach(reachable<Oven>("oven"), reachable<Feeder>("feeder", false));
+constexpr auto reach =
+    script_reach(reachable<Oven>("oven"), reachable<Feeder>("feeder", false), reachable<Lamp>("lamp"));
 constexpr const ScriptUnit& script = compiled_script<baking, reach>;
 
 struct Panel {
-    CommandCall<ScriptInt, double> bake;
+    CommandCall<ScriptInt, double, ScriptInt&> bake;
     CommandCall<> clean, halt_it, stop_feeder;
     CommandCall<ScriptText> request;
     static constexpr auto interface() {
-        return facets(sends<&Panel::bake>("bake", "so many"),
+        return facets(sends<&Panel::bake>("bake", "so many, and ten times as many rolls"),
                       sends<&Panel::clean>("clean", "runs the program"),
                       sends<&Panel::halt_it>("stop", "ends the program"),
                       sends<&Panel::stop_feeder>("stop_feeder", "ends its life"),
@@ -63,9 +82,10 @@ using Loaves = BehaviourTask<script, "loaves">;
 using Machine = BehaviourTask<script, "baking">;
 constexpr ScriptSource serving{"serving.osd", R"(
 StateMachine Serving {
+    var int rolls = 0;
     initial state Idle { transition door.moved() select Busy }
     state Busy {
-        entry { do making.run(2, 0.1); set machine.count = 20; do feeding.stop(); do oven.note(3000); }
+        entry { do making.run(2, 0.1, rolls); do oven.note(rolls); set machine.count = 20; do feeding.stop(); do oven.note(3000); }
         transition door.moved() select Idle
     }
     final state Off { }
@@ -78,14 +98,14 @@ constexpr const ScriptUnit& beside = compiled_script<serving, serving_reach>;
 
 // clang-format off
 constexpr auto table = machine("bakery",
-    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Panel>("panel"),
-               component<Machine>("machine", controls("oven"), set("heat", 80.0), set("words", "from the row")),
+    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Panel>("panel"), component<Lamp>("lamp"),
+               component<Machine>("machine", controls("oven"), set("heat", 80.0), set("words", "from the row"), set("next", Colour::red)),
                component<Loaves>("making", controls("oven")),
                component<BehaviourTask<script, "clean">>("cleaning", controls("oven")),
                component<BehaviourTask<>>("any", controls("oven")),
                component<ComponentLife>("feeding", controls("feeder"))),
     activities(
-        activity("fast", every(1ms), budget(50us), runs("oven", "door", "machine", "making", "cleaning", "any", "feeding")),
+        activity("fast", every(1ms), budget(50us), runs("oven", "lamp", "door", "machine", "making", "cleaning", "any", "feeding")),
         activity("slow", every(5ms), budget(50us), runs("feeder")),
         activity("desk", every(5ms), budget(50us), runs("panel"))),
     connections(),
@@ -104,7 +124,7 @@ struct Tasks : Rig<Firmware<table, board>> {
     }
 };
 
-TEST(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_at_its_end) {
+TEST(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_with_its_result_at_its_end) {
     Tasks rig;
     rig.run(10ms);
     EXPECT_TRUE(rig.oven().told.empty()) << "it does not start by itself";
@@ -115,6 +135,7 @@ TEST(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_at_its_e
     rig.run(20ms);
     EXPECT_EQ(rig.panel().bake.state(), CommandState::done);
     EXPECT_THAT(rig.oven().told, ElementsAre(25, 26));
+    EXPECT_EQ(rig.panel().bake.result(), 20);
     ASSERT_TRUE(rig.panel().bake.send(1, 7.0)); // from its beginning again
     rig.run(20ms);
     EXPECT_THAT(rig.oven().told, ElementsAre(25, 26, 700));
@@ -161,10 +182,10 @@ TEST(A_task_of_a_program, that_is_broken_off_has_failed_and_nothing_begins_while
 
 // clang-format off
 constexpr auto woken = machine("woken",
-    components(component<Oven>("oven"), component<Feeder>("feeder"), component<Panel>("panel"),
+    components(component<Oven>("oven"), component<Feeder>("feeder"), component<Panel>("panel"), component<Lamp>("lamp"),
                component<Machine>("machine", controls("oven")), component<Loaves>("making", controls("oven")),
                component<BehaviourTask<script, "clean">>("cleaning", controls("oven")), component<ComponentLife>("feeding", controls("feeder"))),
-    activities(activity("fast", on_work(), at_most(10, 1ms), deadline(1ms), budget(50us), runs("oven", "machine", "making", "cleaning")),
+    activities(activity("fast", on_work(), at_most(10, 1ms), deadline(1ms), budget(50us), runs("oven", "lamp", "machine", "making", "cleaning")),
                activity("slow", every(5ms), budget(50us), runs("feeder")),
                activity("desk", every(5ms), budget(50us), runs("panel", "feeding"))),
     connections(),
@@ -190,21 +211,21 @@ TEST(A_task_of_a_machine, has_its_variables_and_parameters_as_properties_which_t
     EXPECT_EQ(rig.property<double>("machine", "heat"), 80.0);
     EXPECT_EQ(rig.property<ScriptInt>("machine", "count"), 7);
     EXPECT_EQ(rig.property<ScriptText>("machine", "words").view(), "from the row");
+    EXPECT_EQ(rig.property<Colour>("machine", "next"), Colour::red);
     const ComponentType& type = component_type<Machine>;
     const auto has = [&](std::string_view name) {
         return std::ranges::any_of(type.facets, [&](const Facet& each) { return each.name == name; });
     };
-    EXPECT_TRUE(has("open") && has("since"));
+    EXPECT_TRUE(has("open") && has("since") && has("place"));
     EXPECT_FALSE(has("fixed")) << "a constant";
-    EXPECT_FALSE(has("place")) << "a vector";
     EXPECT_FALSE(has("run")) << "it is no program";
 }
 
 // clang-format off
 constexpr auto kept = machine("kept",
-    components(component<Oven>("oven"), component<Feeder>("feeder"),
+    components(component<Oven>("oven"), component<Feeder>("feeder"), component<Lamp>("lamp"),
                component<Machine>("machine", controls("oven"), properties_file("baking.cpf", optional))),
-    activities(activity("fast", every(1ms), budget(50us), runs("oven", "machine")),
+    activities(activity("fast", every(1ms), budget(50us), runs("oven", "lamp", "machine")),
                activity("slow", every(5ms), budget(50us), runs("feeder"))),
     connections(), reactions(), behaviours(behaviour("oven", script, {})));
 // clang-format on
@@ -214,16 +235,29 @@ TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
     std::filesystem::remove_all(directory);
     std::filesystem::create_directory(directory);
     const auto files = std::make_unique<PropertyFiles>(directory);
-    const End count{2, find_facet(kept.view().components[2], "count")};
+    const auto end = [](std::string_view name) {
+        return End{3, find_facet(kept.view().components[3], name)};
+    };
     os::Clock clock{os::Clock::Kind::virtual_time};
-    for (const ScriptInt expected : {7, 12}) { // the script's, then the one that was kept
+    using Place = std::array<double, 3>;
+    struct Values {
+        ScriptInt count = 7;
+        Place place{};
+        Colour next = Colour::green;
+    };
+    for (const Values expected :
+         {Values{}, Values{12, {1, 2, 3}, Colour::red}}) { // the script's, then those kept
         MachineInstance instance{Firmware<kept, board>::machine(), clock};
         instance.read_properties_from(files->store());
         const auto standing = instance.configure({});
         ASSERT_TRUE(standing) << standing.error().view();
-        auto& value = *static_cast<ScriptInt*>(instance.facet(count));
-        EXPECT_EQ(value, expected);
-        value = 12;
+        auto& count = *static_cast<ScriptInt*>(instance.facet(end("count")));
+        auto& place = *static_cast<Place*>(instance.facet(end("place")));
+        auto& next = *static_cast<Colour*>(instance.facet(end("next")));
+        EXPECT_EQ(count, expected.count);
+        EXPECT_EQ(place, expected.place);
+        EXPECT_EQ(next, expected.next);
+        count = 12, place = {1, 2, 3}, next = Colour::red;
         EXPECT_EQ(instance.save_properties(*standing).view(), "");
     }
     std::filesystem::remove_all(directory);
@@ -258,10 +292,10 @@ TEST(A_behaviour, commands_the_one_beside_it_and_the_life_of_components_and_sets
     Tasks rig;
     rig.run(10ms);
     rig.door().moved.emit();
-    rig.run(3ms);
-    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11));
+    rig.run(4ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 20)) << "and its result";
     rig.run(40ms);
-    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 3000)) << "once the feeder said that it had stopped";
+    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 20, 3000)) << "once the feeder said that it had stopped";
     EXPECT_EQ(rig.instance.life().state_of(2), ComponentState::stopped);
     rig.oven().tick.emit();
     rig.run(2ms);

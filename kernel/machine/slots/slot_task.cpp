@@ -1,0 +1,127 @@
+// How the task of a slot meets what is loaded there.
+#include "kernel/machine/slots/slot_task.hpp"
+
+#include "kernel/base/nearest.hpp"
+#include "kernel/program/operator_kinds.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace tappet {
+
+namespace {
+
+/// As a script declares it: "param double heat".
+void add_declaration(Sentence& text, const VariableRow& row, bool is_program) {
+    if (row.kind == VariableKind::result) {
+        text.add("a result of type ").add(type_name(row.type));
+        return;
+    }
+    text.add("\"");
+    if (!is_program) text.add(row.kind == VariableKind::parameter ? "param " : "var ");
+    text.add(type_name(row.type)).add(" ").add(row.name).add("\"");
+}
+
+} // namespace
+
+void SlotTask::place(std::string_view name, const TaskShape& shape, const Room& room) noexcept {
+    name_ = name, shape_ = shape, room_ = room;
+    const auto image = shape.instance->image.subspan(shape.type->tables.layout.constants);
+    std::copy_n(image.data(), std::min(image.size(), room.values.size()), room.values.data());
+    std::ranges::copy(room.values, room.seen.begin());
+}
+
+Sentence SlotTask::fit(const ScriptUnit& unit, std::size_t bank) {
+    const std::string_view wanted = shape_.instance->name;
+    Nearest nearest{wanted};
+    std::size_t part = 0;
+    for (; part < unit.instances.size() && unit.instances[part].name != wanted; ++part)
+        nearest.consider(unit.instances[part].name);
+    const bool is_program = shape_.type->is_program();
+    const std::string_view kind = !is_program                   ? "state machine"
+                                  : shape_.instance->on_command ? "program with parameters"
+                                                                : "program";
+    if (part == unit.instances.size()) {
+        Sentence text{"task \"", name_, "\" is that of ", kind, " \"", wanted, "\", which it does not have"};
+        if (nearest.best().empty()) return text.add("; add one");
+        return text.add("; did you mean \"").add(nearest.best()).add("\"?");
+    }
+    const BehaviourInstance& found = unit.instances[part];
+    const BehaviourType& type = unit.types[found.type];
+    if (type.is_program() != is_program || found.on_command != shape_.instance->on_command)
+        return Sentence{"task \"",
+                        name_,
+                        "\" is that of a ",
+                        kind,
+                        ", and \"",
+                        wanted,
+                        "\" is none; write it so, or rename it"};
+    for (std::size_t i = 0; i < shape_.variables.size(); ++i) {
+        const VariableRow& asked = shape_.type->tables.variables[shape_.variables[i]];
+        const auto all = type.tables.variables;
+        const auto same = std::ranges::find_if(all, [&](const VariableRow& row) {
+            return row.name == asked.name && row.kind == asked.kind && row.type == asked.type;
+        });
+        if (same == all.end()) {
+            Sentence text{"task \"", name_, "\" has "};
+            add_declaration(text, asked, is_program);
+            return text.add(" of \"").add(wanted).add("\", which it does not have so; declare it there");
+        }
+        room_.places[bank * shape_.variables.size() + i] = same->at;
+    }
+    if (is_program && type.parameters() != shape_.type->parameters())
+        return Sentence{"task \"",
+                        name_,
+                        "\" gives \"",
+                        wanted,
+                        "\" ",
+                        shape_.type->parameters(),
+                        " parameters, and it has ",
+                        type.parameters(),
+                        "; give it those of the task"};
+    parts_[bank] = part;
+    return {};
+}
+
+template <class Visit>
+void SlotTask::for_each_value(BehaviourUnit& unit, std::size_t bank, const Visit& visit) noexcept
+    TAPPET_REALTIME {
+    for (std::size_t i = 0; i < shape_.variables.size(); ++i) {
+        const std::size_t number = shape_.variables[i];
+        const std::size_t at = TaskShape::place_of(*shape_.type, number);
+        visit(room_.values.data() + at, room_.seen.data() + at, variable(unit, bank, i),
+              shape_.type->tables.variables[number].type->size);
+    }
+}
+
+void SlotTask::give(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME {
+    for_each_value(unit, bank,
+                   [](std::byte* own, std::byte* seen, std::byte* its, std::size_t size) noexcept
+                   TAPPET_REALTIME {
+                       std::memcpy(its, own, size);
+                       std::memcpy(seen, own, size);
+                   });
+}
+
+void SlotTask::take(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME {
+    for_each_value(unit, bank,
+                   [](std::byte* own, std::byte* seen, std::byte* its, std::size_t size) noexcept
+                   TAPPET_REALTIME {
+                       std::memcpy(own, its, size);
+                       std::memcpy(seen, its, size);
+                   });
+}
+
+void SlotTask::exchange(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME {
+    for_each_value(unit, bank,
+                   [](std::byte* own, std::byte* seen, std::byte* its, std::size_t size) noexcept
+                   TAPPET_REALTIME {
+                       if (std::memcmp(own, seen, size) != 0)
+                           std::memcpy(its, own, size);
+                       else
+                           std::memcpy(own, its, size);
+                       std::memcpy(seen, own, size);
+                   });
+}
+
+} // namespace tappet

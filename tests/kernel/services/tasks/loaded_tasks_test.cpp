@@ -1,0 +1,322 @@
+// The tasks of what is loaded into a slot (thesis 5.1.6, 5.2.5): rows, scripts and people command and set it
+// as they do what is compiled with the machine, and what they set stays while behaviours come and go.
+#include "kernel/services/configuration/property_files.hpp"
+#include "kernel/services/tasks/behaviour_task.hpp"
+#include "kernel/services/tasks/component_life.hpp"
+#include "tests/kernel/machine/behaviour_machine.hpp"
+
+#include "kernel/machine/firmware.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <gmock/gmock.h>
+
+#include <unistd.h>
+
+// Not the namespace of tasks_test.cpp: g++ takes functions made for members of unnamed namespaces' types to
+// be the same in both.
+namespace tappet::bakery::loaded {
+namespace {
+
+using testing::ElementsAre;
+
+/// The shape: what is loaded has these.
+constexpr ScriptSource shape{"baking.osd", R"(
+StateMachine Baking {
+    param double heat = 150.0
+    var int count = 7; var text words = "none";
+    initial state Cold { transition oven.tick() select Off }
+    final state Off { }
+}
+RootStateMachine Baking baking
+program int loaves(int number, double weight = 0.5) { return number; }
+)"};
+constexpr auto reach = script_reach(reachable<Oven>("oven"));
+constexpr const ScriptUnit& script = compiled_script<shape, reach>;
+using Baking = BehaviourTask<script, "baking">;
+using Loaves = BehaviourTask<script, "loaves">;
+
+/// Counts at each tick from where it finds the count; one of two shapes of the same.
+std::string counting(int by) {
+    return R"(program int loaves(int number, double weight) {
+    var int made = 0;
+    while (made < number) { do oven.note(made + int(weight * 100)); set made = made + 1; yield; }
+    if (number == 3) then do oven.note(-1);
+    return made * )" +
+           std::to_string(by) + R"(;
+}
+StateMachine Baking {
+    var int other = 1; var int count = 1000; param double heat = 10; var text words = "mine";
+    initial state Cold {
+        transition oven.tick() if count >= 0 then { set count = count + )" +
+           std::to_string(by) + R"(; do oven.note(count); }
+        transition door.moved() { do feeding.stop(); do oven.note(3000); }
+        transitions { if count > 100000 select Off }
+    }
+    final state Off { }
+}
+RootStateMachine Baking baking
+)";
+}
+
+struct Panel {
+    CommandCall<ScriptInt, double, ScriptInt&> bake;
+    CommandCall<> halt_it;
+    static constexpr auto interface() {
+        return facets(sends<&Panel::bake>("bake", "so many, and how many were made"),
+                      sends<&Panel::halt_it>("stop", "ends the states"));
+    }
+};
+
+/// Of another component, compiled: it asks for loaves and sets what is loaded.
+struct Shop {
+    Output<std::int64_t> sold;
+    Property<std::int64_t> got{0};
+    Event<> opens;
+    static constexpr auto interface() {
+        return facets(output<&Shop::sold>("sold", "", "of them"),
+                      property<&Shop::got>("got", "", "of the last baking"),
+                      event<&Shop::opens>("opens", "for customers"));
+    }
+};
+constexpr ScriptSource selling{"selling.osd", R"(
+StateMachine Selling {
+    initial state Closed { transition shop.opens() select Open }
+    state Open {
+        entry { set baking.count = 40; do making.run(2, 0.1, got); }
+        transition shop.opens() select Closed
+    }
+    final state Off { }
+}
+)"};
+constexpr auto selling_reach =
+    script_reach(reachable<Shop>("shop"), reachable<Baking>("baking"), reachable<Loaves>("making"));
+constexpr const ScriptUnit& sells = compiled_script<selling, selling_reach>;
+
+// clang-format off
+constexpr auto table = machine("bakery",
+    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Panel>("panel"), component<Shop>("shop"),
+               component<Baking>("baking", controls("oven"), set("heat", 80.0), properties_file("baking.cpf", optional)),
+               component<Loaves>("making", controls("oven")),
+               component<ComponentLife>("feeding", controls("feeder")),
+               component<Watcher>("watcher")),
+    activities(
+        activity("fast", every(1ms), budget(50us), runs("oven", "door", "shop", "baking", "making", "feeding")),
+        activity("slow", every(5ms), budget(50us), runs("feeder")),
+        activity("desk", every(5ms), budget(50us), runs("panel")),
+        activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
+    connections(),
+    reactions(uses("panel.bake", "making.run"), uses("panel.stop", "baking.stop")),
+    behaviours(behaviour("shop", sells, {}),
+               behaviour("oven", slot(nodes(60), data_bytes(1024), depth(3), command_slots(2), timers(2), text_bytes(2000),
+                                      peers("feeding", "door"), operations("feeding.stop"), events("door.moved"), trial(3)), on_error(OnError::report))));
+// clang-format on
+
+struct Bakery {
+    PropertyFiles files;
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    explicit Bakery(const std::string& directory) : files{directory} {
+        instance.read_properties_from(files.store());
+        const auto standing = instance.configure({});
+        EXPECT_TRUE(standing) << standing.error().view();
+        EXPECT_EQ(world.start().view(), "");
+        run(5ms);
+    }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    BehaviourSlot& slot() { return *instance.slot_of("oven"); }
+    Oven& oven() { return *instance.find<Oven>("oven"); }
+    Panel& panel() { return *instance.find<Panel>("panel"); }
+    template <class T> T& property(std::string_view task, std::string_view name) {
+        const MachineView& of = instance.machine().table;
+        const std::size_t c = find_component(of, task);
+        return *static_cast<T*>(instance.facet({c, find_facet(of.components[c], name)}));
+    }
+    ScriptInt& count() { return property<ScriptInt>("baking", "count"); }
+    std::string compile(std::string_view text) {
+        std::ranges::copy(text, slot().text().begin());
+        return std::string{slot().compile(text.size(), "new.osd").view()};
+    }
+    void change(BehaviourSlot::Change what) {
+        EXPECT_EQ(slot().may(what).view(), "");
+        EXPECT_TRUE(slot().ask(what));
+        EXPECT_TRUE(instance.requests().post_change(slot()));
+        run(2ms);
+    }
+    void load(std::string_view text) {
+        ASSERT_EQ(compile(text), "");
+        change(BehaviourSlot::Change::take_over);
+    }
+    void tick(int times = 1) {
+        for (int i = 0; i < times; ++i) {
+            oven().tick.emit();
+            run(2ms);
+        }
+    }
+    /// By the transaction of a browser.
+    void set_count(ScriptInt value) {
+        const MachineView& of = instance.machine().table;
+        const std::size_t c = find_component(of, "baking");
+        PropertyTransaction transaction;
+        transaction.begin("baking", *of.components[c].type, instance.component(c));
+        std::memcpy(transaction.change(find_facet(of.components[c], "count")), &value, sizeof value);
+        transaction.commit();
+        ASSERT_EQ(transaction.state(), PropertyTransaction::State::done);
+    }
+};
+
+struct Directory {
+    std::string path = testing::TempDir() + "loaded_tasks_test_" + std::to_string(getpid());
+    Directory() { std::filesystem::create_directory(path); }
+    ~Directory() { std::filesystem::remove_all(path); }
+};
+struct Loaded : testing::Test, Directory, Bakery {
+    Loaded() : Bakery{path} {}
+};
+
+TEST_F(Loaded, nothing_yet_rejects_commands_and_keeps_what_is_set) {
+    EXPECT_EQ(property<double>("baking", "heat"), 80.0) << "of the row";
+    EXPECT_EQ(count(), 7) << "of the shape";
+    ASSERT_TRUE(panel().bake.send(2, 0.25));
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::rejected);
+}
+
+TEST_F(Loaded, a_program_is_a_command_with_its_parameters_and_its_result) {
+    load(counting(10));
+    ASSERT_TRUE(panel().bake.send(2, 0.25));
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::done);
+    EXPECT_EQ(panel().bake.result(), 20);
+    EXPECT_THAT(oven().told, ElementsAre(25, 26));
+    ASSERT_TRUE(panel().bake.send(3, 0.0));
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::failed);
+    ASSERT_TRUE(panel().bake.send(1, 0.0));
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::done) << "after an error too";
+    EXPECT_EQ(panel().bake.result(), 10);
+}
+
+TEST_F(Loaded, a_machine_is_stopped_by_a_row) {
+    load(counting(1));
+    ASSERT_TRUE(panel().halt_it.send());
+    run(20ms);
+    EXPECT_EQ(panel().halt_it.state(), CommandState::done);
+    EXPECT_TRUE(slot().active()->parts()[1].machine->is_final());
+}
+
+TEST_F(Loaded, one_is_given_the_properties_and_what_it_does_with_them_is_seen) {
+    load(counting(1));
+    EXPECT_EQ(property<double>("baking", "heat"), 80.0);
+    tick(2);
+    EXPECT_THAT(oven().told, ElementsAre(8, 9)) << "from 7 on, not from its own 1000";
+    EXPECT_EQ(count(), 9);
+    set_count(20);
+    tick();
+    EXPECT_EQ(count(), 21);
+}
+
+TEST_F(Loaded, the_next_one_goes_on_with_them) {
+    load(counting(1));
+    tick(5);
+    ASSERT_EQ(slot().phase(), SlotPhase::steady);
+    EXPECT_EQ(count(), 12);
+    load(counting(100));
+    tick();
+    EXPECT_EQ(count(), 112);
+    change(BehaviourSlot::Change::unload);
+    EXPECT_EQ(count(), 112) << "nothing is loaded, and they stay";
+}
+
+TEST_F(Loaded, one_that_is_taken_back_has_changed_none) {
+    load(counting(1));
+    tick(5);
+    ASSERT_EQ(slot().phase(), SlotPhase::steady);
+    oven().told.clear();
+    load(counting(-8)); // 4, then -4, which the oven refuses
+    tick(2);
+    EXPECT_EQ(slot().last_roll_back(), RollBack::error);
+    EXPECT_THAT(oven().told, ElementsAre(4, -4));
+    EXPECT_EQ(count(), 12);
+    tick();
+    EXPECT_EQ(count(), 13);
+}
+
+TEST_F(Loaded, what_does_not_fit_is_refused_and_says_so) {
+    const auto refused = [&](std::string_view from, std::string_view to) {
+        std::string text = counting(1);
+        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+            text.replace(at, from.size(), to);
+        return compile(text);
+    };
+    EXPECT_EQ(refused("Baking baking", "Baking bakin"),
+              "new.osd: task \"baking\" is that of state machine \"baking\", which it does not have; did you "
+              "mean \"bakin\"?");
+    EXPECT_EQ(refused("program int loaves(int number, double weight) {",
+                      "program loaves { const int number = 2; const double weight = 1;"),
+              "new.osd:5:12: found a value, but the program returns nothing");
+    EXPECT_EQ(refused("param double heat", "param int heat"),
+              "new.osd: task \"baking\" has \"param double heat\" of \"baking\", which it does not have so; "
+              "declare it there");
+    EXPECT_EQ(refused("param double heat", "var double heat"),
+              "new.osd: task \"baking\" has \"param double heat\" of \"baking\", which it does not have so; "
+              "declare it there");
+    EXPECT_EQ(refused("words", "word"), "new.osd: task \"baking\" has \"var text words\" of \"baking\", "
+                                        "which it does not have so; declare it there");
+    EXPECT_EQ(
+        refused("double weight)", "double weight, bool quick)"),
+        "new.osd: task \"making\" gives \"loaves\" 2 parameters, and it has 3; give it those of the task");
+    EXPECT_EQ(refused("int number", "double number"),
+              "new.osd: task \"making\" has \"int number\" of \"loaves\", which it does not have so; declare "
+              "it there");
+    EXPECT_EQ(refused("program int", "program double"),
+              "new.osd: task \"making\" has a result of type int of \"loaves\", which it does not have so; "
+              "declare it there");
+    EXPECT_EQ(
+        compile(
+            "StateMachine Baking { initial state A { transition oven.tick() select B } final state B { } }\n"
+            "RootStateMachine Baking loaves\nRootStateMachine Baking baking"),
+        "new.osd: task \"making\" is that of a program with parameters, and \"loaves\" is none; write it so, "
+        "or rename it");
+    EXPECT_EQ(compile(counting(1)), "");
+}
+
+TEST_F(Loaded, one_is_commanded_and_set_by_the_behaviour_beside_it) {
+    load(counting(10));
+    instance.find<Shop>("shop")->opens.emit();
+    run(20ms);
+    EXPECT_THAT(oven().told, ElementsAre(10, 11));
+    EXPECT_EQ(instance.find<Shop>("shop")->got.get(), 20) << "the command's result";
+    EXPECT_EQ(count(), 40);
+    tick();
+    EXPECT_EQ(count(), 50);
+}
+
+TEST_F(Loaded, one_stops_a_component) {
+    load(counting(1));
+    instance.find<Door>("door")->moved.emit();
+    run(30ms);
+    EXPECT_THAT(oven().told, ElementsAre(3000));
+    EXPECT_EQ(instance.life().state_of(2), ComponentState::stopped);
+}
+
+TEST(What_is_loaded, goes_on_where_the_machine_was_switched_off) {
+    const Directory directory;
+    for (const ScriptInt begins : {7, 10}) { // the shape's, then what was kept
+        Bakery bakery{directory.path};
+        EXPECT_EQ(bakery.count(), begins);
+        bakery.load(counting(1));
+        bakery.tick(3);
+        EXPECT_EQ(bakery.count(), begins + 3);
+        bakery.world.stop();
+        EXPECT_EQ(bakery.instance.save_properties(bakery.instance.standing()).view(), "");
+    }
+}
+
+} // namespace
+} // namespace tappet::bakery::loaded
