@@ -5,6 +5,7 @@
 #include "apps/car_tracking/behaviour.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
+#include "kernel/services/tasks/behaviour_task.hpp"
 
 namespace tappet::car_tracking {
 
@@ -14,11 +15,12 @@ inline constexpr auto table = machine("car-tracking",
         component<Camera>("camera", device("tracking-camera")),
         component<ImageRecognition>("recognition"),  // where in the room is the car
         component<Tracking>("tracking"),             // aims the camera at it
+        component<BehaviourTask<tracking_script, "application">>("application", controls("tracking"), set("patience", 3)),
         component<Panel>("panel")),                  // the buttons
     activities(
         activity("camera",   every(5ms),  runs("camera"),      budget(500us), stack(256 * 1024)),
         activity("vision",   every(10ms), runs("recognition"), budget(2ms), stack(256 * 1024)),
-        activity("tracking", every(10ms), runs("tracking"),    budget(50us)),
+        activity("tracking", every(10ms), runs("tracking", "application"), budget(50us)),
         activity("panel",    every(50ms), runs("panel"),       not_real_time)),
     connections( // data flow
         data("camera.image", "recognition.image"),

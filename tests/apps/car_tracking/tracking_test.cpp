@@ -142,6 +142,36 @@ TEST(CarTracking, loses_the_car_and_finds_it_again) {
     }
 }
 
+/// How often the camera was turned between two images without the car, and how often it was not.
+std::pair<int, int> turned_and_kept(const Day& day) {
+    const auto looks_at = [&](const Look& look) {
+        const auto at =
+            std::ranges::find_if(day.moments, [&](const Moment& each) { return each.at_s >= look.at_s; });
+        return std::pair{at->looks_x, at->looks_y};
+    };
+    std::pair<int, int> count{};
+    for (std::size_t i = 1; i < day.looks.size(); ++i)
+        if (!day.looks[i - 1].located && !day.looks[i].located)
+            ++(looks_at(day.looks[i - 1]) != looks_at(day.looks[i]) ? count.first : count.second);
+    return count;
+}
+
+TEST(CarTracking, looks_elsewhere_when_its_patience_ends_which_a_property_says) {
+    const auto [turned, kept] = turned_and_kept(day_of(1));
+    EXPECT_GT(turned, 0);
+    EXPECT_GT(kept, 0);
+    CarRun run{1};
+    ASSERT_TRUE(run.start());
+    const MachineView& table = run.instance().machine().table;
+    const std::size_t task = find_component(table, "application");
+    *static_cast<ScriptInt*>(run.instance().facet({task, find_facet(table.components[task], "patience")})) =
+        1000;
+    ASSERT_TRUE(run.run_for(58s));
+    const auto [turned_now, kept_now] = turned_and_kept({run.moments(), run.looks()});
+    EXPECT_EQ(turned_now, 0);
+    EXPECT_GT(kept_now, 0);
+}
+
 TEST(CarTracking, waits_again_when_the_calibration_fails) {
     CarRun run{5};
     ASSERT_TRUE(run.start());
