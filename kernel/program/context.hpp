@@ -16,6 +16,13 @@ struct ProgramLink {
     const ComponentType* type = nullptr; ///< of the component: it is asked before its properties change
 };
 
+class ProgramExecution;
+/// The programs of a script, which stand side by side.
+struct ProgramsBeside {
+    ProgramExecution* first = nullptr;
+    std::size_t count = 0;
+};
+
 /// Where a program stands. Plain data, so that it may be kept and shown.
 struct ProgramPosition {
     NodeIndex node = end_node;
@@ -45,7 +52,8 @@ struct ProgramContext {
     const ProgramLink* links = nullptr; ///< by LinkRow
     Time now{};
     ProgramPosition position{};
-    void* machines = nullptr;   ///< the state machines and programs that this one may command
+    void* machines = nullptr;   ///< the state machines that this one may command
+    ProgramsBeside beside{};    ///< the programs, itself among them
     WorkLimit* limit = nullptr; ///< null: only the number of statements is bounded
 };
 

@@ -29,7 +29,7 @@ void ProgramExecution::fill(std::size_t from) noexcept TAPPET_REALTIME {
 }
 
 bool ProgramExecution::reset() noexcept TAPPET_REALTIME {
-    if (status_ == ProgramStatus::running || status_ == ProgramStatus::paused) return false;
+    if (is_at_work()) return false;
     // The parameters stand before all other variables.
     std::size_t end = code_.tables->layout.constants;
     for (const VariableRow& row : code_.tables->variables)
@@ -55,6 +55,19 @@ bool ProgramExecution::start() noexcept TAPPET_REALTIME {
     }
     status_ = ProgramStatus::running;
     return true;
+}
+
+void ProgramExecution::give(const std::byte* parameters) noexcept TAPPET_REALTIME {
+    for (const VariableRow& row : code_.tables->variables) {
+        if (row.kind != VariableKind::parameter) continue;
+        std::memcpy(context_.data + row.at, parameters, row.type->size);
+        parameters += row.type->size;
+    }
+}
+
+void ProgramExecution::take_result(std::byte* into) const noexcept TAPPET_REALTIME {
+    for (const VariableRow& row : code_.tables->variables)
+        if (row.kind == VariableKind::result) std::memcpy(into, context_.data + row.at, row.type->size);
 }
 
 bool ProgramExecution::pause() noexcept TAPPET_REALTIME {

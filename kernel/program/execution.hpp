@@ -35,6 +35,10 @@ public:
               const ProgramPolicy& policy = {}, ProgramIndex program = 0) noexcept TAPPET_REALTIME;
 
     bool start() noexcept TAPPET_REALTIME;
+    /// Before a start: its parameters, packed one after the other in their order. Not while it runs.
+    void give(const std::byte* parameters) noexcept TAPPET_REALTIME;
+    /// Of a program that has one: what it returned last.
+    void take_result(std::byte* into) const noexcept TAPPET_REALTIME;
     bool pause() noexcept TAPPET_REALTIME;
     bool stop() noexcept TAPPET_REALTIME;
     /// Its variables have their first values; parameters keep theirs.
@@ -45,6 +49,9 @@ public:
     bool single_step(Time now) noexcept TAPPET_REALTIME;
 
     [[nodiscard]] ProgramStatus status() const noexcept TAPPET_REALTIME { return status_; }
+    [[nodiscard]] bool is_at_work() const noexcept TAPPET_REALTIME {
+        return status_ == ProgramStatus::running || status_ == ProgramStatus::paused;
+    }
     /// It has executed its last statement since it was started; it was not stopped.
     [[nodiscard]] bool has_ended() const noexcept TAPPET_REALTIME { return has_ended_; }
     [[nodiscard]] const ProgramPosition& position() const noexcept TAPPET_REALTIME {

@@ -24,7 +24,7 @@ public:
         }
         if (ok() && types_.used == 0)
             fail(token_, {"the script is empty; give it a program or a StateMachine"});
-        if (ok() && instances_.used == 0) add_implied_root();
+        if (ok() && count_programs(types_.room, instances_.view()) == instances_.used) add_implied_root();
         finish();
         note_sizes();
     }
@@ -121,9 +121,12 @@ private:
         arguments_used_ = first;
         static_cast<void>(take(Sign::semicolon));
     }
-    /// Without RootStateMachine the last type stands for one instance of it.
+    /// Without RootStateMachine the last type of state machine stands for one instance of it.
     constexpr void add_implied_root() {
-        const auto type = static_cast<TypeIndex>(types_.used - 1);
+        std::size_t last = types_.used;
+        while (last != 0 && types_.room[last - 1].is_program()) --last;
+        if (last == 0) return;
+        const auto type = static_cast<TypeIndex>(last - 1);
         Token at = machine_name_token();
         static_cast<void>(parse_machine_arguments(at, type));
         add_root(at, types_.room[type].name, type, 0, 0);

@@ -121,6 +121,8 @@ constexpr void Statements::parse_do(const Token& at) {
         advance();
         facet_name = need_word("the name of a method, command, operation or event");
     } else if (find_facet(std::uint16_t{0}, name.text) == none) {
+        if (const InstanceIndex program = find_program(name.text); program != no_instance)
+            return parse_program_command(at, name, program);
         return fail_unknown_action(name);
     }
     const std::uint16_t number = ok() ? parse_facet(component, facet_name) : none;
@@ -198,10 +200,6 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
         is_own ? place_in(Region::arguments, std::max<std::size_t>(command.value_bytes(), 1))
         : command.argument_bytes != 0 ? scratch(command.argument_bytes)
                                       : no_data;
-    struct ResultPlace {
-        const Symbol* variable = nullptr;
-        FacetPlace facet{};
-    };
     std::array<ResultPlace, 8> results{};
     std::size_t result_count = 0, input_at = 0, input = 0;
     if (!need(Sign::open_round, "\"(\" and the arguments")) return;
@@ -214,14 +212,7 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
             ++input;
             continue;
         }
-        const Token result = need_word("the variable or property that receives this result");
-        ResultPlace place{ok() ? find_symbol(result) : nullptr};
-        if (ok() && place.variable == nullptr)
-            place.facet = parse_facet_place(result);
-        else if (ok() && (place.variable->fixed || place.variable->kind != SymbolKind::variable))
-            return fail(result,
-                        {"\"", quoted(result.text),
-                         "\" is not to be assigned; a result of a command needs a variable or a property"});
+        const ResultPlace place = parse_result_place();
         if (ok() && result_count == results.size()) return fail_limit("results of one command");
         if (ok()) results[result_count++] = place;
     }
@@ -256,17 +247,31 @@ constexpr void Statements::parse_command(const Token& at, const Token& name, std
     }
     for (std::size_t i = 0; ok() && i < result_count; ++i) {
         const TypeId type = command.results->elements[i];
-        const Operand value = reckoned(at, at_place(type, from));
-        if (const Symbol* const variable = results[i].variable; variable != nullptr) {
-            store(at, value, variable->operand.type, variable->operand.at, " as a result");
-        } else {
-            const FacetPlace& to = results[i].facet;
-            act(to.action, to.component, to.number, no_data,
-                as(at, value, to.action.type, " as a result").at);
-        }
+        store_result(at, results[i], type, from);
         from = moved(from, type->size);
     }
     pending_ = add_arc(end_action(at));
+}
+
+constexpr Statements::ResultPlace Statements::parse_result_place() {
+    const Token result = need_word("the variable or property that receives this result");
+    ResultPlace place{ok() ? find_symbol(result) : nullptr};
+    if (ok() && place.variable == nullptr)
+        place.facet = parse_facet_place(result);
+    else if (ok() && (place.variable->fixed || place.variable->kind != SymbolKind::variable))
+        fail(result, {"\"", quoted(result.text),
+                      "\" is not to be assigned; a result of a command needs a variable or a property"});
+    return place;
+}
+
+constexpr void Statements::store_result(const Token& at, const ResultPlace& to, TypeId type,
+                                        DataOffset from) {
+    const Operand value = reckoned(at, at_place(type, from));
+    if (to.variable != nullptr)
+        store(at, value, to.variable->operand.type, to.variable->operand.at, " as a result");
+    else
+        act(to.facet.action, to.facet.component, to.facet.number, no_data,
+            as(at, value, to.facet.action.type, " as a result").at);
 }
 
 } // namespace tappet::script_detail

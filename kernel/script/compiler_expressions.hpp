@@ -298,6 +298,8 @@ private:
                 const Token value = need_word("the name of a value");
                 return ok() ? value_of(value, type, true) : Operand{};
             }
+            if (const InstanceIndex program = find_program(name.text); program != no_instance)
+                return parse_program_value(program);
         }
         if (expected != nullptr && expected->kind == ValueKind::enumeration)
             if (const Operand value = value_of(name, expected, false); value.valid()) return value;
@@ -372,8 +374,14 @@ private:
     constexpr Operand read_by(const FacetAction& action, std::uint16_t component, std::uint16_t facet);
     /// What a parent asks of its child machine; in compiler_children.hpp, as what it does with one.
     constexpr Operand parse_machine_value(std::uint16_t child);
+    /// What is asked of a program beside; in compiler_beside.hpp.
+    constexpr Operand parse_program_value(InstanceIndex program);
 
 protected:
+    [[nodiscard]] constexpr Instruction program_instruction(Primitive run, InstanceIndex program);
+    /// ".word()"; answers which one.
+    template <class Words> constexpr std::uint8_t parse_program_word(const Words& words,
+                                                                     std::string_view wanted);
     /// The name of a state of the child, in quotes or without.
     constexpr std::uint16_t parse_child_state(const Child& child);
     constexpr const VariableRow* child_variable(const Child& child, const Token& word);

@@ -1,6 +1,7 @@
 // State machines: states with their programs, transitions, what is checked when a machine is complete.
 #pragma once
 
+#include "kernel/script/compiler_beside.hpp"
 #include "kernel/script/compiler_children.hpp"
 #include "kernel/statechart/check.hpp"
 

@@ -89,6 +89,14 @@ protected:
         return nullptr;
     }
 
+    /// A program that stands before; no_instance: none has that name.
+    [[nodiscard]] constexpr InstanceIndex find_program(std::string_view name) const noexcept {
+        for (std::size_t i = 0; i < instances_.used; ++i)
+            if (instances_.room[i].name == name && types_.room[instances_.room[i].type].is_program())
+                return static_cast<InstanceIndex>(i);
+        return no_instance;
+    }
+
     // ---- components and facets
 
     [[nodiscard]] constexpr std::uint16_t find_component(std::string_view name) const noexcept {

@@ -308,6 +308,13 @@ private:
     /// A variable or a part of one.
     constexpr void parse_set_place(const Token& at, Operand place);
     constexpr Operand assigned_value(TypeId type);
+    /// Where a result of a command goes.
+    struct ResultPlace {
+        const Symbol* variable = nullptr; ///< null: a facet
+        FacetPlace facet{};
+    };
+    constexpr ResultPlace parse_result_place();
+    constexpr void store_result(const Token& at, const ResultPlace& to, TypeId type, DataOffset from);
 
     // ---- what takes a way of its own
 
@@ -355,9 +362,11 @@ private:
     constexpr void parse_command(const Token& at, const Token& name, std::uint16_t component,
                                  std::uint16_t number);
 
-    // ---- child machines
+    // ---- child machines, and programs beside
 
     constexpr void parse_machine_command(const Token& at, std::uint16_t child);
+    /// With its parameters, followed to its end; or a word that controls it.
+    constexpr void parse_program_command(const Token& at, const Token& name, InstanceIndex program);
     constexpr void parse_set_in_machine(const Token& at, std::uint16_t child);
 
     Loop* loop_ = nullptr;

@@ -39,6 +39,15 @@ struct BehaviourInstance {
     std::span<const std::byte> image{}; ///< its data at the beginning, its arguments in place
 };
 
+/// How many of the instances are programs.
+constexpr std::size_t count_programs(std::span<const BehaviourType> types,
+                                     std::span<const BehaviourInstance> instances) noexcept {
+    std::size_t count = 0;
+    for (const BehaviourInstance& each : instances)
+        if (types[each.type].is_program()) ++count;
+    return count;
+}
+
 /// A compiled script; a view, the rows live elsewhere. A parent stands before its children.
 struct ScriptUnit {
     std::string_view name{}; ///< the script's file name

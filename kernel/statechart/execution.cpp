@@ -25,6 +25,7 @@ bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TA
     context_.data = binding.data;
     context_.links = binding.links;
     context_.machines = binding.machines;
+    context_.beside = binding.beside;
     context_.limit = binding.limit;
     policy_ = binding.policy;
     fast_ = binding.fast;

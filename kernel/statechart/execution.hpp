@@ -53,6 +53,7 @@ struct StateMachineBinding {
     std::byte* data = nullptr; ///< see DataLayout; filled from the instance's image
     const ProgramLink* links = nullptr;
     void* machines = nullptr; ///< see ProgramContext
+    ProgramsBeside beside{};  ///< likewise
     WorkLimit* limit = nullptr;
     std::span<StateIndex> history{}; ///< machine.sizes.history
     std::span<std::byte> deferred{}; ///< machine.sizes.captured * StateMachineExecution::max_raised_events

@@ -69,6 +69,8 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     detail::UnitLayout layout{memory};
     auto* parts = make<UnitPart>(layout, instances);
     auto* machines = make<StateMachineExecution>(layout, instances); // children side by side
+    const std::size_t program_count = count_programs(unit.types, unit.instances);
+    const ProgramsBeside beside{make<ProgramExecution>(layout, program_count), program_count};
     auto* views = make<ResolvedView>(layout, unit.types.size());
     auto* routes = make<UnitRoute>(layout, events.size() * instances);
     if (layout.full()) return too_small("instances");
@@ -93,13 +95,15 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
             parts[i].binding.deferred = kept.deferred;
         }
     }
+    std::size_t program = 0;
     for (std::size_t i = 0; i < instances; ++i) {
         const BehaviourInstance& row = unit.instances[i];
         UnitPart& part = parts[i];
         part.row = &row;
         part.type = &unit.types[row.type];
         const BehaviourCode native = row.type < code.size() ? code[row.type] : BehaviourCode{};
-        if (part.type->is_program()) part.program = make<ProgramExecution>(layout, 1);
+        if (part.type->is_program()) part.program = beside.first + program++;
+        part.binding.beside = beside;
         if (row.children != 0) part.binding.machines = &machines[row.first_child];
         const std::size_t bytes = part.type->tables.layout.size;
         part.data = layout.take(bytes, data_alignment);
@@ -154,6 +158,7 @@ void BehaviourUnit::bind(UnitPart& part, const BehaviourCode& native, const Reso
         context.data = part.data;
         context.links = part.links;
         context.limit = &limit_;
+        context.beside = part.binding.beside;
         part.program->bind(code, context, part.row->image, {statements, options_.on_error == OnError::go_on});
         return;
     }
@@ -198,7 +203,8 @@ void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
     for (UnitPart& part : parts_) {
         if (part.row->parent != no_instance) continue;
         if (part.program != nullptr) {
-            if (!part.row->on_command) static_cast<void>(part.program->start());
+            // What a final state commanded last, and did not see the end of, is over.
+            static_cast<void>(part.row->on_command ? part.program->stop() : part.program->start());
             continue;
         }
         if (part.machine->is_active())
@@ -229,8 +235,12 @@ bool BehaviourUnit::has_worked() noexcept TAPPET_REALTIME {
 
 void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
     limit_work(now);
-    for (UnitPart& part : parts_)
-        if (part.program != nullptr) part.program->step(now);
+    for (UnitPart& part : parts_) {
+        if (part.program == nullptr) continue;
+        const bool ran = part.program->status() == ProgramStatus::running;
+        part.program->step(now);
+        if (ran && is_at_rest(part)) await_rest(part); // whoever commanded it looks
+    }
     limit_.until = never;
 }
 
@@ -279,10 +289,7 @@ void BehaviourUnit::deactivate(Time now) noexcept TAPPET_REALTIME {
 
 bool BehaviourUnit::is_active() const noexcept TAPPET_REALTIME {
     for (const UnitPart& part : parts_)
-        if (part.machine != nullptr ? part.machine->is_active()
-                                    : part.program->status() == ProgramStatus::running ||
-                                          part.program->status() == ProgramStatus::paused)
-            return true;
+        if (part.machine != nullptr ? part.machine->is_active() : part.program->is_at_work()) return true;
     return false;
 }
 

@@ -134,9 +134,6 @@ public:
     [[nodiscard]] UnitPart& part_of(const SlotTask& task) noexcept TAPPET_REALTIME {
         return task.part(*active(), bank());
     }
-    [[nodiscard]] std::byte* variable_of(const SlotTask& task, std::size_t i) noexcept TAPPET_REALTIME {
-        return task.variable(*active(), bank(), i);
-    }
     /// The properties of all tasks and the variables behind them become the same again.
     void exchange() noexcept TAPPET_REALTIME {
         if (BehaviourUnit* const unit = active(); unit != nullptr)

@@ -36,8 +36,7 @@ struct UnitPart {
 inline bool is_at_rest(const UnitPart& part) noexcept TAPPET_REALTIME {
     if (part.machine != nullptr)
         return !part.machine->is_active() || (part.machine->is_final() && !part.machine->under_way());
-    return part.program->status() != ProgramStatus::running &&
-           part.program->status() != ProgramStatus::paused;
+    return !part.program->is_at_work();
 }
 
 inline void await_rest(UnitPart& part) noexcept TAPPET_REALTIME { part.awaited = 2; }

@@ -86,6 +86,7 @@ constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
     detail::UnitLayout layout;
     layout.take<UnitPart>(unit.instances.size());
     layout.take<StateMachineExecution>(unit.instances.size());
+    layout.take<ProgramExecution>(count_programs(unit.types, unit.instances));
     layout.take<ResolvedView>(unit.types.size());
     layout.take<UnitRoute>(events * unit.instances.size());
     for (std::size_t t = 0; t < unit.types.size(); ++t) {
@@ -97,7 +98,6 @@ constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
     }
     for (const BehaviourInstance& instance : unit.instances) {
         const BehaviourType& type = unit.types[instance.type];
-        if (type.is_program()) layout.take<ProgramExecution>(1);
         layout.take(type.tables.layout.size, data_alignment);
         layout.take<ProgramLink>(type.tables.links.size());
         std::size_t slots = 0;

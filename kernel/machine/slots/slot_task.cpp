@@ -56,19 +56,6 @@ Sentence SlotTask::fit(const ScriptUnit& unit, std::size_t bank) {
                         ", and \"",
                         wanted,
                         "\" is none; write it so, or rename it"};
-    for (std::size_t i = 0; i < shape_.variables.size(); ++i) {
-        const VariableRow& asked = shape_.type->tables.variables[shape_.variables[i]];
-        const auto all = type.tables.variables;
-        const auto same = std::ranges::find_if(all, [&](const VariableRow& row) {
-            return row.name == asked.name && row.kind == asked.kind && row.type == asked.type;
-        });
-        if (same == all.end()) {
-            Sentence text{"task \"", name_, "\" has "};
-            add_declaration(text, asked, is_program);
-            return text.add(" of \"").add(wanted).add("\", which it does not have so; declare it there");
-        }
-        room_.places[bank * shape_.variables.size() + i] = same->at;
-    }
     if (is_program && type.parameters() != shape_.type->parameters())
         return Sentence{"task \"",
                         name_,
@@ -79,6 +66,22 @@ Sentence SlotTask::fit(const ScriptUnit& unit, std::size_t bank) {
                         " parameters, and it has ",
                         type.parameters(),
                         "; give it those of the task"};
+    for (std::size_t i = 0; i < shape_.variables.size(); ++i) {
+        const std::size_t number = shape_.variables[i];
+        const VariableRow& asked = shape_.type->tables.variables[number];
+        const auto all = type.tables.variables;
+        const auto same = std::ranges::find_if(all, [&](const VariableRow& row) {
+            const bool is_there =
+                !is_program || &row == all.data() + number; // a command packs them in their order
+            return is_there && row.name == asked.name && row.kind == asked.kind && row.type == asked.type;
+        });
+        if (same == all.end()) {
+            Sentence text{"task \"", name_, "\" has "};
+            add_declaration(text, asked, is_program);
+            return text.add(" of \"").add(wanted).add("\", which it does not have so; declare it there");
+        }
+        room_.places[bank * shape_.variables.size() + i] = same->at;
+    }
     parts_[bank] = part;
     return {};
 }
@@ -86,10 +89,12 @@ Sentence SlotTask::fit(const ScriptUnit& unit, std::size_t bank) {
 template <class Visit>
 void SlotTask::for_each_value(BehaviourUnit& unit, std::size_t bank, const Visit& visit) noexcept
     TAPPET_REALTIME {
+    std::byte* const data = part(unit, bank).data;
+    const DataOffset* const places = room_.places.data() + bank * shape_.variables.size();
     for (std::size_t i = 0; i < shape_.variables.size(); ++i) {
         const std::size_t number = shape_.variables[i];
         const std::size_t at = TaskShape::place_of(*shape_.type, number);
-        visit(room_.values.data() + at, room_.seen.data() + at, variable(unit, bank, i),
+        visit(room_.values.data() + at, room_.seen.data() + at, data + places[i],
               shape_.type->tables.variables[number].type->size);
     }
 }

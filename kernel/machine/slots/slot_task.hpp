@@ -46,10 +46,6 @@ public:
     [[nodiscard]] UnitPart& part(BehaviourUnit& unit, std::size_t bank) const noexcept TAPPET_REALTIME {
         return unit.parts()[parts_[bank]];
     }
-    [[nodiscard]] std::byte* variable(BehaviourUnit& unit, std::size_t bank, std::size_t i) const noexcept
-        TAPPET_REALTIME {
-        return part(unit, bank).data + places_of(bank)[i];
-    }
     /// The behaviour has the task's values.
     void give(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME;
     /// The task has the behaviour's values.
@@ -60,9 +56,6 @@ public:
     SlotTask* next = nullptr; ///< of the same slot
 
 private:
-    [[nodiscard]] std::span<const DataOffset> places_of(std::size_t bank) const noexcept TAPPET_REALTIME {
-        return room_.places.subspan(bank * shape_.variables.size(), shape_.variables.size());
-    }
     template <class Visit>
     void for_each_value(BehaviourUnit& unit, std::size_t bank, const Visit& visit) noexcept TAPPET_REALTIME;
 

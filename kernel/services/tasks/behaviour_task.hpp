@@ -212,12 +212,6 @@ private:
     }();
     template <std::size_t i> using Value = detail::TaskValue<type->tables.variables[known[i]].type>;
 
-    /// Of what is loaded, in the behaviour; else of the component itself. Something is.
-    [[nodiscard]] std::byte* variable(std::size_t i) noexcept TAPPET_REALTIME {
-        if (controlled_.slot != nullptr) return controlled_.slot->variable_of(in_slot_, i);
-        return controlled_.behaviour()->data + type->tables.variables[known[i]].at;
-    }
-
     // ---- a program that is a command: its parameters, which stand before all other variables, and its
     // result
 
@@ -226,10 +220,10 @@ private:
     template <class, class...> struct Run;
     template <std::size_t... i, class... R> struct Run<std::index_sequence<i...>, R...> {
         using Pack = detail::Packing<Value<i>..., R&...>;
-        static bool begin(void* component, [[maybe_unused]] std::byte* values) noexcept TAPPET_REALTIME {
+        static bool begin(void* component, std::byte* values) noexcept TAPPET_REALTIME {
             auto& task = *static_cast<Self*>(component);
             if (!task.is_free()) return false;
-            (std::memcpy(task.variable(i), values + Pack::offsets[i], sizeof(Value<i>)), ...);
+            task.controlled_.behaviour()->program->give(values);
             return task.start_it();
         }
         static CommandProgress progress(void* component, [[maybe_unused]] std::byte* values) noexcept
@@ -238,7 +232,7 @@ private:
             const CommandProgress progress = task.has_ended();
             if constexpr (gives_result)
                 if (progress == CommandProgress::done)
-                    std::memcpy(values + Pack::input_bytes, task.variable(parameters), Pack::result_bytes);
+                    task.controlled_.behaviour()->program->take_result(values + Pack::input_bytes);
             return progress;
         }
         static constexpr CommandOperations operations{type_id<typename Pack::Inputs>,
@@ -265,7 +259,8 @@ private:
     /// Of a slot they lie here: what is loaded comes and goes.
     static void* property_at(void* component, std::size_t i) noexcept {
         auto& task = *static_cast<Self*>(component);
-        if (task.controlled_.slot == nullptr) return task.variable(i);
+        if (task.controlled_.slot == nullptr)
+            return task.controlled_.behaviour()->data + type->tables.variables[known[i]].at;
         return task.values_.data() + TaskShape::place_of(*type, known[i]);
     }
     template <std::size_t i, class Visit> static constexpr void visit_variable(const Visit& visitor) {

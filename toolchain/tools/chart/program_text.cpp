@@ -2,6 +2,7 @@
 #include "toolchain/tools/chart/program_text.hpp"
 
 #include "kernel/base/value_text.hpp"
+#include "kernel/program/beside.hpp"
 #include "kernel/program/operators.hpp"
 
 #include <algorithm>
@@ -234,7 +235,9 @@ void ProgramText::read_one(const Instruction& in, Reading& reading) const {
         does(Statement::Kind::act, place(in) + arguments(in, reading), true);
     } else if (in.run == &p::begin_command || in.run == &p::send_command) {
         does(Statement::Kind::act, place(in) + arguments(in, reading), true);
-    } else if (in.run == &p::command_progress || in.run == &p::command_ended) {
+    } else if (in.run == &p::begin_program) {
+        does(Statement::Kind::act, "program " + std::to_string(in.rows), true);
+    } else if (in.run == &p::command_progress || in.run == &p::command_ended || in.run == &p::program_ended) {
         reading.may_fail = true;
         give(in, unknown("done"), reading);
     } else if (in.run == &p::elapsed) {

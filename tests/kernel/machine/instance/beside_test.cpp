@@ -1,0 +1,167 @@
+// Programs of a script command those that stand before them (thesis 5.1.6: from activities of the same task,
+// too), and what comes of it is the same in native code, with walked tables and in a slot.
+#include "tests/kernel/machine/behaviour_machine.hpp"
+
+#include "kernel/machine/table/compiled.hpp"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace tappet::bakery::beside {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr ScriptSource baking{"baking.osd", R"(
+program int loaves(int number, double weight) {
+    var int made = 0;
+    while (made < number) { do oven.note(made + int(weight * 100)); set made = made + 1; wait (200 us); }
+    if (number == 3) then { do oven.note(-1); }
+    return made * 10;
+}
+program endless() { while true { yield; } }
+program rolls(duration each) {
+    var int made = 0;
+    wait (each);
+    do loaves(1, 0.07, made);
+    do oven.note(made);
+}
+StateMachine Baking {
+    var int made = 0;
+    initial state Cold {
+        transition oven.tick() select Hot
+        transition door.moved() select Busy
+        transition oven.hot() select Late
+    }
+    state Hot {
+        entry { do loaves(2, 0.1, made); do oven.note(made); do loaves(1, 0.2, oven.shown); }
+        transition oven.tick() select Again
+    }
+    state Again {
+        entry { try do loaves(3, 0, made); catch do oven.note(5); do loaves(1, 0.5, made); do oven.note(made); }
+        transition oven.tick() select Cold
+    }
+    state Busy {
+        entry {
+            do endless.start();
+            try do endless(); catch do oven.note(2);
+            do endless.pause();
+            if endless.isPaused() && !endless.isRunning() then do oven.note(3);
+            do endless.stop();
+            try do endless() timeout 5 ms; catch do oven.note(4);
+            if endless.isRunning() && !endless.inError() then do oven.note(6);
+            do endless.stop();
+        }
+        transition door.moved() select Cold
+    }
+    state Late {
+        run { do rolls(20 ms); do oven.note(8); }
+        transition oven.tick() select Cold
+    }
+    final state Off { entry { do loaves(1, 0.9, made); do oven.note(77); } }
+}
+)"};
+constexpr auto reach = script_reach(reachable<Oven>("oven"), reachable<Door>("door"));
+constexpr const ScriptUnit& script = compiled_script<baking, reach>;
+
+struct Native {};
+struct Walked {};
+struct Loaded {};
+template <class Form> constexpr auto row() {
+    if constexpr (std::is_same_v<Form, Native>)
+        return behaviour("oven", compiled<script>);
+    else if constexpr (std::is_same_v<Form, Walked>)
+        return behaviour("oven", script, {});
+    else
+        return behaviour("oven", slot(nodes(120), data_bytes(2048), depth(2), timers(4), text_bytes(4000),
+                                      peers("door"), events("door.moved"), trial(1)));
+}
+// clang-format off
+template <class Form>
+constexpr auto table = machine("bakery",
+    components(component<Oven>("oven"), component<Door>("door"), component<Watcher>("watcher")),
+    activities(activity("fast", every(1ms), budget(50us), runs("oven", "door")),
+               activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
+    connections(), reactions(), behaviours(row<Form>()));
+/// Nothing wakes what drives the oven but its events.
+template <class Form>
+constexpr auto woken = machine("bakery",
+    components(component<Oven>("oven"), component<Door>("door"), component<Watcher>("watcher")),
+    activities(activity("fast", on_work(), at_most(10, 1ms), deadline(1ms), budget(50us), runs("oven", "door")),
+               activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
+    connections(), reactions(), behaviours(row<Form>()));
+// clang-format on
+
+template <const auto& Machine> struct Bakery : Rig<Firmware<Machine, board>> {
+    void load() {
+        BehaviourSlot* const slot = this->instance.slot_of("oven");
+        if (slot == nullptr) return;
+        std::ranges::copy(baking.text, slot->text().begin());
+        EXPECT_EQ(slot->compile(baking.text.size(), baking.name).view(), "");
+        EXPECT_TRUE(slot->ask(BehaviourSlot::Change::take_over));
+        EXPECT_TRUE(this->instance.requests().post_change(*slot));
+        this->run(2ms);
+    }
+    void tick() {
+        this->oven().told.clear();
+        this->oven().tick.emit();
+        this->run(20ms);
+    }
+};
+
+template <class Form> struct A_program_beside : testing::Test {
+    Bakery<table<Form>> bakery;
+    Oven& oven = bakery.oven();
+    A_program_beside() { bakery.load(); }
+};
+using Forms = testing::Types<Native, Walked, Loaded>;
+TYPED_TEST_SUITE(A_program_beside, Forms);
+
+TYPED_TEST(A_program_beside, is_commanded_with_parameters_and_its_result_goes_into_variables_and_outputs) {
+    this->bakery.run(5ms);
+    EXPECT_THAT(this->oven.told, IsEmpty()) << "it does not run by itself";
+    this->bakery.tick();
+    EXPECT_THAT(this->oven.told, ElementsAre(10, 11, 20, 20));
+    EXPECT_EQ(this->oven.shown.last(), 10);
+}
+
+TYPED_TEST(A_program_beside, that_fails_fails_the_statement_and_is_commanded_again) {
+    this->bakery.tick();
+    this->bakery.tick();
+    EXPECT_THAT(this->oven.told, ElementsAre(0, 1, 2, -1, 5, 50, 10));
+}
+
+TYPED_TEST(A_program_beside, that_is_at_work_rejects_and_is_paused_and_stopped) {
+    this->bakery.door().moved.emit();
+    this->bakery.run(20ms);
+    EXPECT_THAT(this->oven.told, ElementsAre(2, 3, 4, 6));
+}
+
+TYPED_TEST(A_program_beside, commands_one_itself) {
+    this->oven.hot.emit(1.0, 2);
+    this->bakery.run(19ms);
+    EXPECT_THAT(this->oven.told, IsEmpty());
+    this->bakery.run(10ms);
+    ASSERT_GE(this->oven.told.size(), 3u);
+    EXPECT_THAT(std::vector(this->oven.told.begin(), this->oven.told.begin() + 3), ElementsAre(7, 10, 8));
+}
+
+TYPED_TEST(A_program_beside, is_brought_to_its_end_by_a_final_state) {
+    this->bakery.run(5ms);
+    this->bakery.world.stop();
+    EXPECT_THAT(this->oven.told, ElementsAre(90, 77));
+}
+
+TYPED_TEST(A_program_beside, is_followed_in_an_activity_that_nothing_else_wakes) {
+    Bakery<woken<TypeParam>> other;
+    other.load();
+    other.oven().hot.emit(1.0, 2);
+    other.run(30ms);
+    ASSERT_GE(other.oven().told.size(), 3u);
+    EXPECT_THAT(std::vector(other.oven().told.begin(), other.oven().told.begin() + 3), ElementsAre(7, 10, 8));
+}
+
+} // namespace
+} // namespace tappet::bakery::beside
