@@ -72,6 +72,7 @@ void ProgramExecution::take_result(std::byte* into) const noexcept TAPPET_REALTI
 
 bool ProgramExecution::pause() noexcept TAPPET_REALTIME {
     if (status_ != ProgramStatus::running) return false;
+    if (comes_later(ProgramStatus::paused)) return true;
     status_ = ProgramStatus::paused;
     left_over_ = false;
     return true;
@@ -79,6 +80,7 @@ bool ProgramExecution::pause() noexcept TAPPET_REALTIME {
 
 bool ProgramExecution::stop() noexcept TAPPET_REALTIME {
     if (status_ == ProgramStatus::ready || status_ == ProgramStatus::stopped) return false;
+    if (comes_later(ProgramStatus::stopped)) return true;
     status_ = ProgramStatus::stopped;
     context_.position = {};
     left_over_ = waits_ = false;
@@ -96,8 +98,22 @@ bool ProgramExecution::single_step(Time now) noexcept TAPPET_REALTIME {
     return true;
 }
 
+bool ProgramExecution::comes_later(ProgramStatus wanted) noexcept TAPPET_REALTIME {
+    if (is_in_step_ && wanted_ != ProgramStatus::stopped) wanted_ = wanted;
+    return is_in_step_;
+}
+
 void ProgramExecution::run(Time now, std::uint32_t statements) noexcept TAPPET_REALTIME {
     context_.now = now;
+    is_in_step_ = true;
+    wanted_ = ProgramStatus::running;
+    advance(statements);
+    is_in_step_ = false;
+    if (wanted_ == ProgramStatus::stopped && is_at_work()) static_cast<void>(stop());
+    if (wanted_ == ProgramStatus::paused) static_cast<void>(pause());
+}
+
+void ProgramExecution::advance(std::uint32_t statements) noexcept TAPPET_REALTIME {
     left_over_ = waits_ = false;
     // A turn after one that failed begins with a statement, so that there are no more of them than
     // statements.

@@ -11,7 +11,8 @@
 //   running, paused --a failing action or condition--> error
 //   stopped, error, ready --reset-->  ready      with its data as at the beginning
 // clang-format on
-// What is not listed is ignored, and answered with false.
+// What is not listed is ignored, and answered with false. A pause or a stop that a statement of the program
+// itself led to (an event that it emits is heard here and now) takes effect at the end of its step.
 #pragma once
 
 #include "kernel/program/interpreter.hpp"
@@ -75,6 +76,9 @@ public:
 private:
     void fill(std::size_t from) noexcept TAPPET_REALTIME;
     void run(Time now, std::uint32_t statements) noexcept TAPPET_REALTIME;
+    void advance(std::uint32_t statements) noexcept TAPPET_REALTIME;
+    /// Whether it is in its step: then what is wanted follows that.
+    bool comes_later(ProgramStatus wanted) noexcept TAPPET_REALTIME;
 
     ProgramCode code_{};
     ProgramContext context_{};
@@ -85,6 +89,8 @@ private:
     bool left_over_ = false;
     bool waits_ = false;
     bool has_ended_ = false;
+    bool is_in_step_ = false;
+    ProgramStatus wanted_ = ProgramStatus::running; ///< at its end
     std::uint32_t failures_ = 0;
 };
 

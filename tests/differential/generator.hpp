@@ -84,6 +84,7 @@ private:
     void declare(std::string_view word, Kind kind, const std::string& name);
     void variables();
     void child_type();
+    void aid();
     void machine();
     void plan();
     void state(std::size_t index);
@@ -107,6 +108,8 @@ private:
     bool in_child_ = false;
     bool in_function_ = false;
     bool returns_value_ = false;
+    Kind returned_ = Kind::real;
+    bool has_aid_ = false; ///< program int aid(int, bool), which the machine commands
     int counters_ = 0;
     int loops_ = 0; ///< around the statement
 };

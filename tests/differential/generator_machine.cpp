@@ -23,6 +23,7 @@ std::string Generator::script() {
         close();
         return text_;
     }
+    if (one_in(2)) aid();
     has_child_ = options_.children && one_in(2);
     if (has_child_) child_type();
     machine();
@@ -86,6 +87,24 @@ void Generator::child_type() {
     close();
     names_ = kept;
     in_child_ = false;
+}
+
+// It knows nothing of the machine's names, as a child.
+void Generator::aid() {
+    open("program int aid(int n, bool how)");
+    in_child_ = returns_value_ = true;
+    returned_ = Kind::integer;
+    const std::vector<Named> kept = names_;
+    names_.push_back({"n", Kind::integer});
+    names_.push_back({"how", Kind::boolean});
+    declare("var", Kind::real, "z");
+    block(1 + static_cast<int>(below(3)), 2, true);
+    line("return " + expression(Kind::integer, 1) + ";");
+    names_ = kept;
+    in_child_ = returns_value_ = false;
+    returned_ = Kind::real;
+    close();
+    has_aid_ = true;
 }
 
 void Generator::plan() {

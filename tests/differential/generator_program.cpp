@@ -115,7 +115,9 @@ std::string Generator::truth(int depth) {
     case 3:
         return "(" + expression(Kind::real, depth) + std::string{any(orders)} +
                expression(Kind::real, depth) + ")";
-    case 4: return one_in(2) ? "open" : "mate.open";
+    case 4:
+        if (has_aid_ && !in_child_ && one_in(3)) return "aid.isRunning()";
+        return one_in(2) ? "open" : "mate.open";
     case 5: return std::string{one_in(2) ? "ask(" : "mate.ask("} + std::to_string(below(40)) + ")";
     case 6:
         return "(" + expression(Kind::time, depth) + std::string{any(orders)} +
@@ -190,7 +192,7 @@ void Generator::statement(int depth, bool may_wait) {
     case 14:
         if (one_in(2))
             return line("if " + expression(Kind::boolean, 1) + " then return" +
-                        (returns_value_ ? " " + expression(Kind::real, 1) : "") + ";");
+                        (returns_value_ ? " " + expression(returned_, 1) : "") + ";");
         if (loops_ > 0) return line("if " + expression(Kind::boolean, 1) + " then break;");
         return call();
     default: {
@@ -229,6 +231,9 @@ std::string Generator::goal() {
 
 void Generator::command() {
     const std::string limit = one_in(4) ? " timeout " + std::to_string(10 + below(4) * 20) + "ms" : "";
+    if (has_aid_ && !in_child_ && !in_function_ && one_in(2))
+        return line("do aid(" + expression(Kind::integer, 1) + ", " + expression(Kind::boolean, 1) + ", " +
+                    (one_in(2) ? "a" : "b") + ")" + limit + ";");
     switch (below(4)) {
     case 0: return line("do work(" + goal() + ")" + limit + ";");
     case 1:
@@ -239,6 +244,7 @@ void Generator::command() {
 }
 
 void Generator::call() {
+    if (has_aid_ && !in_child_ && one_in(40)) return line("do aid.stop();");
     switch (below(11)) {
     case 9: return line("do sent.push(" + expression(Kind::real, 1) + ");");
     case 10: {

@@ -22,6 +22,42 @@ void RandomDay::Alone::step(std::int64_t now, std::int64_t statements) {
     }
 }
 
+void RandomDay::Alone::stop() {
+    if (status != "ready" && status != "stopped") status = "stopped", run.drop();
+}
+
+bool RandomDay::Aid::begin(const std::vector<Value>& given) {
+    if (status == "running") return false;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        const reference::Variable& parameter = type->variables[i];
+        scope.declare(parameter.name, parameter.type, *reference::convert(given[i], parameter.type));
+    }
+    run.start(&type->body, true, type->result);
+    status = "running";
+    has_ended = false;
+    return true;
+}
+
+reference::Answer RandomDay::Aid::ended() {
+    if (status == "running") return reference::Answer::no;
+    return has_ended ? reference::Answer::yes : reference::Answer::failed;
+}
+
+void RandomDay::Aid::stop() {
+    if (!is_in_step) return Alone::stop();
+    is_to_stop = true;
+}
+
+void RandomDay::Aid::advance(std::int64_t now, std::int64_t statements) {
+    if (type == nullptr || status != "running") return;
+    is_in_step = true;
+    is_to_stop = false;
+    step(now, statements);
+    is_in_step = false;
+    has_ended = status == "stopped";
+    if (is_to_stop && status == "running") Alone::stop();
+}
+
 RandomDay::RandomDay(std::uint64_t seed, const std::string& text, const ScriptUnit& unit,
                      std::span<const ProgramCode> code, std::span<const StateMachineFast> fast)
     : random_{seed}, script_{reference::read(text)} {
@@ -29,6 +65,13 @@ RandomDay::RandomDay(std::uint64_t seed, const std::string& text, const ScriptUn
     policy_ = {.statements = random_.one_in(2) ? static_cast<std::uint32_t>(random_.between(1, 8)) : 100'000,
                .escalates = random_.one_in(2)};
     bench_.place(unit, code, fast, policy_);
+    if (script_.types.front().on_command) {
+        aid_.type = &script_.types.front();
+        aid_.scope.world = &world_;
+        for (const reference::Variable& each : aid_.type->variables)
+            aid_.scope.declare(each.name, each.type, reference::zero_of(each.type));
+        world_.aid = &aid_;
+    }
     if (script_.roots.empty()) {
         alone_.scope.world = &world_;
     } else {
@@ -44,6 +87,11 @@ RandomDay::RandomDay(std::uint64_t seed, const std::string& text, const ScriptUn
 
 reference::Machine& RandomDay::machine(std::size_t i) const {
     return i == 0 ? *root_ : *root_->children()[i - 1];
+}
+
+BenchPart& RandomDay::part(std::size_t i) const {
+    UnitBench& bench = const_cast<UnitBench&>(bench_);
+    return bench.parts()[bench.programs_beside() + i];
 }
 
 void RandomDay::did(const std::string& what) {
@@ -70,6 +118,7 @@ void RandomDay::step() {
     did("step at " + std::to_string(bench_.now.time_since_epoch().count()));
     const std::int64_t now = bench_.now.time_since_epoch().count();
     bench_.step();
+    aid_.advance(now, policy_.statements);
     if (root_ == nullptr) {
         if (alone_.status == "running") alone_.step(now, policy_.statements);
         return;
@@ -82,12 +131,12 @@ void RandomDay::single_step() {
     did("single step");
     const std::int64_t now = bench_.now.time_since_epoch().count();
     if (root_ == nullptr) {
-        bench_.parts()[0].program.single_step(bench_.now);
+        part(0).program.single_step(bench_.now);
         if (alone_.status == "paused") alone_.step(now, 1);
         return;
     }
     for (std::size_t i = 0; i <= root_->children().size(); ++i) {
-        bench_.parts()[i].machine->step_once(bench_.now);
+        part(i).machine->step_once(bench_.now);
         machine(i).step_once(now);
     }
 }
@@ -175,7 +224,7 @@ void RandomDay::emit() {
 void RandomDay::command() {
     const std::size_t which = root_->children().empty() || !random_.one_in(3) ? 0 : 1;
     reference::Machine& other = machine(which);
-    StateMachineExecution& one = *bench_.parts()[which].machine;
+    StateMachineExecution& one = *part(which).machine;
     const Time at = bench_.now;
     const std::int64_t now = at.time_since_epoch().count();
     // Once it is in error little else helps.
@@ -222,7 +271,7 @@ void RandomDay::command() {
 }
 
 void RandomDay::command_program() {
-    ProgramExecution& program = bench_.parts()[0].program;
+    ProgramExecution& program = part(0).program;
     switch (random_.below(4)) {
     case 0:
         did("pause");
@@ -232,8 +281,7 @@ void RandomDay::command_program() {
     case 1:
         did("stop");
         program.stop();
-        if (alone_.status != "ready" && alone_.status != "stopped")
-            alone_.status = "stopped", alone_.run.drop();
+        alone_.stop();
         break;
     default:
         did("start");
@@ -260,12 +308,13 @@ std::string RandomDay::compare(const BenchPart& part, const std::string& picture
 
 std::string RandomDay::difference() const {
     std::string text;
+    if (aid_.type != nullptr)
+        text += compare(const_cast<UnitBench&>(bench_).parts().front(), aid_.status, aid_.scope);
     if (root_ == nullptr)
-        text += compare(const_cast<UnitBench&>(bench_).parts()[0], alone_.status, alone_.scope);
+        text += compare(part(0), alone_.status, alone_.scope);
     else
         for (std::size_t i = 0; i <= root_->children().size(); ++i)
-            text +=
-                compare(const_cast<UnitBench&>(bench_).parts()[i], machine(i).picture(), machine(i).scope());
+            text += compare(part(i), machine(i).picture(), machine(i).scope());
     const auto property = [&](const std::string& name, const auto& real, const auto& by_text) {
         const std::string one = reference::print(Value{real});
         const std::string other = reference::print(Value{by_text});

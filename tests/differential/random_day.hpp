@@ -25,6 +25,20 @@ private:
         std::string status{"ready"};
         void start(const reference::Type& type);
         void step(std::int64_t now, std::int64_t statements);
+        void stop();
+    };
+    /// One that the state machine of the script commands.
+    struct Aid final : Alone, reference::BenchWorld::Beside {
+        const reference::Type* type = nullptr; ///< null: there is none
+        bool has_ended = false;
+        bool is_in_step = false;
+        bool is_to_stop = false; ///< at its end, since a statement of its own led to that
+        bool begin(const std::vector<reference::Value>& given) override;
+        reference::Answer ended() override;
+        void stop() override;
+        [[nodiscard]] bool is_running() const override { return status == "running"; }
+        [[nodiscard]] reference::Value result() const override { return run.result(); }
+        void advance(std::int64_t now, std::int64_t statements);
     };
 
     void do_something();
@@ -40,6 +54,8 @@ private:
                                       const reference::Scope& scope) const;
     void did(const std::string& what);
     [[nodiscard]] reference::Machine& machine(std::size_t i) const;
+    /// The root, or the program that stands alone, then its children.
+    [[nodiscard]] BenchPart& part(std::size_t i) const;
 
     Random random_;
     StateMachinePolicy policy_{};
@@ -48,6 +64,7 @@ private:
     UnitBench bench_{};
     std::unique_ptr<reference::Machine> root_;
     Alone alone_{};
+    Aid aid_{};
 };
 
 } // namespace tappet

@@ -23,6 +23,18 @@ public:
     std::deque<double> sent{};
     /// Hears what is emitted, after the diary.
     std::function<void(const std::string& event, const std::vector<Value>& arguments)> heard;
+    /// The program "aid" of the script, which others of it command.
+    struct Beside {
+        virtual bool begin(const std::vector<Value>& given) = 0;
+        virtual Answer ended() = 0;
+        virtual void stop() = 0;
+        [[nodiscard]] virtual bool is_running() const = 0;
+        [[nodiscard]] virtual Value result() const = 0;
+
+    protected:
+        ~Beside() = default;
+    };
+    Beside* aid = nullptr;
 
     BenchWorld() {
         own.diary = mate.diary = &diary;
@@ -51,7 +63,8 @@ public:
     }
 
     [[nodiscard]] Kind kind_of(const std::string& name) const override {
-        if (name == "work") return Kind::command;
+        if (name == "work" || name == "aid") return Kind::command;
+        if (name.starts_with("aid.")) return Kind::method;
         if (name == "arm.move" || name == "arm.grip") return Kind::sent_command;
         const std::string last = name.substr(name.rfind('.') + 1);
         if (last == "tick" || last == "moved" || last == "switched") return Kind::event;
@@ -61,6 +74,10 @@ public:
                    : Kind::value;
     }
     std::optional<Value> read(const std::string& name) override {
+        if (name == result_of_program) {
+            count("result of a program");
+            return aid->result();
+        }
         const Bench& of = name.starts_with("mate.") ? mate : own;
         const std::string last = name.substr(name.rfind('.') + 1);
         if (last == "gain") return Value{std::int64_t{of.gain.get()}};
@@ -91,6 +108,12 @@ public:
         return true;
     }
     std::optional<Value> call(const std::string& name, const std::vector<Value>& given) override {
+        if (name == "aid.isRunning") return Value{aid->is_running()};
+        if (name == "aid.stop") {
+            count("program stopped");
+            aid->stop();
+            return Value{};
+        }
         Bench& of = name.starts_with("mate.") ? mate : own;
         const std::string last = name.substr(name.rfind('.') + 1);
         const auto whole = [&](std::size_t i, std::int64_t bound) -> std::optional<std::int64_t> {
@@ -150,10 +173,16 @@ public:
         diary.write(line);
         if (heard) heard(name, given);
     }
-    bool begin(const std::string&, const std::vector<Value>& given) override {
+    bool begin(const std::string& name, const std::vector<Value>& given) override {
+        if (name == "aid") {
+            const bool begun = aid->begin(given);
+            count(begun ? "program commanded" : "program rejected");
+            return begun;
+        }
         return own.work(std::get<std::int64_t>(given[0]));
     }
-    Answer progress(const std::string&, const std::vector<Value>&) override {
+    Answer progress(const std::string& name, const std::vector<Value>&) override {
+        if (name == "aid") return aid->ended();
         switch (own.worked(0)) {
         case CommandProgress::executing: return Answer::no;
         case CommandProgress::done: return Answer::yes;

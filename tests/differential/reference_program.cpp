@@ -191,10 +191,10 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
         ++covered()["return"];
         if (!statement.expressions.empty()) {
             ++covered()["return of a value"];
-            std::size_t call = open_.size() - 1;
-            while (!open_[call].is_call) --call;
+            const auto call =
+                std::find_if(open_.rbegin(), open_.rend(), [](const Open& each) { return each.is_call; });
             std::optional<Value> value = value_of(0);
-            if (value) value = convert(*value, open_[call].function->result);
+            if (value) value = convert(*value, call == open_.rend() ? result_type_ : call->function->result);
             if (!value) return Done::failed;
             result_ = *value;
         }

@@ -81,11 +81,12 @@ public:
     enum class Result : std::uint8_t { ended, waits, left_over, failed };
 
     /// Of a program that stands alone the outermost variables are the behaviour's: its properties.
-    void start(const Block* block, bool stands_alone = false) {
+    void start(const Block* block, bool stands_alone = false, const std::string& result = {}) {
         open_.clear();
         open_.push_back({.block = block});
         entered_ = acted_ = again_ = catches_ = false;
         stands_alone_ = stands_alone;
+        result_type_ = result;
     }
     [[nodiscard]] bool is_on() const { return !open_.empty(); }
     void drop() { open_.clear(); }
@@ -124,6 +125,7 @@ private:
     bool catches_ = false; ///< what failed leads there
     std::vector<Value> given_{};
     Value result_{};
+    std::string result_type_{}; ///< of the program
     std::int64_t entered_at_ = 0;
     int line_ = 0;
     bool stands_alone_ = false;

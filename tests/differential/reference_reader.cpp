@@ -115,6 +115,18 @@ private:
     }
     Type program() {
         Type made{.name = name(), .is_program = true};
+        if (here().kind == Word::Kind::name) {
+            made.result = made.name;
+            made.name = name();
+            give_results_.insert(made.name);
+        }
+        if (take("(")) {
+            made.on_command = true;
+            while (!take(")")) {
+                made.variables.push_back(variable("param"));
+                static_cast<void>(take(","));
+            }
+        }
         expect("{");
         while (is("param") || is("function")) {
             if (take("function"))
@@ -284,7 +296,15 @@ private:
         Statement made{.kind = Statement::Kind::perform, .line = line};
         made.expressions.push_back(postfix());
         timeout(made);
+        Expression& call = made.expressions[0];
+        if (!give_results_.contains(call.text)) return into.push_back(made);
+        Statement fetched{.kind = Statement::Kind::assign, .line = line};
+        fetched.text = call.parts.back().text;
+        fetched.expressions.push_back(
+            {.kind = Expression::Kind::name, .text = std::string{result_of_program}, .line = line});
+        call.parts.pop_back();
         into.push_back(made);
+        into.push_back(fetched);
     }
     void statement(Block& into) {
         const int line = here().line;
@@ -444,6 +464,7 @@ private:
     std::vector<Word> words_;
     std::size_t at_ = 0;
     std::set<std::string> with_statements_; ///< functions that give a value and are no expression
+    std::set<std::string> give_results_{};  ///< programs
 };
 
 } // namespace

@@ -25,6 +25,8 @@ struct Record {
 using Value = std::variant<std::monostate, bool, std::int64_t, double, Span, Vector, std::string, Record>;
 /// What the last function that has statements returned, as a name.
 inline constexpr std::string_view result_of_call = "result of the call";
+/// What the program beside returned.
+inline constexpr std::string_view result_of_program = "result of the program";
 
 struct Expression {
     enum class Kind : std::uint8_t { literal, name, call, unary, binary, element };
@@ -121,6 +123,8 @@ struct Type {
     std::vector<Instance> children{};
     std::vector<Function> functions{};
     bool is_program = false;
+    bool on_command = false; ///< a program with parameters
+    std::string result{};    ///< of such a one; empty: none
     Block body{};
 };
 

@@ -191,6 +191,7 @@ void UnitBench::resolve(BenchPart& part, const ProgramCode& code, const StateMac
     binding.history = part.history;
     binding.deferred = part.deferred;
     binding.policy = policy;
+    binding.beside = {&parts_.front().program, programs_beside()};
     if (part.row->parent != no_instance) binding.parent = &machines_[part.row->parent];
     binding.fast = fast;
     if (!part.machine->bind(binding)) std::abort();
@@ -229,10 +230,10 @@ void UnitBench::place(const ScriptUnit& unit, std::span<const ProgramCode> code,
 void UnitBench::start() {
     for (BenchPart& part : parts_) {
         if (part.row->parent != no_instance) continue;
-        if (part.is_program())
-            static_cast<void>(part.program.start());
-        else
+        if (!part.is_program())
             static_cast<void>(part.machine->start(now));
+        else if (!part.row->on_command)
+            static_cast<void>(part.program.start());
     }
 }
 

@@ -72,6 +72,8 @@ public:
 
     [[nodiscard]] BenchPart& part(std::string_view name);
     [[nodiscard]] std::deque<BenchPart>& parts() { return parts_; }
+    /// The only one that others of the script may command, which then stands first; 0: there is none.
+    [[nodiscard]] std::size_t programs_beside() const { return parts_.front().row->on_command ? 1 : 0; }
     [[nodiscard]] std::string picture(const BenchPart& part) const;
     /// A variable by name, as the reference prints it.
     [[nodiscard]] std::string value(const BenchPart& part, const VariableRow& row) const;

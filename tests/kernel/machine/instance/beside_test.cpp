@@ -28,6 +28,7 @@ program rolls(duration each) {
     do loaves(1, 0.07, made);
     do oven.note(made);
 }
+program sawing() { do oven.tick(); do oven.note(1); wait (200 us); do oven.note(2); }
 StateMachine Baking {
     var int made = 0;
     initial state Cold {
@@ -59,6 +60,12 @@ StateMachine Baking {
     state Late {
         run { do rolls(20 ms); do oven.note(8); }
         transition oven.tick() select Cold
+        transition door.moved() select Cut
+    }
+    state Cut {
+        run { try do sawing(); catch do oven.note(9); do oven.note(10); }
+        transition oven.tick() { do sawing.stop(); }
+        transition door.moved() select Cold
     }
     final state Off { entry { do loaves(1, 0.9, made); do oven.note(77); } }
 }
@@ -146,6 +153,15 @@ TYPED_TEST(A_program_beside, commands_one_itself) {
     this->bakery.run(10ms);
     ASSERT_GE(this->oven.told.size(), 3u);
     EXPECT_THAT(std::vector(this->oven.told.begin(), this->oven.told.begin() + 3), ElementsAre(7, 10, 8));
+}
+
+TYPED_TEST(A_program_beside, whose_own_event_stops_it_comes_to_the_end_of_its_step) {
+    this->oven.hot.emit(1.0, 2);
+    this->bakery.run(2ms);
+    this->bakery.door().moved.emit();
+    this->bakery.run(5ms);
+    ASSERT_GE(this->oven.told.size(), 3u);
+    EXPECT_THAT(std::vector(this->oven.told.begin(), this->oven.told.begin() + 3), ElementsAre(1, 9, 10));
 }
 
 TYPED_TEST(A_program_beside, is_brought_to_its_end_by_a_final_state) {
