@@ -78,6 +78,9 @@ struct NeededInput {
     bool has_initial = false;    ///< its row gives it a value before the first one comes
     bool same_activity = false;  ///< what it reads is written by the same engine
     bool valid_to_start = false; ///< awaited also when the whole machine starts
+    /// Of who writes it, when that needs in turn what this component writes: while it does not run, or has
+    /// not written yet, neither can be the first, and the input is not awaited. Else null.
+    const AtomicComponentState* circle = nullptr;
 };
 
 /// Why an engine asks for the machine to stop.

@@ -6,6 +6,15 @@ namespace tappet {
 
 namespace {
 
+/// Whether the component may not start because of this input.
+LifeRefusal refusal_by(const NeededInput& input) noexcept TAPPET_REALTIME {
+    if (input.circle != nullptr && !is_running(*input.circle)) return LifeRefusal::none;
+    const Flow flow = input.flow(input.input);
+    if (flow == Flow::stale) return LifeRefusal::input_stale;
+    const bool is_missing = flow == Flow::never_written && !input.has_initial && input.circle == nullptr;
+    return is_missing ? LifeRefusal::input_never_written : LifeRefusal::none;
+}
+
 constexpr std::uint64_t life_note = 0x6c696665u; // "life": no transition of a state machine has this number
 
 /// The first begin of a period after `now`. All count from the beginning of the clock.
@@ -187,11 +196,8 @@ void Engine::start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME {
 LifeAnswer Engine::check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME {
     for (const NeededInput& each : plan_.inputs) {
         if (each.part != part || (rule == Rule::with_the_machine && !each.valid_to_start)) continue;
-        const Flow flow = each.flow(each.input);
-        if (flow == Flow::stale || (flow == Flow::never_written && !each.has_initial))
-            return {LifeOutcome::refused,
-                    flow == Flow::stale ? LifeRefusal::input_stale : LifeRefusal::input_never_written,
-                    static_cast<std::uint8_t>(part), each.facet};
+        if (const LifeRefusal refusal = refusal_by(each); refusal != LifeRefusal::none)
+            return {LifeOutcome::refused, refusal, static_cast<std::uint8_t>(part), each.facet};
     }
     return {LifeOutcome::done, LifeRefusal::none, static_cast<std::uint8_t>(part), 0};
 }
@@ -202,11 +208,8 @@ LifeAnswer Engine::readiness(Time now) noexcept TAPPET_REALTIME {
     cycle_.now = now; // the ages of values are told by it
     for (const NeededInput& each : plan_.inputs) {
         if (each.same_activity) continue;
-        const Flow flow = each.flow(each.input);
-        if (flow == Flow::stale || (flow == Flow::never_written && !each.has_initial))
-            return {LifeOutcome::refused,
-                    flow == Flow::stale ? LifeRefusal::input_stale : LifeRefusal::input_never_written,
-                    static_cast<std::uint8_t>(each.part), each.facet};
+        if (const LifeRefusal refusal = refusal_by(each); refusal != LifeRefusal::none)
+            return {LifeOutcome::refused, refusal, static_cast<std::uint8_t>(each.part), each.facet};
     }
     return {.outcome = LifeOutcome::done};
 }

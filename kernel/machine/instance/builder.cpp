@@ -2,6 +2,7 @@
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/plan/scope_layout.hpp"
 
+#include <algorithm>
 #include <new>
 
 namespace tappet {
@@ -181,6 +182,31 @@ void MachineBuilder::connect_clocks() {
     }
 }
 
+bool MachineBuilder::has_initial(std::size_t connection) const noexcept {
+    const ConnectionRow& row = machine_.table.connections[connection];
+    return row.substitute.given || row.before_first.given;
+}
+
+/// Whether what a component writes leads back to the writer of one of its inputs, by rows that keep their
+/// readers from starting.
+bool MachineBuilder::is_in_circle(const Link& input) const {
+    constexpr std::size_t most = 64;
+    Bounded<std::size_t, most> led_to;
+    static_cast<void>(led_to.push(input.to.component));
+    const MachineView& table = machine_.table;
+    for (std::size_t i = 0; i < led_to.size(); ++i)
+        for (std::size_t x = 0; x < table.connections.size(); ++x) {
+            const Link& link = machine_.index.connections[x];
+            if (link.from.component != led_to[i] || !is_needed_input(table, table.connections[x], link) ||
+                (table.connections[x].max_age == Duration::zero() && has_initial(x)))
+                continue;
+            if (link.to.component == input.from.component) return true;
+            if (std::ranges::find(led_to, link.to.component) == led_to.end())
+                static_cast<void>(led_to.push(link.to.component));
+        }
+    return false;
+}
+
 void MachineBuilder::place_needed_inputs() {
     const MachineView& table = machine_.table;
     // Not the value of the step before: the first step has none.
@@ -197,15 +223,19 @@ void MachineBuilder::place_needed_inputs() {
         if (!is_needed_input(table, table.connections[x], link)) continue;
         const Facet& input = facet_at(table, link.to);
         const std::size_t reader = machine_.index.activity[link.to.component];
+        const std::size_t writer = machine_.index.activity[link.from.component];
+        const auto* from = instance_.at<EnginePart>(machine_.plan.activities[writer].parts_at) +
+                           machine_.plan.part_of[link.from.component];
+        const bool is_awaited = input.valid_to_start || awaits(x);
         new (instance_.at<NeededInput>(machine_.plan.activities[reader].inputs_at) + placed[reader]++)
             NeededInput{.input = instance_.facet(link.to),
                         .flow = input.port->flow,
                         .part = machine_.plan.part_of[link.to.component],
                         .facet = static_cast<std::uint16_t>(link.to.facet),
-                        .has_initial =
-                            table.connections[x].substitute.given || table.connections[x].before_first.given,
-                        .same_activity = machine_.index.activity[link.from.component] == reader,
-                        .valid_to_start = input.valid_to_start || awaits(x)};
+                        .has_initial = has_initial(x),
+                        .same_activity = writer == reader,
+                        .valid_to_start = is_awaited,
+                        .circle = !is_awaited && is_in_circle(link) ? &from->state : nullptr};
     }
 }
 

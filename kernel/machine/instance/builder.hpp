@@ -28,6 +28,8 @@ private:
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);
     void connect_extras();
+    [[nodiscard]] bool has_initial(std::size_t connection) const noexcept;
+    [[nodiscard]] bool is_in_circle(const Link& input) const;
     void place_needed_inputs();
     [[nodiscard]] LifeSign life_sign_of(std::string_view watched) noexcept;
 

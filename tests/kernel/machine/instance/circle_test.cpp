@@ -1,0 +1,107 @@
+// Parts that need each other's values (a drive's component and its bus) were stopped together, and start
+// again one by one: whichever is the first starts without, as it did with the machine.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace tappet {
+namespace {
+
+struct Relay {
+    Input<std::int64_t> in;
+    Output<std::int64_t> out;
+    std::int64_t steps = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { out.write(++steps); }
+    static constexpr auto interface() {
+        return facets(input<&Relay::in>("in", "", "of the one before"),
+                      output<&Relay::out>("out", "", "for the next"));
+    }
+};
+
+// clang-format off
+constexpr auto table = machine("circle",
+    components(component<Relay>("bus"), component<Relay>("drive"), component<Relay>("guide"), component<Relay>("reader")),
+    activities(
+        activity("wires",  every(1ms), runs("bus"),            budget(20us)),
+        activity("motion", every(2ms), runs("drive", "guide"), budget(20us)),
+        activity("office", every(5ms), runs("reader"),         budget(20us))),
+    connections(
+        data("bus.out",   "drive.in",  stale_after(20ms), hold),
+        data("drive.out", "guide.in",  stale_after(20ms), hold),
+        data("guide.out", "bus.in",    stale_after(20ms), hold),
+        data("bus.out",   "reader.in", stale_after(20ms), hold)),
+    reactions(), behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+
+constexpr std::size_t bus = 0, drive = 1, guide = 2, reader = 3;
+constexpr std::size_t wires = 0, motion = 1, office = 2;
+
+class Circle : public testing::Test {
+protected:
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    void SetUp() override {
+        ASSERT_TRUE(instance.configure({}));
+        ASSERT_EQ(world.start().view(), "");
+        run(50ms);
+    }
+    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
+    LifeAnswer change(std::size_t component, LifeChange change) {
+        const LifeTicket ticket = instance.life().ask_component(component, change);
+        EXPECT_TRUE(world.run_until(clock.now() + 50ms));
+        return instance.life().answer_of_component(component, ticket);
+    }
+    LifeOutcome start(std::size_t component) { return change(component, LifeChange::start).outcome; }
+};
+
+TEST_F(Circle, that_stood_starts_in_any_order) {
+    std::array<std::size_t, 3> order{bus, drive, guide};
+    do {
+        for (const std::size_t each : order)
+            EXPECT_EQ(change(each, LifeChange::stop).outcome, LifeOutcome::done);
+        for (const std::size_t each : order)
+            EXPECT_EQ(start(each), LifeOutcome::done) << each << " of " << order[0] << order[1] << order[2];
+    } while (std::ranges::next_permutation(order).found);
+}
+
+TEST_F(Circle, of_activities_that_stood_starts_in_any_order) {
+    for (const auto& order : {std::array{wires, motion}, std::array{motion, wires}}) {
+        for (const std::size_t each : order)
+            EXPECT_EQ(world.change_activity(each, LifeChange::stop).view(), "");
+        run(50ms);
+        for (const std::size_t each : order) {
+            EXPECT_EQ(world.change_activity(each, LifeChange::start).view(), "");
+            run(50ms);
+        }
+    }
+}
+
+TEST_F(Circle, whose_other_part_runs_and_is_silent_is_waited_for) {
+    EXPECT_EQ(change(drive, LifeChange::stop).outcome, LifeOutcome::done);
+    world.hang(wires, clock.now() + 1s);
+    run(50ms);
+    const LifeAnswer answer = change(drive, LifeChange::start);
+    EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
+    EXPECT_THAT(std::string{instance.life().describe(motion, answer).view()},
+                testing::HasSubstr("see that \"bus\" runs and writes \"bus.out\""));
+}
+
+TEST_F(Circle, is_waited_for_by_who_stands_outside_of_it) {
+    EXPECT_EQ(change(reader, LifeChange::stop).outcome, LifeOutcome::done);
+    EXPECT_EQ(change(bus, LifeChange::stop).outcome, LifeOutcome::done);
+    EXPECT_EQ(change(reader, LifeChange::start).refusal, LifeRefusal::input_stale);
+    EXPECT_EQ(start(bus), LifeOutcome::done);
+    EXPECT_EQ(start(reader), LifeOutcome::done);
+}
+
+} // namespace
+} // namespace tappet
