@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
 
 #include <cstdint>
 
@@ -14,10 +15,10 @@ struct LifeSign {
     std::uint64_t (*count)(const void* watched) noexcept TAPPET_REALTIME = nullptr;
     /// False while it was stopped on purpose: its silence means nothing.
     bool (*expected)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
-    /// True while it rests and nobody has woken it: an activity without a period may be silent for hours.
-    /// That its device is ready or a time is due while it gets no processor is not seen. Null: it never
+    /// True while it rests, nobody has woken it and no time is due for it: an activity without a period may
+    /// be silent for hours. That its device is ready while it gets no processor is not seen. Null: it never
     /// rests.
-    bool (*rests)(const void* owner) noexcept TAPPET_REALTIME = nullptr;
+    bool (*rests)(const void* owner, Time now) noexcept TAPPET_REALTIME = nullptr;
 };
 
 } // namespace tappet

@@ -25,9 +25,9 @@ bool is_engine_expected(const void* self) noexcept TAPPET_REALTIME {
            engine.plan().parts.front().state.load(std::memory_order_acquire) == ComponentState::failed;
 }
 
-bool rests(const void* self) noexcept TAPPET_REALTIME {
+bool rests(const void* self, Time now) noexcept TAPPET_REALTIME {
     const auto& engine = *static_cast<const Engine*>(self);
-    return engine.generation() % 2 == 0 && !engine.is_woken();
+    return engine.generation() % 2 == 0 && !engine.is_woken() && engine.wakes_at() > now;
 }
 
 } // namespace

@@ -20,8 +20,8 @@ ActivityControl VirtualWorld::control() noexcept {
                 auto& world = *static_cast<VirtualWorld*>(self);
                 Engine& engine = world.instance_.engines()[a];
                 engine.start(world.instance_.clock().now());
-                world.wake_at_[a] =
-                    engine.looping() == nullptr ? engine.next_wake() : world.instance_.clock().now();
+                world.sleep_until(a, engine.looping() == nullptr ? engine.next_wake()
+                                                                 : world.instance_.clock().now());
                 return true;
             },
             [](void* self, std::size_t a) {
@@ -71,12 +71,17 @@ void VirtualWorld::run_engine(std::size_t a, bool woken) {
             runner_.run(runner_.self, engine, woken);
         else
             engine.run(woken);
-        wake_at_[a] = engine.next_wake();
+        sleep_until(a, engine.next_wake());
         return;
     }
     if (!loops_[a]) loops_[a].emplace(engine, instance_.clock(), instance_.stack_of(a));
     loops_[a]->run(woken);
-    wake_at_[a] = loops_[a]->next_wake();
+    sleep_until(a, loops_[a]->next_wake());
+}
+
+void VirtualWorld::sleep_until(std::size_t a, Time time) {
+    wake_at_[a] = time;
+    instance_.engines()[a].sleeps_until(time);
 }
 
 bool VirtualWorld::is_ready(std::size_t a, Time now) {
@@ -170,7 +175,7 @@ void VirtualWorld::end(std::size_t a) {
     Engine& engine = instance_.engines()[a];
     os::Clock& clock = instance_.clock();
     engine.begin_end(clock.now());
-    wake_at_[a] = engine.next_wake();
+    sleep_until(a, engine.next_wake());
     is_ending_ = true;
     while (!engine.has_ended(clock.now())) {
         end_ = engine.ends_at();

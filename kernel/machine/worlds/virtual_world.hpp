@@ -85,6 +85,7 @@ private:
     [[nodiscard]] std::size_t at_work(int processor) const;
     void work_until(Time now);
     void run_engine(std::size_t activity, bool woken);
+    void sleep_until(std::size_t activity, Time time);
     [[nodiscard]] Time next_time() const { return quiet(nullptr, never); }
     [[nodiscard]] Time quiet(const void* but, Time end) const;
     void run_engines(Time now);

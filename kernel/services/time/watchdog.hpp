@@ -13,7 +13,8 @@ namespace tappet {
 /// when it ends, so that one that hangs in a cycle falls silent; give the watchdog a shorter deadline than
 /// what it watches, or another processor, so that the hanging one cannot keep it from looking. What was
 /// stopped by a request is not expected to live; the limit counts anew when it starts. An activity without a
-/// period is silent when it does not begin or does not end what it was woken for. Real-time.
+/// period is silent when it does not begin or does not end what it was woken for, or what was due: a timer,
+/// or the look at an input that grows stale. Real-time.
 struct Watchdog {
     static constexpr bool watches_life = true;
 
@@ -37,7 +38,7 @@ struct Watchdog {
         const bool lives = count != count_;
         const Duration silence = cycle.now - last_life_;
         count_ = count;
-        const bool rests = sign_.rests != nullptr && sign_.rests(sign_.owner);
+        const bool rests = sign_.rests != nullptr && sign_.rests(sign_.owner, cycle.now);
         if (lives || rests || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
         if (lives && silent_) {
             silent_ = false;

@@ -274,14 +274,21 @@ TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
 struct Sleeper {
     std::atomic<bool> hangs{false};
     os::Clock* clock = nullptr;
+    Timer alarm;
+    Duration alarm_after{}; ///< it was roused; none: no alarm
     Sentence configure(Setup& setup) {
         clock = setup.clock;
         return {};
     }
     void rouse() noexcept TAPPET_REALTIME {
         if (hangs.exchange(false)) clock->consume(200ms);
+        if (alarm_after > Duration::zero()) alarm.arm(clock->now() + alarm_after);
     }
-    static constexpr auto interface() { return facets(operation<&Sleeper::rouse>("rouse", "runs")); }
+    void ring(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(operation<&Sleeper::rouse>("rouse", "runs"),
+                      timer<&Sleeper::alarm, &Sleeper::ring>("alarm", "does nothing"));
+    }
 };
 /// Rouses it, and hears its watchdog.
 struct Rouser {
@@ -334,6 +341,23 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_th
     sleeping.stop(clock.now()); // as the supervisor does in the place of a hung thread
     sleeping.mark_failed();
     sleeping.waiter().wake();
+    EXPECT_TRUE(world.run_until(clock.now() + 100ms));
+    EXPECT_EQ(rouser.silences.size(), 1u);
+}
+
+TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_timer_that_is_due) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<virtual_sleeping_table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    ASSERT_TRUE(instance.configure({}));
+    ASSERT_EQ(world.start().view(), "");
+    Rouser& rouser = *instance.find<Rouser>("rouser");
+    instance.find<Sleeper>("sleeper")->alarm_after = 50ms;
+    rouser.rouses = true;
+    EXPECT_TRUE(world.run_until(clock.now() + 40ms));
+    world.hang(2, clock.now() + 1s);
+    EXPECT_TRUE(world.run_until(clock.now() + 25ms));
+    EXPECT_THAT(rouser.silences, IsEmpty()) << "nothing was due for longer than the limit";
     EXPECT_TRUE(world.run_until(clock.now() + 100ms));
     EXPECT_EQ(rouser.silences.size(), 1u);
 }
