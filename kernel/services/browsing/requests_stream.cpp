@@ -83,7 +83,8 @@ void BrowserService::tell_events() {
             Reply reply{each.asker.number};
             reply.json().field("event", name.view()).field("time_ns", to_ns(seen_[i].at)).key("arguments");
             reply.value(*facet.type, seen_[i].arguments.data());
-            reply.json().field("lost", machine_->observation().counts_of(each.index).lost + unseen_);
+            const SubscriptionCounts counts = machine_->observation().counts_of(each.index);
+            reply.json().field("lost", counts.lost + counts.dropped + unseen_);
             finish(*client, reply);
         }
     seen_count_ = 0;

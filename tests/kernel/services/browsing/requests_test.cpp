@@ -201,6 +201,24 @@ TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
     EXPECT_EQ(talker.receive(), "");
 }
 
+TEST_F(Press, whoever_subscribed_is_told_what_came_while_the_browser_stood) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 subscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask(talker, "2 send ram.move_to 20"), R"("state": "sent")"));
+    const std::size_t browser = find_component(instance.machine().table, "browser");
+    static_cast<void>(instance.life().ask_component(browser, LifeChange::stop));
+    run(200ms);
+    static_cast<void>(instance.life().ask_component(browser, LifeChange::start));
+    run(50ms);
+    EXPECT_TRUE(talker.send("3 send ram.move_to 10"));
+    run(200ms);
+    std::string told;
+    for (std::string packet = talker.receive(); !packet.empty(); packet = talker.receive())
+        if (has(packet, R"("event")")) told += packet;
+    EXPECT_TRUE(has(told, R"("arguments": [10], "lost": 1})")) << told;
+    EXPECT_FALSE(has(told, R"("arguments": [20])")) << told;
+}
+
 TEST_F(Press, an_event_stays_subscribed_while_anybody_wants_it) {
     Talker stays{path()};
     Talker leaves{path()};
