@@ -57,6 +57,9 @@ struct Loom {
     /// A valve or a brake may not be what the loom believes: only the drive's quick stop can be relied on.
     [[nodiscard]] bool bus_is_off() noexcept TAPPET_REALTIME { return bus_faulted.get(); }
     [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
+    [[nodiscard]] bool drives_are_off() noexcept TAPPET_REALTIME {
+        return !main_enabled.get() || !let_off_enabled.get();
+    }
     /// The drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
     [[nodiscard]] bool encoder_stands() noexcept TAPPET_REALTIME {
         return main_at_speed.get() && shaft_standing.get();
@@ -92,6 +95,8 @@ struct Loom {
         release_brake.emit();
         enable_drives.emit();
     }
+    /// It prepares itself on, and whoever comes asks the drives again.
+    void enter_asking() noexcept TAPPET_REALTIME { tell(LoomState::preparing, false, false, true); }
     void enter_ready() noexcept TAPPET_REALTIME { tell(LoomState::ready, false, true, false); }
     void enter_run_up() noexcept TAPPET_REALTIME {
         tell(LoomState::run_up, true, false, false);

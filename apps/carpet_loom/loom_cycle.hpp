@@ -15,6 +15,7 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         state("locked",    initial, entry<&Loom::enter_locked>),                     // nothing moves: acknowledge
         state("operating"),
         state("preparing", in("operating"), initial, entry<&Loom::enter_preparing>), // drives on, tension, oil
+        state("asking",    in("operating"), entry<&Loom::enter_asking>),             // the same, for an acknowledgement
         state("ready",     in("operating"), entry<&Loom::enter_ready>),              // the operator may start
         state("running",   in("operating")),
         state("run_up",    in("running"), initial, entry<&Loom::enter_run_up>),
@@ -28,6 +29,9 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         transition("locked",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)),
         transition("preparing", "ready",     guard<&Loom::prepared>.because<&Loom::missing>(unprepared)),
         transition("preparing", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)), // asks the drives again
+        transition("preparing", "asking",    after(2s), guard<&Loom::drives_are_off>, because("a drive was asked to follow and does not: acknowledge, and it is asked again")),
+        transition("asking",    "ready",     guard<&Loom::prepared>.because<&Loom::missing>(unprepared)),
+        transition("asking",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)),
         transition("ready",     "run_up",    on("io.button_start.rises"), guard<&Loom::may_start>.because<&Loom::missing>(unprepared)),
         transition("run_up",    "weave",     guard<&Loom::at_speed>.because("the shaft has not reached its speed yet")),
         transition("run_up",    "fault",     after(3s), because("the shaft did not reach its speed within 3 s")),

@@ -106,7 +106,6 @@ inline constexpr auto table = machine("carpet-loom",
         data("loom.lamp_run",             "io.lamp_run",          wakes),
         data("loom.lamp_stop",            "io.lamp_stop",         wakes),
         data("loom.lamp_fault",           "io.lamp_fault",        wakes),
-        data("weft.cutter",               "io.yarn_cutter",       wakes),
         buffer<64>("weft.arrivals",       "record.arrivals",      drop_oldest), // none is missed: 250 ms hold three
         data("loom.state",                "console.state"),
         data("loom.cause",                "console.cause"),
@@ -133,6 +132,8 @@ inline constexpr auto table = machine("carpet-loom",
         uses("weft.angle_at",        "shaft.angle_at"),              // a method: in the caller's thread
         when("weft.open_valve",      tell("io.weft_release.set")),   // in the engine of io
         when("weft.close_valve",     tell("io.weft_release.clear")),
+        when("weft.drive_cutter",    tell("io.yarn_cutter.set")),
+        when("weft.rest_cutter",     tell("io.yarn_cutter.clear")),
         when("io.weft_detector.rises", tell("weft.on_arrival"), handled_by("weft.detector"), disconnected),
         when("weft.missed",          call("shaft.stop_at_angle")),   // no detour: the brake's angle is near
         when("shaft.brake_now",      tell("io.brake.set")),
@@ -159,6 +160,8 @@ inline constexpr auto table = machine("carpet-loom",
         when("loom.inhibit_weft",    tell("weft.inhibit")),
         when("loom.inhibit_weft",    tell("io.weft_release.clear")), // also when the shaft's activity hangs
         when("logic_dog.silent",     call("last_resort.act")),       // the states of the whole cannot say it any more
+        when("shaft_dog.silent",     call("last_resort.let_cutter_rest")), // no beat-up ends the cut any more
+        when("last_resort.rest_cutter", tell("io.yarn_cutter.clear")),
         when("last_resort.set_brake",   tell("io.brake.set")),
         when("last_resort.close_valve", tell("io.weft_release.clear")),
         when("last_resort.close_valve", tell("weft.inhibit")),       // a shaft that is braked passes the release angle, too

@@ -70,7 +70,7 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::output("lamp_run", gpio::safe(false)),
     gpio::output("lamp_stop", gpio::safe(false)),
     gpio::output("lamp_fault", gpio::safe(false)),
-    gpio::output("yarn_cutter", gpio::safe(false)));
+    gpio::actuator("yarn_cutter", gpio::safe(false)));
 
 inline constexpr auto utility_registers = modbus::register_map(
     modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms),

@@ -22,9 +22,9 @@ struct WeftInsertion {
     Output<std::int64_t> picks_woven;
     Output<double> arrival_deg;
     BufferOutput<Arrival> arrivals;
-    Output<bool> cutter;
     Output<bool> working;
     Event<> open_valve, close_valve, missed;
+    Event<> drive_cutter, rest_cutter;
     EventHandle detector;
 
     void allow() noexcept TAPPET_REALTIME { allowed_ = true; }
@@ -51,7 +51,7 @@ struct WeftInsertion {
         released_ = arrived_ = false;
         detector.disconnect(); // a pulse without a weft on its way is none
         ready_ = allowed_;     // only a turn that began with permission gets a weft
-        cutter.write(false);
+        cut(false);
     }
     void on_offer_pattern() noexcept TAPPET_REALTIME {
         const std::int64_t next = pick.last() + 1;
@@ -79,19 +79,18 @@ struct WeftInsertion {
         // A second pulse of the same weft is none.
         if (!arrived_) static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg}));
         arrived_ = true;
-        if (turning_) cutter.write(true);
+        if (turning_) cut(true);
     }
     /// The shaft stands or is lost: the beat-up that ends the cut may never come.
     void on_rest() noexcept TAPPET_REALTIME {
         turning_ = false;
-        cutter.write(false);
+        cut(false);
     }
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         pick.write(0);
         pattern.write(patterns[0]);
         picks_woven.write(0);
-        cutter.write(false);
         working.write(true);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
@@ -111,10 +110,11 @@ struct WeftInsertion {
             output<&WeftInsertion::picks_woven>("picks_woven", "", "picks whose weft arrived, since start"),
             output<&WeftInsertion::arrival_deg>("arrival_deg", "deg", "of the last weft"),
             output<&WeftInsertion::arrivals>("arrivals", "", "every weft that arrived, with its angle"),
-            output<&WeftInsertion::cutter>("cutter", "", "yarn cutter"),
             output<&WeftInsertion::working>("working", "", "wefts can be released and are judged"),
             event<&WeftInsertion::open_valve>("open_valve", "drive the weft's valve"),
             event<&WeftInsertion::close_valve>("close_valve", "let the weft's valve close", heard_by(1)),
+            event<&WeftInsertion::drive_cutter>("drive_cutter", "the yarn cutter on"),
+            event<&WeftInsertion::rest_cutter>("rest_cutter", "the yarn cutter off", heard_by(1)),
             event<&WeftInsertion::missed>("missed", "the weft of this pick did not arrive", heard_by(1)),
             handle<&WeftInsertion::detector>("detector", "of the detector, while a weft is on its way"),
             method<&WeftInsertion::lift>("lift", "the harnesses of the picks to come, one bit each"),
@@ -141,6 +141,15 @@ private:
 
     static constexpr std::int64_t all_harnesses = 0xffff;
 
+    void cut(bool on) noexcept TAPPET_REALTIME {
+        if (on == cuts_) return;
+        cuts_ = on;
+        if (on)
+            drive_cutter.emit();
+        else
+            rest_cutter.emit();
+    }
+
     std::int64_t lifted_ = 0; // by a behaviour; 0: the carpet's
     bool allowed_ = false;
     bool ready_ = false;
@@ -148,6 +157,7 @@ private:
     bool arrived_ = false;
     bool early_ = false;
     bool turning_ = false;
+    bool cuts_ = false;
 };
 
 } // namespace tappet::carpet

@@ -85,6 +85,17 @@ TEST_P(Angles, the_cutter_and_the_valve_are_off_when_the_encoder_is_lost) {
     }
 }
 
+TEST_P(Angles, the_cutter_is_off_when_the_activity_of_the_shaft_hangs) {
+    ByHand rig{GetParam()};
+    ASSERT_TRUE(rig.weave_by_hand());
+    ASSERT_TRUE(rig.run_until([&] { return rig.output(wires::line::yarn_cutter); }, 1s));
+    rig.run().world().hang(find_activity(rig.run().instance().machine().table, "shaft"), rig.now() + 1s);
+    rig.run_for(35ms); // it is silent after 20, and looked for each 5
+    EXPECT_FALSE(rig.output(wires::line::yarn_cutter));
+    rig.run_for(2s);
+    EXPECT_FALSE(rig.output(wires::line::yarn_cutter));
+}
+
 TEST_P(Angles, the_let_off_feeds_nothing_while_the_loom_stands_and_the_load_cell_is_lost) {
     ByHand rig{GetParam()};
     ASSERT_TRUE(rig.prepare());

@@ -99,6 +99,29 @@ TEST(AfterADeath, the_next_start_stops_what_turns_and_moves_nothing_until_acknow
     }
 }
 
+/// It trips again on its way to follow, after the acknowledgement has reset it.
+TEST(AnAcknowledgement, is_asked_for_again_when_a_drive_does_not_follow) {
+    const loom::ScriptedFault trip{.fault = loom::Fault::drive_fault, .node = wires::node::main_drive};
+    Start rig;
+    rig.run_for(500ms); // its nodes boot
+    rig.plant().inject(trip);
+    rig.run_for(20ms);
+    rig.plant().press(Button::acknowledge, 100ms);
+    ASSERT_TRUE(rig.run_until([&] { return !rig.component<MainDrive>("main").fault.last(); }, 1s));
+    rig.plant().inject(trip);
+    rig.run_for(1900ms);
+    EXPECT_EQ(rig.state(), "preparing");
+    EXPECT_FALSE(rig.output(wires::line::lamp_fault));
+    rig.run_for(200ms);
+    EXPECT_EQ(rig.state(), "asking");
+    EXPECT_TRUE(rig.output(wires::line::lamp_fault));
+    rig.run_for(2s);
+    EXPECT_EQ(rig.state(), "asking") << "nothing moves by itself";
+    rig.acknowledge();
+    EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state();
+    EXPECT_FALSE(rig.output(wires::line::lamp_fault));
+}
+
 TEST(AnAcknowledgement, releases_no_brake_that_holds_a_turning_shaft) {
     Start rig;
     ASSERT_TRUE(rig.weave_by_hand());
