@@ -13,7 +13,7 @@ namespace tappet::carpet {
 class Swarm final : public SwarmRules {
 public:
     Swarm(MachineInstance& machine, Plant& plant, const Struck& struck)
-        : plant_{plant.loom()}, struck_{struck}, loom_{*machine.find<Loom>("loom")} {
+        : machine_{machine}, plant_{plant.loom()}, struck_{struck}, loom_{*machine.find<Loom>("loom")} {
         machine.find<Console>("console")->quiet.set(true);
         const auto number = [&](std::string_view name) {
             return find_component(machine.machine().table, name);
@@ -21,6 +21,7 @@ public:
         io_ = number("io");
         logic_ = number("loom");
         weft_ = number("weft");
+        watch_ = number("shaft_dog");
         for (const auto name : {"can", "main", "motion_dog", "last_resort"})
             static_cast<void>(leads_.push(number(name)));
         damage_ = plant_.damage();
@@ -52,7 +53,9 @@ public:
         if (weaves(state) || now - since_ < reaction || whole < taken_up) return blind(now);
         if (valve) return "the weft's valve is open while the loom stands";
         if (promises_brake(state) && !brake) return "the brake is off in a state that promises it";
-        if (std::min(settled, struck_.whole_for(weft_, now)) >= stops_within &&
+        const Duration watched =
+            std::min(struck_.whole_for(watch_, now), struck_.whole_for(leads_[leads_.size() - 1], now));
+        if (std::min(settled, std::max(watched, struck_.whole_for(weft_, now))) >= stops_within &&
             plant_.output(line::yarn_cutter))
             return "the yarn cutter is driven while the loom stands";
         if (settled >= stops_within && brake && plant_.speed_rpm() != 0.0)
@@ -67,7 +70,6 @@ public:
         const WaitsFor what = loom_.waits_for.last();
         return what == WaitsFor::nothing || what == WaitsFor::acknowledgement ? "" : name_of(what);
     }
-    void acknowledge() override { plant_.press(loom::Button::acknowledge, 200ms); }
     Sentence trouble(Random& random, Duration lasts) override {
         constexpr std::array<std::string_view, 9> names{
             "a weft breaks",         "a warp end breaks",         "a node is silent",
@@ -83,6 +85,7 @@ public:
         if (of_drive || fault.fault == loom::Fault::node_lost) text.add(": node ").add(int{fault.node});
         return text.add(fault.lasts == Duration{} ? ", until repaired" : "");
     }
+    [[nodiscard]] SwarmPeople people() const override { return {properties, ports, scripts}; }
 
 private:
     static constexpr Duration reaction = 5ms;         // from a state to what it promises on the lines
@@ -96,6 +99,34 @@ private:
         return state == LoomState::locked || state == LoomState::emergency || state == LoomState::fault ||
                state == LoomState::safe;
     }
+    // What says how brake, beam and encoder are made is for who knows them.
+    static constexpr std::array<std::string_view, 9> properties{
+        "main.speed_rpm",   "main.slip_for", "shaft.stop_angle_deg", "shaft.learning_rate", "shaft.late_deg",
+        "warp.set_point_n", "warp.band_n",   "loom.colour",          "record.shift"};
+    static constexpr std::array<std::string_view, 16> ports{
+        "io.lamp_run",       "io.lamp_stop",        "loom.lamp_fault",    "loom.feeder_colour",
+        "loom.feeder_speed", "weft.pattern",        "loom.drop_wire",     "loom.tension_in_band",
+        "loom.main_fault",   "loom.main_slips",     "loom.let_off_fault", "main.velocity",
+        "warp.measured",     "network.heartbeat_3", "console.speed_rpm",  "shaft.stop_error_deg"};
+    static constexpr std::array<SwarmScript, 3> scripts{
+        {{"weft", "twill.osd",
+          "StateMachine Twill {"
+          " initial state First { entry { do weft.lift(4369); } transition shaft.beat_up() select Second }"
+          " state Second { entry { do weft.lift(8738); } transition shaft.beat_up() select First }"
+          " final state Carpet { entry { do weft.weave_carpet(); } } }"},
+         {"weft", "running_out.osd", // fails in its trial: no harness is left
+          "StateMachine RunningOut { var int harnesses = 16;"
+          " initial state Even { entry { do weft.lift(harnesses); set harnesses = harnesses / 4; }"
+          " transition shaft.beat_up() select Odd }"
+          " state Odd { entry { do weft.lift(harnesses); set harnesses = harnesses / 4; }"
+          " transition shaft.beat_up() select Even }"
+          " final state Carpet { entry { do weft.weave_carpet(); } } }"},
+         {"weft", "faulty.osd",
+          "StateMachine Faulty {"
+          " initial state First { entry { do weft.lft(4369); } transition shaft.beat_up() select Carpet }"
+          " final state Carpet { entry { do weft.weave_carpet(); } } }",
+          false}}};
+
     /// The parts between the states and the main drive.
     [[nodiscard]] Duration led_for(Time now) const {
         Duration least = Duration::max();
@@ -104,17 +135,21 @@ private:
     }
     /// Without its states the loom is stopped by what is left.
     std::string_view blind(Time now) {
-        if (struck_.whole_for(logic_, now) >= Duration{}) seen_at_ = now;
+        // One that hangs is missed once somebody needs it.
+        const bool rests = machine_.life().state_of(logic_) == ComponentState::running &&
+                           !machine_.engines()[machine_.machine().index.activity[logic_]].is_woken();
+        if (struck_.whole_for(logic_, now) >= Duration{} || rests) seen_at_ = now;
         const Duration left = std::min({now - seen_at_, struck_.whole_for(io_, now), led_for(now)});
         return left >= noticed_within && plant_.speed_rpm() != 0.0
                    ? "the shaft turns without the loom's states"
                    : "";
     }
 
+    MachineInstance& machine_;
     loom::Plant& plant_;
     const Struck& struck_;
     Loom& loom_;
-    std::size_t io_ = 0, logic_ = 0, weft_ = 0;
+    std::size_t io_ = 0, logic_ = 0, weft_ = 0, watch_ = 0;
     Bounded<std::size_t, 4> leads_{};
     LoomState state_ = LoomState::off;
     Time since_{}, seen_at_{};

@@ -36,7 +36,7 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
             far.push_back(
                 {type_id<gpio::Wires>, row.device, static_cast<gpio::Wires*>(&chips_.back()->twin)});
         } else if (drives(row, "modbus")) {
-            servers_.push_back(std::make_unique<Server>(row.device, AnswerWithin{300ms}.time));
+            servers_.push_back(std::make_unique<Server>(row, AnswerWithin{300ms}.time));
             modbus::Twin& twin = servers_.back()->twin;
             provided_.push_back(
                 {type_id<modbus::Transport>, row.device, static_cast<modbus::Transport*>(&twin)});
@@ -54,6 +54,39 @@ std::expected<void, Sentence> SimulatedDevices::open_again() {
     return {};
 }
 
+void SimulatedDevices::write_safe_lines() noexcept {
+    for (const auto& chip : chips_) static_cast<void>(chip->twin.make_safe());
+}
+
+void SimulatedDevices::send_safe_frames(Time now) noexcept {
+    static_cast<void>(open_again());
+    for (const auto& bus : buses_)
+        for (can::Frame frame : bus->safe) {
+            frame.stamp = now;
+            static_cast<void>(bus->machine.send(frame, can::Keep::every));
+        }
+    attend(now);
+}
+
+void SimulatedDevices::attend(Time now) noexcept {
+    can::Frame heard;
+    for (const auto& bus : buses_) {
+        while (bus->machine.receive(heard).what != can::Received::none) {
+        }
+        bus->machine.service(now);
+    }
+}
+
+void SimulatedDevices::write_safe_registers() noexcept {
+    for (const auto& server : servers_) {
+        static_cast<void>(server->twin.connect());
+        for (const modbus::SafeWrite& each : server->safe->requests)
+            static_cast<void>(server->twin.write(each.run.table, static_cast<std::uint16_t>(each.run.address),
+                                                 server->safe->words.subspan(each.first, each.run.count)));
+        server->twin.disconnect();
+    }
+}
+
 std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row) {
     Bus& bus = *buses_.emplace_back(std::make_unique<Bus>(row.device, seed_));
     bus.bus.set_bit_rate(bit_rate_);
@@ -61,6 +94,7 @@ std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row)
     bus.settings.interface = row.device;
     bus.settings.receive = map.receive;
     bus.settings.transmit = map.transmit;
+    bus.safe = map.safe;
     if (auto opened = bus.machine.open(bus.settings); !opened) return opened;
     can::Settings settings = bus.settings;
     std::swap(settings.receive, settings.transmit);

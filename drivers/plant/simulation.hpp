@@ -28,6 +28,12 @@ public:
     /// The machine's ends of the buses anew, as a new process has them: a bus that was off is on again. Lines
     /// stay as they were left.
     std::expected<void, Sentence> open_again();
+    /// What the guardian of a machine does whose process is gone: lines at once, frames and registers once it
+    /// has ended. The machine's ends of the wires are nobody's then; attend() lets the frames go out.
+    void write_safe_lines() noexcept;
+    void send_safe_frames(Time now) noexcept;
+    void attend(Time now) noexcept;
+    void write_safe_registers() noexcept;
     [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return provided_; }
     void report(os::ArmingReport&) override {}
     [[nodiscard]] WireCounters counters() const noexcept override;
@@ -52,6 +58,7 @@ private:
         std::string_view name;
         can::TwinBus bus;
         can::Settings settings{};
+        std::span<const can::Frame> safe{};
         can::Twin machine{}, plant{};
         Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
     };
@@ -64,9 +71,13 @@ private:
     };
     struct Server {
         std::string_view name;
+        const modbus::SafeWrites* safe;
         std::uint32_t seen = 0;
         modbus::Twin twin;
-        Server(std::string_view of, Duration answer_within) : name{of}, twin{answer_within} {}
+        Server(const ComponentRow& row, Duration answer_within)
+            : name{row.device},
+              safe{static_cast<const modbus::SafeWrites*>(row.type->device_map)},
+              twin{answer_within} {}
     };
 
     std::expected<void, Sentence> add_bus(const ComponentRow& row);

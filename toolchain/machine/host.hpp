@@ -27,6 +27,8 @@ public:
     /// Before start(): where rows with a properties file have their values from; nowhere unless told, so that
     /// a run depends on its seed alone. The characters outlive the run.
     void keep_properties_in(std::string_view directory) noexcept { files_.keep_in(directory); }
+    /// Before start(): each machine of the run listens to browsers there. The characters outlive the run.
+    void browse_in(std::string_view directory) noexcept { browsed_in_ = directory; }
     /// Before start(): cycles take times that the seed draws, up to their budgets, and frames theirs on the
     /// wire.
     void take_times(std::uint64_t seed, std::uint32_t bit_rate) {
@@ -64,6 +66,7 @@ private:
     AcceptedMachine accepted_;
     SimulatedDevices devices_;
     PropertyFiles files_{""};
+    std::string_view browsed_in_{};
     std::optional<Machine> machine_;
     std::optional<std::uint64_t> timed_by_{};
     std::uint64_t seen_steps_ = 0;

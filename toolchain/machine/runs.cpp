@@ -31,6 +31,7 @@ std::expected<void, Sentence> VirtualRun::start_again() {
 
 std::expected<void, Sentence> VirtualRun::start_machine() {
     instance().read_properties_from(files_.store());
+    if (!browsed_in_.empty()) instance().browse_in(browsed_in_);
     if (auto configured = instance().configure(devices_.provided()); !configured)
         return std::unexpected(configured.error());
     if (timed_by_) machine_->world.take_times(*timed_by_);

@@ -1,11 +1,14 @@
-// One seed of a swarm: what strikes when, and what is asked of the machine afterwards.
+// One seed of a swarm: when something strikes, what is judged meanwhile, and what is asked of the machine
+// afterwards.
 #include "toolchain/machine/swarm.hpp"
 
-#include "drivers/can/signal_map.hpp"
-#include "drivers/gpio/line_map.hpp"
 #include "kernel/machine/check/time.hpp"
+#include "kernel/services/browsing/browser_service.hpp"
 
 #include <algorithm>
+#include <filesystem>
+
+#include <unistd.h>
 
 namespace tappet {
 
@@ -13,9 +16,13 @@ namespace {
 
 constexpr Duration first_work_within = 60s;
 constexpr Duration longest_pause = 4s; // between two faults
-constexpr Duration longest_fault = 5s; // of those that end by themselves
 constexpr Duration again = 50ms;       // a part that does not start yet is asked again
+constexpr Duration heard_every = 50ms; // by who browses
 constexpr Duration at_rest = 500ms;    // after a stop
+
+std::string own_directory() {
+    return (std::filesystem::temp_directory_path() / ("tappet-swarm-" + std::to_string(::getpid()))).string();
+}
 
 bool is_driver(const ComponentRow& row) {
     return drives(row, "can") || drives(row, "gpio") || drives(row, "modbus");
@@ -38,13 +45,26 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     : of_{of},
       tell_{std::move(tell)},
       random_{seed},
+      directory_{own_directory()},
       plant_{of.plant(seed)},
       run_{of.machine, *plant_, seed},
-      struck_{of.machine.table.components.size()} {
+      struck_{of.machine.table.components.size()},
+      files_{std::make_unique<PropertyFiles>(directory_)},
+      browser_{directory_ + "/" + std::string{of.machine.table.name} + std::string{browsing::socket_suffix}} {
+    std::filesystem::remove_all(directory_); // of who had this number before
+    std::filesystem::create_directories(directory_);
+    run_.keep_properties_in(directory_);
+    find_what_people_may();
+    if (service_ != nowhere) run_.browse_in(directory_);
     const auto rows = of.machine.table.components;
     for (std::size_t c = 0; c < rows.size(); ++c)
         if (is_driver(rows[c])) drivers_.push_back(c);
     run_.judge_by([this](Time now) { judge(now); });
+}
+
+SwarmRun::~SwarmRun() {
+    std::error_code ignored;
+    std::filesystem::remove_all(directory_, ignored);
 }
 
 SwarmVerdict SwarmRun::go() {
@@ -54,11 +74,7 @@ SwarmVerdict SwarmRun::go() {
         storm(run_.now() + Duration{random_.between(5'000'000'000, 60'000'000'000)});
         const Time peace = run_.now();
         say("everything is mended");
-        end_faults(true);
-        while (!faults_.empty() && verdict_.broken.empty() && run_.now() < peace + rules_->works_within()) {
-            run_until(run_.now() + again);
-            end_faults(true);
-        }
+        if (mend(rules_->works_within())) judge_forces();
         if (!run_until_works(rules_->works_within()) && verdict_.broken.empty()) {
             verdict_.waited_for = rules_->waits_for();
             if (!faults_.empty()) verdict_.waited_for += ": " + std::string{refusal_.view()};
@@ -70,8 +86,8 @@ SwarmVerdict SwarmRun::go() {
             for (const std::size_t c : drivers_) // somebody has looked at the bus
                 if (const ComponentRow& row = of_.machine.table.components[c]; drives(row, "can"))
                     static_cast<void>(run_.devices().controller(row.device).restart());
-            if (verdict_.broken.empty() && start(true) && !run_until_works(first_work_within) &&
-                verdict_.broken.empty())
+            if (verdict_.broken.empty() && start(true) && mend(first_work_within) &&
+                !run_until_works(first_work_within) && verdict_.broken.empty())
                 verdict_.broken = Sentence{"it does not work again after its restart; it waits for \"",
                                            rules_->waits_for(), "\""};
         } else {
@@ -91,16 +107,27 @@ bool SwarmRun::start(bool is_again) {
         return false;
     }
     rules_ = of_.rules(run_.instance(), *plant_, struck_);
+    is_gone_ = false;
     lost_ = 0;
+    set_values_.clear();
+    if (service_ != nowhere)
+        run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->log.set(false);
+    hear();
     return true;
 }
 
 void SwarmRun::judge(Time now) {
-    if (!verdict_.broken.empty() || rules_ == nullptr) return;
+    if (!verdict_.broken.empty() || rules_ == nullptr || is_gone_) return;
     std::string_view broken = rules_->broken(now);
     if (broken.empty()) return;
     verdict_.broken = Sentence{broken};
     verdict_.at = now;
+}
+
+void SwarmRun::deny(const Sentence& why) {
+    if (!verdict_.broken.empty()) return;
+    verdict_.broken = why;
+    verdict_.at = run_.now();
 }
 
 /// Who hangs or stands does not take what it is told, and that is counted; nobody else may lose anything.
@@ -114,8 +141,9 @@ void SwarmRun::judge_emissions() {
 
 void SwarmRun::run_until(Time end) {
     while (run_.now() < end && verdict_.broken.empty()) {
-        const bool runs = run_.run_for(end - run_.now());
+        const bool runs = run_.run_for(std::min(heard_every, end - run_.now()));
         judge_emissions();
+        hear();
         if (runs) continue;
         say(Sentence{"it stopped: ", run_.instance().describe_stop()}.view());
         ++verdict_.faults["stopped by itself"];
@@ -125,17 +153,21 @@ void SwarmRun::run_until(Time end) {
 }
 
 bool SwarmRun::run_until_works(Duration limit) {
-    bool acknowledged = false;
     for (const Time end = run_.now() + limit; run_.now() < end && verdict_.broken.empty();) {
         if (rules_->works()) return true;
-        if (!acknowledged && run_.now() > end - limit / 2) {
-            say("somebody acknowledges by hand");
-            rules_->acknowledge();
-            acknowledged = true;
-        }
         run_until(std::min(end, run_.now() + again));
     }
     return verdict_.broken.empty() && rules_->works();
+}
+
+/// Everything that is wrong ends; false: not within `limit`.
+bool SwarmRun::mend(Duration limit) {
+    const Time end = run_.now() + limit;
+    for (end_faults(true); !faults_.empty(); end_faults(true)) {
+        if (!verdict_.broken.empty() || run_.now() >= end) return false;
+        run_until(run_.now() + again);
+    }
+    return true;
 }
 
 void SwarmRun::storm(Time end) {
@@ -150,7 +182,7 @@ void SwarmRun::storm(Time end) {
         }
         Time until = std::min(next, end);
         for (const Fault& each : faults_) until = std::min(until, each.ends);
-        run_until(std::max(until, run_.now() + 1us));
+        run_until(std::max(std::min(until, run_.now() + heard_every), run_.now() + 1us));
         end_faults(false);
     }
 }
@@ -158,23 +190,28 @@ void SwarmRun::storm(Time end) {
 void SwarmRun::end_faults(bool all) {
     for (std::size_t f = 0; f < faults_.size();) {
         Fault& fault = faults_[f];
-        if (!all && fault.ends > run_.now()) {
+        if (fault.is_over && fault.is_over()) {
+            forget(f);
+        } else if (!all && fault.ends > run_.now()) {
             ++f;
         } else if (!fault.end()) {
             fault.ends = run_.now() + again;
             ++f;
         } else {
-            for (const std::size_t c : fault.components) struck_.end(c, run_.now());
-            faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(f));
+            forget(f);
         }
     }
 }
 
-/// Of parts that did not start again: a new machine starts them.
+void SwarmRun::forget(std::size_t f) {
+    for (const std::size_t c : faults_[f].components) struck_.end(c, run_.now());
+    faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(f));
+}
+
+/// Of parts that did not start again, and of forces: a new machine has none.
 void SwarmRun::forget_faults() {
-    for (const Fault& each : faults_)
-        for (const std::size_t c : each.components) struck_.end(c, run_.now());
-    faults_.clear();
+    for (std::size_t f = faults_.size(); f-- > 0;)
+        if (!faults_[f].outlives_machine) forget(f);
 }
 
 void SwarmRun::note_responses() {
@@ -197,12 +234,50 @@ void SwarmRun::note_responses() {
 void SwarmRun::stop() {
     note_responses();
     run_.stop();
-    for (const Time end = run_.now() + at_rest; run_.now() < end;) {
-        run_.clock().advance_to(run_.now() + 1ms);
+    browser_.leave();
+    if (const Sentence fault = run_.instance().save_properties(run_.instance().standing()); !fault.empty())
+        deny(Sentence{"the properties cannot be saved at halt: ", fault});
+    judge_saved(true);
+    rest(at_rest);
+    ++verdict_.restarts;
+}
+
+/// The plant lives on without the machine.
+void SwarmRun::rest(Duration time) {
+    for (const Time end = run_.now() + time; run_.now() < end;) {
+        run_.clock().advance_to(std::min(end, run_.now() + 1ms));
         run_.devices().advance(run_.now());
         judge(run_.now());
     }
-    ++verdict_.restarts;
+}
+
+/// In order; or its process is gone in the middle of its work, and its guardian leaves the outputs safe.
+void SwarmRun::restart(bool orderly) {
+    ++verdict_.faults[orderly ? "machine restarted" : "machine ended abruptly"];
+    say(orderly ? "the machine is stopped and started"
+                : "the machine's process ends abruptly, and starts again");
+    end_faults(true);
+    if (orderly) {
+        stop();
+    } else {
+        note_responses();
+        browser_.leave();
+        // As the kernel does with the descriptors of a process.
+        if (service_ != nowhere)
+            run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->finalise();
+        is_gone_ = true; // what it promised is its guardian's
+        rest(Duration{random_.between(0, 10'000'000)});
+        run_.devices().write_safe_lines();
+        rest(Duration{random_.between(0, 10'000'000)});
+        run_.devices().send_safe_frames(run_.now());
+        rest(5ms);
+        run_.devices().attend(run_.now());
+        run_.devices().write_safe_registers();
+        rest(Duration{random_.between(100'000'000, 3'000'000'000)});
+        ++verdict_.restarts;
+    }
+    forget_faults();
+    if (verdict_.broken.empty()) static_cast<void>(start(true));
 }
 
 void SwarmRun::say(std::string_view text) {
@@ -216,188 +291,6 @@ void SwarmRun::begin(std::string_view kind, Sentence text, Duration lasts,
     for (const std::size_t c : components) struck_.begin(c);
     faults_.push_back(
         {run_.now() + lasts, kind.starts_with("activity"), std::move(components), std::move(end)});
-}
-
-void SwarmRun::strike() {
-    const Duration lasts{std::min<std::int64_t>(
-        random_.between(1, std::int64_t{1} << random_.between(17, 33)), longest_fault.count())};
-    const std::uint64_t what = random_.below(100);
-    if (what < 20) {
-        if (const Sentence trouble = rules_->trouble(random_, lasts); !trouble.empty()) {
-            ++verdict_.faults["plant"];
-            say(trouble.view());
-        }
-    } else if (what < 50 && !drivers_.empty()) {
-        const std::size_t c = drivers_[random_.below(drivers_.size())];
-        const ComponentRow& row = of_.machine.table.components[c];
-        if (drives(row, "can")) strike_bus(c, lasts);
-        if (drives(row, "gpio")) strike_chip(c, lasts);
-        if (drives(row, "modbus")) strike_server(c, lasts);
-    } else if (what < 65) {
-        strike_component(lasts);
-    } else if (what < 98) {
-        strike_activity(lasts);
-    } else {
-        ++verdict_.faults["machine restarted"];
-        say("the machine is stopped and started");
-        end_faults(true);
-        stop();
-        forget_faults();
-        if (verdict_.broken.empty()) static_cast<void>(start(true));
-    }
-}
-
-std::vector<std::size_t> SwarmRun::components_on(std::string_view device) const {
-    std::vector<std::size_t> found;
-    for (const std::size_t c : drivers_)
-        if (of_.machine.table.components[c].device == device) found.push_back(c);
-    return found;
-}
-
-std::vector<std::size_t> SwarmRun::components_of(std::size_t activity) const {
-    std::vector<std::size_t> found;
-    for (std::size_t c = 0; c < of_.machine.index.activity.size(); ++c)
-        if (of_.machine.index.activity[c] == activity) found.push_back(c);
-    return found;
-}
-
-void SwarmRun::strike_bus(std::size_t c, Duration lasts) {
-    const ComponentRow& row = of_.machine.table.components[c];
-    can::TwinBus& bus = run_.devices().bus(row.device);
-    const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
-    Sentence text{"bus \"", row.device, "\" "};
-    const std::uint64_t what = random_.below(7);
-    if (what == 4) {
-        bus.set_acknowledged(false);
-        return begin("bus unacknowledged", text.add("acknowledges nothing"), lasts, components_on(row.device),
-                     [&bus] { return bus.set_acknowledged(true), true; });
-    }
-    if (what == 5) {
-        bus.bus_off(run_.devices().controller(row.device));
-        return begin(
-            "bus off", text.add("goes off"), lasts, components_on(row.device),
-            [this, device = row.device] { return !can::faulted(run_.devices().controller(device).state()); });
-    }
-    const auto often = static_cast<std::uint32_t>(random_.between(1, 100));
-    if (what == 6) {
-        bus.overflow(run_.devices().controller(row.device), often);
-        return begin("bus overflow", text.add("overflows by ").add(often), lasts, components_on(row.device),
-                     [] { return true; });
-    }
-    constexpr std::array<std::string_view, 4> names{"bus loses", "bus doubles", "bus corrupts", "bus delays"};
-    const std::array<can::Chance*, 4> chances{&bus.faults.lose, &bus.faults.duplicate,
-                                              &bus.faults.corrupt_length, &bus.faults.delay};
-    can::Chance* const chance = chances[what];
-    chance->one_in = often;
-    bus.faults.only = {};
-    text.add(names[what].substr(4)).add(" one frame in ").add(often);
-    if (chance == &bus.faults.delay) bus.faults.delay_by = Duration{random_.between(10'000, 20'000'000)};
-    const std::size_t all = map.receive.size() + map.transmit.size();
-    if (const std::size_t one = random_.below(2 * all); one < all) {
-        bus.faults.only =
-            one < map.receive.size() ? map.receive[one] : map.transmit[one - map.receive.size()];
-        text.add(" of identifier ").add(bus.faults.only->id);
-    }
-    begin(names[what], text, lasts, components_on(row.device), [chance] { return chance->one_in = 0, true; });
-}
-
-void SwarmRun::strike_chip(std::size_t c, Duration lasts) {
-    const ComponentRow& row = of_.machine.table.components[c];
-    gpio::Twin& chip = run_.devices().lines(row.device);
-    const auto& map = *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map);
-    Sentence text{"lines \"", row.device, "\": "};
-    const std::uint64_t what = random_.below(6);
-    std::vector<std::size_t> inputs;
-    for (std::size_t i = 0; i < map.size(); ++i)
-        if (map[i].line.role == gpio::Role::input) inputs.push_back(i);
-    if (what == 0 || inputs.empty()) {
-        chip.set_removed(true);
-        return begin("chip removed", text.add("the chip is gone"), lasts, components_on(row.device),
-                     [&chip] { return chip.set_removed(false), true; });
-    }
-    const std::size_t line = inputs[random_.below(inputs.size())];
-    gpio::LineFaults& faults = chip.faults(line);
-    const auto many = static_cast<std::uint32_t>(random_.between(1, 4));
-    text.add("\"").add(map[line].line.name).add("\" ");
-    const auto heal = [&faults] { return faults = {}, true; };
-    switch (what) {
-    case 1:
-        faults.lose_next = many;
-        return begin("line loses edges", text.add("loses ").add(many).add(" edges"), lasts, {}, heal);
-    case 2:
-        faults.lose_one_in = many;
-        return begin("line loses edges", text.add("loses one edge in ").add(many), lasts, {}, heal);
-    case 3:
-        faults.bounces = many;
-        return begin("line bounces", text.add("bounces ").add(many).add(" times"), lasts, {}, heal);
-    case 4:
-        faults.delay = Duration{random_.between(1'000, 10'000'000)};
-        return begin("line is late", text.add("is ").add(faults.delay / 1us).add(" us late"), lasts, {},
-                     heal);
-    default: {
-        const bool level = random_.one_in(2);
-        chip.stick(line, level, run_.now());
-        return begin("line sticks", text.add(level ? "sticks active" : "sticks inactive"), lasts, {},
-                     [this, &chip, line] { return chip.release(line, run_.now()), true; });
-    }
-    }
-}
-
-void SwarmRun::strike_server(std::size_t c, Duration lasts) {
-    const ComponentRow& row = of_.machine.table.components[c];
-    modbus::Twin& server = run_.devices().server(row.device);
-    constexpr std::array<std::string_view, 6> names{
-        "is silent", "is slow", "answers exceptions", "answers wrong ones", "answers garbage", "is down"};
-    const std::size_t what = random_.below(names.size());
-    const auto requests = static_cast<std::uint32_t>(random_.between(1, 20));
-    server.set_slow_by(Duration{random_.between(1'000'000, 1'000'000'000)});
-    server.inject(static_cast<modbus::Fault>(what + 1), requests);
-    begin("server faults", Sentence{"server \"", row.device, "\" ", names[what], " ", requests, " times"},
-          lasts, components_on(row.device), [&server] { return server.inject(modbus::Fault::none), true; });
-}
-
-void SwarmRun::strike_component(Duration lasts) {
-    const std::size_t c = random_.below(of_.machine.table.components.size());
-    const Sentence text{"component \"", of_.machine.table.components[c].name, "\" "};
-    const bool restarts = random_.one_in(2);
-    const auto ask = [this, c](LifeChange change) { return run_.instance().life().ask_component(c, change); };
-    begin(restarts ? "component restarted" : "component stopped",
-          Sentence{text}.add(restarts ? "restarts" : "stops"), restarts ? 1ms : lasts, {c},
-          [this, c, ask, ticket = ask(restarts ? LifeChange::restart : LifeChange::stop)]() mutable {
-              MachineLife& life = run_.instance().life();
-              const LifeAnswer answer = life.answer_of_component(c, ticket);
-              const bool asked_again = answer.outcome != LifeOutcome::pending;
-              if (asked_again && life.state_of(c) == ComponentState::running) return true;
-              if (answer.outcome == LifeOutcome::refused)
-                  refusal_ = life.describe(of_.machine.index.activity[c], answer);
-              ticket = ask(LifeChange::start);
-              return false;
-          });
-}
-
-void SwarmRun::strike_activity(Duration lasts) {
-    const std::size_t a = random_.below(of_.machine.table.activities.size());
-    Sentence text{"activity \"", of_.machine.table.activities[a].name, "\" "};
-    const auto runs = [this, a] {
-        if (run_.instance().engines()[a].is_active()) return true;
-        refusal_ = run_.world().change_activity(a, LifeChange::start);
-        return refusal_.empty();
-    };
-    switch (random_.below(4)) {
-    case 0:
-    case 1:
-        lasts = std::max(lasts,
-                         Duration{std::int64_t{1} << random_.between(20, 32)}); // as long as watchdogs wait
-        run_.world().hang(a, run_.now() + lasts);
-        return begin("activity hangs", text.add("hangs"), lasts, components_of(a),
-                     [this, a] { return run_.world().hang(a, run_.now()), true; });
-    case 2:
-        begin("activity restarted", text.add("restarts"), 1ms, components_of(a), runs);
-        return static_cast<void>(run_.world().change_activity(a, LifeChange::restart));
-    default:
-        begin("activity stopped", text.add("stops"), lasts, components_of(a), runs);
-        return static_cast<void>(run_.world().change_activity(a, LifeChange::stop));
-    }
 }
 
 } // namespace tappet

@@ -1,8 +1,11 @@
 // A swarm: a machine and its plant under virtual time, again and again, while a seed chooses what goes wrong
-// with the devices, the components, the activities and the plant. Rules judge every moment.
+// with the devices, the components, the activities, the plant and the machine's process, and what people at
+// browsers ask for. Rules judge every moment.
 #pragma once
 
+#include "kernel/services/configuration/property_files.hpp"
 #include "toolchain/machine/host.hpp"
+#include "toolchain/machine/swarm_browser.hpp"
 #include "toolchain/machine/swarm_rules.hpp"
 
 #include <functional>
@@ -40,6 +43,9 @@ public:
     /// `tell`: called with each thing that happens, for a replay.
     using Tell = std::function<void(Time, std::string_view)>;
     SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell = {});
+    ~SwarmRun();
+    SwarmRun(const SwarmRun&) = delete;
+    SwarmRun& operator=(const SwarmRun&) = delete;
     /// Before go(): cycles and frames take time, see VirtualRun.
     void take_times(std::uint64_t seed, std::uint32_t bit_rate) { run_.take_times(seed, bit_rate); }
     /// Before go(): nothing fails.
@@ -52,7 +58,17 @@ private:
         Time ends{};
         bool of_activity = false; ///< the whole of one stands, or hangs
         std::vector<std::size_t> components{};
-        std::function<bool()> end{}; ///< false: not yet
+        std::function<bool()> end{};     ///< false: not yet
+        bool outlives_machine = false;   ///< a new one has it too
+        std::function<bool()> is_over{}; ///< somebody else has ended it; none: nobody can
+    };
+    /// An event that a browser has subscribed to.
+    struct Watched {
+        std::size_t index = nowhere; ///< nowhere: none
+        std::uint64_t before = 0;    ///< emissions served and lost before it was asked for
+        std::uint64_t told = 0, lost = 0;
+        Time looked{};
+        std::uint64_t owed = 0; ///< served and lost by then
     };
 
     bool start(bool again);
@@ -61,11 +77,16 @@ private:
     void storm(Time end);
     void strike();
     void end_faults(bool all);
+    void forget(std::size_t fault);
     void forget_faults();
     void note_responses();
     void stop();
+    void restart(bool orderly);
+    void rest(Duration time);
+    bool mend(Duration limit);
     void judge(Time now);
     void judge_emissions();
+    void deny(const Sentence& why);
     void say(std::string_view text);
     void begin(std::string_view kind, Sentence text, Duration lasts, std::vector<std::size_t> components,
                std::function<bool()> end);
@@ -74,6 +95,29 @@ private:
     void strike_server(std::size_t component, Duration lasts);
     void strike_component(Duration lasts);
     void strike_activity(Duration lasts);
+
+    // swarm_people.cpp
+    void find_what_people_may();
+    void hear();
+    void watch();
+    void judge_watched();
+    [[nodiscard]] std::uint64_t tellable(std::size_t subscription);
+    void ask(std::string request, SwarmBrowser::Then then);
+    void set(const std::string& name, const std::string& value, std::function<void(bool)> then);
+    /// As the end of a fault: asks until it is accepted.
+    [[nodiscard]] static std::function<bool()>
+    until_accepted(std::function<void(std::function<void(bool)> then)> asks);
+    void ask_for(std::string request, std::string_view refusals);
+    [[nodiscard]] std::string draw(const TypeTag& type, Range range);
+    void strike_people(Duration lasts);
+    void strike_property(Duration lasts);
+    void strike_port(Duration lasts);
+    void strike_slot();
+    void ask_a_command();
+    void ask_to_read();
+    void ask_to_save();
+    void judge_saved(bool with_values);
+    void judge_forces();
     [[nodiscard]] std::vector<std::size_t> components_on(std::string_view device) const;
     [[nodiscard]] std::vector<std::size_t> components_of(std::size_t activity) const;
     [[nodiscard]] bool chance(unsigned percent) { return random_.below(100) < percent; }
@@ -81,6 +125,7 @@ private:
     const SwarmOf& of_;
     Tell tell_;
     Random random_;
+    std::string directory_; ///< of its own: properties files, and the socket
     std::unique_ptr<Plant> plant_;
     VirtualRun run_;
     Struck struck_;
@@ -89,7 +134,18 @@ private:
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
     bool is_calm_ = false;
     std::uint64_t lost_ = 0; ///< emissions, so far
-    Sentence refusal_{};     ///< why a part did not start again, the last
+    std::unique_ptr<PropertyFiles> files_;
+    SwarmBrowser browser_;
+    std::size_t service_ = nowhere;            ///< the component that answers browsers
+    std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
+    std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
+    Watched watched_{};
+    std::map<std::string, std::string> first_values_{}; ///< of properties, before anybody set them
+    std::map<std::string, std::string> set_values_{};   ///< of properties of this machine, the last accepted
+    std::uint64_t sets_ = 0, sets_open_ = 0;            ///< asked for; of these not answered yet
+    bool sends_script_ = false;
+    bool is_gone_ = false; ///< the machine's process
+    Sentence refusal_{};   ///< why a part did not start again, the last
     SwarmVerdict verdict_{};
 };
 

@@ -92,9 +92,9 @@ struct Totals {
                            ", ", time / std::max(took, Duration{1ms}), " times as fast; ", broken,
                            " broken\n"}
                       .view());
-        Sentence struck{"struck:"};
-        for (const auto& [kind, number] : faults) struck.add(" ").add(kind).add(" ").add(number).add(",");
-        os::print(struck.add(" and ").add(restarts).add(" stops\n").view());
+        os::print("struck:");
+        for (const auto& [kind, number] : faults) os::print(Sentence{" ", kind, " ", number, ","}.view());
+        os::print(Sentence{" and ", restarts, " stops\n"}.view());
         if (!back.empty()) {
             std::ranges::sort(back);
             os::print(Sentence{"worked again ", in_s(back[back.size() / 2]),

@@ -6,9 +6,23 @@
 #include "kernel/base/random.hpp"
 #include "kernel/machine/instance/instance.hpp"
 
+#include <span>
 #include <vector>
 
 namespace tappet {
+
+/// A script for a slot of the machine.
+struct SwarmScript {
+    std::string_view slot{}, name{}, text{};
+    bool compiles = true; ///< else its load is to be refused
+};
+/// What people at browsers may do to the machine though every rule holds: beside reading, saving and what its
+/// interfaces have for operators.
+struct SwarmPeople {
+    std::span<const std::string_view> properties{}; ///< are set to anything in their ranges
+    std::span<const std::string_view> ports{};      ///< are forced to anything
+    std::span<const SwarmScript> scripts{};
+};
 
 /// What the swarm has struck, so that a rule asks for no more than whole parts can do.
 class Struck {
@@ -55,10 +69,9 @@ public:
     [[nodiscard]] virtual Duration works_within() const { return 30s; }
     /// What the machine itself says that it waits for; empty: it says nothing.
     [[nodiscard]] virtual std::string_view waits_for() { return {}; }
-    /// Somebody at the machine sees that it does not work, and does what its signs do not ask for.
-    virtual void acknowledge() {}
     /// Something goes wrong with the plant for `lasts` at most: what; empty: it has no faults of its own.
     virtual Sentence trouble(Random&, Duration /*lasts*/) { return {}; }
+    [[nodiscard]] virtual SwarmPeople people() const { return {}; }
 };
 
 } // namespace tappet

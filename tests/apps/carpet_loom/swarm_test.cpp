@@ -37,13 +37,13 @@ std::string name_of(const AcceptedMachine& machine, End end) {
 }
 
 class Planted : public testing::TestWithParam<Hazard> {};
-INSTANTIATE_TEST_SUITE_P(hazard, Planted,
-                         testing::Values(Hazard{"loom.inhibit_weft", "weft.inhibit"},
-                                         Hazard{"loom.set_brake", "io.brake.set"},
-                                         Hazard{"loom.quick_stop", "main.quick_stop"},
-                                         Hazard{"shaft.rests", "weft.on_rest"},
-                                         Hazard{"logic_dog.silent", "last_resort.act"},
-                                         Hazard{"loom.release_brake", "io.brake.clear"}));
+INSTANTIATE_TEST_SUITE_P(
+    hazard, Planted,
+    testing::Values(Hazard{"loom.inhibit_weft", "weft.inhibit"}, Hazard{"loom.set_brake", "io.brake.set"},
+                    Hazard{"loom.quick_stop", "main.quick_stop"}, Hazard{"shaft.rests", "weft.on_rest"},
+                    Hazard{"logic_dog.silent", "last_resort.act"},
+                    Hazard{"loom.release_brake", "io.brake.clear"}, Hazard{"shaft.brake_now", "weft.hold"},
+                    Hazard{"shaft_dog.silent", "last_resort.let_cutter_rest"}));
 
 TEST_P(Planted, is_found_by_a_seed) {
     AcceptedMachine machine = on_host();
