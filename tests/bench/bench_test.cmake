@@ -2,6 +2,7 @@
 # tappet_bench_test(NAME ARGUMENT...): a CTest that is one run of tappet-bench with these arguments.
 #
 #   EXPECT REGEX...  the output must match each of them, in any order
+#   GOLDEN FILE...   the lines of each must stand in the output, addresses, times and the build masked
 #   EXIT CODE        the guest's exit code (default 0)
 #   TIMEOUT S        wall time from the first command on (default 300: other tests may run beside it)
 #   RUN ARGUMENT...  the arguments of tappet-bench; generator expressions are welcome
@@ -11,7 +12,7 @@
 include_guard(GLOBAL)
 
 function(tappet_bench_test name)
-    cmake_parse_arguments(PARSE_ARGV 1 test "" "EXIT;TIMEOUT" "EXPECT;RUN")
+    cmake_parse_arguments(PARSE_ARGV 1 test "" "EXIT;TIMEOUT" "EXPECT;GOLDEN;RUN")
     if(NOT TARGET tappet-bench)
         return()
     endif()
@@ -27,6 +28,9 @@ function(tappet_bench_test name)
     set(expectations)
     foreach(regex IN LISTS test_EXPECT)
         list(APPEND expectations --expect "${regex}")
+    endforeach()
+    foreach(file IN LISTS test_GOLDEN)
+        list(APPEND expectations --golden "${file}")
     endforeach()
     add_test(NAME "bench.${name}"
              COMMAND bench-expect --exit ${test_EXIT} ${expectations} --

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench-expect: runs a command, shows its output, and checks its exit code and that the output matches every
-// given regular expression. CTest's own PASS_REGULAR_EXPRESSION asks for any one of them and forgets the exit
-// code.
+// bench-expect: runs a command, shows its output, and checks its exit code, that the output matches every
+// given regular expression, and that the lines of each golden file stand in it, one after the other, once
+// what varies from run to run is masked. CTest's own PASS_REGULAR_EXPRESSION asks for any one of them and
+// forgets the exit code.
 
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -49,11 +52,46 @@ Result run(std::vector<char*> words) {
     return result;
 }
 
+/// Addresses, times, numbers of processes and threads, the build.
+std::string masked(const std::string& line) {
+    static const std::pair<std::regex, const char*> masks[] = {
+        {std::regex("\r"), ""},
+        {std::regex("(0x[0-9a-f]+ )*0x[0-9a-f]+"), "0x#"},
+        {std::regex("[0-9]{4}-[0-9]{2}-[0-9]{2} [0-9:]{8} UTC"), "DATE"},
+        {std::regex("[0-9]+ us"), "# us"},
+        {std::regex("(build|thread) [0-9a-f]+"), "$1 #"}};
+    std::string text = line;
+    for (const auto& [what, mask] : masks) text = std::regex_replace(text, what, mask);
+    return text;
+}
+
+std::vector<std::string> lines_of(std::istream&& in) {
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);) lines.push_back(masked(line));
+    return lines;
+}
+
+bool has_golden(const std::string& output, const std::string& file) {
+    const auto golden = lines_of(std::ifstream{file}), lines = lines_of(std::istringstream{output});
+    std::size_t most = 0, at = 0;
+    for (std::size_t i = 0; i < lines.size() && most < golden.size(); ++i) {
+        std::size_t n = 0;
+        while (n < golden.size() && i + n < lines.size() && lines[i + n] == golden[n]) ++n;
+        if (n > most) most = n, at = i;
+    }
+    if (!golden.empty() && most == golden.size()) return true;
+    std::printf("FAILED: the output is not as in %s from its line %zu on; masked, it goes on:\n",
+                file.c_str(), most + 1);
+    for (std::size_t i = at + most; i < lines.size() && i < at + golden.size() + 2; ++i)
+        std::printf("%s\n", lines[i].c_str());
+    return false;
+}
+
 } // namespace
 
 int main(int count, char** arguments) {
     int wanted = 0;
-    std::vector<std::string> expectations;
+    std::vector<std::string> expectations, goldens;
     std::vector<char*> command;
     for (int i = 1; i < count; ++i) {
         const std::string option = arguments[i];
@@ -65,8 +103,12 @@ int main(int count, char** arguments) {
             wanted = std::atoi(arguments[++i]);
         } else if (i + 1 < count && option == "--expect") {
             expectations.emplace_back(arguments[++i]);
+        } else if (i + 1 < count && option == "--golden") {
+            goldens.emplace_back(arguments[++i]);
         } else {
-            std::fprintf(stderr, "usage: bench-expect [--exit CODE] [--expect REGEX]... -- COMMAND...\n");
+            std::fprintf(stderr,
+                         "usage: bench-expect [--exit CODE] [--expect REGEX]... [--golden FILE]... -- "
+                         "COMMAND...\n");
             return 2;
         }
     }
@@ -86,5 +128,6 @@ int main(int count, char** arguments) {
             ++failures;
         }
     }
+    for (const std::string& golden : goldens) failures += has_golden(result.output, golden) ? 0 : 1;
     return failures == 0 ? 0 : 1;
 }

@@ -58,8 +58,7 @@ public:
             watchdog_.kick(os::Clock::monotonic());
             if (look.must_act) {
                 act(look.reason);
-                const os::CrashNote& crash = guard_.block().crash;
-                return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
+                return exit_code();
             }
             if (!look.ended) continue;
             stand_down();
@@ -107,6 +106,11 @@ private:
         return {};
     }
 
+    /// Of a crash its own, though the process was killed for it.
+    [[nodiscard]] int exit_code() const {
+        const os::CrashNote& crash = guard_.block().crash;
+        return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
+    }
     Sentence why_it_ended() const {
         const int code = guard_.exit_code();
         if (const Sentence& fault = guard_.block().fault; !fault.empty())
@@ -158,7 +162,7 @@ private:
         map::black_box::Record record;
         record.magic = map::black_box::magic;
         record.version = map::black_box::version;
-        record.exit_code = guard_.exit_code();
+        record.exit_code = exit_code();
         record.memory_bytes = memory.size();
         record.wall_ns = os::wall_clock_ns();
         record.machine_ns = to_ns(os::Clock::monotonic());

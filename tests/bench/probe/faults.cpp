@@ -45,6 +45,12 @@ void commit(Fault fault) noexcept {
         *static_cast<volatile char*>(page.data()) = 1;
         return;
     case Fault::overrun: spin_ms(3); return;
+    case Fault::crash: {
+        static int* volatile nowhere = reinterpret_cast<int*>(64);
+        *nowhere = 1;
+        return;
+    }
+    case Fault::hang: spin_ms(10'000); return;
     }
 }
 

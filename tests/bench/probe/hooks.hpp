@@ -16,7 +16,7 @@ inline Sentence take_fault(std::span<char* const> words) {
             chosen = static_cast<Fault>(i);
             return {};
         }
-    return Sentence{"say one of nothing, allocate, map, touch, overrun, break-contract"};
+    return Sentence{"say one of nothing, allocate, map, touch, overrun, break-contract, crash, hang"};
 }
 
 inline void plant_fault(MachineInstance& instance) { instance.find<Culprit>("culprit")->fault = chosen; }

@@ -10,9 +10,9 @@
 
 namespace tappet::probe {
 
-enum class Fault : std::uint8_t { nothing, allocate, map, touch, overrun, break_contract };
-inline constexpr std::array<std::string_view, 6> fault_names{"nothing", "allocate", "map",
-                                                             "touch",   "overrun",  "break-contract"};
+enum class Fault : std::uint8_t { nothing, allocate, map, touch, overrun, break_contract, crash, hang };
+inline constexpr std::array<std::string_view, 8> fault_names{"nothing", "allocate",       "map",   "touch",
+                                                             "overrun", "break-contract", "crash", "hang"};
 
 /// What is forbidden needs the operating system, or the very calls that the compiler would not let pass: they
 /// are in faults.cpp.
@@ -21,23 +21,23 @@ void commit(Fault fault) noexcept;
 /// Says when it left its safe value, so that a test sees that it did.
 struct Culprit {
     Property<std::int64_t> after_cycles{100};
+    Output<std::int64_t> cycles;
     Fault fault = Fault::nothing; ///< before the machine is armed
     bool left_safe = false;
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
-        if (++cycles_ != after_cycles.get()) return;
+        cycles.write(cycles.last() + 1);
+        if (cycles.last() != after_cycles.get()) return;
         TAPPET_ESCAPE("the probe's purpose is to do what must not be done", commit(fault));
         TAPPET_CONTRACT(fault != Fault::break_contract, Contract::index_out_of_range, 7, 3);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { left_safe = true; }
 
     static constexpr auto interface() {
-        return facets(property<&Culprit::after_cycles>("after_cycles", "", "cycles before the fault",
+        return facets(output<&Culprit::cycles>("cycles", "", "so far"),
+                      property<&Culprit::after_cycles>("after_cycles", "", "cycles before the fault",
                                                        range(1, 1'000'000)));
     }
-
-private:
-    std::int64_t cycles_ = 0;
 };
 
 /// Runs in the same activity and must never be blamed.
