@@ -27,6 +27,7 @@ Sentence BrowserService::initialise() {
 void BrowserService::finalise() {
     for (Subscribed& each : subscribed_)
         if (each.taken) drop(each);
+    seen_count_ = 0; // nobody is left whom it could be told
     connections_.close();
 }
 

@@ -18,6 +18,12 @@ bool is_forced(const FacetCall& call) noexcept TAPPET_REALTIME {
     return *call.facet->port->places(call.place, is_input(*call.facet)).forced;
 }
 
+// What a component reads has changed: it looks at it in its next step, which nobody else may bring about.
+void step_again(const FacetCall& call) noexcept TAPPET_REALTIME {
+    Engine& engine = call.machine->engines()[call.machine->machine().index.activity[call.end.component]];
+    if (!engine.plan().periodic) engine.waiter().wake();
+}
+
 // What a component left behind when it stopped is its safe value: nothing is laid over that.
 void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
@@ -26,12 +32,14 @@ void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     // The count is for observers: nobody decides by it, so its sum is not used here.
     if (!is_forced(call)) call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
     call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
+    step_again(call);
 }
 
 void release_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     const FacetCall& call = call_of(self);
     if (is_forced(call)) call.machine->observation().forced_ports().fetch_sub(1, std::memory_order_relaxed);
     call.facet->port->release(call.place, is_input(*call.facet));
+    step_again(call);
 }
 
 void run_operation(void* self, const std::byte*) noexcept TAPPET_REALTIME {

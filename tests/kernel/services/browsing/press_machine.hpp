@@ -67,22 +67,35 @@ struct Ram {
 struct Table {
     Output<double> height;
     BufferOutput<std::int64_t> parts;
+    Output<bool> light; ///< never written
     void step(const Cycle&) noexcept TAPPET_REALTIME { height.write(50); }
     static constexpr auto interface() {
         return facets(output<&Table::height>("height", "mm", "of the table"),
-                      output<&Table::parts>("parts", "", "that lie on it"));
+                      output<&Table::parts>("parts", "", "that lie on it"),
+                      output<&Table::light>("light", "", "wanted"));
+    }
+};
+
+/// Follows its input when something wakes it.
+struct Lamp {
+    Input<bool> wanted;
+    bool lit = false;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { lit = wanted.get(); }
+    static constexpr auto interface() {
+        return facets(input<&Lamp::wanted>("wanted", "", "light", optional));
     }
 };
 
 // clang-format off
 inline constexpr auto table = machine("press",
     components(component<Ram>("ram", properties_file("ram.cpf", optional)), component<Table>("table"), component<BrowserService>("browser", set("log", false)),
-               component<Table>("shelf")),
+               component<Table>("shelf"), component<Lamp>("lamp")),
     activities(
         activity("motion",  every(1ms), budget(50us), runs("ram")),
         activity("slow",    every(10ms), budget(50us), runs("table", "shelf")),
+        activity("lamps",   on_work(), at_most(1, 10ms), deadline(10ms), budget(20us), runs("lamp")),
         activity("browser", every(20ms), not_real_time, runs("browser"))),
-    connections(data("table.height", "ram.limit", stale_after(1s), hold)),
+    connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.light", "lamp.wanted", wakes)),
     reactions(), behaviours());
 inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,
                              .browsing = {.mode = 0666, .roles = roles(user(1001, Role::machine_operator))}};

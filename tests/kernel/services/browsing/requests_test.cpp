@@ -201,6 +201,15 @@ TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
     EXPECT_EQ(talker.receive(), "");
 }
 
+TEST_F(Press, a_force_and_its_end_are_heeded_by_who_rests) {
+    Talker talker{path()};
+    const Lamp& lamp = *instance.find<Lamp>("lamp");
+    EXPECT_TRUE(has(ask(talker, "1 force lamp.wanted true"), R"("ok": true)"));
+    EXPECT_TRUE(lamp.lit);
+    EXPECT_TRUE(has(ask(talker, "2 release lamp.wanted"), R"("ok": true)"));
+    EXPECT_FALSE(lamp.lit);
+}
+
 TEST_F(Press, whoever_subscribed_is_told_what_came_while_the_browser_stood) {
     Talker talker{path()};
     EXPECT_TRUE(has(ask(talker, "1 subscribe ram.arrived"), R"("ok": true)"));
