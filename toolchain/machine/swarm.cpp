@@ -163,6 +163,7 @@ bool SwarmRun::run_until_works(Duration limit) {
 /// Everything that is wrong ends; false: not within `limit`.
 bool SwarmRun::mend(Duration limit) {
     const Time end = run_.now() + limit;
+    refusal_ = {};
     for (end_faults(true); !faults_.empty(); end_faults(true)) {
         if (!verdict_.broken.empty() || run_.now() >= end) return false;
         run_until(run_.now() + again);

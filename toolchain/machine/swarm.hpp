@@ -64,11 +64,13 @@ private:
     };
     /// An event that a browser has subscribed to.
     struct Watched {
-        std::size_t index = nowhere; ///< nowhere: none
-        std::uint64_t before = 0;    ///< emissions served and lost before it was asked for
-        std::uint64_t told = 0, lost = 0;
+        std::size_t index = nowhere;      ///< nowhere: none
+        std::uint64_t before = 0;         ///< emissions that came to the service before it was asked for
+        std::uint64_t told = 0, lost = 0; ///< as the packets say
+        bool was_told = false;            ///< since it was judged last
+        std::uint64_t known_lost = 0;     ///< by then
         Time looked{};
-        std::uint64_t owed = 0; ///< served and lost by then
+        std::uint64_t owed = 0; ///< had come by then
     };
 
     bool start(bool again);
@@ -101,7 +103,6 @@ private:
     void hear();
     void watch();
     void judge_watched();
-    [[nodiscard]] std::uint64_t tellable(std::size_t subscription);
     void ask(std::string request, SwarmBrowser::Then then);
     void set(const std::string& name, const std::string& value, std::function<void(bool)> then);
     /// As the end of a fault: asks until it is accepted.

@@ -4,9 +4,11 @@
 #include "kernel/services/browsing/browser_service.hpp"
 #include "toolchain/machine/swarm.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace tappet {
 
@@ -53,6 +55,7 @@ void SwarmRun::find_what_people_may() {
     browser_.tell_by([this](std::string_view packet) {
         if (field_of(packet, "event").empty()) return;
         ++watched_.told;
+        watched_.was_told = true;
         watched_.lost = std::strtoull(field_of(packet, "lost").c_str(), nullptr, 10);
     });
 }
@@ -77,33 +80,34 @@ void SwarmRun::watch() {
     const std::size_t index = events_[random_.below(events_.size())];
     const End event = of_.machine.plan.subscriptions[index].event;
     const ComponentRow& row = of_.machine.table.components[event.component];
+    const SubscriptionCounts counts = run_.instance().observation().counts_of(index);
     ask("subscribe " + std::string{row.name} + "." + std::string{row.type->facets[event.facet].name},
-        [this, index, before = tellable(index)](std::string_view answer) {
+        [this, index, before = counts.served - counts.outdated - counts.dropped](std::string_view answer) {
             if (is_good(answer)) watched_ = {.index = index, .before = before, .looked = run_.now()};
         });
 }
 
-/// Who watches an event is told each emission, or that it missed one.
+/// Who watches an event is told each emission that came to the service, and with it how many did not.
 void SwarmRun::judge_watched() {
     if (watched_.index == nowhere) return;
-    const std::uint64_t tellable_now = tellable(watched_.index);
+    const SubscriptionCounts counts = run_.instance().observation().counts_of(watched_.index);
+    const std::uint64_t came = counts.served - counts.outdated - counts.dropped;
     if (struck_.whole_for(service_, run_.now()) < told_within) {
         watched_.looked = run_.now();
         watched_.owed = 0;
     }
-    if (watched_.before + watched_.told > tellable_now)
+    if (watched_.before + watched_.told > came)
         deny(Sentence{"a browser was told of more emissions than there were"});
+    if (std::exchange(watched_.was_told, false) && watched_.lost < watched_.known_lost)
+        deny(Sentence{"emissions were lost, and who watched them was told of fewer"});
+    const std::uint64_t lost = counts.lost + counts.dropped,
+                        unseen = watched_.lost - std::min(watched_.lost, lost);
+    watched_.known_lost = lost;
     if (run_.now() - watched_.looked < told_within) return;
-    if (watched_.before + watched_.told + watched_.lost < watched_.owed)
+    if (watched_.before + watched_.told + unseen < watched_.owed)
         deny(Sentence{"an emission was lost, and who watched it was not told"});
     watched_.looked = run_.now();
-    watched_.owed = tellable_now;
-}
-
-/// Emissions that came to the service, or were lost on the way there.
-std::uint64_t SwarmRun::tellable(std::size_t subscription) {
-    const SubscriptionCounts counts = run_.instance().observation().counts_of(subscription);
-    return counts.served - counts.outdated - counts.dropped + counts.lost;
+    watched_.owed = came;
 }
 
 void SwarmRun::ask(std::string request, SwarmBrowser::Then then) {
@@ -117,11 +121,9 @@ void SwarmRun::set(const std::string& name, const std::string& value, std::funct
     ++sets_open_;
     ask("set " + name + " " + value, [this, name, value, then = std::move(then)](std::string_view answer) {
         --sets_open_;
-        set_values_.erase(name); // whoever is not told may have set it all the same
+        // Its component may refuse it for another's value; who is not told may have set it all the same.
+        if (field_of(answer, "code") != "bad_value") set_values_.erase(name);
         if (is_good(answer)) set_values_[name] = value;
-        if (field_of(answer, "code") == "bad_value")
-            deny(Sentence{"property \"", name, "\" does not take ", value,
-                          ", which lies in its range: ", field_of(answer, "error")});
         then(is_good(answer));
     });
 }
