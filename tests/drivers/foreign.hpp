@@ -21,7 +21,8 @@ namespace tappet {
 /// A running program; its output goes to a file, and it ends with the object.
 class Foreign {
 public:
-    explicit Foreign(const std::string& command)
+    /// `into`: its output goes there instead, and whoever reads that fills file().
+    explicit Foreign(const std::string& command, int into = -1)
         : output_{std::string{std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp"} +
                   "/foreign." + std::to_string(::getpid()) + "." + std::to_string(next_++)} {
         std::istringstream in{command};
@@ -31,7 +32,11 @@ public:
         arguments.push_back(nullptr);
         posix_spawn_file_actions_t files;
         ::posix_spawn_file_actions_init(&files);
-        ::posix_spawn_file_actions_addopen(&files, 1, output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+        if (into >= 0)
+            ::posix_spawn_file_actions_adddup2(&files, into, 1);
+        else
+            ::posix_spawn_file_actions_addopen(&files, 1, output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY,
+                                               0600);
         ::posix_spawn_file_actions_adddup2(&files, 1, 2);
         if (::posix_spawnp(&process_, arguments[0], &files, nullptr, arguments.data(), environ) != 0)
             process_ = -1;
@@ -52,6 +57,7 @@ public:
         code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
         return code_;
     }
+    [[nodiscard]] const std::string& file() const { return output_; }
     [[nodiscard]] std::string output() const {
         std::ifstream file{output_};
         return {std::istreambuf_iterator<char>{file}, {}};

@@ -6,6 +6,7 @@
 //
 // The lines are pulled to what is not safe: whoever lets go of them shows. Times are the guest's. Exit 1: a
 // run was not safe in time, or the loom did not weave again.
+#include "tests/bench/campaign/held_output.hpp"
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <array>
@@ -26,6 +27,7 @@ namespace {
 // Of who is asked by a browser: until that has started, and the loom stands.
 constexpr auto death = 10ms, hang = 210ms, silence = 110ms, orderly = 110ms, guardian_hangs = 1310ms,
                exhausted = 1500ms, asked = 3000ms;
+constexpr auto weaves_on = 2s; // so long at least, when it is to take no notice
 
 /// Brake on, valve closed: read from files that stay open, so that looking costs the machine little.
 class SafeLines {
@@ -41,6 +43,15 @@ private:
         return ::pread(file, &level, 1, 0) == 1 && level == '1';
     }
     int brake_ = open_level(wires::line::brake), valve_ = open_level(wires::line::weft_release);
+
+public:
+    SafeLines() = default;
+    SafeLines(const SafeLines&) = delete;
+    SafeLines& operator=(const SafeLines&) = delete;
+    ~SafeLines() {
+        ::close(brake_);
+        ::close(valve_);
+    }
 };
 
 bool be_fifo(int priority) {
@@ -70,14 +81,37 @@ void exhaust_memory() {
             std::memset(memory, 1, piece);
 }
 
-void take_bus_down() {
+void set_interface(const char* name, bool up) {
     const int file = ::socket(AF_INET, SOCK_DGRAM, 0);
     ifreq request{};
-    std::strncpy(request.ifr_name, "can0", sizeof request.ifr_name - 1);
+    std::strncpy(request.ifr_name, name, sizeof request.ifr_name - 1);
     ::ioctl(file, SIOCGIFFLAGS, &request);
-    request.ifr_flags = static_cast<short>(request.ifr_flags & ~IFF_UP);
+    request.ifr_flags = static_cast<short>(up ? request.ifr_flags | IFF_UP : request.ifr_flags & ~IFF_UP);
     ::ioctl(file, SIOCSIFFLAGS, &request);
     ::close(file);
+}
+
+constexpr const char* chip = "/sys/kernel/config/gpio-sim/io";
+/// Below every activity: above them the kernel's work for it keeps them from running.
+void unplug_chip() {
+    be_fifo(0);
+    std::ofstream{std::string{chip} + "/live"} << 0;
+}
+/// It may come as another device.
+void plug_chip() {
+    std::ofstream{std::string{chip} + "/live"} << 1;
+    const auto name = [](const std::string& file) {
+        std::string word;
+        std::ifstream{chip + file} >> word;
+        return word;
+    };
+    const std::string device = name("/bank0/chip_name");
+    for (const auto& [link, at] :
+         {std::pair{"/dev/io", "/dev/" + device},
+          std::pair{"/sim/io", "/sys/devices/platform/" + name("/dev_name") + "/" + device}}) {
+        ::unlink(link);
+        if (::symlink(at.c_str(), link) != 0) std::cout << "no " << link << std::endl;
+    }
 }
 
 enum class After : std::uint8_t {
@@ -85,34 +119,46 @@ enum class After : std::uint8_t {
     stopped,   ///< the machine stopped itself
     goes_on,   ///< it waits for the operator
     misses,    ///< the same, but acknowledged it prepares itself, with its brake off, and waits for its part
+    unplugged, ///< it stopped what it still reaches, and ends in order; its lines are nobody's
     untouched, ///< it weaves on
     either,    ///< untouched or dead: who asks the kernel for memory waits, in real time too
 };
 
+struct Victims {
+    pid_t guardian, machine;
+    HeldOutput& output;
+};
+
 struct Fault {
     std::string_view name;
-    void (*commit)(pid_t guardian, pid_t machine);
+    void (*commit)(const Victims&);
     std::chrono::milliseconds within;
     After after;
-    int code = 0;                    ///< dead: the exit code
-    const char* mended_by = nullptr; ///< misses: the command that starts the part again
+    int code = 0;                           ///< dead: the exit code
+    const char* mended_by = nullptr;        ///< misses: the command that starts the part again
+    void (*mend)(const Victims&) = nullptr; ///< untouched: it is as before
 };
 
 // clang-format off
 constexpr Fault faults[] = {
-    {"KILL",              [](pid_t, pid_t m) { ::kill(m, SIGKILL); },  death,          After::dead, 137},
-    {"SEGV",              [](pid_t, pid_t m) { ::kill(m, SIGSEGV); },  death,          After::dead, 139},
-    {"ABRT",              [](pid_t, pid_t m) { ::kill(m, SIGABRT); },  death,          After::dead, 134},
-    {"BUS",               [](pid_t, pid_t m) { ::kill(m, SIGBUS); },   death,          After::dead, 135},
-    {"FPE",               [](pid_t, pid_t m) { ::kill(m, SIGFPE); },   death,          After::dead, 136},
-    {"STOP",              [](pid_t, pid_t m) { ::kill(m, SIGSTOP); },  hang,           After::dead, 137},
-    {"spin",    [](pid_t, pid_t) { spin(600ms); },           hang,           After::dead, 137},
-    {"guardian-killed",   [](pid_t g, pid_t) { ::kill(g, SIGKILL); },  orderly,        After::stopped},
-    {"guardian-stopped",  [](pid_t g, pid_t) { ::kill(g, SIGSTOP); },  guardian_hangs, After::stopped},
-    {"can-down",          [](pid_t, pid_t) { take_bus_down(); },       silence,        After::goes_on},
-    {"memory-exhausted",  [](pid_t, pid_t) { exhaust_memory(); },      exhausted,      After::either, 137},
-    {"component-stopped", [](pid_t, pid_t) { ::tappet::run("tappet-browse stop weft"); },  asked, After::misses, 0, "tappet-browse start weft"},
-    {"activity-stopped",  [](pid_t, pid_t) { ::tappet::run("tappet-browse stop shaft"); }, asked, After::misses, 0, "tappet-browse start shaft"},
+    {"KILL",              [](const Victims& v) { ::kill(v.machine, SIGKILL); },  death,          After::dead, 137},
+    {"SEGV",              [](const Victims& v) { ::kill(v.machine, SIGSEGV); },  death,          After::dead, 139},
+    {"ABRT",              [](const Victims& v) { ::kill(v.machine, SIGABRT); },  death,          After::dead, 134},
+    {"BUS",               [](const Victims& v) { ::kill(v.machine, SIGBUS); },   death,          After::dead, 135},
+    {"FPE",               [](const Victims& v) { ::kill(v.machine, SIGFPE); },   death,          After::dead, 136},
+    {"STOP",              [](const Victims& v) { ::kill(v.machine, SIGSTOP); },  hang,           After::dead, 137},
+    {"spin",              [](const Victims&) { spin(600ms); },                   hang,           After::dead, 137},
+    {"guardian-killed",   [](const Victims& v) { ::kill(v.guardian, SIGKILL); }, orderly,        After::stopped},
+    {"guardian-stopped",  [](const Victims& v) { ::kill(v.guardian, SIGSTOP); }, guardian_hangs, After::stopped},
+    {"can-down",          [](const Victims&) { set_interface("can0", false); },  silence,        After::goes_on},
+    {"memory-exhausted",  [](const Victims&) { exhaust_memory(); },              exhausted,      After::either, 137},
+    {"component-stopped", [](const Victims&) { ::tappet::run("tappet-browse stop weft"); },  asked, After::misses, 0, "tappet-browse start weft"},
+    {"activity-stopped",  [](const Victims&) { ::tappet::run("tappet-browse stop shaft"); }, asked, After::misses, 0, "tappet-browse start shaft"},
+    {"stdout-blocked",    [](const Victims& v) { v.output.hold(true); soon([&] { return v.output.unread() > 3600; }, 20s, 50ms); }, {}, After::untouched, 0, nullptr,
+                          [](const Victims& v) { v.output.hold(false); }},
+    {"modbus-gone",       [](const Victims&) { set_interface("lo", false); },    {},             After::untouched, 0, nullptr,
+                          [](const Victims&) { set_interface("lo", true); }},
+    {"chip-unbound",      [](const Victims&) { unplug_chip(); },                 orderly,        After::unplugged},
 };
 // clang-format on
 
@@ -135,18 +181,20 @@ struct Verdict {
 
 class Campaign {
 public:
-    Campaign(std::uint32_t seed, bool guarded)
-        : random_{seed},
-          options_{guarded ? "" : "--no-guardian"},
-          plant_{"carpet-loom-plant --period 1ms --fifo 1 --operator-reaction 200ms"} {
-        std::this_thread::sleep_for(100ms); // the plant's Modbus server listens
-    }
+    Campaign(std::uint32_t seed, bool guarded) : random_{seed}, options_{guarded ? "" : "--no-guardian"} {}
 
     Verdict run(const Fault& fault) {
-        if (!machine_) machine_.emplace("carpet_loom " + options_);
+        if (!plant_) {
+            plant_.emplace("carpet-loom-plant --period 1ms --fifo 1 --operator-reaction 200ms");
+            std::this_thread::sleep_for(100ms); // its Modbus server listens
+        }
+        if (!machine_) {
+            output_.emplace();
+            machine_.emplace("carpet_loom " + options_, output_->entry());
+            output_->flow_into(machine_->file());
+        }
         const std::size_t told = seen_;
-        if (!says("state=weave"))
-            return {{}, {}, "the loom does not weave: " + machine_->output().substr(told)};
+        if (!says("state=weave")) return {{}, {}, "the loom does not weave: " + said().substr(told)};
         Foreign listener{listen_to_the_machine};
         std::this_thread::sleep_for(std::chrono::microseconds{100'000 + random_() % 400'000});
 
@@ -155,8 +203,15 @@ public:
         const pid_t machine = machine_of(*machine_), guardian = machine_->number();
         be_fifo(95); // the judge must see what a thread that spins keeps from everybody else
         const WallTime committed = wall_now();
-        fault.commit(guardian, machine == 0 ? guardian : machine);
-        Verdict verdict = judge_lines(fault, committed, machine);
+        const Victims victims{guardian, machine == 0 ? guardian : machine, *output_};
+        fault.commit(victims);
+        Verdict verdict;
+        if (fault.after == After::untouched) {
+            if (soon([&] { return lines_->now(); }, weaves_on)) verdict.fault = "it stopped";
+            fault.mend(victims);
+        } else if (fault.after != After::unplugged) {
+            verdict = judge_lines(fault, committed, machine);
+        }
         be_fifo(0);
         After after = fault.after;
         if (after == After::either && machine_->runs() && verdict.lines == WallDuration{}) {
@@ -165,6 +220,11 @@ public:
         }
         const std::string end = judge_end(fault, after, machine);
         if (verdict.fault.empty()) verdict.fault = end;
+        if (after == After::unplugged) {
+            plant_.reset(), lines_.reset();
+            plug_chip();
+            lines_.emplace();
+        }
         pull(wires::line::brake, true);
         pull(wires::line::weft_release, false);
         if (after != After::untouched) judge_drives(fault, committed, listener, verdict);
@@ -174,15 +234,22 @@ public:
     }
 
 private:
+    std::string said() {
+        output_->settle();
+        return machine_->output();
+    }
     bool says(std::string_view text) {
         return soon(
             [&] {
-                const std::size_t at = machine_->output().find(text, seen_);
+                const std::size_t at = said().find(text, seen_);
                 if (at == std::string::npos) return false;
                 seen_ = at + text.size();
                 return true;
             },
             20s, 20ms);
+    }
+    static std::string end_of(const std::string& told) {
+        return told.substr(told.size() - std::min<std::size_t>(told.size(), 800));
     }
     static bool lives(pid_t process) {
         return ::kill(process, 0) == 0 &&
@@ -195,7 +262,7 @@ private:
         const pid_t holder = fault.after == After::stopped && machine != 0 ? machine : machine_->number();
         bool safe = false;
         while (wall_now() - committed < fault.within + 60ms) {
-            const bool now_safe = lines_.now();
+            const bool now_safe = lines_->now();
             // Nobody holds them any more once the holder has ended, which takes a while.
             if (!now_safe && !lives(holder)) break;
             if (!now_safe && safe && soon([&] { return !lives(holder); }, 20ms)) break;
@@ -220,34 +287,43 @@ private:
         case After::either:
         case After::dead: {
             const int code = machine_->wait();
-            const std::string said = machine_->output();
-            machine_.reset(), seen_ = 0;
+            const std::string told = said();
+            forget_machine();
             if (code != fault.code) return "its exit code is " + std::to_string(code);
-            if (!said.contains("the guardian wrote the lines"))
+            if (!told.contains("the guardian wrote the lines"))
                 return "the guardian does not say what it did";
-            if (!said.contains("the black box is /run/carpet-loom-")) return "no black box was kept";
+            if (!told.contains("the black box is /run/carpet-loom-")) return "no black box was kept";
             return {};
         }
         case After::stopped: {
             const bool ended = soon([&] { return !lives(machine); });
             machine_->signal(SIGKILL);
-            const std::string said = (machine_->wait(), machine_->output());
-            machine_.reset(), seen_ = 0;
+            const std::string told = (machine_->wait(), said());
+            forget_machine();
             if (!ended) return "the machine goes on without a guardian";
-            if (!said.contains("stopped: its guardian is gone"))
+            if (!told.contains("stopped: its guardian is gone"))
                 return "the machine does not say why it stopped";
             return {};
+        }
+        case After::unplugged: {
+            const bool stops = says("state=emergency");
+            machine_->signal(SIGTERM);
+            const int code = machine_->wait();
+            const std::string told = said();
+            forget_machine();
+            if (!stops) return "it does not go to its emergency: " + end_of(told);
+            return code == 0 ? "" : "its exit code is " + std::to_string(code);
         }
         case After::goes_on:
         case After::misses:
         case After::untouched: break;
         }
         if (!machine_->runs()) {
-            const std::string said = machine_->output();
-            machine_.reset(), seen_ = 0;
-            return "the machine ended: " + said.substr(said.size() - std::min<std::size_t>(said.size(), 400));
+            const std::string told = said();
+            forget_machine();
+            return "the machine ended: " + end_of(told);
         }
-        seen_ = machine_->output().size();
+        seen_ = said().size();
         return after != After::untouched || says("state=weave") ? "" : "it does not weave on";
     }
 
@@ -262,8 +338,9 @@ private:
         for (const Logged& f : frames_of(listener.output())) {
             if (!is_drive_command(f) || f.at < committed || f.at > end) continue;
             ++told;
-            // Who prepares itself has its drives hold, and tightens the warp.
-            const bool turns = fault.after != After::misses
+            // Who prepares itself has its drives hold, and tightens the warp; a shaft without its brake
+            // coasts, and the let-off follows it.
+            const bool turns = fault.after != After::misses && fault.after != After::unplugged
                                    ? !drives_stand(f)
                                    : f.id == wires::cob::main_drive_command && f.target() != 0;
             if (turns) verdict.drives = std::chrono::duration_cast<WallDuration>(f.at - committed);
@@ -273,10 +350,17 @@ private:
         if (told == 0 && fault.after == After::dead) verdict.fault = "the drives were told nothing";
     }
 
-    SafeLines lines_;
+    void forget_machine() {
+        machine_.reset();
+        output_.reset();
+        seen_ = 0;
+    }
+
+    std::optional<SafeLines> lines_{std::in_place};
     std::mt19937 random_;
     std::string options_;
-    Foreign plant_;
+    std::optional<Foreign> plant_;
+    std::optional<HeldOutput> output_; // ends after the machine
     std::optional<Foreign> machine_;
     std::size_t seen_ = 0;
 };
