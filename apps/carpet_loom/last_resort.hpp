@@ -8,7 +8,14 @@ namespace tappet::carpet {
 
 /// Real-time, in the activity of the watchdogs.
 struct LastResort {
+    Input<bool> logic_alive, shaft_alive;
     Event<> set_brake, close_valve, quick_stop, rest_cutter;
+
+    /// A silence is told once, perhaps to nobody.
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        if (logic_alive.good() && !logic_alive.get()) act({});
+        if (shaft_alive.good() && !shaft_alive.get()) let_cutter_rest({});
+    }
 
     void act(Duration) noexcept TAPPET_REALTIME {
         set_brake.emit();
@@ -19,6 +26,8 @@ struct LastResort {
 
     static constexpr auto interface() {
         return facets(
+            input<&LastResort::logic_alive>("logic_alive", "", "the activity of the states shows life"),
+            input<&LastResort::shaft_alive>("shaft_alive", "", "the activity of the shaft shows life"),
             event<&LastResort::set_brake>("set_brake", "brake on", heard_by(1)),
             event<&LastResort::close_valve>("close_valve", "valve closed, and no weft let go", heard_by(2)),
             event<&LastResort::quick_stop>("quick_stop", "drives to a stand at once", heard_by(2)),

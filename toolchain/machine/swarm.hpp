@@ -142,8 +142,13 @@ private:
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
     Watched watched_{};
     std::map<std::string, std::string> first_values_{}; ///< of properties, before anybody set them
-    std::map<std::string, std::string> set_values_{};   ///< of properties of this machine, the last accepted
-    std::uint64_t sets_ = 0, sets_open_ = 0;            ///< asked for; of these not answered yet
+    /// Of properties of this machine, by the order in which they were set; empty: it is not known.
+    struct SetValue {
+        std::uint64_t order = 0;
+        std::string value{};
+    };
+    std::map<std::string, SetValue> set_values_{};
+    std::uint64_t sets_ = 0, sets_open_ = 0; ///< asked for; of these not answered yet
     bool sends_script_ = false;
     bool is_gone_ = false; ///< the machine's process
     Sentence refusal_{};   ///< why a part did not start again, the last

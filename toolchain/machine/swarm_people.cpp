@@ -117,15 +117,16 @@ void SwarmRun::ask(std::string request, SwarmBrowser::Then then) {
 
 /// `then`: with whether it was accepted.
 void SwarmRun::set(const std::string& name, const std::string& value, std::function<void(bool)> then) {
-    ++sets_;
     ++sets_open_;
-    ask("set " + name + " " + value, [this, name, value, then = std::move(then)](std::string_view answer) {
-        --sets_open_;
-        // Its component may refuse it for another's value; who is not told may have set it all the same.
-        if (field_of(answer, "code") != "bad_value") set_values_.erase(name);
-        if (is_good(answer)) set_values_[name] = value;
-        then(is_good(answer));
-    });
+    ask("set " + name + " " + value,
+        [this, name, value, order = ++sets_, then = std::move(then)](std::string_view answer) {
+            --sets_open_;
+            // Its component may refuse it for another's value; who is not told may have set it all the same.
+            SetValue& last = set_values_[name];
+            if (field_of(answer, "code") != "bad_value" && order > last.order)
+                last = {order, is_good(answer) ? value : std::string{}};
+            then(is_good(answer));
+        });
 }
 
 /// `refusals`: the codes with which it may be refused, since people ask at any time.
@@ -230,7 +231,7 @@ void SwarmRun::strike_port(Duration lasts) {
     begin("port forced", Sentence{"port \"", name, "\" is forced to ", value}, lasts, {},
           until_accepted([this, name](std::function<void(bool)> then) {
               ask("release " + name, [this, then = std::move(then)](std::string_view answer) {
-                  if (!is_good(answer)) refusal_ = Sentence{field_of(answer, "error")};
+                  if (!is_good(answer) && refusal_.empty()) refusal_ = Sentence{field_of(answer, "error")};
                   then(is_good(answer));
               });
           }));
@@ -312,16 +313,16 @@ void SwarmRun::judge_saved(bool with_values) {
         saved.begin(row.name, *row.type, run_.instance().component(c));
         if (const Sentence refused = files_->load(row, saved); !refused.empty())
             return deny(Sentence{"what is saved is refused: ", refused});
-        for (const auto& [name, value] : set_values_) {
+        for (const auto& [name, set] : set_values_) {
             End end;
             static_cast<void>(resolve(table, name, FacetKind::property, end));
-            if (!with_values || end.component != c) continue;
+            if (!with_values || end.component != c || set.value.empty()) continue;
             const Facet& facet = row.type->facets[end.facet];
             const std::string kept =
                 saved.changes(end.facet) ? text_of(*facet.type, saved.change(end.facet)) : "nothing";
-            if (kept != value)
-                return deny(
-                    Sentence{"property \"", name, "\" is saved as ", kept, ", though it was set to ", value});
+            if (kept != set.value)
+                return deny(Sentence{"property \"", name, "\" is saved as ", kept, ", though it was set to ",
+                                     set.value});
         }
     }
 }

@@ -69,6 +69,19 @@ TEST_P(WhileWeaving, the_stop_of_a_part_stops_the_loom_with_its_valve_closed) {
     }
 }
 
+/// What the watchdogs tell once reached nobody.
+TEST(TheLastResort, acts_when_it_starts_while_the_states_hang) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    rig.change("component:last_resort", LifeChange::stop);
+    rig.run().world().hang(find_activity(rig.run().instance().machine().table, "logic"), rig.now() + 5s);
+    rig.plant().press(Button::stop, 100ms); // somebody needs it
+    rig.run_for(200ms);
+    EXPECT_GT(rig.plant().speed_rpm(), 500.0);
+    rig.change("component:last_resort", LifeChange::start);
+    rig.expect_stopped_and_staying_so(1s);
+}
+
 class StartedAnew : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(part, StartedAnew,
                          testing::Values("activity:shaft", "component:shaft", "component:weft",
