@@ -22,6 +22,7 @@ public:
         logic_ = number("loom");
         weft_ = number("weft");
         watch_ = number("shaft_dog");
+        states_watch_ = number("logic_dog");
         for (const auto name : {"can", "main", "motion_dog", "last_resort"})
             static_cast<void>(leads_.push(number(name)));
         damage_ = plant_.damage();
@@ -139,7 +140,8 @@ private:
         const bool rests = machine_.life().state_of(logic_) == ComponentState::running &&
                            !machine_.engines()[machine_.machine().index.activity[logic_]].is_woken();
         if (struck_.whole_for(logic_, now) >= Duration{} || rests) seen_at_ = now;
-        const Duration left = std::min({now - seen_at_, struck_.whole_for(io_, now), led_for(now)});
+        const Duration left = std::min({now - seen_at_, struck_.whole_for(io_, now),
+                                        struck_.whole_for(states_watch_, now), led_for(now)});
         return left >= noticed_within && plant_.speed_rpm() != 0.0
                    ? "the shaft turns without the loom's states"
                    : "";
@@ -149,7 +151,7 @@ private:
     loom::Plant& plant_;
     const Struck& struck_;
     Loom& loom_;
-    std::size_t io_ = 0, logic_ = 0, weft_ = 0, watch_ = 0;
+    std::size_t io_ = 0, logic_ = 0, weft_ = 0, watch_ = 0, states_watch_ = 0;
     Bounded<std::size_t, 4> leads_{};
     LoomState state_ = LoomState::off;
     Time since_{}, seen_at_{};

@@ -82,6 +82,17 @@ TEST(TheLastResort, acts_when_it_starts_while_the_states_hang) {
     rig.expect_stopped_and_staying_so(1s);
 }
 
+TEST(TheLines, that_come_back_braked_get_no_weft_while_the_states_hang) {
+    Parts rig;
+    ASSERT_TRUE(rig.weave_by_hand());
+    ASSERT_TRUE(rig.at_angle(60.0)); // before the release
+    rig.run().world().hang(find_activity(rig.run().instance().machine().table, "logic"), rig.now() + 1s);
+    rig.change("component:io", LifeChange::restart);
+    EXPECT_TRUE(rig.output(wires::line::brake));
+    for (const Time end = rig.now() + 1s; rig.now() < end; rig.run_for(1ms))
+        ASSERT_FALSE(rig.output(wires::line::weft_release));
+}
+
 class StartedAnew : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(part, StartedAnew,
                          testing::Values("activity:shaft", "component:shaft", "component:weft",
