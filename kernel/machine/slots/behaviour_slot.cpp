@@ -126,9 +126,9 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     connect(true);
     BehaviourUnit* const unit = active();
     if (unit == nullptr) return;
-    // What is taken back left no traces: the old one finds its variables as they were.
+    // What is taken back left no traces: the old one finds its variables as they were, or as people set them.
     for (SlotTask* task = tasks_; task != nullptr; task = task->next)
-        is_roll_back_ ? task->take(*unit, bank()) : task->give(*unit, bank());
+        task->exchange(*unit, bank(), is_roll_back_ ? SlotTask::When::take_back : SlotTask::When::take_over);
     if (runs_) unit->start(now);
 }
 

@@ -86,47 +86,23 @@ Sentence SlotTask::fit(const ScriptUnit& unit, std::size_t bank) {
     return {};
 }
 
-template <class Visit>
-void SlotTask::for_each_value(BehaviourUnit& unit, std::size_t bank, const Visit& visit) noexcept
-    TAPPET_REALTIME {
+void SlotTask::exchange(BehaviourUnit& unit, std::size_t bank, When when) noexcept TAPPET_REALTIME {
     std::byte* const data = part(unit, bank).data;
     const DataOffset* const places = room_.places.data() + bank * shape_.variables.size();
     for (std::size_t i = 0; i < shape_.variables.size(); ++i) {
         const std::size_t number = shape_.variables[i];
         const std::size_t at = TaskShape::place_of(*shape_.type, number);
-        visit(room_.values.data() + at, room_.seen.data() + at, data + places[i],
-              shape_.type->tables.variables[number].type->size);
+        const std::size_t size = shape_.type->tables.variables[number].type->size;
+        std::byte *const own = room_.values.data() + at, *const seen = room_.seen.data() + at,
+                         *const its = data + places[i];
+        const bool is_set = std::memcmp(own, seen, size) != 0;
+        if (is_set) set_ |= std::uint64_t{1} << i;
+        const bool was_set = when == When::take_back && (set_ >> i & 1) != 0;
+        const bool gives = is_set || was_set || when == When::take_over;
+        std::memcpy(gives ? its : own, gives ? own : its, size);
+        std::memcpy(seen, own, size);
     }
-}
-
-void SlotTask::give(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME {
-    for_each_value(unit, bank,
-                   [](std::byte* own, std::byte* seen, std::byte* its, std::size_t size) noexcept
-                   TAPPET_REALTIME {
-                       std::memcpy(its, own, size);
-                       std::memcpy(seen, own, size);
-                   });
-}
-
-void SlotTask::take(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME {
-    for_each_value(unit, bank,
-                   [](std::byte* own, std::byte* seen, std::byte* its, std::size_t size) noexcept
-                   TAPPET_REALTIME {
-                       std::memcpy(own, its, size);
-                       std::memcpy(seen, its, size);
-                   });
-}
-
-void SlotTask::exchange(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME {
-    for_each_value(unit, bank,
-                   [](std::byte* own, std::byte* seen, std::byte* its, std::size_t size) noexcept
-                   TAPPET_REALTIME {
-                       if (std::memcmp(own, seen, size) != 0)
-                           std::memcpy(its, own, size);
-                       else
-                           std::memcpy(own, its, size);
-                       std::memcpy(seen, own, size);
-                   });
+    if (when != When::step) set_ = 0;
 }
 
 } // namespace tappet

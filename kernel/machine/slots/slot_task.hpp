@@ -28,6 +28,8 @@ struct TaskShape {
 
 class SlotTask {
 public:
+    static constexpr std::size_t max_variables = 64;
+
     /// Memory of the task, which outlives the slot.
     struct Room {
         std::span<std::byte> values{};  ///< value_bytes()
@@ -46,23 +48,20 @@ public:
     [[nodiscard]] UnitPart& part(BehaviourUnit& unit, std::size_t bank) const noexcept TAPPET_REALTIME {
         return unit.parts()[parts_[bank]];
     }
-    /// The behaviour has the task's values.
-    void give(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME;
-    /// The task has the behaviour's values.
-    void take(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME;
-    /// What was set in the task goes to the behaviour, of all else the behaviour's value comes to the task.
-    void exchange(BehaviourUnit& unit, std::size_t bank) noexcept TAPPET_REALTIME;
+    enum class When : std::uint8_t { step, take_over, take_back };
+    /// Properties and variables become the same: what was set in the task goes to the behaviour, of all else
+    /// its value comes to the task. One that takes over is given them all, one that comes back what was set
+    /// since.
+    void exchange(BehaviourUnit& unit, std::size_t bank, When when = When::step) noexcept TAPPET_REALTIME;
 
     SlotTask* next = nullptr; ///< of the same slot
 
 private:
-    template <class Visit>
-    void for_each_value(BehaviourUnit& unit, std::size_t bank, const Visit& visit) noexcept TAPPET_REALTIME;
-
     std::string_view name_{};
     TaskShape shape_{};
     Room room_{};
     std::size_t parts_[2]{};
+    std::uint64_t set_ = 0; ///< of each variable whether it was, since the last one took over
 };
 
 } // namespace tappet

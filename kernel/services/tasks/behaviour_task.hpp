@@ -181,6 +181,8 @@ struct BehaviourTask : detail::AnyBehaviourTask {
 
     void control(const Controlled& controlled) noexcept {
         AnyBehaviourTask::control(controlled);
+        static_assert(known.size() <= SlotTask::max_variables,
+                      "a task has at most 64 variables: split the behaviour");
         if constexpr (knows_script)
             if (controlled.slot != nullptr) {
                 in_slot_.place(controlled.name, {&script.instances[number], type, known},

@@ -239,12 +239,16 @@ TEST_F(Loaded, one_that_is_taken_back_has_changed_none) {
     ASSERT_EQ(slot().phase(), SlotPhase::steady);
     oven().told.clear();
     load(counting(-8)); // 4, then -4, which the oven refuses
-    tick(2);
+    tick();
+    property<double>("baking", "heat") = 99;
+    tick();
     EXPECT_EQ(slot().last_roll_back(), RollBack::error);
     EXPECT_THAT(oven().told, ElementsAre(4, -4));
     EXPECT_EQ(count(), 12);
+    EXPECT_EQ(property<double>("baking", "heat"), 99.0) << "what people set meanwhile is theirs";
     tick();
     EXPECT_EQ(count(), 13);
+    EXPECT_EQ(property<double>("baking", "heat"), 99.0);
 }
 
 TEST_F(Loaded, what_does_not_fit_is_refused_and_says_so) {
