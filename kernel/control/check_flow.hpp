@@ -121,16 +121,15 @@ constexpr Sentence check_outside(const ConnectionRow& row, const MachineView& m,
         if (each.component == from &&
             (each.role == ControlRole::effector || each.role == ControlRole::process))
             return {};
-    const std::string_view reader = m.components[to].name;
-    return is_driver(m, to)
-               ? checks::of_connection(row,
-                                       ": only an Effector reaches the hardware, within its limits, and \"",
-                                       m.components[from].name, "\" is ", a_role(seat_of(seats, from).role),
-                                       "; let it write for an Effector")
-               : checks::of_connection(row, ": \"", reader,
-                                       "\" has no role in control(...), so that nobody sees where "
-                                       "the value goes on to; add process(\"",
-                                       reader, "\") if it only looks");
+    if (is_driver(m, to))
+        return checks::of_connection(row,
+                                     ": only an Effector reaches the hardware, within its limits, and \"",
+                                     m.components[from].name, "\" is ", a_role(seat_of(seats, from).role),
+                                     "; let it write for an Effector");
+    return checks::of_connection(
+        row, ": \"", m.components[to].name,
+        "\" has no role in control(...), so that nobody sees where the value goes on to; "
+        "if it only looks add process(...)");
 }
 
 constexpr Sentence check_row(const ControlView& c, const MachineView& m, const TableIndexView& r,

@@ -20,24 +20,6 @@ namespace tappet {
 /// The stereotypes of thesis 3.1.2.
 enum class ControlRole : std::uint8_t { sensor, estimator, generator, controller, effector, process };
 
-/// With its article.
-constexpr std::string_view a_role(ControlRole role) noexcept {
-    switch (role) {
-    case ControlRole::sensor: return "a Sensor";
-    case ControlRole::estimator: return "an Estimator";
-    case ControlRole::generator: return "a Generator";
-    case ControlRole::controller: return "a Controller";
-    case ControlRole::effector: return "an Effector";
-    case ControlRole::process: return "a process component";
-    }
-    return "?";
-}
-
-constexpr std::string_view to_text(ControlRole role) noexcept {
-    const std::string_view text = a_role(role);
-    return text.substr(text.find(' ') + 1);
-}
-
 struct RoleRow {
     ControlRole role = ControlRole::process;
     std::string_view component{};

@@ -16,6 +16,24 @@ struct ControlView {
     std::span<const LoopRow> loops;
 };
 
+/// With its article.
+constexpr std::string_view a_role(ControlRole role) noexcept {
+    switch (role) {
+    case ControlRole::sensor: return "a Sensor";
+    case ControlRole::estimator: return "an Estimator";
+    case ControlRole::generator: return "a Generator";
+    case ControlRole::controller: return "a Controller";
+    case ControlRole::effector: return "an Effector";
+    case ControlRole::process: return "a process component";
+    }
+    return "?";
+}
+
+constexpr std::string_view to_text(ControlRole role) noexcept {
+    const std::string_view text = a_role(role);
+    return text.substr(text.find(' ') + 1);
+}
+
 inline constexpr std::size_t no_level = static_cast<std::size_t>(-1);
 
 /// A component in a role. One that is merged of two roles has two seats.

@@ -1,4 +1,6 @@
 // The control kernel: who reads, writes and calls whom, what runs by turns, and which loops can be stable.
+#include "kernel/machine/table/compiled.hpp"
+#include "kernel/statechart/rows.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 #include "tests/kernel/control/axis.hpp"
 
@@ -58,6 +60,30 @@ struct Drive {
         return facets(input<&Drive::driven>("driven", "m/s", "wanted", optional),
                       output<&Drive::place>("place", "m", "measured"));
     }
+};
+
+/// Has a gain, and no role.
+struct Tuned {
+    Property<double> kp;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(property<&Tuned::kp>("kp", "1/s", "of nothing", range(0.0, 10.0)));
+    }
+};
+
+constexpr auto moving = state_machine<Mover>("moving", states(state("on", initial), state("off", final)),
+                                             transitions(transition("on", "off", after(1s))));
+
+/// Counts in whole numbers, and somebody sees it.
+struct Counter {
+    Output<std::int32_t> count;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { count.write(count.last() + 1); }
+    static constexpr auto interface() { return facets(output<&Counter::count>("count", "", "of cycles")); }
+};
+struct Shown {
+    Input<std::int32_t> count;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { static_cast<void>(count.get()); }
+    static constexpr auto interface() { return facets(input<&Shown::count>("count", "", "of cycles")); }
 };
 
 constexpr Board controlled_box{.name = "box", .memory_budget_bytes = 1 << 20};
@@ -124,8 +150,9 @@ constexpr Fault level_faults[] = {
      R"(axis: level "axis": there is no component "encodre"; did you mean "encoder"?)"},
     {"role_twice", [](Table& m) { seat(m, sensor("encoder")); },
      R"(axis: level "axis": "encoder" is a Sensor twice; name it once, and read it where it is needed)"},
-    {"role_in_two_levels", [](Table& m) { m.control.levels.push_back(level("second", sensor("encoder"))); },
-     R"(axis: level "second": "encoder" is a Sensor twice; name it once, and read it where it is needed)"},
+    {"role_in_two_levels",
+     [](Table& m) { m.control.levels.push_back(level("second", estimator("encoder"))); }, R"(axis: level "second": "encoder" sits in level "axis" already; a component runs in one level)"},
+    {"level_with_too_many", [](Table& m) { m.control.levels[0].too_many = true; }, R"(axis: level "axis": it has more than the 24 components that it may have; make two of it)"},
     {"role_and_process", [](Table& m) { m.control.processes.push_back(process("encoder")); },
      R"(axis: control: "encoder" writes the data flow and cannot be a process component too; name it once)"},
     {"process_in_a_level", [](Table& m) { seat(m, process("slide")); },
@@ -204,6 +231,16 @@ constexpr Fault cascade_faults[] = {
          m.put(data("encoder.position", "path.measured", interpolated, stale_after(20ms), hold));
      },
      R"(cascade: connection "encoder.position" -> "path.measured": in_steps, interpolated and extrapolated are for a reader whose period divides the longer one of the writer; activity "fast" and activity "slow" are not such; remove it, or change a period)"},
+    {"interpolated_whole_numbers",
+     [](Table& m) {
+         m.add(component<Counter>("counter"));
+         m.add(component<Shown>("shown"));
+         m.put(activity("slow", every(4ms), budget(50us), runs("path", "outer", "counter")));
+         m.put(activity("fast", every(1ms), budget(50us),
+                        runs("slide", "encoder", "ramp", "inner", "limiter", "shown")));
+         m.add(data("counter.count", "shown.count", interpolated));
+     },
+     R"(cascade: connection "counter.count" -> "shown.count": between two values of int lie none; write in_steps, or connect a floating number)"},
     {"set_point_across_levels",
      [](Table& m) { m.put(data("path.target", "inner.target", stale_after(20ms), stop_machine)); },
      R"(cascade: connection "path.target" -> "inner.target": a Generator of level "outside" does not write for a Controller of level "inside"; set points stay in their level; let a Controller of the outer level command the inner Generator)"},
@@ -299,7 +336,7 @@ constexpr Fault flow_faults[] = {
          place(m, component<Observer>("model"));
          m.add(data("encoder.position", "model.measured"));
      },
-     R"(axis: connection "encoder.position" -> "model.measured": "model" has no role in control(...), so that nobody sees where the value goes on to; add process("model") if it only looks)"},
+     R"(axis: connection "encoder.position" -> "model.measured": "model" has no role in control(...), so that nobody sees where the value goes on to; if it only looks add process(...))"},
     {"driver_that_falls_silent",
      [](Table& m) {
          m.put(activity("motion", every(1ms), budget(100us),
@@ -362,6 +399,25 @@ constexpr Fault turn_faults[] = {
      R"(axis: exclusive "mode": what runs first, and when a part of a chain fails, is not said once; begin with fallback("...", ...), and let the others be chain(...))"},
     {"chains_of_one_name", [](Table& m) { m.control.exclusives[0].chains[2].name = "jog"; },
      R"(axis: exclusive "mode": two chains are called "jog"; rename one)"},
+    {"chain_with_too_many", [](Table& m) { m.control.exclusives[0].chains[1].too_many = true; }, R"(axis: exclusive "mode": it has more than the 12 components in a chain that it may have; make two of it)"},
+    {"member_with_a_behaviour",
+     [](Table& m) {
+         m.add(behaviour("jogging", compiled<moving>));
+         const StateMachineTable& table = m.behaviours[0].type.machine;
+         m.states.assign(table.states.begin(), table.states.end());
+         m.transitions.assign(table.transitions.begin(), table.transitions.end());
+     },
+     R"(axis: exclusive "mode": "jogging" has a behaviour, which cannot end within a step; let the process component have it)"},
+    {"member_of_two",
+     [](Table& m) {
+         m.add(component<ChainSwitch>("second"));
+         m.put(activity("motion", every(1ms), budget(100us),
+                        runs("mode", "second", "slide", "encoder", "standing", "jogging", "position",
+                             "gentle", "limiter")));
+         m.control.exclusives.push_back(
+             exclusive("second", fallback("still", "standing"), chain("on", "jogging")));
+     },
+     R"(axis: exclusive "mode": "standing" is a part of exclusive "second" too; keep it in one)"},
     {"chain_of_nobody",
      [](Table& m) { static_cast<void>(m.control.exclusives[0].chains[1].members.push("spindle")); },
      R"(axis: exclusive "mode": there is no component "spindle"; add it to components(...))"},
@@ -435,6 +491,22 @@ constexpr Fault loop_faults[] = {
      R"(axis: loop "place": "position.velocity" is no property of a number; name the one that holds the gain)"},
     {"loop_of_a_gain_unsaid", [](Table& m) { m.components[5] = component<Follower>("position"); },
      R"(axis: loop "place": the table does not say what "position.kp" is, and it decides whether the loop is stable; add set("kp", ...) to the row of "position")"},
+    {"loop_of_no_controller",
+     [](Table& m) {
+         place(m, component<Tuned>("spare", set("kp", 1.0)));
+         m.control.loops[0] = loop("place", gain("spare.kp"));
+     },
+     R"(axis: loop "place": "spare" is no Controller of a level; name the property of one)"},
+    {"loop_too_late",
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), transport(40ms)); }, R"(axis: loop "place": its transport is more than 32 periods; sample more slowly)"},
+    {"loop_of_two_controllers",
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), integral("gentle.kp")); }, R"(axis: loop "place": its two gains are of two components; name those of one)"},
+    {"loop_with_ranges_beyond_it",
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 1.0));
+         m.control.loops[0] = loop("place", gain("position.kp"), integral("position.kp"), may_overshoot);
+     },
+     R"(axis: loop "place": people may set position.kp to 0 beside 999.9 of position.kp while it runs, which is not stable; give both a range of gains that are, below 2000)"},
     {"loop_turned_round",
      [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), stiffness(-1.0)); },
      R"(axis: loop "place": its gains, stiffness and transport are to be positive; a loop that feeds back with the other sign turns it round in the Sensor)"},

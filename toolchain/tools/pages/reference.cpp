@@ -5,6 +5,7 @@
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/modbus/client.hpp"
 #include "kernel/base/decimal.hpp"
+#include "kernel/control/control.hpp"
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
@@ -56,6 +57,7 @@ const Described components[] = {
      component_type<BehaviourTask<>>},
     {"kernel/services/tasks/component_life.hpp", "ComponentLife", "ComponentLife",
      component_type<ComponentLife>},
+    {"kernel/control/chain_switch.hpp", "ChainSwitch", "ChainSwitch", component_type<ChainSwitch>},
     {"kernel/pieces/kept.hpp", "HourMeter", "HourMeter", component_type<HourMeter>},
     {"kernel/pieces/kept.hpp", "Total", "Total", component_type<Total>},
     {"kernel/services/configuration/property_keeper.hpp", "PropertyKeeper", "PropertyKeeper",
@@ -72,6 +74,7 @@ constexpr std::string_view tables[][2] = {
     {"kernel/machine/table/reactions.hpp", "reactions(...)"},
     {"kernel/machine/table/behaviours.hpp", "behaviours(...)"},
     {"kernel/limits/limits.hpp", "limits(...)"},
+    {"kernel/control/rows.hpp", "control(...)"},
     {"kernel/machine/table/board.hpp", "a board"},
     {"kernel/machine/table/binding.hpp", "binding(...)"},
     {"drivers/gpio/line_map.hpp", "gpio::line_map(...)"},
