@@ -71,6 +71,12 @@ public:
         if (part == nullptr) return false;
         return part->machine != nullptr ? part->machine->is_active() : !is_at_rest(*part);
     }
+    bool is_paused() noexcept TAPPET_REALTIME {
+        const UnitPart* part = controlled_.behaviour();
+        if (part == nullptr) return false;
+        return part->machine != nullptr ? part->machine->is_paused()
+                                        : part->program->status() == ProgramStatus::paused;
+    }
     bool in_error() noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
         return part != nullptr && is_in_error(*part);
@@ -253,8 +259,9 @@ private:
     // ---- properties
 
     static constexpr bool is_command_name(std::string_view name) {
-        for (const std::string_view each : {"start", "stop", "pause", "step", "reset", "run", "deactivate",
-                                            "reactive", "request", "is_active", "in_error", "is_in"})
+        for (const std::string_view each :
+             {"start", "stop", "pause", "step", "reset", "run", "deactivate", "reactive", "request",
+              "is_active", "is_paused", "in_error", "is_in"})
             if (each == name) return true;
         return false;
     }
@@ -292,6 +299,7 @@ private:
         visitor(
             command<&Self::reset_it>("reset", "to its beginning, or from the final to the initial state"));
         visitor(method<&Self::is_active>("is_active", "it runs, or is in a state"));
+        visitor(method<&Self::is_paused>("is_paused", "it stands where it was paused"));
         visitor(method<&Self::in_error>("in_error", "a program of it failed"));
         if constexpr (may_be_machine) {
             visitor(command<&Self::deactivate_it, &Self::is_deactivated>("deactivate", "out of its states"));

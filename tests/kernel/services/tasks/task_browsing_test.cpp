@@ -121,11 +121,16 @@ TEST_P(Task, of_a_machine_has_its_variables_seen_and_set) {
 TEST_P(Task, of_a_machine_is_commanded_and_asked) {
     EXPECT_THAT(follow(form + "_cycle.request Sefe"), HasSubstr("rejected"));
     EXPECT_THAT(ask("call " + form + "_cycle.is_in Up"), HasSubstr("\"result\": true"));
+    EXPECT_THAT(follow(form + "_cycle.pause"), HasSubstr("done"));
+    EXPECT_THAT(ask("call " + form + "_cycle.is_paused"), HasSubstr("\"result\": true"));
+    EXPECT_THAT(follow(form + "_cycle.start"), HasSubstr("done"));
+    EXPECT_THAT(ask("call " + form + "_cycle.is_paused"), HasSubstr("\"result\": false"));
     EXPECT_THAT(follow(form + "_cycle.stop"), HasSubstr("done"));
     EXPECT_THAT(ask("call " + form + "_cycle.is_in Safe"), HasSubstr("\"result\": true"));
 }
 
 TEST_P(Task, of_a_program_runs_and_tells_its_result) {
+    EXPECT_THAT(follow(form + "_strokes.pause"), HasSubstr("rejected")) << "it does not run";
     EXPECT_THAT(follow(form + "_strokes.run 3"), AllOf(HasSubstr("done"), HasSubstr("3")));
     EXPECT_THAT(ask("get " + form + "_strokes.wanted"), HasSubstr("3"));
     EXPECT_THAT(ask("behaviours " + form + ".strokes"), HasSubstr(R"("return": 3)"));
