@@ -151,8 +151,10 @@ constexpr Fault level_faults[] = {
     {"role_twice", [](Table& m) { seat(m, sensor("encoder")); },
      R"(axis: level "axis": "encoder" is a Sensor twice; name it once, and read it where it is needed)"},
     {"role_in_two_levels",
-     [](Table& m) { m.control.levels.push_back(level("second", estimator("encoder"))); }, R"(axis: level "second": "encoder" sits in level "axis" already; a component runs in one level)"},
-    {"level_with_too_many", [](Table& m) { m.control.levels[0].too_many = true; }, R"(axis: level "axis": it has more than the 24 components that it may have; make two of it)"},
+     [](Table& m) { m.control.levels.push_back(level("second", estimator("encoder"))); },
+     R"(axis: level "second": "encoder" sits in level "axis" already; a component runs in one level)"},
+    {"level_with_too_many", [](Table& m) { m.control.levels[0].too_many = true; },
+     R"(axis: level "axis": it has more than the 24 components that it may have; make two of it)"},
     {"role_and_process", [](Table& m) { m.control.processes.push_back(process("encoder")); },
      R"(axis: control: "encoder" writes the data flow and cannot be a process component too; name it once)"},
     {"process_in_a_level", [](Table& m) { seat(m, process("slide")); },
@@ -399,7 +401,8 @@ constexpr Fault turn_faults[] = {
      R"(axis: exclusive "mode": what runs first, and when a part of a chain fails, is not said once; begin with fallback("...", ...), and let the others be chain(...))"},
     {"chains_of_one_name", [](Table& m) { m.control.exclusives[0].chains[2].name = "jog"; },
      R"(axis: exclusive "mode": two chains are called "jog"; rename one)"},
-    {"chain_with_too_many", [](Table& m) { m.control.exclusives[0].chains[1].too_many = true; }, R"(axis: exclusive "mode": it has more than the 12 components in a chain that it may have; make two of it)"},
+    {"chain_with_too_many", [](Table& m) { m.control.exclusives[0].chains[1].too_many = true; },
+     R"(axis: exclusive "mode": it has more than the 12 components in a chain that it may have; make two of it)"},
     {"member_with_a_behaviour",
      [](Table& m) {
          m.add(behaviour("jogging", compiled<moving>));
@@ -498,9 +501,11 @@ constexpr Fault loop_faults[] = {
      },
      R"(axis: loop "place": "spare" is no Controller of a level; name the property of one)"},
     {"loop_too_late",
-     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), transport(40ms)); }, R"(axis: loop "place": its transport is more than 32 periods; sample more slowly)"},
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), transport(40ms)); },
+     R"(axis: loop "place": its transport is more than 32 periods; sample more slowly)"},
     {"loop_of_two_controllers",
-     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), integral("gentle.kp")); }, R"(axis: loop "place": its two gains are of two components; name those of one)"},
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), integral("gentle.kp")); },
+     R"(axis: loop "place": its two gains are of two components; name those of one)"},
     {"loop_with_ranges_beyond_it",
      [](Table& m) {
          m.components[5] = component<Follower>("position", set("kp", 1.0));

@@ -202,6 +202,21 @@ TEST_F(Loaded, a_program_is_a_command_with_its_parameters_and_its_result) {
     EXPECT_EQ(panel().bake.result(), 10);
 }
 
+TEST_F(Loaded, a_command_under_way_has_failed_when_another_one_takes_over) {
+    load(counting(1));
+    tick(4);
+    ASSERT_TRUE(panel().bake.send(1000, 0.0));
+    run(10ms);
+    ASSERT_EQ(panel().bake.state(), CommandState::executing);
+    load(counting(2));
+    run(10ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::failed);
+    ASSERT_TRUE(panel().bake.send(1, 0.0));
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::done);
+    EXPECT_EQ(panel().bake.result(), 2);
+}
+
 TEST_F(Loaded, a_machine_is_stopped_by_a_row) {
     load(counting(1));
     ASSERT_TRUE(panel().halt_it.send());
