@@ -41,7 +41,7 @@ constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 
 // clang-format on
 
 constexpr std::size_t bus = 0, drive = 1, guide = 2, reader = 3;
-constexpr std::size_t wires = 0, motion = 1, office = 2;
+constexpr std::size_t wires = 0, motion = 1;
 
 class Circle : public testing::Test {
 protected:
