@@ -91,8 +91,10 @@ TEST_F(Circle, whose_other_part_runs_and_is_silent_is_waited_for) {
     run(50ms);
     const LifeAnswer answer = change(drive, LifeChange::start);
     EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
-    EXPECT_THAT(std::string{instance.life().describe(motion, answer).view()},
-                testing::HasSubstr("see that \"bus\" runs and writes \"bus.out\""));
+    EXPECT_EQ(
+        std::string{instance.life().describe(motion, answer).view()},
+        "component \"drive\" is not started: its input \"in\" is stale; see that \"bus\" runs and writes "
+        "\"bus.out\", which may wait for this one in turn: if it does not come, restart the machine");
 }
 
 TEST_F(Circle, is_waited_for_by_who_stands_outside_of_it) {
