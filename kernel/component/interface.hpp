@@ -30,7 +30,7 @@ inline constexpr AnyThread any_thread{};
 struct Required {};
 inline constexpr Required required{};
 /// Marks an input without whose valid value its component does not start, not even with the machine: it waits
-/// for it. (A single component that is started while the machine runs needs all its required inputs.)
+/// for it. (One that is started while the machine runs needs all its required inputs, circles apart.)
 struct ValidToStart {};
 inline constexpr ValidToStart valid_to_start{};
 /// An event that means something to the machine's safety: at least so many reaction rows must name it.
