@@ -29,6 +29,7 @@ inline constexpr auto model = chart::verification(
     chart::operation("weft.allow",   chart::sets("allowed = 1")),
     chart::operation("weft.hold",    chart::sets("allowed = 0; ready = 0")),
     chart::operation("weft.inhibit", chart::sets("allowed = 0; ready = 0"), chart::emits("weft.close_valve")),
+    chart::operation("weft.lose_lines", chart::sets("allowed = 0; ready = 0"), chart::emits("weft.close_valve")),
     chart::operation("weft.on_beat_up", chart::sets("released = 0; arrived = 0; ready = allowed")),
     chart::operation("weft.on_release_angle", chart::when_true("ready && !released"), chart::sets("released = 1"),
                      chart::emits("weft.open_valve")),

@@ -161,7 +161,7 @@ inline constexpr auto table = machine("carpet-loom",
         when("loom.allow_weft",      tell("weft.allow")),
         when("loom.inhibit_weft",    tell("weft.inhibit")),
         when("loom.inhibit_weft",    tell("io.weft_release.clear")), // also when the shaft's activity hangs
-        when("io.line_fault",        tell("weft.inhibit")),          // the brake may be on by now, whoever else hangs
+        when("io.line_fault",        tell("weft.lose_lines")),          // the brake may be on by now, whoever else hangs
         when("logic_dog.silent",     call("last_resort.act")),       // the states of the whole cannot say it any more
         when("shaft_dog.silent",     call("last_resort.let_cutter_rest")), // no beat-up ends the cut any more
         when("last_resort.rest_cutter", tell("io.yarn_cutter.clear")),

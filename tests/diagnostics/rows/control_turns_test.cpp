@@ -1,0 +1,170 @@
+// The control kernel: what runs by turns, and which loops can be stable.
+#include "tests/diagnostics/controlled.hpp"
+
+namespace {
+
+using namespace tappet;
+using namespace tappet::diagnostics;
+
+constexpr Fault turn_faults[] = {
+    {"switch_of_nobody", [](Table& m) { m.control.exclusives[0].by = "mod"; },
+     R"(axis: exclusive "mod": there is no component "mod"; did you mean "mode"?)"},
+    {"switch_of_another_type", [](Table& m) { m.control.exclusives[0].by = "slide"; },
+     R"(axis: exclusive "slide": "slide" cannot hand over between chains; make it a component<ChainSwitch>)"},
+    {"switch_without_a_row", [](Table& m) { place(m, component<ChainSwitch>("second")); },
+     R"(axis: component "second" hands over between chains, and no row says which; add exclusive("second", fallback(...), chain(...)) to control(...))"},
+    {"no_fallback", [](Table& m) { m.control.exclusives[0].chains[0].is_fallback = false; },
+     R"(axis: exclusive "mode": what runs first, and when a part of a chain fails, is not said once; begin with fallback("...", ...), and let the others be chain(...))"},
+    {"chains_of_one_name", [](Table& m) { m.control.exclusives[0].chains[2].name = "jog"; },
+     R"(axis: exclusive "mode": two chains are called "jog"; rename one)"},
+    {"chain_with_too_many", [](Table& m) { m.control.exclusives[0].chains[1].too_many = true; },
+     R"(axis: exclusive "mode": it has more than the 12 components in a chain that it may have; make two of it)"},
+    {"member_with_a_behaviour",
+     [](Table& m) {
+         m.add(behaviour("jogging", compiled<moving>));
+         const StateMachineTable& table = m.behaviours[0].type.machine;
+         m.states.assign(table.states.begin(), table.states.end());
+         m.transitions.assign(table.transitions.begin(), table.transitions.end());
+     },
+     R"(axis: exclusive "mode": "jogging" has a behaviour, which cannot end within a step; let the process component have it)"},
+    {"member_of_two",
+     [](Table& m) {
+         m.add(component<ChainSwitch>("second"));
+         m.put(activity("motion", every(1ms), budget(100us),
+                        runs("mode", "second", "slide", "encoder", "standing", "jogging", "position",
+                             "gentle", "limiter")));
+         m.control.exclusives.push_back(
+             exclusive("second", fallback("still", "standing"), chain("on", "jogging")));
+     },
+     R"(axis: exclusive "mode": "standing" is a part of exclusive "second" too; keep it in one)"},
+    {"chain_of_nobody",
+     [](Table& m) { static_cast<void>(m.control.exclusives[0].chains[1].members.push("spindle")); },
+     R"(axis: exclusive "mode": there is no component "spindle"; add it to components(...))"},
+    {"chain_of_no_level",
+     [](Table& m) { static_cast<void>(m.control.exclusives[0].chains[1].members.push("slide")); },
+     R"(axis: exclusive "mode": "slide" has no role in a level; write it there first)"},
+    {"switch_after_its_chains",
+     [](Table& m) {
+         m.put(activity(
+             "motion", every(1ms), budget(100us),
+             runs("slide", "encoder", "standing", "jogging", "position", "gentle", "limiter", "mode")));
+     },
+     R"(axis: exclusive "mode": "mode" runs after "standing" and would hand over in the midst of a step; name it first in runs(...))"},
+    {"switch_elsewhere",
+     [](Table& m) {
+         m.put(activity("motion", every(1ms), budget(100us),
+                        runs("slide", "encoder", "standing", "jogging", "position", "gentle", "limiter")));
+         m.put(activity("watch", every(5ms), budget(100us), runs("mode", "watcher")));
+     },
+     R"(axis: exclusive "mode": "standing" runs in activity "motion", but "mode" in "watch"; one hands over in its own activity only, between two steps)"},
+    {"chain_without_a_writer", [](Table& m) { m.control.exclusives[0].chains[1] = chain("jog", "position"); },
+     R"(axis: exclusive "mode": while chain "jog" runs nobody writes "position.target"; add the component that does to the chain)"},
+    {"two_writers_without_turns",
+     [](Table& m) { m.control.exclusives[0].chains[1] = chain("jog", "jogging", "standing", "position"); },
+     R"(axis: connection "jogging.target" -> "position.target": "position.target" is written by "standing.target" already; an input has one writer: remove one row, or use a buffer)"},
+    {"member_without_start", [](Table& m) { m.components[4] = component<Careless>("jogging"); },
+     R"(axis: exclusive "mode": "jogging" of chain "jog" has no start(), so that it would go on where it was when it ran last; write its first values there, made of what it reads: void start(const Cycle&) noexcept TAPPET_REALTIME)"},
+    {"rows_by_turns_that_differ",
+     [](Table& m) {
+         for (ConnectionRow& row : m.connections)
+             if (row.from == "jogging.target") row = data(row.from, row.to, initially(1.0));
+     },
+     R"(axis: connection "jogging.target" -> "position.target": it and "standing.target" write by turns and say different things of the input; give both rows the same options, and no scale)"},
+    {"reader_by_turns_elsewhere",
+     [](Table& m) {
+         for (ConnectionRow& row : m.connections)
+             if (row.to == "watcher.measured")
+                 row = data("standing.target", "watcher.measured", stale_after(20ms));
+         m.add(data("jogging.target", "watcher.measured", stale_after(20ms)));
+     },
+     R"(axis: connection "standing.target" -> "watcher.measured": what is written by turns is read in the writers' activity "motion" only; read what comes of it there)"},
+    {"controller_that_does_not_track", [](Table& m) { m.control.levels[0].roles[4] = controller("gentle"); },
+     R"(axis: level "axis": the Controller "gentle" runs by turns, or those who write for it do, and it does not see what was sent before, so that the axis would jump; connect an Effector's output to an input of it, delayed, and name that: controller("gentle", tracks("...")))"},
+    {"tracks_without_start",
+     [](Table& m) {
+         m.control.exclusives[0].chains[0] = fallback("stand", "standing");
+         m.control.exclusives[0].chains[1] = chain("jog", "jogging");
+         m.control.exclusives[0].chains.used = 2;
+         m.components[6] = component<Asked>("gentle");
+         std::erase_if(m.connections, [](const ConnectionRow& row) {
+             return row.to == "gentle.measured" || row.to == "gentle.sent" || row.from == "gentle.velocity";
+         });
+         m.control.levels[0].roles[4] = controller("gentle", tracks("target"));
+     },
+     R"(axis: level "axis": the Controller "gentle" tracks what was sent and has no start() in which it would begin there; write its first output there: void start(const Cycle&) noexcept TAPPET_REALTIME)"},
+    {"tracks_no_input",
+     [](Table& m) { m.control.levels[0].roles[4] = controller("gentle", tracks("velocity")); },
+     R"(axis: level "axis": "gentle" has no input "velocity" by which to track; name the one that tells what was sent)"},
+    {"tracks_something_else",
+     [](Table& m) { m.control.levels[0].roles[4] = controller("gentle", tracks("measured")); },
+     R"(axis: level "axis": what "gentle.measured" tracks does not come from an Effector, which alone knows what was sent; connect it there)"},
+};
+INSTANTIATE_TEST_SUITE_P(control_turns, Refusal, testing::ValuesIn(planted_into(axis, turn_faults)), name_of);
+
+constexpr Fault loop_faults[] = {
+    {"loop_of_no_gain", [](Table& m) { m.control.loops[0] = loop("place"); },
+     R"(axis: loop "place": it has no gain; name the Controller's property: gain("..."))"},
+    {"loop_of_a_gain_misspelt", [](Table& m) { m.control.loops[0] = loop("place", gain("position.pk")); },
+     R"(axis: loop "place": component "position" has no property "pk"; did you mean "kp"?)"},
+    {"loop_of_a_port", [](Table& m) { m.control.loops[0] = loop("place", gain("position.velocity")); },
+     R"(axis: loop "place": "position.velocity" is no property of a number; name the one that holds the gain)"},
+    {"loop_of_a_gain_unsaid", [](Table& m) { m.components[5] = component<Follower>("position"); },
+     R"(axis: loop "place": the table does not say what "position.kp" is, and it decides whether the loop is stable; add set("kp", ...) to the row of "position")"},
+    {"loop_of_no_controller",
+     [](Table& m) {
+         place(m, component<Tuned>("spare", set("kp", 1.0)));
+         m.control.loops[0] = loop("place", gain("spare.kp"));
+     },
+     R"(axis: loop "place": "spare" is no Controller of a level; name the property of one)"},
+    {"loop_too_late",
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), transport(40ms)); },
+     R"(axis: loop "place": its transport is more than 32 periods; sample more slowly)"},
+    {"loop_of_two_controllers",
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), integral("gentle.kp")); },
+     R"(axis: loop "place": its two gains are of two components; name those of one)"},
+    {"loop_with_ranges_beyond_it",
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 1.0));
+         m.control.loops[0] = loop("place", gain("position.kp"), integral("position.kp"), may_overshoot);
+     },
+     R"(axis: loop "place": people may set position.kp to 0 beside 999.9 of position.kp while it runs, which is not stable; give both a range of gains that are, below 2000)"},
+    {"loop_turned_round",
+     [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), stiffness(-1.0)); },
+     R"(axis: loop "place": its gains, stiffness and transport are to be positive; a loop that feeds back with the other sign turns it round in the Sensor)"},
+    {"loop_that_is_not_stable",
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 700.0));
+         m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
+     },
+     R"(axis: loop "place": gain times period is 0.7, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 618.034, or shorten the delay)"},
+    {"loop_with_a_range_beyond_it",
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 100.0));
+         m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
+     },
+     R"(axis: loop "place": people may set position.kp to 999.9 while it runs, which is not stable; give it a range of gains that are, below 618.034)"},
+    {"loop_that_overshoots",
+     [](Table& m) { m.components[5] = component<Follower>("position", set("kp", 300.0)); },
+     R"(axis: loop "place": gain times period is 0.3, and the most that does not overshoot with 1 step of delay is 0.25; set position.kp below 250, or add may_overshoot if that does no harm)"},
+    {"contact_that_bounces",
+     [](Table& m) {
+         m.components[5] = component<Follower>("position", set("kp", 3.15e-3));
+         m.control.loops[0] = loop("contact", gain("position.kp"), stiffness(2.0e5), transport(2ms));
+     },
+     R"(axis: loop "contact": gain times period is 0.63, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 3.09e-3, or shorten the delay)"},
+    {"loop_that_overshoots_by_its_integral",
+     [](Table& m) {
+         m.control.loops[0] = loop("place", gain("position.kp"), integral("position.kp"), transport(1ms));
+     },
+     R"(axis: loop "place": with an integral around an axis it overshoots after each step of the set point; add may_overshoot if that does no harm, or leave the integral out)"},
+    {"loop_with_too_much_integral",
+     [](Table& m) {
+         m.control.loops[0] =
+             loop("place", gain("position.kp"), integral("position.kp"), stiffness(1.0), transport(1ms));
+         m.components[5] = component<Follower>("position", set("kp", 999.7));
+     },
+     R"(axis: loop "place": it is not stable with an integral gain of 999.7; set position.kp lower)"},
+};
+INSTANTIATE_TEST_SUITE_P(control_loops, Refusal, testing::ValuesIn(planted_into(axis, loop_faults)), name_of);
+
+} // namespace
