@@ -75,15 +75,15 @@ inline constexpr auto moving =
                          transitions(transition("on", "off", after(1s))));
 
 /// Counts in whole numbers, and somebody sees it.
-struct Counter {
+struct Cycles {
     Output<std::int32_t> count;
     void step(const Cycle&) noexcept TAPPET_REALTIME { count.write(count.last() + 1); }
-    static constexpr auto interface() { return facets(output<&Counter::count>("count", "", "of cycles")); }
+    static constexpr auto interface() { return facets(output<&Cycles::count>("count", "", "of cycles")); }
 };
-struct Shown {
+struct CyclesShown {
     Input<std::int32_t> count;
     void step(const Cycle&) noexcept TAPPET_REALTIME { static_cast<void>(count.get()); }
-    static constexpr auto interface() { return facets(input<&Shown::count>("count", "", "of cycles")); }
+    static constexpr auto interface() { return facets(input<&CyclesShown::count>("count", "", "of cycles")); }
 };
 
 inline constexpr Board controlled_box{.name = "box", .memory_budget_bytes = 1 << 20};

@@ -34,8 +34,8 @@ public:
     [[nodiscard]] constexpr virtual bool take_turns(const MachineView&, std::size_t, std::size_t) const {
         return false;
     }
-    /// Whether a component waits, before it starts, for a valid value of another one in a required input, as if
-    /// that were valid_to_start. Of an accepted table.
+    /// Whether a component waits, before it starts, for a valid value of another one in a required input, as
+    /// if that were valid_to_start. Of an accepted table.
     [[nodiscard]] constexpr virtual bool awaits(const MachineView&, std::size_t /*from*/,
                                                 std::size_t /*to*/) const {
         return false;

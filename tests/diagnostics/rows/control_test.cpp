@@ -100,8 +100,8 @@ constexpr Fault cascade_faults[] = {
      R"(cascade: connection "encoder.position" -> "path.measured": in_steps, interpolated and extrapolated are for a reader whose period divides the longer one of the writer; activity "fast" and activity "slow" are not such; remove it, or change a period)"},
     {"interpolated_whole_numbers",
      [](Table& m) {
-         m.add(component<Counter>("counter"));
-         m.add(component<Shown>("shown"));
+         m.add(component<Cycles>("counter"));
+         m.add(component<CyclesShown>("shown"));
          m.put(activity("slow", every(4ms), budget(50us), runs("path", "outer", "counter")));
          m.put(activity("fast", every(1ms), budget(50us),
                         runs("slide", "encoder", "ramp", "inner", "limiter", "shown")));
