@@ -87,7 +87,7 @@ TEST(Determinism, two_processes_report_the_same_but_for_the_memory_they_took) {
     EXPECT_EQ(one, without_field(contents(second), "rss_bytes"));
 }
 
-TEST(Speed, virtual_time_runs_a_hundred_times_faster_than_real_time) {
+TEST(Speed, virtual_time_runs_fifty_times_faster_than_real_time) {
     const std::clock_t begin = std::clock(); // processor time: what else runs here does not count
     LoomRig rig{3, breaks()};
     ASSERT_TRUE(rig.run().weave(picks, 300s));
@@ -96,7 +96,7 @@ TEST(Speed, virtual_time_runs_a_hundred_times_faster_than_real_time) {
     std::cout << "virtual time runs " << ratio << " times faster than real time\n";
 #if defined(NDEBUG)
     if constexpr (!os::heap::sanitizer_owns_malloc) {
-        EXPECT_GE(ratio, 100.0);
+        EXPECT_GE(ratio, 50.0); // half of what a host gave at its slowest
     }
 #endif
 }
