@@ -4,7 +4,7 @@
 #include "apps/bearing_press/loops.hpp"
 #include "apps/bearing_press/maps.hpp"
 #include "drivers/can/far_end.hpp"
-#include "drivers/canopen/cia402.hpp"
+#include "drivers/canopen/simulated_drive.hpp"
 #include "drivers/gpio/far_end.hpp"
 #include "drivers/plant/plant.hpp"
 #include "kernel/base/random.hpp"
@@ -27,14 +27,15 @@ public:
 
     Time move(Time now) override {
         const double dt = to_seconds(step());
-        lead_drive();
-        const double asked = enabled_ ? can.get("command.velocity") : 0.0;
-        const double lag = enabled_ ? drive_lag_s : brake_lag_s;
+        can.set_integer("axis.statusword", drive_.follow(can.integer("command.controlword")));
+        const double asked = drive_.is_enabled() ? can.get("command.velocity") : 0.0;
+        const double lag = drive_.is_enabled() ? drive_lag_s : brake_lag_s;
         const double before = speed_;
         speed_ += (asked - speed_) * std::min(1.0, dt / lag);
         place_ += (before + speed_) / 2 * dt;
         worst_speed_ = std::max(worst_speed_, std::abs(speed_));
-        if (dt > 0.0 && enabled_) worst_jolt_ = std::max(worst_jolt_, std::abs(speed_ - before) / dt);
+        if (dt > 0.0 && drive_.is_enabled())
+            worst_jolt_ = std::max(worst_jolt_, std::abs(speed_ - before) / dt);
         const double force = stiffness * std::max(0.0, place_ - bearing_);
         worst_force_ = std::max(worst_force_, force);
         if (force > 0.98 * seat_force) is_seated_ = true;
@@ -96,16 +97,6 @@ private:
 
     static constexpr double drive_lag_s = 0.004, brake_lag_s = 0.02, zero_ = 0.05, switched_on_at = 0.037;
 
-    /// As far as the CiA 402 automaton matters here: each controlword leads to its state.
-    void lead_drive() {
-        const auto word = static_cast<unsigned>(can.integer("command.controlword"));
-        enabled_ = word == canopen::controlword::enable_operation && state_ >= 0x23;
-        state_ = enabled_                                                    ? 0x27
-                 : word == canopen::controlword::switch_on && state_ >= 0x21 ? 0x23
-                 : word == canopen::controlword::shutdown                    ? 0x21
-                                                                             : 0x40;
-        can.set_integer("axis.statusword", static_cast<std::uint64_t>(state_));
-    }
     /// Start is pressed again and again while the slide stands and bearings are wanted.
     void operate() {
         const Duration t = elapsed() % 400ms;
@@ -121,10 +112,9 @@ private:
     }
 
     Random random_;
+    canopen::SimulatedDrive drive_;
     double place_ = 0.0, speed_ = 0.0, bearing_ = 0.0;
-    int state_ = 0x40;
-    bool enabled_ = false, is_seated_ = false, stop_ = false, up_ = false, down_ = false, end_ = false,
-         operator_works_ = true;
+    bool is_seated_ = false, stop_ = false, up_ = false, down_ = false, end_ = false, operator_works_ = true;
     double worst_force_ = 0.0, worst_speed_ = 0.0, worst_jolt_ = 0.0;
     std::int64_t bearings_ = 0;
 };

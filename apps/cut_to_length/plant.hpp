@@ -3,7 +3,7 @@
 
 #include "apps/cut_to_length/measuring.hpp"
 #include "drivers/can/far_end.hpp"
-#include "drivers/canopen/cia402.hpp"
+#include "drivers/canopen/simulated_drive.hpp"
 #include "drivers/gpio/far_end.hpp"
 #include "drivers/plant/plant.hpp"
 #include "kernel/base/random.hpp"
@@ -23,12 +23,12 @@ public:
 
     Time move(Time now) override {
         const double dt = to_seconds(step());
-        const double wanted = enabled_ ? can.get("feed_command.speed") : 0.0;
+        const double wanted = drive_.is_enabled() ? can.get("feed_command.speed") : 0.0;
         const double before = speed_;
         const double change = acceleration * dt;
         speed_ += std::clamp(wanted - speed_, -change, change);
         web_mm_ += (before + speed_) / 2 * dt * 1000.0;
-        lead_drive();
+        can.set_integer("feed.statusword", drive_.follow(can.integer("feed_command.controlword")));
         operate(now);
         if (io.changed("knife") && io.get("knife"))
             blade_at_ = io.changed_at() + knife_dead_time +
@@ -83,16 +83,6 @@ private:
     static constexpr double acceleration = 2.0; // m/s2
     static constexpr double length_mm = 500.0;
 
-    /// As far as the CiA 402 automaton matters here: each controlword leads to its state.
-    void lead_drive() {
-        const auto word = static_cast<unsigned>(can.integer("feed_command.controlword"));
-        enabled_ = word == canopen::controlword::enable_operation && state_ >= 0x23;
-        state_ = enabled_                                                    ? 0x27
-                 : word == canopen::controlword::switch_on && state_ >= 0x21 ? 0x23
-                 : word == canopen::controlword::shutdown                    ? 0x21
-                                                                             : 0x40;
-        can.set_integer("feed.statusword", static_cast<std::uint64_t>(state_));
-    }
     /// Presses start until the line runs, once; and stop when enough is cut.
     void operate(Time now) {
         started_ |= io.get("lamp");
@@ -113,10 +103,10 @@ private:
     }
 
     Random random_;
+    canopen::SimulatedDrive drive_;
     Time blade_at_ = never;
     double web_mm_ = 0.0, speed_ = 0.0;
-    int state_ = 0x40;
-    bool enabled_ = false, cut_before_ = false, emergency_ = false, started_ = false;
+    bool cut_before_ = false, emergency_ = false, started_ = false;
     Time start_at_ = never - 1s;
     double last_cut_mm_ = 0.0, worst_mm_ = 0.0;
     std::int64_t pieces_ = 0, wanted_ = 60;

@@ -46,8 +46,7 @@ void find_inputs(const ControlView& control, MachineInstance& machine, Turns& tu
         if (accepted.table.connections[x].buffered) continue;
         void* const input = machine.facet(link.to);
         const PortOperations* const port = facet_at(accepted.table, link.to).port;
-        const bool is_member = chains_of(*turns.rows, accepted.table.components[link.to.component].name) != 0;
-        if (is_member &&
+        if (is_member(*turns.rows, accepted.table, link.to.component) &&
             accepted.index.activity[link.from.component] != accepted.index.activity[link.to.component])
             static_cast<void>( // they were counted by the check
                 turns.watched.push({input, port, accepted.plan.part_of[link.to.component]}));
@@ -159,10 +158,10 @@ std::uint32_t Turns::failed_part(Engine::Parts among) const noexcept TAPPET_REAL
 }
 
 void Turns::ask_stop(std::uint32_t part) noexcept TAPPET_REALTIME {
-    machine->ask_section_stop(section, row << 16 | machine_part(part), engine);
+    machine->ask_section_stop(section, row << 16 | role_of(part), engine);
 }
 
-std::size_t Turns::machine_part(std::uint32_t part) const noexcept TAPPET_REALTIME {
+std::size_t Turns::role_of(std::uint32_t part) const noexcept TAPPET_REALTIME {
     std::size_t place = 0;
     for (const LevelRow& each : levels)
         for (const RoleRow& role : each.roles) {

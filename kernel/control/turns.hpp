@@ -76,7 +76,7 @@ struct Turns {
     [[nodiscard]] std::uint32_t failed_part(Engine::Parts among) const noexcept TAPPET_REALTIME;
     void ask_stop(std::uint32_t part) noexcept TAPPET_REALTIME;
     /// Its place among the roles of all levels.
-    [[nodiscard]] std::size_t machine_part(std::uint32_t part) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] std::size_t role_of(std::uint32_t part) const noexcept TAPPET_REALTIME;
 };
 
 } // namespace control_detail
