@@ -19,4 +19,4 @@ constexpr auto table = machine(
         level("axis", sensor("encoder"), generator("approach"), controller("position"), effector("limiter")),
         loop("contact", gain("position.kp"), stiffness(1.0e5), transport(4ms))));
 
-template struct Firmware<table, box>;
+template struct tappet::Firmware<table, tappet::box>;
