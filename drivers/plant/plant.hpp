@@ -28,12 +28,9 @@ public:
     virtual ~Plant() = default;
 
     /// Moves what it simulates to `now`; the ends have taken what the machine sent, and give afterwards what
-    /// was set. The answer: when it wants to move again at the latest. The clock is the machine's.
+    /// was set. The answer: when it wants to move again at the latest; on the bench it is moved every so
+    /// often anyway. The clock is the machine's.
     virtual Time move(Time now) = 0;
-
-    /// Under real time, where it is moved every so often anyway: when the wires want something of it, if that
-    /// is not what move() answered, such as the next step of its physics.
-    [[nodiscard]] virtual std::optional<Time> next_on_wires() const { return {}; }
 
     /// Under virtual time: nothing comes in and nobody looks before `until`. It may move on by itself as far
     /// as nothing leaves it; the answer is as that of move(). Nothing: it does not know how.

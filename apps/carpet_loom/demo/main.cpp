@@ -85,7 +85,7 @@ std::vector<std::string> change_of_weaves() {
 }
 
 bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folder) {
-    std::string plant = "carpet-loom-plant --fifo 1 --seed " + std::to_string(options.seed) + " --picks " +
+    std::string plant = "carpet-loom-plant --seed " + std::to_string(options.seed) + " --picks " +
                         std::to_string(options.picks);
     for (const std::string& word : troubles(options.picks)) plant += " " + word;
     bench::Scenario scenario;

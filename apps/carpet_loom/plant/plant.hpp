@@ -36,8 +36,6 @@ public:
     [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME {
         return std::min(next_timer_, step_end_);
     }
-    /// The next frame or timed edge. A world in real time sleeps until then, or until it polls again.
-    [[nodiscard]] Time next_timer() const noexcept TAPPET_REALTIME { return next_timer_; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return now_; }
 
     // CAN: a frame from the machine; the plant's own frames, in the order they were due. Unknown identifiers

@@ -185,7 +185,7 @@ public:
 
     Verdict run(const Fault& fault) {
         if (!plant_) {
-            plant_.emplace("carpet-loom-plant --period 1ms --fifo 1 --operator-reaction 200ms");
+            plant_.emplace("carpet-loom-plant --period 1ms --operator-reaction 200ms");
             std::this_thread::sleep_for(100ms); // its Modbus server listens
         }
         if (!machine_) {

@@ -110,7 +110,7 @@ public:
     static constexpr const char* report_file = "/tmp/report.json";
 
     explicit Loom(const std::string& plant_options = {}, const std::string& options = {})
-        : plant{"carpet-loom-plant --period 1ms --fifo 1 "
+        : plant{"carpet-loom-plant --period 1ms "
                 "--operator-reaction 1s --report " +
                 std::string{report_file} + " " + plant_options} {
         ::unlink(summary_file);

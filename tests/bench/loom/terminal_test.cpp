@@ -77,7 +77,7 @@ public:
     }
 
 private:
-    static constexpr const char* plant = "carpet-loom-plant --period 1ms --fifo 1 --operator-reaction 1s";
+    static constexpr const char* plant = "carpet-loom-plant --period 1ms --operator-reaction 1s";
     Foreign plant_;
     int reading_ = -1;
     pid_t process_ = -1;

@@ -29,6 +29,8 @@ namespace {
 
 enum Ending : int { ended_well = 0, plant_at_fault = 1, wrong_set_up = 2 };
 
+constexpr int above_the_machine = 98; ///< SCHED_FIFO; below its guardian
+
 volatile std::sig_atomic_t told_to_end = 0;
 volatile std::sig_atomic_t usr1_came = 0;
 
@@ -41,8 +43,7 @@ struct Outage {
 struct Options {
     std::uint64_t seed = 1;
     std::string report{};    ///< a file; empty: standard output
-    Duration period = 200us; ///< of looking at the lines
-    int fifo_priority = 0;   ///< 0: not real-time
+    Duration period = 200us; ///< of looking at the wires
     Outage server_stop{};    ///< every Modbus server is gone
     Duration bus_off_at = Duration::max();
     Duration die_at = Duration::max(); ///< killed, without a report
@@ -53,8 +54,7 @@ struct Options {
 constexpr const char* usage =
     "  --seed N                which plant (1)\n"
     "  --report FILE           where the JSON of what it measured goes (standard output)\n"
-    "  --period T              of looking at the lines, 50us to 10ms (200us)\n"
-    "  --fifo N                runs with SCHED_FIFO priority N (not)\n"
+    "  --period T              of looking at the wires, 50us to 10ms (200us)\n"
     "  --help                  this text\n"
     "the wires themselves: --stop-servers-at T/DURATION --bus-off-at T --die-at T\n";
 
@@ -96,8 +96,6 @@ Sentence parse(int count, char** words, Options& to) {
             to.report = value;
         else if (word == "--period")
             right = read(value, to.period) && to.period >= 50us && to.period <= 10ms;
-        else if (word == "--fifo")
-            right = read(value, to.fifo_priority, 0, 98);
         else if (word == "--stop-servers-at")
             right = read(value, to.server_stop);
         else if (word == "--bus-off-at")
@@ -199,19 +197,20 @@ public:
 
     void run() {
         const Time start = clock_.now();
-        Time last = start, next = start;
+        Time last = start;
         while (told_to_end == 0 && !rested(last)) {
             if (usr1_came != 0) {
                 usr1_came = 0;
                 plant_.told();
             }
-            const Time wake = std::min(last + options_.period, std::max(next, last + 20us));
+            // Not also when the plant wants it: each time costs the guest a change of processes, and what a
+            // node sends has no time of its own that the machine knows.
+            const Time wake = last + options_.period;
             sleep_until(wake);
             const Time now = clock_.now();
             latest_ = std::max(latest_, now - wake);
             wires_.look(now);
-            const Time wanted = plant_.advance(now);
-            next = plant_.next_on_wires().value_or(wanted);
+            static_cast<void>(plant_.advance(now));
             trouble_the_wires(now - start);
             last = now;
         }
@@ -255,11 +254,14 @@ private:
     Duration latest_{};
 };
 
-void become_real_time(const char* name, int priority) {
+/// Nothing that the machine computes holds up what stands at the other end of its wires.
+void become_real_time(const char* name) {
     sched_param parameter{};
-    parameter.sched_priority = priority;
+    parameter.sched_priority = above_the_machine;
     if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0 || mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        std::fprintf(stderr, "%s: --fifo %d: %s; running without\n", name, priority, std::strerror(errno));
+        std::fprintf(stderr,
+                     "%s: SCHED_FIFO %d: %s; it will be late when the machine computes; start it as root\n",
+                     name, above_the_machine, std::strerror(errno));
 }
 
 void listen_to_signals() {
@@ -316,7 +318,7 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
     static_cast<void>(
         plant->advance(os::Clock{os::Clock::Kind::real}.now())); // no client reads what is not set
     if (const Sentence fault = wires.listen(); !fault.empty()) return fail(fault);
-    if (options.fifo_priority > 0) become_real_time(name.c_str(), options.fifo_priority);
+    become_real_time(name.c_str());
     os::notify_starter("X_TAPPET_PLANT=ready");
     Program{name.c_str(), *plant, wires, options}.run();
     if (!write_report(*plant, options.report))

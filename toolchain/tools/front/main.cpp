@@ -179,7 +179,7 @@ int bench(const Given& given) {
                    "--set",
                    "/proc/sys/kernel/sched_rt_runtime_us=-1",
                    "--run",
-                   "plant --fifo 1 &",
+                   "plant &",
                    "--run",
                    "@sleep 0.3",
                    "--run",
@@ -208,7 +208,7 @@ int image(const Given& given) {
                   "build/" + firmware + ".stripped",       "--to",  "build/image/" + firmware};
     if (board == "bench") {
         targets.push_back(machine + "-plant");
-        program = with(program, {"--plant", "build/" + machine + "-plant", "--plant-options", "--fifo 1"});
+        program = with(program, {"--plant", "build/" + machine + "-plant"});
     }
     for (const auto& [option, value] : given.line.options)
         if (option->name != "--machine")
