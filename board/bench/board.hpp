@@ -23,7 +23,8 @@ inline constexpr Board bench{
     .kernel_command_line = "quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests",
     // Of its image, which makes its CAN interfaces and lines itself: nothing of them leaves the guest.
     .image = {.modules = kernel_modules("can-raw", "vcan", "gpio-sim", "i6300esb heartbeat=20", "nvme",
-                                        "virtio_blk", "vfat", "nls_cp437", "nls_ascii", "button", "evdev"),
+                                        "xhci-pci", "usb-storage", "sd_mod", "vfat", "nls_cp437", "nls_ascii",
+                                        "button", "evdev"),
               .consoles = consoles("ttyS0")},
     .properties_directory = "/run",
     // Everybody in the guest may look; two users of its tests may do more.

@@ -38,6 +38,7 @@ constexpr int no_firmware = -1;
 constexpr int wrong_set_up = 2;          // Ending::wrong_set_up: nothing was touched
 constexpr double stop_patience_s = 15.0; // for the firmware's orderly end
 constexpr double again_after_s = 1.0;
+constexpr double says_what_it_is_s = 1.0; // a stick that was plugged in just now
 constexpr double tell_trial_s = 5.0; // for who stands there to read why
 constexpr std::string_view notify_name{"\0tappet-init", 12};
 
@@ -317,8 +318,13 @@ private:
     bool take_update() {
         static_cast<void>(modules_.load_what_fits()); // of a stick that came later
         std::optional<std::string> disk = find_update();
-        const double until_s = uptime_s() + std::chrono::duration<double>(patience).count();
-        while (!disk && has_usb_storage() && uptime_s() < until_s) {
+        const double begun_s = uptime_s();
+        const auto may_come = [begun_s] {
+            const double waited_s = uptime_s() - begun_s;
+            return waited_s < says_what_it_is_s ||
+                   (has_usb_storage() && waited_s < std::chrono::duration<double>(patience).count());
+        };
+        while (!disk && may_come()) {
             init::pause_for(milliseconds{250});
             static_cast<void>(modules_.load_what_fits());
             disk = find_update();

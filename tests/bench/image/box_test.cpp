@@ -97,7 +97,7 @@ TEST(Box, takes_a_signed_update_from_a_stick_when_its_power_button_is_pressed) {
     EmulatedBox box{image("lonely") / "disk.img"};
     const fs::path stick = image("newer") / "update.tap";
     box.switch_on({"-drive", "if=none,id=stick,readonly=on,format=raw,file=" + stick.string(), "-device",
-                   "virtio-blk-pci,drive=stick"});
+                   "qemu-xhci", "-device", "usb-storage,drive=stick"});
     box.await("armed on board");
     box.press_power_button();
     const std::string said = box.await_end(); // the new version's plant ends it
