@@ -9,8 +9,8 @@ namespace tappet::diagnostics {
 
 struct Size {
     std::size_t types = 20;
-    std::size_t components = 200;
-    std::size_t activities = 20;
+    std::size_t components = 400;
+    std::size_t activities = 40;
     std::size_t reactions = 100;
 };
 

@@ -38,23 +38,28 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
     }
 }
 
-/// No timer of a component, and no time-out of a behaviour, wakes it off the grid.
-constexpr bool runs_by_its_period_alone(const MachineView& m, const ActivityRow& row) {
-    if (row.trigger != Trigger::every) return false;
-    for (const auto& name : row.runs) {
-        const std::size_t c = find_component(m, name);
-        if (c == nowhere || has_facet(m.components[c].type,
-                                      [](const Facet& facet) { return facet.kind == FacetKind::timer; }))
-            return false;
-        for (const BehaviourRow& each : m.behaviours)
-            if (same_text(each.component, name)) return false;
-    }
-    return true;
+/// Of each activity, whether it runs by its period alone: no timer of a component, and no time-out of a
+/// behaviour, wakes it off the grid. `activity_of`: of each component.
+constexpr std::array<bool, max_activities> find_on_grid(const MachineView& m,
+                                                        std::span<const std::size_t> activity_of) {
+    std::array<bool, max_activities> on_grid{};
+    for (std::size_t a = 0; a < m.activities.size(); ++a)
+        on_grid[a] = m.activities[a].trigger == Trigger::every;
+    const auto leaves_it = [&](std::size_t c) {
+        if (c != nowhere && activity_of[c] != nowhere) on_grid[activity_of[c]] = false;
+    };
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        if (has_facet(m.components[c].type,
+                      [](const Facet& facet) { return facet.kind == FacetKind::timer; }))
+            leaves_it(c);
+    for (const BehaviourRow& each : m.behaviours) leaves_it(find_component(m, each.component));
+    return on_grid;
 }
 
 /// Of one activity that is real-time, by the ranks and the processors of all; deadlines are not looked at.
 constexpr Response worst_response(const MachineView& m, std::span<const std::size_t> rank,
-                                  std::span<const int> processors, std::size_t a) {
+                                  std::span<const int> processors, std::span<const bool> on_grid,
+                                  std::size_t a) {
     std::array<TaskTiming, max_activities> tasks{};
     std::size_t count = 0;
     for (std::size_t urgency = 0; urgency <= rank[a]; ++urgency)
@@ -65,7 +70,7 @@ constexpr Response worst_response(const MachineView& m, std::span<const std::siz
             const std::int64_t wakes_together = other.trigger == Trigger::every ? 1 : other.at_most_n;
             tasks[count++] = {other.shortest_period().count(), other.budget_each.count() * wakes_together,
                               other.deadline().count()};
-            if (runs_by_its_period_alone(m, other)) tasks[count - 1].phase_ns = other.phase.count();
+            if (on_grid[b]) tasks[count - 1].phase_ns = other.phase.count();
         }
     return response_time_on_grid(std::span{tasks}.first(count), count - 1);
 }
@@ -108,11 +113,12 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
     std::array<int, max_activities> processors{};
     for (std::size_t a = 0; a < m.activities.size(); ++a)
         processors[a] = processor_of(board, binding, m.activities[a].name);
+    const auto on_grid = find_on_grid(m, r.activity);
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         r.worst_response_ns[a] = 0;
         const ActivityRow& row = m.activities[a];
         if (!row.real_time) continue;
-        const Response response = worst_response(m, r.rank, processors, a);
+        const Response response = worst_response(m, r.rank, processors, on_grid, a);
         if (!response.bounded)
             return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
                                board.name,

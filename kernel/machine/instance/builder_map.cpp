@@ -81,9 +81,11 @@ void MachineBuilder::place_facet(End end, map::Facet& record) {
     const Facet& row = facet_at(machine_.table, end);
     // An input that several write by turns is seen at its writers: nobody outside knows which of them it
     // reads.
-    std::size_t writers = 0;
-    for (const Link& link : machine_.index.connections) writers += link.to == end ? 1u : 0u;
-    if (row.port != nullptr && writers > 1) return;
+    if (machine_.table.extras->size() != 0 && row.kind == FacetKind::input) {
+        std::size_t writers = 0;
+        for (const Link& link : machine_.index.connections) writers += link.to == end ? 1u : 0u;
+        if (writers > 1) return;
+    }
     if (row.port != nullptr) {
         const PortPlaces places = row.port->places(instance_.facet(end), row.kind == FacetKind::input);
         record.value_at = offset_of(places.value);
