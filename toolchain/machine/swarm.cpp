@@ -33,11 +33,12 @@ bool is_driver(const ComponentRow& row) {
 std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
     std::vector<int> processors;
     for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
+    const auto on_grid = checks::find_on_grid(machine.table, machine.index.activity);
     std::vector<Duration> responses(processors.size());
     for (std::size_t a = 0; a < responses.size(); ++a)
         if (machine.table.activities[a].real_time)
-            responses[a] =
-                Duration{checks::worst_response(machine.table, machine.index.rank, processors, a).worst_ns};
+            responses[a] = Duration{
+                checks::worst_response(machine.table, machine.index.rank, processors, on_grid, a).worst_ns};
     return responses;
 }
 
