@@ -187,7 +187,12 @@ public:
         return seen == seen_ ? Flow::old : Flow::fresh;
     }
     /// The value alone, with the row's staleness policy applied.
-    [[nodiscard]] T get() noexcept TAPPET_REALTIME { return value_of(refresh()); }
+    [[nodiscard]] T get() noexcept TAPPET_REALTIME {
+        TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
+        if (!inside_only_ || local_->generation_ == 0) return get_further();
+        seen_ = local_->generation_;
+        return local_->last_.value;
+    }
     /// When the value read last was true.
     [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME {
         return local_ != nullptr && !forced_ ? local_->last_.stamp : cache_.stamp;
@@ -229,6 +234,7 @@ private:
         into = value_of(flow);
         return flow;
     }
+    [[gnu::noinline]] T get_further() noexcept TAPPET_REALTIME { return value_of(refresh()); }
     Flow refresh() noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
         static_cast<void>(fetch());

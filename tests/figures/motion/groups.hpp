@@ -9,6 +9,10 @@ namespace tappet::figures {
 
 /// Kinematics, dynamics and their inverses, beside KDL.
 void add_chains(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+/// A machine's cascade beside the same loop by hand.
+void add_cascades(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+/// Whether both put out the same, bit by bit, after as many cycles as the machine has been measured.
+bool cascades_are_the_same();
 /// Sines, trajectories, controllers and estimators.
 void add_loops(std::vector<Group>& groups);
 

@@ -12,12 +12,13 @@ TEST(MotionFigures, are_whole_and_compare_what_is_the_same) {
     std::vector<std::string> ids;
     for (const Figure& figure : result.figures) ids.push_back(figure.id);
     EXPECT_EQ(ids, (std::vector<std::string>{"motion.kinematics", "motion.dynamics", "motion.inverse",
-                                             "motion.sine", "motion.trajectory", "motion.control"}));
+                                             "motion.cascade.robot", "motion.cascade.axis", "motion.sine",
+                                             "motion.trajectory", "motion.control"}));
     std::vector<double> limits;
     for (const Goal& goal : result.goals) limits.push_back(goal.limit);
-    EXPECT_EQ(limits, (std::vector<double>{0.25, 0.33, 100, 250}));
-    ASSERT_EQ(result.statements.size(), 1u);
-    EXPECT_TRUE(result.statements[0].held) << result.statements[0].measured;
+    EXPECT_EQ(limits, (std::vector<double>{0.25, 0.33, 1.2, 1.2, 100, 250}));
+    ASSERT_EQ(result.statements.size(), 2u);
+    for (const Statement& each : result.statements) EXPECT_TRUE(each.held) << each.text << each.measured;
 }
 
 } // namespace
