@@ -183,9 +183,10 @@ bool Engine::run_commands() noexcept TAPPET_REALTIME {
 
 void Engine::note(const Message& message) noexcept TAPPET_REALTIME {
     note(message.id, cycle_.now);
-    for (std::size_t at = 0; at < message.arguments.size(); at += sizeof(std::uint64_t)) {
+    const std::span<const std::byte> arguments = AsyncReaction::arguments_of(message);
+    for (std::size_t at = 0; at < arguments.size(); at += sizeof(std::uint64_t)) {
         std::uint64_t word = 0;
-        std::memcpy(&word, message.arguments.data() + at, sizeof word);
+        std::memcpy(&word, arguments.data() + at, sizeof word);
         digest_.add(word);
     }
 }

@@ -11,9 +11,11 @@
 #include "kernel/exchange/mailbox.hpp"
 
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 namespace tappet {
 
@@ -34,11 +36,29 @@ private:
 
 struct AsyncReaction;
 
+/// Arguments that a message has no room for. Of an event that has such, each lane keeps them beside the
+/// mailbox, in so many places of so many bytes that what is handled stays where it is while the quota waits.
+struct Parcel {
+    const void* arguments = nullptr;
+    void (*pack)(std::byte* into, const void* arguments) noexcept TAPPET_REALTIME = nullptr;
+};
+/// Multiples of a word; nought: a message has room.
+constexpr std::size_t parcel_bytes(std::size_t argument_bytes) noexcept {
+    constexpr std::size_t word = sizeof(std::uint64_t);
+    return argument_bytes <= sizeof(Message::arguments) ? 0 : (argument_bytes + word - 1) / word * word;
+}
+/// A power of two, so that counters of 32 bits find their place also when they begin anew.
+constexpr std::uint32_t parcel_places(std::uint32_t quota, bool keeps_latest) noexcept {
+    return std::bit_ceil(keeps_latest ? LatestMessage::places : quota + 1);
+}
+static_assert(parcel_places(1, false) == 2 && parcel_places(3, false) == 4 && parcel_places(4, false) == 8);
+
 /// The share of one emitting activity in an asynchronous subscription: emitters of one event never meet.
 struct EventLane {
     AsyncReaction* row = nullptr;
     std::size_t sender = 0;          ///< the activity's number at the receiving inbox
     LatestMessage* latest = nullptr; ///< of a row that keeps the latest only
+    std::byte* parcels = nullptr;    ///< null: the arguments stand in the message
     // Counted by the emitter.
     Counter posted{};
     Counter lost{}; ///< no room, or replaced by a later one
@@ -79,6 +99,8 @@ struct AsyncReaction {
     std::uint32_t lane_count = 0;
     std::uint32_t part = 0; ///< the receiver's number for the component it is timed as
     std::uint32_t quota = 0;
+    std::uint32_t parcel_bytes = 0;
+    std::uint32_t parcel_mask = 0;       ///< their places but one
     std::atomic<std::uint32_t> stray{0}; ///< any thread counts
     bool has_run = false;  ///< the receiver's: the message served last was neither outdated nor dropped
     ReactionTimes times{}; ///< the receiver's
@@ -86,7 +108,7 @@ struct AsyncReaction {
 
     /// In the emitter. The epoch is read before the bit: what is posted with an epoch found the row connected
     /// in it, and disconnect() clears the bit before it moves on. Real-time.
-    void post(Message& message) noexcept TAPPET_REALTIME {
+    void post(Message& message, const Parcel* parcel = nullptr) noexcept TAPPET_REALTIME {
         message.epoch = epoch.load(std::memory_order_acquire);               // emit.epoch
         if ((connected->load(std::memory_order_acquire) & bit) == 0) return; // emit.bit
         const std::uint32_t activity = running_activity();
@@ -99,7 +121,17 @@ struct AsyncReaction {
         message.object = &lanes[index];
         message.id = part;
         message.cause = running_cause();
-        post_to(lanes[index], message);
+        post_to(lanes[index], message, parcel);
+    }
+    /// In the receiver, before it is served: what it carries, as whole words. Of a row that keeps the latest
+    /// there is nothing yet to be seen.
+    [[nodiscard]] static std::span<const std::byte> arguments_of(const Message& message) noexcept
+        TAPPET_REALTIME {
+        if (message.run != &serve) return message.arguments;
+        const auto& lane = *static_cast<const EventLane*>(message.object);
+        if (lane.parcels == nullptr || lane.latest != nullptr) return message.arguments;
+        const std::uint32_t next = lane.served.load(std::memory_order_relaxed); // no step: its own counter
+        return {lane.row->place_of(lane, next), lane.row->parcel_bytes};
     }
     /// In the receiver: the row that the message came by has done what it had to, at `end`.
     static void note_end(const Message& message, Time end) noexcept TAPPET_REALTIME {
@@ -124,14 +156,20 @@ struct AsyncReaction {
     }
 
 private:
-    void post_to(EventLane& lane, const Message& message) noexcept TAPPET_REALTIME {
+    [[nodiscard]] std::byte* place_of(const EventLane& lane, std::uint32_t number) const noexcept
+        TAPPET_REALTIME {
+        return lane.parcels + std::size_t{number & parcel_mask} * parcel_bytes;
+    }
+    void post_to(EventLane& lane, const Message& message, const Parcel* parcel) noexcept TAPPET_REALTIME {
         if (lane.latest != nullptr) {
-            post_latest(lane, message);
+            post_latest(lane, message, parcel);
             return;
         }
         const std::uint32_t posted = lane.posted.value();
         const std::uint32_t waiting = posted - lane.served.load(std::memory_order_acquire); // emit.quota
-        if (waiting >= quota || !inbox->post(lane.sender, message)) {
+        const bool has_room = waiting < quota;
+        if (has_room && parcel != nullptr) parcel->pack(place_of(lane, posted), parcel->arguments);
+        if (!has_room || !inbox->post(lane.sender, message)) {
             lane.lost.add();
             return;
         }
@@ -139,7 +177,8 @@ private:
         if (waiting + 1 > lane.high_water.value()) lane.high_water.set(waiting + 1);
         waker();
     }
-    void post_latest(EventLane& lane, const Message& message) noexcept TAPPET_REALTIME {
+    void post_latest(EventLane& lane, const Message& message, const Parcel* parcel) noexcept TAPPET_REALTIME {
+        if (parcel != nullptr) parcel->pack(place_of(lane, lane.latest->place_of_next()), parcel->arguments);
         if (!lane.latest->put(message)) { // the one it replaced was announced: nobody needs to be told again
             lane.lost.add();
             return;
@@ -169,7 +208,9 @@ private:
             lane.dropped.add();
         else {
             row.has_run = true;
-            row.run(row.object, caught->arguments.data());
+            const std::uint32_t place = lane.latest != nullptr ? lane.latest->place_of_taken() : served;
+            row.run(row.object,
+                    lane.parcels == nullptr ? caught->arguments.data() : row.place_of(lane, place));
         }
     }
 };
@@ -194,18 +235,19 @@ T unpack_one(const std::byte*& from) noexcept TAPPET_REALTIME {
     return value;
 }
 
-template <class... A>
-inline constexpr bool fits_one_message = packed_bytes<A...> <= sizeof(Message::arguments);
-
-/// The check of the table refuses an asynchronous reaction to an event whose arguments do not fit; that
-/// event's synchronous reactions are good.
+/// Those that a message has no room for are packed where they wait, once it is known that there is room.
 template <class... A>
 void post(void* reaction, A... arguments) noexcept TAPPET_REALTIME {
-    if constexpr (fits_one_message<A...>) {
-        auto& row = *static_cast<AsyncReaction*>(reaction);
-        Message message;
+    auto& row = *static_cast<AsyncReaction*>(reaction);
+    Message message;
+    if constexpr (parcel_bytes(packed_bytes<A...>) == 0) {
         pack(message.arguments.data(), arguments...);
         row.post(message);
+    } else {
+        const auto write = [&](std::byte* into) noexcept TAPPET_REALTIME { pack(into, arguments...); };
+        const Parcel parcel{&write, [](std::byte* into, const void* self) noexcept
+                            TAPPET_REALTIME { (*static_cast<decltype(&write)>(self))(into); }};
+        row.post(message, &parcel);
     }
 }
 

@@ -12,6 +12,8 @@ namespace tappet {
 
 class LatestMessage {
 public:
+    static constexpr std::uint32_t places = 3;
+
     LatestMessage() = default;
     LatestMessage(const LatestMessage&) = delete;
     LatestMessage& operator=(const LatestMessage&) = delete;
@@ -32,13 +34,17 @@ public:
         front_ = was & ~fresh;
         return (was & fresh) != 0 ? &places_[front_].message : nullptr;
     }
+    /// Numbers of places, below `places`, for who keeps something beside each message: the sender's next one;
+    /// the receiver's, of what it took last. Real-time, each in its own thread.
+    [[nodiscard]] std::uint32_t place_of_next() const noexcept TAPPET_REALTIME { return back_; }
+    [[nodiscard]] std::uint32_t place_of_taken() const noexcept TAPPET_REALTIME { return front_; }
 
 private:
     static constexpr std::uint32_t fresh = 4; ///< beside a place's number: nobody took it
     struct alignas(64) Place {
         Message message{};
     };
-    std::array<Place, 3> places_{};
+    std::array<Place, places> places_{};
     alignas(64) std::uint32_t back_ = 0;  // the sender's
     alignas(64) std::uint32_t front_ = 2; // the receiver's
     alignas(64) std::atomic<std::uint32_t> middle_{1};

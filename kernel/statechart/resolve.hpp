@@ -102,6 +102,11 @@ struct StatePlan {
     StepIndex handle = no_step;         ///< its handle program
 };
 
+/// Arguments of an event to which a state machine reacts have at most so many bytes: a trigger's are counted
+/// in 16 bits.
+inline constexpr std::size_t most_trigger_bytes = 0xffff;
+static_assert(most_trigger_bytes == std::numeric_limits<std::uint16_t>::max());
+
 struct ResolvedSizes {
     std::size_t states = 0;
     std::size_t triggers = 0;

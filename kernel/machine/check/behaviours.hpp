@@ -63,10 +63,10 @@ constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, con
         if (event.kind != FacetKind::event)
             return of_behaviour(row, ": among its events, \"", name, "\" is ", to_text(event.kind),
                                 ", not an event; name an event");
-        if (event.type->size > sizeof(Message::arguments))
+        if (event.type->size > most_trigger_bytes)
             return of_behaviour(row, ": among its events, \"", name, "\" has ", event.type->size,
-                                " bytes of arguments, more than the ", sizeof(Message::arguments),
-                                " of a message; read its component's ports instead");
+                                " bytes of arguments, more than the ", most_trigger_bytes,
+                                " that a state machine keeps; read its component's ports instead");
     }
     for (std::size_t c = 0; c < m.components.size(); ++c) {
         if (!m.components[c].type->sees_machine || r.activity[c] == nowhere) continue;
@@ -159,9 +159,9 @@ constexpr Sentence check_unit(const MachineView& m, const TableIndexView& r, con
             if (!transition.on_event) continue;
             End found;
             Sentence fault = resolve_trigger(m, row, transition.event, found);
-            if (fault.empty() && facet_at(m, found).type->size > sizeof(Message::arguments))
+            if (fault.empty() && facet_at(m, found).type->size > most_trigger_bytes)
                 fault = Sentence{"its ", facet_at(m, found).type->size, " bytes of arguments exceed the ",
-                                 sizeof(Message::arguments), " bytes of a message; send them through a port"};
+                                 most_trigger_bytes, " that a state machine keeps; send them through a port"};
             if (!fault.empty())
                 return of_behaviour(row, ": state machine \"", machine.name, "\": transition ", t + 1, " (\"",
                                     transition.from, "\" to \"", transition.to, "\" on \"", transition.event,

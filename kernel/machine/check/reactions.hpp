@@ -49,9 +49,6 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                "\" may block; use tell(...)");
         if (!row.target.synchronous && row.target.quota == 0)
             return of_reaction(row, ": no emission may wait; write queue(n) with n of at least 1");
-        if (event.type->size > sizeof(Message::arguments) && !row.target.synchronous)
-            return of_reaction(row, ": its ", event.type->size, " bytes of arguments exceed the ",
-                               sizeof(Message::arguments), " bytes of a message; send them through a port");
         for (std::size_t j = r.reactions_into.first[link.to.component]; j != nowhere;
              j = r.reactions_into.next[j])
             if (r.reactions[j].from == link.from && r.reactions[j].to == link.to)

@@ -60,6 +60,8 @@ void MachineBuilder::place_lanes(std::size_t s, AsyncReaction& reaction) {
     const std::size_t n = machine_.table.activities.size();
     auto* lane_of = instance_.at<std::uint8_t>(place.lane_of_at);
     auto* lanes = instance_.at<EventLane>(place.lanes_at);
+    const std::size_t bytes = parcel_bytes(facet_at(machine_.table, row.event).type->size);
+    const std::uint32_t places = parcel_places(row.quota, row.keeps_latest);
     std::size_t count = 0;
     for (std::size_t a = 0; a < n; ++a) {
         lane_of[a] = AsyncReaction::no_lane;
@@ -70,6 +72,7 @@ void MachineBuilder::place_lanes(std::size_t s, AsyncReaction& reaction) {
             row.kind == SubscriberKind::wait ? count : machine_.plan.mail[a * n + row.receiver].sender_index;
         if (row.keeps_latest)
             lane->latest = new (instance_.at<LatestMessage>(place.latest_at) + count) LatestMessage;
+        if (bytes != 0) lane->parcels = instance_.at<std::byte>(place.parcels_at) + count * places * bytes;
         lane_of[a] = static_cast<std::uint8_t>(count++);
     }
     reaction.lanes = lanes;
@@ -80,6 +83,8 @@ void MachineBuilder::place_lanes(std::size_t s, AsyncReaction& reaction) {
     reaction.lane_count = static_cast<std::uint32_t>(count);
     reaction.activities = static_cast<std::uint32_t>(n);
     reaction.quota = row.quota;
+    reaction.parcel_bytes = static_cast<std::uint32_t>(bytes);
+    reaction.parcel_mask = places - 1;
 }
 
 void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {

@@ -53,8 +53,8 @@ public:
     }
 
     /// Connects and disconnects the observer and one event; the event's number there is observed_index(). Not
-    /// valid when nothing sees the machine, or the event's arguments exceed a message. The handle is
-    /// real-time, finding it is not.
+    /// valid when nothing sees the machine, or the event's arguments exceed most_observed_bytes. The
+    /// handle is real-time, finding it is not.
     [[nodiscard]] EventHandle observe_event(std::size_t component, std::size_t facet) noexcept;
     /// In plan().subscriptions; nowhere: it cannot be observed.
     [[nodiscard]] std::size_t observed_index(End event) const noexcept;

@@ -81,6 +81,7 @@ struct SubscriptionPlan {
     std::size_t lane_count = 0;
     std::size_t lane_of_at = nowhere;   ///< of each activity; shared by the events of a component
     std::size_t latest_at = nowhere;    ///< of each lane, if it keeps the latest only
+    std::size_t parcels_at = nowhere;   ///< of each lane, of arguments that a message has no room for
     std::size_t mailboxes_at = nowhere; ///< of a wait: one for each lane
     std::size_t mail_at = nowhere;      ///< of a wait: what the mailboxes hold
 };
@@ -139,6 +140,9 @@ struct TriggerBinding {
     Engine* engine;
     std::size_t event; ///< its number in the unit or slot
 };
+
+/// So many bytes of an event's arguments the component that sees the machine is told.
+inline constexpr std::size_t most_observed_bytes = 512;
 
 /// What is called with each emission that an observer is connected to.
 struct EventObserver {

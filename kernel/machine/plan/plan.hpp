@@ -109,6 +109,9 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
         plan.lane_count = static_cast<std::size_t>(std::popcount(row.emitters));
         plan.lanes_at = layout.take<EventLane>(plan.lane_count);
         if (row.keeps_latest) plan.latest_at = layout.take<LatestMessage>(plan.lane_count);
+        if (const std::size_t bytes = parcel_bytes(facet_at(m, row.event).type->size); bytes != 0)
+            plan.parcels_at = layout.take(
+                plan.lane_count * parcel_places(row.quota, row.keeps_latest) * bytes, alignof(std::uint64_t));
         if (row.kind == SubscriberKind::trigger) plan.binding_at = layout.take<TriggerBinding>();
         if (row.kind == SubscriberKind::observer) plan.binding_at = layout.take<ObserverBinding>();
         if (row.kind == SubscriberKind::wait) {
@@ -152,7 +155,7 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
             plan.handles_at = layout.take<EventHandle>(plan.event_count);
             plan.text_bytes = slot_text_bytes(row.slot);
             plan.text_at = layout.take(plan.text_bytes, 1);
-            plan.memory_bytes = 2 * slot_bank_bytes(row.slot, plan.event_count);
+            plan.memory_bytes = 2 * slot_bank_bytes(row.slot, plan.event_count, longest_slot_event(m, row));
         } else {
             const ScriptUnit unit = row.unit();
             plan.event_count = events_of(unit).count;

@@ -14,9 +14,8 @@ inline constexpr std::uint32_t trigger_quota = 8;
 /// So many unserved emissions of each event wait for the component that sees the machine.
 inline constexpr std::uint32_t observer_quota = 8;
 
-/// An event whose arguments exceed a message has no asynchronous subscription.
 constexpr bool is_observable(const Facet& facet) noexcept {
-    return facet.kind == FacetKind::event && facet.type->size <= sizeof(Message::arguments);
+    return facet.kind == FacetKind::event && facet.type->size <= most_observed_bytes;
 }
 
 /// How many subscriptions a checked table has.

@@ -155,13 +155,10 @@ constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_
     resolved.steps = 12 * resolved.arcs + 2 * std::size_t{sizes.states};
     return resolved;
 }
-/// Of event arguments that wait, each instance; of the histories of all together.
-inline constexpr std::size_t slot_deferred_bytes =
-    sizeof(Message::arguments) * StateMachineExecution::max_raised_events;
-
-/// What one bank takes: the rows, and the unit made of them. A machine of unusual proportions may need more
-/// than this keeps for its resolved form; then it is refused.
-constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noexcept {
+/// What one bank takes: the rows, and the unit made of them, of which each instance keeps `longest` bytes of
+/// arguments of every event that waits. A machine of unusual proportions may need more than this keeps for
+/// its resolved form; then it is refused.
+constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events, std::size_t longest) noexcept {
     const ScriptSizes sizes = slot_sizes(slot);
     detail::UnitLayout layout;
     static_cast<void>(detail::take_script_room(layout, sizes));
@@ -174,7 +171,7 @@ constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events) noex
     for (std::size_t i = 0; i < sizes.instances; ++i) {
         layout.take<StateMachineExecution>(1);
         layout.take<ProgramExecution>(1);
-        layout.take(slot_deferred_bytes, data_alignment);
+        layout.take(longest * StateMachineExecution::max_raised_events, data_alignment);
     }
     layout.take(sizes.data + sizes.instances * data_alignment, data_alignment);
     layout.take<ProgramLink>(2 * sizes.links);

@@ -53,15 +53,13 @@ constexpr void for_each_command_slot(const MachineView& m, std::string_view driv
             if (link.needs_slot) visit(End{component_of(m, driven, unit, link.peer), link.facet});
 }
 
-/// The events that a slot reserves: its own component's, and of its peers those that it names. Each is at
-/// most as large as a message.
+/// The events that a slot reserves: its own component's, and of its peers those that it names.
 template <class Visit>
 constexpr void for_each_slot_event(const MachineView& m, const BehaviourRow& row, const Visit& visit) {
     const std::size_t own = find_component(m, row.component);
     for (std::size_t f = 0; f < m.components[own].type->facets.size(); ++f) {
         const Facet& facet = m.components[own].type->facets[f];
-        if (facet.kind == FacetKind::event && facet.type->size <= sizeof(Message::arguments))
-            visit(End{own, f});
+        if (facet.kind == FacetKind::event && facet.type->size <= most_trigger_bytes) visit(End{own, f});
     }
     for (const std::string_view name : row.slot.events) {
         End event;
@@ -70,6 +68,14 @@ constexpr void for_each_slot_event(const MachineView& m, const BehaviourRow& row
     }
 }
 
+/// Bytes of the longest arguments among them; a message's at least.
+constexpr std::size_t longest_slot_event(const MachineView& m, const BehaviourRow& row) {
+    std::size_t longest = sizeof(Message::arguments);
+    for_each_slot_event(m, row, [&](End event) {
+        if (const std::size_t size = facet_at(m, event).type->size; size > longest) longest = size;
+    });
+    return longest;
+}
 constexpr std::size_t count_slot_events(const MachineView& m, const BehaviourRow& row) {
     std::size_t count = 0;
     for_each_slot_event(m, row, [&](End) { ++count; });

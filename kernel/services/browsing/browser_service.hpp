@@ -65,7 +65,7 @@ private:
     struct Seen {
         std::size_t index = nowhere;
         Time at{};
-        alignas(16) std::array<std::byte, sizeof(Message::arguments)> arguments{};
+        std::size_t arguments = 0; ///< where they stand in seen_bytes_
     };
 
     void accept();
@@ -176,6 +176,7 @@ private:
     bool look_at_saving(Pending& place);
 
     static constexpr int reading_attempts = 1000;
+    static constexpr std::size_t value_alignment = 16;
     MachineInstance* machine_ = nullptr;
     std::size_t own_activity_ = nowhere;
     Time now_{};
@@ -186,8 +187,10 @@ private:
     std::array<Pending, max_pending> pending_{};
     std::array<Subscribed, max_subscriptions> subscribed_{};
     std::array<Seen, max_events> seen_{};
+    alignas(value_alignment) std::array<std::byte, max_events * sizeof(Message::arguments)> seen_bytes_{};
     std::size_t seen_count_ = 0;
-    std::uint64_t unseen_ = 0; ///< emissions beyond max_events
+    std::size_t seen_bytes_used_ = 0;
+    std::uint64_t unseen_ = 0; ///< emissions beyond max_events, or beyond the bytes of so many
     Upload upload_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
     std::span<char> for_nobody_{}; ///< where the answer goes, and what is left there; empty: to the client

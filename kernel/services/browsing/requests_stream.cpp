@@ -24,8 +24,9 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
     const EventHandle handle = machine_->observation().observe_event(event.component, event.facet);
     if (!handle.valid())
         return {Refusal::unsupported,
-                Sentence{"\"", request.arguments[0],
-                         "\" has arguments that exceed a message; read its ports instead"}};
+                Sentence{"\"", request.arguments[0], "\" has ", facet_at(table, event).type->size,
+                         " bytes of arguments, more than the ", most_observed_bytes,
+                         " that browsers are told; read its component's ports instead"}};
     *place = {asker(client, request), true, event, machine_->observation().observed_index(event), handle};
     handle.connect();
     Reply reply{request.number, true};
@@ -60,14 +61,16 @@ void BrowserService::drop(Subscribed& subscribed) noexcept {
 void BrowserService::observe(void* self, std::size_t index, const std::byte* arguments, Time now) noexcept
     TAPPET_REALTIME {
     auto& service = *static_cast<BrowserService*>(self);
-    if (service.seen_count_ == max_events) {
+    const AcceptedMachine& machine = service.machine_->machine();
+    const std::size_t bytes = facet_at(machine.table, machine.plan.subscriptions[index].event).type->size;
+    const std::size_t begin = service.seen_bytes_used_;
+    if (service.seen_count_ == max_events || begin + bytes > service.seen_bytes_.size()) {
         ++service.unseen_;
         return;
     }
-    Seen& seen = service.seen_[service.seen_count_++];
-    seen.index = index;
-    seen.at = now;
-    std::memcpy(seen.arguments.data(), arguments, seen.arguments.size());
+    service.seen_[service.seen_count_++] = {index, now, begin};
+    std::memcpy(service.seen_bytes_.data() + begin, arguments, bytes);
+    service.seen_bytes_used_ = (begin + bytes + value_alignment - 1) / value_alignment * value_alignment;
 }
 
 void BrowserService::tell_events() {
@@ -82,12 +85,12 @@ void BrowserService::tell_events() {
             const Sentence name{table.components[each.event.component].name, ".", facet.name};
             Reply reply{each.asker.number};
             reply.json().field("event", name.view()).field("time_ns", to_ns(seen_[i].at)).key("arguments");
-            reply.value(*facet.type, seen_[i].arguments.data());
+            reply.value(*facet.type, seen_bytes_.data() + seen_[i].arguments);
             const SubscriptionCounts counts = machine_->observation().counts_of(each.index);
             reply.json().field("lost", counts.lost + counts.dropped + unseen_);
             finish(*client, reply);
         }
-    seen_count_ = 0;
+    seen_count_ = seen_bytes_used_ = 0;
 }
 
 } // namespace tappet

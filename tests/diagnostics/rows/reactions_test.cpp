@@ -7,18 +7,6 @@ namespace {
 using namespace small;
 using namespace tappet::diagnostics;
 
-struct Picture {
-    std::array<double, 7> rows{};
-};
-struct Camera {
-    Event<Picture> seen;
-    void show(Picture) noexcept TAPPET_REALTIME {}
-    static constexpr auto interface() {
-        return facets(event<&Camera::seen>("seen", "a picture"),
-                      operation<&Camera::show>("show", "to the operator"));
-    }
-};
-
 struct Watch {
     Event<> broken;
     static constexpr auto interface() {
@@ -61,14 +49,6 @@ constexpr Fault end_faults[] = {
      R"(loom: reaction "weft.broken" -> "shaft.on_index": the event carries () but the operation takes (double); give both the same arguments)"},
     {"reaction_queue_of_nothing", [](Table& m) { m.put(when("weft.broken", tell("shaft.clear", queue(0)))); },
      R"(loom: reaction "weft.broken" -> "shaft.clear": no emission may wait; write queue(n) with n of at least 1)"},
-    {"reaction_arguments_too_large",
-     [](Table& m) {
-         m.add(component<Camera>("camera"));
-         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
-                        runs("weft", "lamps", "camera")));
-         m.add(when("camera.seen", tell("camera.show")));
-     },
-     R"(loom: reaction "camera.seen" -> "camera.show": its 56 bytes of arguments exceed the 48 bytes of a message; send them through a port)"},
     {"event_unheard",
      [](Table& m) {
          m.add(component<Watch>("watch"));

@@ -59,12 +59,18 @@ struct Receiver {
 /// An asynchronous row into a receiver with a lane for each of its senders; activity 0 is the first of them.
 struct Row {
     Row(Receiver& receiver, const OperationOperations& operation, void* component, std::uint32_t quota,
-        bool keeps_latest = false)
+        bool keeps_latest = false, std::size_t argument_bytes = 0)
         : lanes(receiver.mailboxes.size()), latest(receiver.mailboxes.size()), lane_of(lanes.size()) {
+        const std::size_t bytes = parcel_bytes(argument_bytes);
+        const std::uint32_t places = parcel_places(quota, keeps_latest);
+        parcels.resize(lanes.size() * places * bytes);
+        row.parcel_bytes = static_cast<std::uint32_t>(bytes);
+        row.parcel_mask = places - 1;
         for (std::size_t i = 0; i < lanes.size(); ++i) {
             lanes[i].row = &row;
             lanes[i].sender = i;
             if (keeps_latest) lanes[i].latest = &latest[i];
+            if (bytes != 0) lanes[i].parcels = parcels.data() + i * places * bytes;
             lane_of[i] = static_cast<std::uint8_t>(i);
         }
         row.inbox = &receiver.inbox;
@@ -80,6 +86,7 @@ struct Row {
     std::vector<EventLane> lanes;
     std::vector<LatestMessage> latest;
     std::vector<std::uint8_t> lane_of;
+    std::vector<std::byte> parcels;
     AsyncReaction row;
 };
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <functional>
 #include <vector>
 
@@ -89,6 +91,62 @@ TEST_F(AnEvent, lets_one_rows_flood_not_take_another_rows_place) {
     EXPECT_EQ(second.heard, (std::vector{99.0}));
     EXPECT_EQ(many.row.counts().lost, 8u);
     EXPECT_EQ(one.row.counts().lost, 0u);
+}
+
+/// What an operation is called with stays as it is while it runs, whatever comes meanwhile.
+using Large = std::array<double, 9>;
+struct Handler {
+    Event<Large>& event;
+    std::uint32_t more = 0; ///< come while the first one is handled
+    std::vector<double> heard{};
+    static void run(void* self, const std::byte* packed) noexcept TAPPET_REALTIME {
+        auto& handler = *static_cast<Handler*>(self);
+        TAPPET_ESCAPE("a test emits and remembers", handler.handle(packed));
+    }
+    void handle(const std::byte* packed) {
+        if (heard.empty())
+            for (std::uint32_t i = 0; i < more; ++i) event.emit(of(2.0 + i));
+        Large arrived;
+        std::memcpy(arrived.data(), packed, sizeof arrived);
+        heard.push_back(arrived == of(arrived[0]) ? arrived[0] : -1.0);
+    }
+    static Large of(double number) {
+        Large made;
+        for (std::size_t i = 0; i < made.size(); ++i) made[i] = number + static_cast<double>(i) / 16;
+        return made;
+    }
+};
+
+TEST_F(AnEvent, of_large_arguments_keeps_those_that_are_handled_while_the_queue_is_filled) {
+    for (const std::uint32_t quota : {1u, 2u, 3u, 4u, 8u}) {
+        EmitterOf<Large> large;
+        Handler handler{large.event, quota};
+        Receiver receiver{quota + 1};
+        Row row{receiver, hear, &handler, quota, false, sizeof(Large)};
+        row.row.run = &Handler::run;
+        large.tell(row.row);
+        large.event(Handler::of(1.0));
+        while (receiver.inbox.run_all() != 0) {
+        }
+        std::vector<double> all;
+        for (std::uint32_t i = 0; i <= quota; ++i) all.push_back(1.0 + i);
+        EXPECT_EQ(handler.heard, all) << "queue of " << quota;
+        EXPECT_EQ(row.row.counts().lost, 0u);
+    }
+}
+
+TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_that_is_handled) {
+    EmitterOf<Large> large;
+    Handler handler{large.event, 3};
+    Receiver receiver{2};
+    Row row{receiver, hear, &handler, 1, true, sizeof(Large)};
+    row.row.run = &Handler::run;
+    large.tell(row.row);
+    large.event(Handler::of(1.0));
+    while (receiver.inbox.run_all() != 0) {
+    }
+    EXPECT_EQ(handler.heard, (std::vector{1.0, 4.0}));
+    EXPECT_EQ(row.row.counts().lost, 2u);
 }
 
 TEST_F(AnEvent, of_which_the_latest_is_kept_delivers_that_and_counts_the_ones_it_replaced) {

@@ -22,6 +22,8 @@ struct Oven {
     Property<double> target{20.0};
     Event<double, std::int64_t> hot;
     Event<> tick;
+    Event<double, double, double, double, double, double, std::int64_t>
+        recipe; ///< a message has no room for it
     std::vector<std::int64_t> told{};
     std::uint64_t steps = 0;
     double from_deg = 0;
@@ -49,6 +51,7 @@ struct Oven {
                       property<&Oven::target>("target", "degC", "of the heater", range(0, 300)),
                       event<&Oven::hot>("hot", "it is as hot as it should be"),
                       event<&Oven::tick>("tick", "of the test"),
+                      event<&Oven::recipe>("recipe", "six heats, and pieces"),
                       method<&Oven::note>("note", "is written down"),
                       method<&Oven::bake>("bake", "takes its time"));
     }

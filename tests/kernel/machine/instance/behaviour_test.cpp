@@ -48,6 +48,36 @@ constexpr auto table = machine("bakery", parts, threads, connections(), reaction
 // clang-format on
 using Bakery = Rig<Firmware<table, board>>;
 
+constexpr ScriptSource cooking{"cooking.osd", R"(
+StateMachine Cooking {
+    var double a = 0.0; var double b = 0.0; var double c = 0.0; var double d = 0.0; var double e = 0.0; var double f = 0.0;
+    var int pieces = 0;
+    initial state Waiting {
+        transition oven.recipe(a, b, c, d, e, f, pieces) select Cooking
+    }
+    state Cooking {
+        entry { set oven.target = f; do oven.note(pieces); }
+        transition oven.tick() select Waiting
+                        transition oven.recipe(a, b, c, d, e, f, pieces) if f > 100.0 then select Cooking
+    }
+    final state Off {}
+}
+RootStateMachine Cooking cooking
+)"};
+constexpr auto cooking_table = machine("bakery", parts, threads, connections(), reactions(),
+                                       behaviours(behaviour("oven", compiled_script<cooking, reach>, {})));
+
+TEST(Behaviour, hears_events_whose_arguments_a_message_has_no_room_for) {
+    Rig<Firmware<cooking_table, board>> rig;
+    rig.run(10ms);
+    rig.oven().told.clear();
+    for (std::int64_t n = 1; n <= 4; ++n) // they wait together
+        rig.oven().recipe.emit(1, 2, 3, 4, 5, n == 3 ? 50.0 : 200.0 + static_cast<double>(n), n);
+    rig.run(10ms);
+    EXPECT_THAT(rig.oven().told, ElementsAre(1, 2, 4)) << "its guard refused the third";
+    EXPECT_EQ(rig.oven().target.get(), 204.0);
+}
+
 TEST(Behaviour, a_script_hears_events_with_their_arguments_and_acts_on_components_of_its_activity) {
     Bakery rig;
     rig.run(10ms);

@@ -20,21 +20,35 @@ std::vector<std::string>& heard_in_order() {
     return order;
 }
 
+using Profile = std::array<double, 20>;
+using Picture = std::array<double, 80>;
+/// Every number of it follows from the turn.
+Profile profile_of(std::int64_t turn) noexcept TAPPET_REALTIME {
+    Profile made;
+    for (std::size_t i = 0; i < made.size(); ++i)
+        made[i] = static_cast<double>(turn) + static_cast<double>(i) / 32;
+    return made;
+}
+
 /// Emits on demand, and in each step what a test left there.
 struct Shaft {
     Event<double> beat_up;
     Event<> standing;
-    Event<std::array<double, 8>> profile; // too large for a message
+    Event<Profile, std::int64_t> profile; // too large for a message
+    Event<Picture> picture;               // too large for an observer
     std::vector<double> to_emit;
+    std::vector<std::int64_t> profiles;
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         for (double angle : to_emit) beat_up(angle);
-        TAPPET_ESCAPE("a test's memory", to_emit.clear());
+        for (const std::int64_t turn : profiles) profile(profile_of(turn), turn);
+        TAPPET_ESCAPE("a test's memory", to_emit.clear(); profiles.clear());
     }
     void announce() noexcept TAPPET_REALTIME { beat_up(-1.0); }
     static constexpr auto interface() {
         return facets(event<&Shaft::beat_up>("beat_up", "the reed strikes, at this angle"),
                       event<&Shaft::standing>("standing", "it stopped"),
-                      event<&Shaft::profile>("profile", "of one turn"),
+                      event<&Shaft::profile>("profile", "of one turn, and which"),
+                      event<&Shaft::picture>("picture", "of the reed"),
                       operation<&Shaft::announce>("announce", "emits in the caller's activity", any_thread));
     }
 };
@@ -53,21 +67,34 @@ struct Panel {
 struct Console {
     EventHandle beat;
     EventWait<double> next_beat;
+    EventHandle profile;
+    EventWait<Profile, std::int64_t> next_profile;
     std::vector<double> beats;
+    std::vector<std::int64_t> profiles; ///< turns of whole ones
     bool disconnects_itself = false;
     void on_beat(double angle) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a test's memory", beats.push_back(angle); heard_in_order().emplace_back("console"));
         if (disconnects_itself) beat.disconnect();
     }
+    void on_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's memory", profiles.push_back(made == profile_of(turn) ? turn : -1));
+    }
     static constexpr auto interface() {
         return facets(handle<&Console::beat>("beat", "of its beats"),
                       awaits<&Console::next_beat>("next_beat", "the next one"),
+                      handle<&Console::profile>("profile", "of its profiles"),
+                      awaits<&Console::next_profile>("next_profile", "the next one"),
+                      operation<&Console::on_profile>("on_profile", "shows it"),
                       operation<&Console::on_beat>("on_beat", "shows it"));
     }
 };
 
 struct Weft {
     std::vector<double> latest;
+    std::vector<std::int64_t> profiles;
+    void keep_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's memory", profiles.push_back(made == profile_of(turn) ? turn : -1));
+    }
     void hold(double) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a test's memory", heard_in_order().emplace_back("weft"));
     }
@@ -76,7 +103,8 @@ struct Weft {
     }
     static constexpr auto interface() {
         return facets(operation<&Weft::hold>("hold", "holds", any_thread),
-                      operation<&Weft::show>("show", "shows"));
+                      operation<&Weft::show>("show", "shows"),
+                      operation<&Weft::keep_profile>("keep_profile", "the latest"));
     }
 };
 
@@ -119,6 +147,9 @@ constexpr auto table = machine("events",
         when("shaft.beat_up", tell("console.on_beat", queue(4)), handled_by("console.beat"), disconnected),
         when("shaft.beat_up", tell("weft.show", keep_latest)),
         when("shaft.beat_up", tell("console.next_beat")),
+        when("shaft.profile", tell("console.on_profile", queue(3)), handled_by("console.profile")),
+        when("shaft.profile", tell("weft.keep_profile", keep_latest)),
+        when("shaft.profile", tell("console.next_profile", queue(2))),
         when("shaft.beat_up", call("weft.hold")),
         when("panel.pressed", call("shaft.announce"))),
     behaviours());
@@ -208,6 +239,60 @@ TEST(AReactionRow, that_keeps_the_latest_delivers_one_emission_of_many) {
     EXPECT_EQ(rig.counts("show").lost, 2u);
 }
 
+TEST(AReactionRow, carries_arguments_that_a_message_has_no_room_for_in_order_and_whole) {
+    Rig rig;
+    for (std::int64_t turn = 0; turn < 40; turn += 2) { // around the places where they wait
+        rig.shaft.profiles = {turn, turn + 1};
+        rig.pass(20ms);
+    }
+    ASSERT_EQ(rig.console.profiles.size(), 40u);
+    for (std::int64_t turn = 0; turn < 40; ++turn)
+        EXPECT_EQ(rig.console.profiles[static_cast<std::size_t>(turn)], turn);
+    EXPECT_EQ(rig.counts("on_profile").lost, 0u);
+}
+
+TEST(AReactionRow, of_large_arguments_counts_what_its_queue_cannot_hold_and_drops_what_is_outdated) {
+    Rig rig;
+    rig.shaft.profiles = {1, 2, 3, 4, 5};
+    rig.pass(20ms);
+    EXPECT_THAT(rig.console.profiles, ElementsAre(1, 2, 3));
+    EXPECT_EQ(rig.counts("on_profile").lost, 2u);
+    rig.shaft.profiles = {6, 7};
+    rig.pass(5ms); // the console's next cycle is later
+    rig.console.profile.disconnect();
+    rig.console.profile.connect();
+    rig.shaft.profiles = {8};
+    rig.pass(20ms);
+    EXPECT_THAT(rig.console.profiles, ElementsAre(1, 2, 3, 8));
+    EXPECT_EQ(rig.counts("on_profile").outdated, 2u);
+}
+
+TEST(AReactionRow, of_large_arguments_delivers_the_latest_or_lets_it_be_waited_for) {
+    Rig rig;
+    rig.shaft.profiles = {1, 2, 3};
+    rig.pass(2ms);
+    EXPECT_THAT(rig.weft.profiles, ElementsAre(3));
+    Profile made;
+    std::int64_t turn = 0;
+    for (const std::int64_t expected : {1, 2}) {
+        EXPECT_TRUE(rig.console.next_profile.take(made, turn));
+        EXPECT_EQ(turn, expected);
+        EXPECT_EQ(made, profile_of(turn));
+    }
+    EXPECT_FALSE(rig.console.next_profile.take(made, turn)) << "its queue holds two";
+}
+
+TEST(TheDigest, of_a_machine_sees_every_word_of_large_arguments) {
+    const auto digest_after = [](std::int64_t turn) { // the last word of what is emitted
+        Rig rig;
+        rig.shaft.profile(profile_of(0), turn);
+        rig.pass(20ms);
+        return rig.instance.engines()[3].digest().value();
+    };
+    EXPECT_EQ(digest_after(5), digest_after(5));
+    EXPECT_NE(digest_after(5), digest_after(6));
+}
+
 TEST(AnEmission, runs_synchronous_reactions_first_and_then_the_most_urgent_receivers) {
     Rig rig;
     const auto& machine = rig.instance.machine();
@@ -294,14 +379,17 @@ TEST(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_any)
     EXPECT_EQ(rig.console.beats.size(), 4u) << "its own queue";
 }
 
-TEST(TheObserver, cannot_be_connected_to_what_exceeds_a_message_or_is_no_event) {
+TEST(TheObserver, cannot_be_connected_to_what_is_too_large_for_it_or_is_no_event) {
     Rig rig;
     const auto& table_of = rig.instance.machine().table;
     const std::size_t shaft = find_component(table_of, "shaft");
-    for (const std::string_view facet : {"profile", "announce"})
+    for (const std::string_view facet : {"picture", "announce"})
         EXPECT_FALSE(rig.instance.observation()
                          .observe_event(shaft, find_facet(table_of.components[shaft], facet))
                          .valid());
+    EXPECT_TRUE(rig.instance.observation()
+                    .observe_event(shaft, find_facet(table_of.components[shaft], "profile"))
+                    .valid());
     const EventHandle standing =
         rig.instance.observation().observe_event(shaft, find_facet(table_of.components[shaft], "standing"));
     EXPECT_TRUE(standing.valid()) << "although no row names it";

@@ -7,6 +7,24 @@
 namespace tappet::bakery {
 namespace {
 
+TEST_F(BehaviourSlotTest, a_loaded_script_hears_events_whose_arguments_a_message_has_no_room_for) {
+    load_and_settle(R"(StateMachine Cooking {
+        var double a = 0.0; var double b = 0.0; var double c = 0.0; var double d = 0.0; var double e = 0.0; var double f = 0.0;
+        var int pieces = 0;
+        initial state Waiting { transition oven.recipe(a, b, c, d, e, f, pieces) select Cooking
+                                transition oven.tick() select Waiting }
+        state Cooking { entry { set oven.target = f; do oven.note(pieces); }
+                        transition oven.tick() select Waiting
+                        transition oven.recipe(a, b, c, d, e, f, pieces) if f > 100.0 then select Cooking }
+        final state Off {}
+    })");
+    for (std::int64_t n = 1; n <= 4; ++n)
+        oven().recipe.emit(1, 2, 3, 4, 5, n == 3 ? 50.0 : 200.0 + static_cast<double>(n), n);
+    run(10ms);
+    EXPECT_THAT(oven().told, ElementsAre(1, 2, 4)) << "its guard refused the third";
+    EXPECT_EQ(oven().target.get(), 204.0);
+}
+
 TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_before) {
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
     EXPECT_EQ(load(numbered(1)), "");

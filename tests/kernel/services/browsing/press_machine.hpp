@@ -68,11 +68,15 @@ struct Table {
     Output<double> height;
     BufferOutput<std::int64_t> parts;
     Output<bool> light; ///< never written
+    Event<std::array<double, 7>> scanned;
+    Event<std::array<double, 80>> pictured;
     void step(const Cycle&) noexcept TAPPET_REALTIME { height.write(50); }
     static constexpr auto interface() {
         return facets(output<&Table::height>("height", "mm", "of the table"),
                       output<&Table::parts>("parts", "", "that lie on it"),
-                      output<&Table::light>("light", "", "wanted"));
+                      output<&Table::light>("light", "", "wanted"),
+                      event<&Table::scanned>("scanned", "heights along it"),
+                      event<&Table::pictured>("pictured", "heights all over it"));
     }
 };
 

@@ -201,6 +201,17 @@ TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
     EXPECT_EQ(talker.receive(), "");
 }
 
+TEST_F(Press, an_event_of_large_arguments_is_told_too_and_of_too_large_ones_refused) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 subscribe table.pictured"), "more than the 512 that browsers are told"));
+    EXPECT_TRUE(has(ask(talker, "2 subscribe table.scanned"), R"("ok": true)"));
+    instance.find<Table>("table")->scanned.emit({1, 2, 3, 4, 5, 6, 7});
+    instance.find<Table>("table")->scanned.emit({7, 6, 5, 4, 3, 2, 1});
+    run(100ms);
+    EXPECT_TRUE(has(talker.receive(), R"("arguments": [[1, 2, 3, 4, 5, 6, 7]])"));
+    EXPECT_TRUE(has(talker.receive(), R"("arguments": [[7, 6, 5, 4, 3, 2, 1]])"));
+}
+
 TEST_F(Press, a_force_and_its_end_are_heeded_by_who_rests) {
     Talker talker{path()};
     const Lamp& lamp = *instance.find<Lamp>("lamp");

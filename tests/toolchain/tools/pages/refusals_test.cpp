@@ -68,8 +68,9 @@ bool says(const std::string& sentence, const Pieces& pieces) {
 /// What no row says: a script's compiler refuses it before, or the machine that does it is too large for a
 /// row.
 constexpr std::string_view unsaid[] = {
-    ": among its events, \" .. \" has  ..  bytes of arguments, more than the  ..  of a message; read its "
-    "component's ports instead",
+    ": among its events, \" .. \" has  ..  bytes of arguments, more than the  ..  that a state "
+    "machine keeps; read its component's ports instead",
+    "its  ..  bytes of arguments exceed the  ..  that a state machine keeps; send them through a port",
     ": script \" .. \" hears more than  ..  events; split it",
     ": script \" .. \" names facet  ..  of \" .. \", which has fewer; compile it anew",
     ": script \" .. \" touches \" .. . .. \" ( .. ) of activity \" .. \"; send it a command, or declare the "
