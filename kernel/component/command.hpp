@@ -335,7 +335,7 @@ struct CommandFunction {
     using Pack = Packing<>;
 };
 
-template <auto Function, class Component, class R, class... P>
+template <auto Function, bool blocks, class Component, class R, class... P>
 struct CommandFunctionOf {
     static constexpr bool is_good = true;
     using Name = Arguments<typename Parameter<P>::InName...>;
@@ -343,7 +343,12 @@ struct CommandFunctionOf {
     using Pack = Packing<P...>;
 
     static R call(Component& component, Unpacked<P>... each) noexcept TAPPET_REALTIME {
-        const R answer = (component.*Function)(each.value...);
+        R answer{};
+        if constexpr (blocks)
+            TAPPET_ESCAPE("the table's check lets activities only run it that are not real-time",
+                          answer = (component.*Function)(each.value...));
+        else
+            answer = (component.*Function)(each.value...);
         (each.put_back(), ...);
         return answer;
     }
@@ -358,14 +363,24 @@ struct CommandFunctionOf {
 };
 template <auto Function, class Component, class R, class... P>
 struct CommandFunction<Function, R (Component::*)(P...) noexcept TAPPET_REALTIME>
-    : CommandFunctionOf<Function, Component, R, P...> {};
+    : CommandFunctionOf<Function, false, Component, R, P...> {};
 template <auto Function, class Component, class R, class... P>
 struct CommandFunction<Function, R (Component::*)(P...) const noexcept TAPPET_REALTIME>
-    : CommandFunctionOf<Function, Component, R, P...> {};
+    : CommandFunctionOf<Function, false, Component, R, P...> {};
 
-template <auto Action, auto Completion>
+/// Of one that may_block: `Function` is a `R (Component::*)(P...) noexcept`.
+template <auto Function, class = decltype(Function)>
+struct BlockingCommand : CommandFunction<nullptr> {};
+template <auto Function, class Component, class R, class... P>
+struct BlockingCommand<Function, R (Component::*)(P...) noexcept>
+    : CommandFunctionOf<Function, true, Component, R, P...> {};
+template <auto Function, class Component, class R, class... P>
+struct BlockingCommand<Function, R (Component::*)(P...) const noexcept>
+    : CommandFunctionOf<Function, true, Component, R, P...> {};
+
+template <auto Action, auto Completion, bool blocks>
 struct CommandOf {
-    using Begin = CommandFunction<Action>;
+    using Begin = std::conditional_t<blocks, BlockingCommand<Action>, CommandFunction<Action>>;
     using Follow = CommandFunction<Completion>;
     static constexpr bool begin_is_good = Begin::is_good && std::is_same_v<typename Begin::Returned, bool>;
     /// Without a completion it is done when its action has run.

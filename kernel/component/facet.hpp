@@ -115,6 +115,7 @@ struct Facet {
     bool valid_to_start = false;      ///< an input: its component does not start before it has a valid value
     std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
+    bool may_block = false;           ///< a method or a command; never in a real-time activity
     Role least_role = Role::engineer; ///< that may ask for a property, an operation, a method or a command
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array

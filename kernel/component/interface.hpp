@@ -26,6 +26,11 @@ struct Optional {};
 inline constexpr Optional optional{};
 struct AnyThread {};
 inline constexpr AnyThread any_thread{};
+/// Marks a method or a command whose function waits for something, and is declared noexcept without
+/// TAPPET_REALTIME (thesis 4.5.2): a method is then called from activities only that are not_real_time, and a
+/// command runs in such a one. A completion never blocks. Meanwhile that activity serves nothing else.
+struct MayBlock {};
+inline constexpr MayBlock may_block{};
 /// Marks an operation that at least one reaction of the table must name.
 struct Required {};
 inline constexpr Required required{};
@@ -90,6 +95,7 @@ constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
 constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start = true; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
+constexpr void apply(Facet& facet, MayBlock) noexcept { facet.may_block = true; }
 constexpr void apply(Facet& facet, ForPeople people) noexcept { facet.least_role = people.least; }
 
 template <class... Options>
@@ -97,6 +103,8 @@ constexpr Facet with(Facet facet, Options... options) noexcept {
     (apply(facet, options), ...);
     return facet;
 }
+template <class... Options>
+inline constexpr bool says_may_block = (std::same_as<Options, MayBlock> || ...);
 
 } // namespace detail
 

@@ -110,7 +110,7 @@ private:
 
 namespace detail {
 
-template <auto Method, class Component, class R, class... A>
+template <auto Method, bool blocks, class Component, class R, class... A>
 struct MethodOf {
     static constexpr bool is_method =
         (!Parameter<A>::is_result && ...) && (std::is_void_v<R> || std::is_trivially_copyable_v<R>);
@@ -119,7 +119,11 @@ struct MethodOf {
     using Returned = std::conditional_t<std::is_void_v<R>, Arguments<>, R>;
 
     static R call(void* component, const std::remove_cvref_t<A>&... arguments) noexcept TAPPET_REALTIME {
-        return (static_cast<Component*>(component)->*Method)(arguments...);
+        if constexpr (blocks)
+            TAPPET_ESCAPE("the table's check lets activities only call it that are not real-time",
+                          return (static_cast<Component*>(component)->*Method)(arguments...));
+        else
+            return (static_cast<Component*>(component)->*Method)(arguments...);
     }
     template <std::size_t... I>
     static void unpack_and_call(void* component, const std::byte* packed, std::byte* result,
@@ -149,9 +153,19 @@ struct MethodOf {
 
 template <auto Method, class Component, class R, class... A>
 struct MethodFunction<Method, R (Component::*)(A...) noexcept TAPPET_REALTIME>
-    : detail::MethodOf<Method, Component, R, A...> {};
+    : detail::MethodOf<Method, false, Component, R, A...> {};
 template <auto Method, class Component, class R, class... A>
 struct MethodFunction<Method, R (Component::*)(A...) const noexcept TAPPET_REALTIME>
-    : detail::MethodOf<Method, Component, R, A...> {};
+    : detail::MethodOf<Method, false, Component, R, A...> {};
+
+/// Of one that may_block: `Method` is a `R (Component::*)(A...) noexcept`.
+template <auto Method, class = decltype(Method)>
+struct BlockingMethod : MethodFunction<nullptr> {};
+template <auto Method, class Component, class R, class... A>
+struct BlockingMethod<Method, R (Component::*)(A...) noexcept>
+    : detail::MethodOf<Method, true, Component, R, A...> {};
+template <auto Method, class Component, class R, class... A>
+struct BlockingMethod<Method, R (Component::*)(A...) const noexcept>
+    : detail::MethodOf<Method, true, Component, R, A...> {};
 
 } // namespace tappet

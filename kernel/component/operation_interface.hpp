@@ -7,18 +7,24 @@
 namespace tappet {
 
 /// A member function `R f(A...) noexcept TAPPET_REALTIME` that peers run in their own thread: those of its
-/// own activity, or any if it is declared any_thread.
+/// own activity, or any if it is declared any_thread. One that may_block is declared noexcept alone.
 template <auto Method, class... Options>
 constexpr Facet method(std::string_view name, std::string_view doc, Options... options) {
+    constexpr bool blocks = detail::says_may_block<Options...>;
+    using M = std::conditional_t<blocks, BlockingMethod<Method>, MethodFunction<Method>>;
     static_assert(
-        MethodFunction<Method>::is_method,
+        M::is_method || blocks,
         "a method is a member function declared noexcept TAPPET_REALTIME that takes values or const "
-        "references and returns a trivially copyable result or void");
+        "references and returns a trivially copyable result or void; one that blocks says may_block");
+    static_assert(
+        M::is_method || !blocks,
+        "a method that may_block is a member function declared noexcept, without TAPPET_REALTIME, that takes "
+        "values or const references and returns a trivially copyable result or void");
     return detail::with({.name = name,
                          .doc = doc,
                          .kind = FacetKind::method,
-                         .type = type_id<typename MethodFunction<Method>::Signature>,
-                         .method = &MethodFunction<Method>::operations},
+                         .type = type_id<typename M::Signature>,
+                         .method = &M::operations},
                         options...);
 }
 
@@ -38,12 +44,17 @@ constexpr Facet calls(std::string_view name, std::string_view doc, Options... op
 
 /// A goal that the component reaches for others. `Action`: `bool f(P...) noexcept TAPPET_REALTIME`, false
 /// rejects. `Completion`: the same parameters or none, returns CommandProgress or bool; asked in each cycle
-/// of the component's activity after its action. Without it the command is done when its action has run.
+/// of the component's activity after its action. Without it the command is done when its action has run. The
+/// action of one that may_block is declared noexcept alone.
 template <auto Action, auto Completion = nullptr, class... Options>
 constexpr Facet command(std::string_view name, std::string_view doc, Options... options) {
-    using C = detail::CommandOf<Action, Completion>;
-    static_assert(C::begin_is_good,
-                  "the action of a command is a member function `bool f(P...) noexcept TAPPET_REALTIME`");
+    constexpr bool blocks = detail::says_may_block<Options...>;
+    using C = detail::CommandOf<Action, Completion, blocks>;
+    static_assert(C::begin_is_good || blocks,
+                  "the action of a command is a member function `bool f(P...) noexcept TAPPET_REALTIME`; one "
+                  "that blocks says may_block");
+    static_assert(C::begin_is_good || !blocks,
+                  "the action of a command that may_block is a member function `bool f(P...) noexcept`");
     static_assert(!C::begin_is_good || C::follow_is_good,
                   "the completion of a command takes the parameters of its action or none, is noexcept "
                   "TAPPET_REALTIME and returns CommandProgress or bool");

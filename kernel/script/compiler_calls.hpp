@@ -143,6 +143,9 @@ constexpr void Expressions::check_call(const Token& at, std::uint16_t component,
     if (ok() && !facet.any_thread && !is_near(component))
         fail(at, {"\"", quoted(facet.name), "\" of \"", reach_.components[component].name,
                   "\" is called in its own activity only; make it any_thread, or send a command"});
+    if (ok() && facet.may_block)
+        fail(at, {"\"", quoted(facet.name), "\" of \"", reach_.components[component].name,
+                  "\" may block, and a script's statements do not; make it a command"});
 }
 
 constexpr Operand Expressions::read_facet(const Token& name, std::uint16_t component, std::uint16_t number) {

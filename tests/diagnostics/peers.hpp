@@ -12,12 +12,14 @@ struct Press {
     double force(int) noexcept TAPPET_REALTIME { return 0.0; }
     int strokes(int) noexcept TAPPET_REALTIME { return 0; }
     void oil() noexcept TAPPET_REALTIME {}
+    double weigh(int) noexcept { return 0.0; }
     static constexpr auto interface() {
-        return facets(command<&Press::close, &Press::closed>("close", "with a force, in strokes"),
-                      command<&Press::open>("open", "so wide"),
-                      method<&Press::force>("force", "at a place", any_thread),
-                      method<&Press::strokes>("strokes", "of a tool"),
-                      operation<&Press::oil>("oil", "a drop"));
+        return facets(
+            command<&Press::close, &Press::closed>("close", "with a force, in strokes"),
+            command<&Press::open>("open", "so wide"),
+            method<&Press::force>("force", "at a place", any_thread),
+            method<&Press::strokes>("strokes", "of a tool"), operation<&Press::oil>("oil", "a drop"),
+            method<&Press::weigh>("weigh", "on its scales, which answer late", any_thread, may_block));
     }
 };
 

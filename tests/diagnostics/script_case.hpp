@@ -9,9 +9,12 @@
 struct ScriptedAxis {
     tappet::Event<> mark;
     void home(std::int32_t) noexcept TAPPET_REALTIME {}
+    void survey() noexcept {}
     static constexpr auto interface() {
-        return tappet::facets(tappet::event<&ScriptedAxis::mark>("mark", "the index mark passed"),
-                              tappet::method<&ScriptedAxis::home>("home", "to the reference"));
+        return tappet::facets(
+            tappet::event<&ScriptedAxis::mark>("mark", "the index mark passed"),
+            tappet::method<&ScriptedAxis::home>("home", "to the reference"),
+            tappet::method<&ScriptedAxis::survey>("survey", "all of it", tappet::may_block));
     }
 };
 

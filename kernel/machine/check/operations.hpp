@@ -78,6 +78,17 @@ constexpr Sentence check_use_kinds(const ReactionRow& row, const Facet& from, co
     return {};
 }
 
+/// What waits for something runs in no activity that has a deadline (thesis 4.5.2).
+constexpr Sentence check_blocking_commands(const MachineView& m, const TableIndexView& r) {
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        for (const Facet& facet : m.components[c].type->facets)
+            if (facet.may_block && facet.kind == FacetKind::command && m.activities[r.activity[c]].real_time)
+                return of_component(m.components[c].name, ": its command \"", facet.name,
+                                    "\" may block, but its activity \"", m.activities[r.activity[c]].name,
+                                    "\" is real-time; run it in an activity that is not_real_time");
+    return {};
+}
+
 constexpr Sentence check_sent_by(const MachineView& m, const TableIndexView& r, const ReactionRow& row,
                                  const Link& link) {
     if (row.sent_by.empty()) return {};
@@ -92,6 +103,7 @@ constexpr Sentence check_sent_by(const MachineView& m, const TableIndexView& r, 
 
 /// Fills the ends of each uses row.
 constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
+    if (Sentence fault = check_blocking_commands(m, r); !fault.empty()) return fault;
     for (std::size_t i = 0; i < m.reactions.size(); ++i) {
         const ReactionRow& row = m.reactions[i];
         if (row.kind != ReactionKind::uses) continue;
@@ -106,6 +118,11 @@ constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
             return of_use(row, ": the call would run \"", row.target.operation, "\" of activity \"",
                           m.activities[receiver].name, "\" in activity \"", m.activities[caller].name,
                           "\"; declare the method any_thread if it is safe there, or make it a command");
+        if (to.kind == FacetKind::method && to.may_block && m.activities[caller].real_time)
+            return of_use(
+                row, ": the method may block, but activity \"", m.activities[caller].name,
+                "\" of its caller is real-time; make it a command, or call it from an activity that "
+                "is not_real_time");
         if (Sentence fault = check_sent_by(m, r, row, link); !fault.empty()) return fault;
         for (std::size_t j = 0; j < i; ++j) {
             if (m.reactions[j].kind != ReactionKind::uses || r.reactions[j].from != link.from) continue;

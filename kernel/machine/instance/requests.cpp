@@ -36,7 +36,8 @@ bool MachineRequests::bind_command(End to, CommandSlot& slot, std::span<std::byt
 
 bool MachineRequests::request_method(End to, MethodRequest& request, std::span<std::byte> values) noexcept {
     const Facet& facet = facet_at(machine_.table, to);
-    if (facet.kind != FacetKind::method || !request.done() ||
+    const ActivityRow& activity = machine_.table.activities[machine_.index.activity[to.component]];
+    if (facet.kind != FacetKind::method || !request.done() || (facet.may_block && activity.real_time) ||
         values.size() < facet.method->argument_bytes + facet.method->result_bytes)
         return false;
     request.place(*facet.method, placed_.component(to.component), values.data());

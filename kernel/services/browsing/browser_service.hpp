@@ -107,6 +107,7 @@ private:
     [[nodiscard]] static Verdict check_role(const Client& client, std::string_view what, Role least);
     [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
                                          std::span<std::byte> into);
+    browsing::FacetCall& prepare(Pending& place, End end) const noexcept;
     Verdict reach(Pending& place, const browsing::Asker& asker, End end, Message::Run act);
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
     [[nodiscard]] bool release_readers_of(const browsing::FollowedLife& stopped);

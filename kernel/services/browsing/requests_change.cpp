@@ -77,16 +77,20 @@ BrowserService::Verdict BrowserService::check_alive(std::size_t component) noexc
                                        "\" is stopped, and nothing of it can be changed; start it first"}};
 }
 
-BrowserService::Verdict BrowserService::reach(Pending& place, const browsing::Asker& asker, End end,
-                                              Message::Run act) {
+FacetCall& BrowserService::prepare(Pending& place, End end) const noexcept {
     auto& of = std::get<FacetCall>(place.work);
     of.machine = machine_;
     of.end = end;
     of.facet = &facet_at(machine_->machine().table, end);
     of.place = of.facet->port != nullptr ? machine_->place_of(end) : machine_->component(end.component);
+    return of;
+}
+
+BrowserService::Verdict BrowserService::reach(Pending& place, const browsing::Asker& asker, End end,
+                                              Message::Run act) {
     Message call;
     call.run = act;
-    call.object = &of;
+    call.object = &prepare(place, end);
     return await_engine(place, asker, end.component, call, &BrowserService::look_at_facet);
 }
 
@@ -185,6 +189,18 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
                                            "\" does not run; start it first"}};
     if (facet.method != nullptr && facet.type->size + facet.method->result_bytes > values.size())
         return {Refusal::unsupported, Sentence{"its result is too large to be shown"}};
+    const ActivityRow& activity = table.activities[machine_->machine().index.activity[end.component]];
+    if (facet.may_block && activity.real_time) {
+        if (!facet.any_thread)
+            return {
+                Refusal::unsupported,
+                Sentence{"\"", request.arguments[0], "\" may block, and activity \"", activity.name,
+                         "\" of its component is real-time; make it a command, or declare it any_thread if "
+                         "it is safe here"}};
+        auto& own = prepare(*place, end);
+        run_method(&own, nullptr);
+        return await(*place, asker(client, request), &BrowserService::look_at_facet);
+    }
     return reach(*place, asker(client, request), end, facet.method != nullptr ? &run_method : &run_operation);
 }
 

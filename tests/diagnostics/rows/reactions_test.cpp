@@ -7,6 +7,13 @@ namespace {
 using namespace small;
 using namespace tappet::diagnostics;
 
+struct Archive {
+    bool store(int) noexcept { return true; }
+    static constexpr auto interface() {
+        return facets(command<&Archive::store>("store", "on the disk", may_block));
+    }
+};
+
 struct Watch {
     Event<> broken;
     static constexpr auto interface() {
@@ -224,6 +231,14 @@ constexpr Fault use_faults[] = {
          m.reactions = {spare_close, spare_force, uses("desk.strokes", "press.strokes")};
      },
      R"(mill: use "desk.strokes" -> "press.strokes": the call would run "press.strokes" of activity "motion" in activity "desk"; declare the method any_thread if it is safe there, or make it a command)"},
+    {"use_of_what_may_block", [](Table& m) { m.put(uses("desk.force", "press.weigh")); },
+     R"(mill: use "desk.force" -> "press.weigh": the method may block, but activity "desk" of its caller is real-time; make it a command, or call it from an activity that is not_real_time)"},
+    {"command_that_may_block",
+     [](Table& m) {
+         m.add(component<Archive>("archive"));
+         m.add(activity("archive", every(100ms), budget(1us), runs("archive")));
+     },
+     R"(mill: component "archive": its command "store" may block, but its activity "archive" is real-time; run it in an activity that is not_real_time)"},
     {"use_sent_by_its_own", [](Table& m) { m.put(uses("desk.close", "press.close", sent_by("desk"))); },
      R"(mill: use "desk.close" -> "press.close": sent_by(...) names the component whose command it is; remove it)"},
     {"use_sent_by_unknown", [](Table& m) { m.put(uses("desk.close", "press.close", sent_by("spar"))); },

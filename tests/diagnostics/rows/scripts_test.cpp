@@ -37,6 +37,12 @@ program p {
 }
 )",
      R"(axis.osd:3:13: "axis" has no "hoem"; did you mean "home"?)"},
+    {"script_method_that_blocks", R"(
+program p {
+    do axis.survey();
+}
+)",
+     R"(axis.osd:3:13: "survey" of "axis" may block, and a script's statements do not; make it a command)"},
     {"script_initial_missing", R"(
 StateMachine M {
     state A { transition mark select Z }

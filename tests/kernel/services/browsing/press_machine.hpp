@@ -5,6 +5,8 @@
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 
+#include <unistd.h>
+
 namespace tappet::press {
 
 /// Moves to where it is told; what it may do, it says.
@@ -49,6 +51,8 @@ struct Ram {
     double distance(double to) noexcept TAPPET_REALTIME { return to - place.last(); }
     void halt() noexcept TAPPET_REALTIME { target = place.last(); }
     void let_go() noexcept TAPPET_REALTIME { ++let_goes; }
+    double weigh(double tare) noexcept { return ::usleep(1), 80.0 - tare; }
+    double survey() noexcept { return 0.0; }
 
     static constexpr auto interface() {
         return facets(output<&Ram::place>("place", "mm", "of the ram"),
@@ -60,7 +64,9 @@ struct Ram {
                                                              for_people(Role::machine_operator)),
                       method<&Ram::distance>("distance", "from here"),
                       operation<&Ram::halt>("halt", "stays", for_people(Role::machine_operator)),
-                      operation<&Ram::let_go>("let_go", "opens the clamp"));
+                      operation<&Ram::let_go>("let_go", "opens the clamp"),
+                      method<&Ram::weigh>("weigh", "on scales that answer late", may_block, any_thread),
+                      method<&Ram::survey>("survey", "all of it", may_block));
     }
 };
 
@@ -80,6 +86,17 @@ struct Table {
     }
 };
 
+/// What it is asked for blocks.
+struct Archive {
+    int stored = 0;
+    bool store(double) noexcept { return ::usleep(1), ++stored < 2; }
+    std::int64_t count() noexcept { return ::usleep(1), stored; }
+    static constexpr auto interface() {
+        return facets(command<&Archive::store>("store", "on the disk", may_block),
+                      method<&Archive::count>("count", "of what was stored", may_block));
+    }
+};
+
 /// Follows its input when something wakes it.
 struct Lamp {
     Input<bool> wanted;
@@ -93,12 +110,13 @@ struct Lamp {
 // clang-format off
 inline constexpr auto table = machine("press",
     components(component<Ram>("ram", properties_file("ram.cpf", optional)), component<Table>("table"), component<BrowserService>("browser", set("log", false)),
-               component<Table>("shelf"), component<Lamp>("lamp")),
+               component<Table>("shelf"), component<Lamp>("lamp"), component<Archive>("archive")),
     activities(
         activity("motion",  every(1ms), budget(50us), runs("ram")),
         activity("slow",    every(10ms), budget(50us), runs("table", "shelf")),
         activity("lamps",   on_work(), at_most(1, 10ms), deadline(10ms), budget(20us), runs("lamp")),
-        activity("browser", every(20ms), not_real_time, runs("browser"))),
+        activity("browser", every(20ms), not_real_time, runs("browser")),
+        activity("archive", on_work(), not_real_time, runs("archive"))),
     connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.light", "lamp.wanted", wakes)),
     reactions(), behaviours());
 inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,

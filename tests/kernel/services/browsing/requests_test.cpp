@@ -212,6 +212,22 @@ TEST_F(Press, an_event_of_large_arguments_is_told_too_and_of_too_large_ones_refu
     EXPECT_TRUE(has(talker.receive(), R"("arguments": [[7, 6, 5, 4, 3, 2, 1]])"));
 }
 
+TEST_F(Press, what_may_block_is_called_and_sent_where_no_deadline_is) {
+    Talker talker{path()};
+    EXPECT_TRUE(talker.send("1 send archive.store 1"));
+    run(100ms);
+    std::string told;
+    for (std::string packet = talker.receive(); !packet.empty(); packet = talker.receive()) told += packet;
+    EXPECT_TRUE(has(told, R"("state": "done")")) << told;
+    EXPECT_TRUE(has(ask(talker, "2 call archive.count"), R"("result": 1)"));
+    EXPECT_TRUE(has(ask(talker, "3 call ram.weigh 30"), R"("result": 50)"))
+        << "in the browser's own activity";
+    const std::string refused = ask(talker, "4 call ram.survey");
+    EXPECT_TRUE(has(refused, R"("code": "unsupported")")) << refused;
+    EXPECT_TRUE(has(refused, "may block, and activity \\\"motion\\\" of its component is real-time"))
+        << refused;
+}
+
 TEST_F(Press, a_force_and_its_end_are_heeded_by_who_rests) {
     Talker talker{path()};
     const Lamp& lamp = *instance.find<Lamp>("lamp");

@@ -1,0 +1,93 @@
+// Methods and commands that may block (thesis 4.5.2): where they run, and for whom.
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include "kernel/machine/firmware.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+/// Waits for a medium that takes its time.
+struct Archive {
+    std::vector<int> stored{};
+    bool store(int what, int& copies) noexcept {
+        ::usleep(1);
+        stored.push_back(what);
+        copies = what * 2;
+        return what >= 0;
+    }
+    int count(int times) noexcept {
+        ::usleep(1);
+        return times * static_cast<int>(stored.size());
+    }
+    static constexpr auto interface() {
+        return facets(command<&Archive::store>("store", "is written", may_block),
+                      method<&Archive::count>("count", "of what was written", may_block, any_thread));
+    }
+};
+
+struct Clerk {
+    MethodCall<int(int)> count;
+    int counted = -1;
+    void work(const Cycle&) { counted = count(10); }
+    static constexpr auto interface() { return facets(calls<&Clerk::count>("count", "of the archive")); }
+};
+struct Foreman {
+    CommandCall<int, int&> store;
+    static constexpr auto interface() { return facets(sends<&Foreman::store>("store", "in the archive")); }
+};
+
+// clang-format off
+constexpr auto table = machine("blocking",
+    components(component<Foreman>("foreman"), component<Archive>("archive"), component<Clerk>("clerk")),
+    activities(
+        activity("motion",  every(1ms), budget(50us), runs("foreman")),
+        activity("archive", on_work(), not_real_time, runs("archive")),
+        activity("clerks",  every(50ms), not_real_time, runs("clerk"))),
+    connections(),
+    reactions(uses("foreman.store", "archive.store"), uses("clerk.count", "archive.count")),
+    behaviours());
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format on
+
+struct WhatMayBlock : testing::Test {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    WhatMayBlock() {
+        EXPECT_TRUE(instance.configure({}));
+        EXPECT_EQ(std::string{world.start().view()}, "");
+    }
+    void pass(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    template <class T>
+    T& of(std::string_view name) {
+        return *instance.find<T>(name);
+    }
+};
+
+TEST_F(WhatMayBlock, is_done_in_an_activity_without_deadline_for_senders_that_have_one) {
+    auto& store = of<Foreman>("foreman").store;
+    EXPECT_TRUE(store.send(21));
+    pass(20ms);
+    EXPECT_EQ(store.state(), CommandState::done);
+    EXPECT_EQ(store.result(), 42);
+    EXPECT_EQ(of<Archive>("archive").stored, std::vector{21});
+    store.reset();
+    EXPECT_TRUE(store.send(-1));
+    pass(20ms);
+    EXPECT_EQ(store.state(), CommandState::rejected);
+}
+
+TEST_F(WhatMayBlock, is_called_by_a_peer_in_an_activity_without_deadline) {
+    EXPECT_TRUE(of<Foreman>("foreman").store.send(1));
+    pass(200ms);
+    EXPECT_EQ(of<Clerk>("clerk").counted, 10);
+}
+
+} // namespace
+} // namespace tappet
