@@ -14,26 +14,6 @@ namespace bearing_press {
 using namespace tappet;
 
 inline constexpr motion::AxisLimits slide{.velocity = 0.2, .acceleration = 2.0, .jerk = 40.0}; // m, s
-inline constexpr double drive_most = 0.25; // m/s: some more than any path asks for
-
-/// Sensor: the slide's place and the force on it.
-struct Gauge {
-    Input<double> counted, weighed;
-    Output<double> position, force;
-    void start(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
-        position.write(counted.get());
-        force.write(weighed.get());
-    }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { force.write(0.0); }
-    static constexpr auto interface() {
-        return facets(
-            input<&Gauge::counted>("counted", "m", "by the drive's encoder"),
-            input<&Gauge::weighed>("weighed", "N", "by the cell"),
-            output<&Gauge::position>("position", "m", "of the slide, from where it was switched on"),
-            output<&Gauge::force>("force", "N", "of the slide on what lies below"));
-    }
-};
 
 /// Estimator: how fast the slide is.
 struct Speed {
@@ -308,21 +288,6 @@ struct Trim {
 private:
     static constexpr double most = 0.01; // m/s
     double sum_ = 0.0;
-};
-
-/// Effector: to the drive, within its limits.
-struct Drive {
-    Input<double> wanted;
-    Output<double> velocity;
-    void start(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
-        velocity.write(std::clamp(wanted.get(), -drive_most, drive_most));
-    }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
-    static constexpr auto interface() {
-        return facets(input<&Drive::wanted>("wanted", "m/s", "of the drive"),
-                      output<&Drive::velocity>("velocity", "m/s", "sent"));
-    }
 };
 
 } // namespace bearing_press

@@ -4,6 +4,9 @@
 #include "apps/bearing_press/axis.hpp"
 #include "apps/bearing_press/loops.hpp"
 #include "drivers/can/restarter.hpp"
+#include "drivers/instruments/encoder.hpp"
+#include "drivers/instruments/force_sensor.hpp"
+#include "drivers/instruments/velocity_axis.hpp"
 #include "kernel/control/control.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
@@ -17,31 +20,34 @@ inline constexpr auto table = machine("bearing-press",
         component<can::Bus<can_signals>>("can", device("axis-can")),
         component<gpio::LinePort<io_lines>>("io", device("panel-io")),
         component<ChainSwitch>("mode"),
-        component<Gauge>("gauge"), component<Speed>("speed"),
+        component<instruments::Encoder<"m">>("gauge", set("counts_per_unit", 1e6)),
+        component<instruments::ForceSensor>("cell", set("most", 5000.0)),
+        component<Speed>("speed"),
         component<Idle>("idle"), component<Standing>("standing"), component<Jogging>("jogging"), component<Path>("path"), component<Approach>("approach"),
         component<Place>("place", set("kp", 20.0)), component<Press>("press", set("kf", 1e-5)),
-        component<Ramp>("ramp"), component<Trim>("trim"), component<Drive>("drive"),
+        component<Ramp>("ramp"), component<Trim>("trim"),
+        component<instruments::VelocityAxis<"m/s">>("drive", set("most", 0.25)), // some more than any path asks for
         component<Axis>("axis"),                                    // the states of the whole
         component<can::Restarter>("restarter", device("axis-can")),
         component<BrowserService>("browser")),
     activities( // threads; their priorities follow from the deadlines
         activity("can",       on_device("can"), at_most(4, 1ms), runs("can"), deadline(300us), budget(30us)),
         activity("loops",     every(1ms, phase(300us)),                       deadline(600us), budget(60us),
-            runs("mode", "gauge", "speed", "idle", "standing", "jogging", "path", "approach", "place", "press", "ramp", "trim", "drive")),
+            runs("mode", "gauge", "cell", "speed", "idle", "standing", "jogging", "path", "approach", "place", "press", "ramp", "trim", "drive")),
         activity("io",        on_device("io"),  at_most(4, 1ms), runs("io"),  deadline(900us), budget(16us)),
         activity("axis",      every(5ms),                        runs("axis"), budget(30us)),
         activity("restarter", every(100ms), not_real_time,       runs("restarter")),
         activity("browser",   every(20ms), not_real_time,        runs("browser"), stack(224 * 1024))),
     connections( // data flow
-        data("can.axis.position", "gauge.counted", stale_after(20ms), hold), // the drive is stopped then: see axis.statusword
-        data("can.cell.force",    "gauge.weighed", stale_after(20ms), stop_machine),
+        data("can.axis.position", "gauge.counts",  stale_after(20ms), hold), // the drive is stopped then: see axis.statusword
+        data("can.cell.force",    "cell.measured", stale_after(20ms), stop_machine),
         data("gauge.position", "speed.position"),
         data("gauge.position", "idle.position"),
         data("gauge.position", "standing.position"), data("drive.velocity", "standing.sent", delayed),
         data("gauge.position", "jogging.position"),  data("drive.velocity", "jogging.sent",  delayed),
         data("gauge.position", "path.position"),     data("gauge.position", "approach.position"),
         data("gauge.position", "place.position"),    data("drive.velocity", "place.sent",    delayed),
-        data("gauge.force",    "press.force"),       data("drive.velocity", "press.sent",    delayed),
+        data("cell.force",     "press.force"),       data("drive.velocity", "press.sent",    delayed),
         data("idle.target",     "place.target"),     data("idle.speed",     "place.speed"),
         data("standing.target", "place.target"),     data("standing.speed", "place.speed"),
         data("jogging.target",  "place.target"),     data("jogging.speed",  "place.speed"),
@@ -68,7 +74,7 @@ inline constexpr auto table = machine("bearing-press",
             generator("idle"), generator("standing"), generator("jogging"), generator("path"), generator("approach"),
             controller("place", tracks("sent")), controller("press", tracks("sent"))),
         level("speed",
-            sensor("gauge"), estimator("speed"), generator("ramp"), controller("trim", tracks("sent")), effector("drive")),
+            sensor("gauge"), sensor("cell"), estimator("speed"), generator("ramp"), controller("trim", tracks("sent")), effector("drive")),
         process("axis"),
         exclusive("mode",
             fallback("off",   "idle",     "place"), // also of a drive without power

@@ -13,7 +13,7 @@ using namespace tappet;
 inline constexpr auto can_signals = can::signal_map(
     can::receive(can::standard(0x181), "axis", can::bytes(8),
         can::signal("statusword", 0, 16),
-        can::signal("position", 16, 32).as_signed().times(1e-6).in("m")),
+        can::signal("position", 16, 32)), // micrometres
     can::receive(can::standard(0x182), "cell", can::bytes(4),
         can::signal("force", 0, 32).as_signed().times(0.01).in("N")),
     can::transmit(can::standard(0x201), "command", can::bytes(6), can::every(1ms), // cyclic synchronous velocity

@@ -6,6 +6,7 @@
 #include "drivers/can/far_end.hpp"
 #include "drivers/canopen/simulated_drive.hpp"
 #include "drivers/gpio/far_end.hpp"
+#include "drivers/instruments/simulated.hpp"
 #include "drivers/plant/plant.hpp"
 #include "kernel/base/random.hpp"
 
@@ -43,7 +44,7 @@ public:
             ++bearings_;
             next_bearing();
         }
-        can.set("axis.position", std::round((place_ - switched_on_at) * 1e6) * 1e-6);
+        can.set_integer("axis.position", encoder_.count(place_));
         can.set("cell.force", force + (random_.unit() - 0.5));
         io.set("home", place_ < zero_);
         io.set("upper_end", place_ < -0.005);
@@ -113,6 +114,7 @@ private:
 
     Random random_;
     canopen::SimulatedDrive drive_;
+    instruments::SimulatedEncoder<32> encoder_{1e6, switched_on_at};
     double place_ = 0.0, speed_ = 0.0, bearing_ = 0.0;
     bool is_seated_ = false, stop_ = false, up_ = false, down_ = false, end_ = false, operator_works_ = true;
     double worst_force_ = 0.0, worst_speed_ = 0.0, worst_jolt_ = 0.0;

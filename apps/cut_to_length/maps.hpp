@@ -10,10 +10,11 @@ namespace cut_to_length {
 using namespace tappet;
 
 inline constexpr double codes_per_mm = 8.0; // of the measuring wheel
+inline constexpr int wheel_bits = 16;
 
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(
-    can::receive(can::standard(0x181), "wheel", can::bytes(2), can::signal("position", 0, 16)),
+    can::receive(can::standard(0x181), "wheel", can::bytes(2), can::signal("position", 0, wheel_bits)),
     can::receive(can::standard(0x182), "feed", can::bytes(2), can::signal("statusword", 0, 16)),
     can::transmit(can::standard(0x202), "feed_command", can::bytes(4), can::every(5ms),
         can::signal("controlword", 0, 16).safe(0),

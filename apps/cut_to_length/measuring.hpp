@@ -3,6 +3,7 @@
 #pragma once
 
 #include "apps/cut_to_length/maps.hpp"
+#include "drivers/instruments/encoder.hpp"
 #include "kernel/cam/estimator.hpp"
 #include "kernel/cam/schedule.hpp"
 #include "kernel/component/component.hpp"
@@ -31,7 +32,7 @@ struct Measuring {
     }
     /// A length that was begun before is not known any more: the first piece is scrap.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        known_ = false;
+        wheel_.lose();
         cuts.write(0);
         knife_turned.emit();
     }
@@ -40,17 +41,16 @@ struct Measuring {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         std::int64_t code = 0;
         const Flow flow = position.read(code);
-        if (flow == Flow::stale && known_) {
-            known_ = false;
+        if (flow == Flow::stale && wheel_.is_known()) {
+            wheel_.lose();
             cam_timer.cancel();
             wheel_lost.emit();
         }
         if (flow != Flow::fresh) return;
-        // The wheel counts in 16 bits; after a gap the length begins anew, as the estimator does.
-        travelled_ = known_ ? travelled_ + static_cast<std::int16_t>(code - last_) : 0;
-        known_ = true;
-        last_ = code;
-        estimator_.sample(static_cast<std::uint32_t>((travelled_ % codes_ + codes_) % codes_),
+        const bool begins = !wheel_.is_known(); // after a gap the length does, and the estimator
+        const std::int64_t way = wheel_.take(code);
+        if (begins) begun_at_ = way;
+        estimator_.sample(static_cast<std::uint32_t>(((way - begun_at_) % codes_ + codes_) % codes_),
                           position.stamp());
         schedule_.update(estimator_, cycle.now);
         cam_timer.arm(schedule_.next_due());
@@ -86,8 +86,8 @@ struct Measuring {
 private:
     ShaftEstimator estimator_{ShaftProperties{}};
     CamSchedule<cams.size()> schedule_{cams};
-    std::int64_t codes_ = 0, travelled_ = 0, last_ = 0;
-    bool known_ = false;
+    instruments::EncoderCounts<wheel_bits> wheel_;
+    std::int64_t codes_ = 0, begun_at_ = 0;
 };
 
 } // namespace cut_to_length

@@ -5,6 +5,7 @@
 #include "drivers/can/far_end.hpp"
 #include "drivers/canopen/simulated_drive.hpp"
 #include "drivers/gpio/far_end.hpp"
+#include "drivers/instruments/simulated.hpp"
 #include "drivers/plant/plant.hpp"
 #include "kernel/base/random.hpp"
 #include "kernel/base/value_text.hpp"
@@ -34,7 +35,7 @@ public:
             blade_at_ = io.changed_at() + knife_dead_time +
                         Duration{static_cast<std::int64_t>((random_.unit() - 0.5) * 100'000.0)};
         if (blade_at_ <= now) cut(web_mm_ - speed_ * 1000.0 * to_seconds(now - blade_at_));
-        can.set("wheel.position", std::fmod(std::floor(web_mm_ * codes_per_mm), 65536.0));
+        can.set_integer("wheel.position", wheel_.count(web_mm_));
         return std::min(now + 1ms, blade_at_);
     }
 
@@ -104,6 +105,7 @@ private:
 
     Random random_;
     canopen::SimulatedDrive drive_;
+    instruments::SimulatedEncoder<wheel_bits> wheel_{codes_per_mm};
     Time blade_at_ = never;
     double web_mm_ = 0.0, speed_ = 0.0;
     bool cut_before_ = false, emergency_ = false, started_ = false;

@@ -49,12 +49,13 @@ const std::vector<Row> house{
     {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
     {"drivers/canopen",   {"drivers/can"}},
+    {"drivers/instruments", {"kernel/component"}},
     {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
     {"board/init",        {}},
     {"board/box",         {"board/init", "kernel/os"}},
-    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen"}},
+    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen", "drivers/instruments"}},
     // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by.
     {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.

@@ -3,6 +3,10 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/restarter.hpp"
 #include "drivers/gpio/line_port.hpp"
+#include "drivers/instruments/analog.hpp"
+#include "drivers/instruments/encoder.hpp"
+#include "drivers/instruments/force_sensor.hpp"
+#include "drivers/instruments/velocity_axis.hpp"
 #include "drivers/modbus/client.hpp"
 #include "kernel/base/decimal.hpp"
 #include "kernel/control/control.hpp"
@@ -51,6 +55,16 @@ const Described components[] = {
     {"drivers/can/restarter.hpp", "Restarter", "can::Restarter", component_type<can::Restarter>},
     {"drivers/modbus/client.hpp", "Client", "modbus::Client<register_map>",
      component_type<modbus::Client<registers>>},
+    {"drivers/instruments/encoder.hpp", "Encoder", "instruments::Encoder<\"m\", 16>",
+     component_type<instruments::Encoder<"m", 16>>},
+    {"drivers/instruments/analog.hpp", "AnalogInput", "instruments::AnalogInput<\"bar\">",
+     component_type<instruments::AnalogInput<"bar">>},
+    {"drivers/instruments/analog.hpp", "AnalogOutput", "instruments::AnalogOutput<\"bar\">",
+     component_type<instruments::AnalogOutput<"bar">>},
+    {"drivers/instruments/force_sensor.hpp", "ForceSensor", "instruments::ForceSensor",
+     component_type<instruments::ForceSensor>},
+    {"drivers/instruments/velocity_axis.hpp", "VelocityAxis", "instruments::VelocityAxis<\"m/s\">",
+     component_type<instruments::VelocityAxis<"m/s">>},
     {"kernel/services/time/timed_event.hpp", "TimedEvent", "TimedEvent", component_type<TimedEvent>},
     {"kernel/services/time/watchdog.hpp", "Watchdog", "Watchdog", component_type<Watchdog>},
     {"kernel/services/tasks/behaviour_task.hpp", "BehaviourTask", "BehaviourTask<script, \"instance\">",

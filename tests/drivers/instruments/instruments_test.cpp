@@ -1,0 +1,226 @@
+// Encoders, analog inputs and outputs, force sensors and axes with the simulated ones at the other end: what
+// is measured is what is there, and what fails is told and moves nothing.
+#include "drivers/instruments/analog.hpp"
+#include "drivers/instruments/encoder.hpp"
+#include "drivers/instruments/force_sensor.hpp"
+#include "drivers/instruments/simulated.hpp"
+#include "drivers/instruments/velocity_axis.hpp"
+#include "kernel/base/random.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "tests/drivers/components/board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tappet {
+namespace {
+
+using namespace instruments;
+
+/// What drivers write, and what goes to them.
+struct Wires {
+    Output<std::int64_t> counts;
+    Output<double> current, newtons, wanted_velocity, wanted_pressure;
+    Input<double> velocity, raw;
+    std::uint64_t register_now = 0;
+    double current_now = 4.0, newtons_now = 0.0, velocity_now = 0.0, pressure_now = 0.0;
+    bool is_silent = false;
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (is_silent) return;
+        counts.write(static_cast<std::int64_t>(register_now));
+        current.write(current_now);
+        newtons.write(newtons_now);
+        wanted_velocity.write(velocity_now);
+        wanted_pressure.write(pressure_now);
+    }
+    static constexpr auto interface() {
+        return facets(output<&Wires::counts>("counts", "", "of a register of 16 bits"),
+                      output<&Wires::current>("current", "", "mA"),
+                      output<&Wires::newtons>("newtons", "N", "of a cell"),
+                      output<&Wires::wanted_velocity>("wanted_velocity", "m/s", "of the axis"),
+                      output<&Wires::wanted_pressure>("wanted_pressure", "bar", "of the valve"),
+                      input<&Wires::velocity>("velocity", "m/s", "to the drive"),
+                      input<&Wires::raw>("raw", "", "to the valve, mA"));
+    }
+};
+struct Alarm {
+    double heard = 0.0;
+    int times = 0;
+    void hear(double newtons) noexcept TAPPET_REALTIME { heard = newtons, ++times; }
+    static constexpr auto interface() { return facets(operation<&Alarm::hear>("hear", "an overload")); }
+};
+
+// clang-format off
+constexpr auto table = machine("instruments",
+    components(component<Wires>("wires"), component<Alarm>("alarm"),
+               component<Encoder<"m", 16>>("encoder", set("counts_per_unit", -1000.0)),
+               component<AnalogInput<"bar">>("pressure", set("high", 16.0)),
+               component<ForceSensor>("cell", set("most", 1000.0)),
+               component<VelocityAxis<"m/s">>("axis", set("most", 0.5)),
+               component<AnalogOutput<"bar">>("valve", set("low", 1.0), set("high", 9.0))),
+    activities(activity("loop", every(1ms), budget(50us), runs("wires", "encoder", "pressure", "cell", "axis", "valve", "alarm"))),
+    connections(
+        data("wires.counts", "encoder.counts", stale_after(5ms), hold), data("wires.current", "pressure.raw", stale_after(5ms), hold),
+        data("wires.newtons", "cell.measured", stale_after(5ms), hold), data("wires.wanted_velocity", "axis.wanted"),
+        data("wires.wanted_pressure", "valve.value"),
+        data("axis.velocity", "wires.velocity", delayed),               data("valve.raw", "wires.raw", delayed)),
+    reactions(when("cell.overloaded", call("alarm.hear"))), behaviours());
+// clang-format on
+
+struct Instruments : testing::Test {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, test::board>::machine(), clock};
+    VirtualWorld world{instance};
+    Instruments() {
+        EXPECT_TRUE(instance.configure({}));
+        EXPECT_EQ(std::string{world.start().view()}, "");
+    }
+    template <class T>
+    T& of(std::string_view name) {
+        return *instance.find<T>(name);
+    }
+    Wires& wires() { return of<Wires>("wires"); }
+    void pass(Duration time = 2ms) { static_cast<void>(world.run_until(clock.now() + time)); }
+};
+
+TEST_F(Instruments, an_encoder_follows_its_register_over_its_ends_either_way) {
+    SimulatedEncoder<16> scale{-1000.0};
+    auto& encoder = of<Encoder<"m", 16>>("encoder");
+    Random random{1};
+    double place = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+        place += 40.0 * (random.unit() - 0.45); // less than 32.768 m in a step, and away with time
+        wires().register_now = scale.count(place);
+        pass(1ms);
+        ASSERT_NEAR(encoder.position.last(), place, 1.1e-3) << "step " << i;
+    }
+    EXPECT_GT(std::abs(place), 300.0) << "the register went round";
+    EXPECT_TRUE(encoder.good.last());
+}
+
+TEST_F(Instruments, an_encoder_that_falls_silent_holds_its_place_and_begins_at_its_register_again) {
+    auto& encoder = of<Encoder<"m", 16>>("encoder");
+    wires().register_now = 0xffff; // -1
+    pass();
+    EXPECT_DOUBLE_EQ(encoder.position.last(), 0.001);
+    wires().is_silent = true;
+    pass(20ms);
+    EXPECT_FALSE(encoder.good.last());
+    EXPECT_DOUBLE_EQ(encoder.position.last(), 0.001);
+    wires().is_silent = false;
+    wires().register_now = 500;
+    pass();
+    EXPECT_TRUE(encoder.good.last());
+    EXPECT_DOUBLE_EQ(encoder.position.last(), -0.5);
+}
+
+TEST_F(Instruments, an_encoder_whose_disk_is_loose_or_that_loses_pulses_shows_what_it_counts) {
+    SimulatedEncoder<16> scale{-1000.0};
+    auto& encoder = of<Encoder<"m", 16>>("encoder");
+    scale.slip(-100);
+    wires().register_now = scale.count(1.0);
+    pass();
+    EXPECT_DOUBLE_EQ(encoder.position.last(), 1.1);
+    scale.stick(true);
+    wires().register_now = scale.count(5.0);
+    pass();
+    EXPECT_DOUBLE_EQ(encoder.position.last(), 1.1);
+}
+
+TEST_F(Instruments, an_analog_input_scales_and_tells_a_broken_wire) {
+    SimulatedTransmitter transmitter{{4.0, 20.0, 0.0, 16.0}};
+    auto& pressure = of<AnalogInput<"bar">>("pressure");
+    for (const double bar : {0.0, 3.5, 16.0}) {
+        wires().current_now = transmitter.raw(bar);
+        pass();
+        EXPECT_NEAR(pressure.value.last(), bar, 1e-12);
+        EXPECT_TRUE(pressure.good.last());
+    }
+    wires().current_now = transmitter.raw(40.0);
+    pass();
+    EXPECT_TRUE(pressure.good.last()) << "a transmitter stays below the current that means failure";
+    const double before = pressure.value.last();
+    transmitter.break_wire(true);
+    wires().current_now = transmitter.raw(3.0);
+    pass();
+    EXPECT_FALSE(pressure.good.last());
+    EXPECT_EQ(pressure.value.last(), before) << "it is no pressure below nought";
+    wires().current_now = std::numeric_limits<double>::quiet_NaN();
+    pass();
+    EXPECT_FALSE(pressure.good.last());
+    transmitter.break_wire(false);
+    wires().current_now = transmitter.raw(3.0);
+    pass();
+    EXPECT_TRUE(pressure.good.last());
+    wires().is_silent = true;
+    pass(20ms);
+    EXPECT_FALSE(pressure.good.last());
+}
+
+TEST(AnAnalogScale, draws_the_lines_of_NE_43) {
+    constexpr AnalogScale scale{4.0, 20.0, 0.0, 10.0};
+    for (const double good : {3.6, 4.0, 20.5, 21.0}) EXPECT_TRUE(scale.is_alive(good)) << good;
+    for (const double bad : {0.0, 3.59, 21.01}) EXPECT_FALSE(scale.is_alive(bad)) << bad;
+    constexpr AnalogScale falling{10.0, 0.0, 0.0, 100.0};
+    EXPECT_DOUBLE_EQ(falling.value(2.5), 75.0);
+    EXPECT_DOUBLE_EQ(falling.raw(75.0), 2.5);
+}
+
+TEST_F(Instruments, a_force_sensor_takes_its_tare_off_and_tells_an_overload_once) {
+    auto& cell = of<ForceSensor>("cell");
+    auto& alarm = of<Alarm>("alarm");
+    wires().newtons_now = 15.0;
+    pass();
+    cell.tare();
+    wires().newtons_now = 115.0;
+    pass();
+    EXPECT_DOUBLE_EQ(cell.force.last(), 100.0);
+    wires().newtons_now = -1200.0;
+    pass(5ms);
+    EXPECT_EQ(alarm.times, 1);
+    EXPECT_DOUBLE_EQ(alarm.heard, -1200.0);
+    wires().newtons_now = 0.0;
+    pass();
+    wires().newtons_now = 1200.0;
+    pass();
+    EXPECT_EQ(alarm.times, 2);
+    wires().newtons_now = std::numeric_limits<double>::quiet_NaN();
+    pass();
+    EXPECT_FALSE(cell.good.last());
+    EXPECT_DOUBLE_EQ(cell.force.last(), 1185.0);
+    cell.tare();
+    wires().newtons_now = 15.0;
+    pass();
+    EXPECT_DOUBLE_EQ(cell.force.last(), 0.0) << "what is not good is no tare";
+}
+
+TEST_F(Instruments, an_axis_and_an_analog_output_send_what_they_may) {
+    struct Case {
+        double wanted, sent;
+    };
+    constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [wanted, sent] :
+         {Case{0.3, 0.3}, Case{2.0, 0.5}, Case{-2.0, -0.5}, Case{no_number, 0.0}}) {
+        wires().velocity_now = wanted;
+        pass();
+        EXPECT_EQ(wires().velocity.get(), sent) << wanted;
+    }
+    for (const auto& [wanted, sent] :
+         {Case{5.0, 12.0}, Case{90.0, 20.0}, Case{-3.0, 4.0}, Case{no_number, 4.0}}) {
+        wires().pressure_now = wanted;
+        pass();
+        EXPECT_DOUBLE_EQ(wires().raw.get(), sent) << wanted;
+    }
+    wires().velocity_now = 0.3, wires().pressure_now = 5.0;
+    pass();
+    world.stop();
+    EXPECT_EQ(of<VelocityAxis<"m/s">>("axis").velocity.last(), 0.0);
+    EXPECT_EQ(of<AnalogOutput<"bar">>("valve").raw.last(), 4.0) << "its low end";
+}
+
+} // namespace
+} // namespace tappet
