@@ -5,6 +5,7 @@
 #include "apps/carpet_loom/cams.hpp"
 #include "kernel/cam/estimator.hpp"
 #include "kernel/cam/schedule.hpp"
+#include "kernel/cam/trust.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/operation_interface.hpp"
 #include "kernel/pieces/changed.hpp"
@@ -82,7 +83,7 @@ struct MainShaft {
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         release();
-        distrusted_until_ = cycle.now + settling;
+        trust_.doubt_until(cycle.now + settling);
         angle_deg.write(0.0);
         brake_distance_deg.write(first_brake_distance_deg.get());
         stops.write(0);
@@ -191,8 +192,8 @@ private:
     void follow(Time now) noexcept TAPPET_REALTIME {
         schedule_.update(estimator_, now);
         const ShaftState state = estimator_.at(now);
-        watch_jumps(now);
-        const bool is_valid = estimator_.valid(now) && now >= distrusted_until_;
+        trust_.watch(estimator_.counters().implausible, now);
+        const bool is_valid = estimator_.valid(now) && trust_.believes(now);
         cam_timer.arm(is_valid ? schedule_.next_due() : never);
         watch_timer.arm(is_valid ? estimator_.valid_until() + 1us : never);
         motion.write(estimator_.motion(), estimator_.motion().stamp);
@@ -229,19 +230,6 @@ private:
     void rest(bool now) noexcept TAPPET_REALTIME {
         if (now && !resting_) rests.emit();
         resting_ = now;
-    }
-
-    /// A code that no shaft could have reached is a late frame; some of them in a row are two shafts, and
-    /// nobody knows which of the two is ours.
-    void watch_jumps(Time now) noexcept TAPPET_REALTIME {
-        const std::uint64_t jumps = estimator_.counters().implausible;
-        if (jumps == jumps_seen_) return;
-        if (now - jumps_since_ > jumps_within) {
-            jumps_since_ = now;
-            jumps_before_ = jumps_seen_;
-        }
-        jumps_seen_ = jumps;
-        if (jumps - jumps_before_ >= most_jumps) distrusted_until_ = now + distrust;
     }
 
     void fire(const CamEvent& event) noexcept TAPPET_REALTIME {
@@ -331,24 +319,17 @@ private:
                       cams.rows[arrival_window_row].name == "arrival_window" && cams.rows.size() == 4,
                   "fire() gives each cam row its event");
 
-    static constexpr std::uint64_t most_jumps = 4;
-    static constexpr Duration jumps_within = 50ms;
-    static constexpr Duration distrust = 200ms; // without another jump the encoder is believed again
-    static constexpr Duration settling = 20ms;  // after a start: long enough for all to see that it was lost
-    static_assert(distrust > jumps_within, "an encoder that goes on jumping stays distrusted");
+    static constexpr Duration settling = 20ms; // after a start: long enough for all to see that it was lost
 
     ShaftEstimator estimator_{ShaftProperties{}};
     CamSchedule<cams.size()> schedule_{cams};
+    EncoderTrust trust_{};
     Phase phase_ = Phase::free;
     double wanted_deg_ = wires::nominal::stop_deg;
     bool reached_ = false; // the stop that was wanted last
     ShaftPosition edge_{};
     double edge_speed_deg_s_ = 0.0;
     double deceleration_ = 1.0;
-    std::uint64_t jumps_seen_ = 0;
-    std::uint64_t jumps_before_ = 0; // the window's beginning
-    Time jumps_since_{};
-    Time distrusted_until_{};
     bool resting_ = true;
     Changed<bool> valid_, standing_;
 };

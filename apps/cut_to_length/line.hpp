@@ -11,7 +11,7 @@ namespace cut_to_length {
 /// Real-time, periodic.
 struct Line {
     Input<std::int64_t> statusword;
-    Input<bool> emergency_stop, lines_faulted, bus_faulted;
+    Input<bool> emergency_stop, lines_faulted, bus_faulted, wheel_valid;
     Output<std::int64_t> controlword;
     Output<double> target;
     Output<bool> lamp, knife_allowed;
@@ -36,13 +36,14 @@ struct Line {
     [[nodiscard]] bool may_unlock() noexcept TAPPET_REALTIME { return !is_in_danger(); }
     [[nodiscard]] bool may_run() noexcept TAPPET_REALTIME { return follows_ && !is_in_danger(); }
     [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME {
-        return emergency_stop.get() || lines_faulted.get() || bus_faulted.get();
+        return emergency_stop.get() || lines_faulted.get() || bus_faulted.get() || !wheel_valid.get();
     }
     /// Why the guards above say no.
     [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
         if (emergency_stop.get()) return "the emergency stop is pressed";
         if (lines_faulted.get()) return "the lines cannot be relied on";
-        return bus_faulted.get() ? "the CAN bus cannot be relied on" : "the drive is not enabled";
+        if (bus_faulted.get()) return "the CAN bus cannot be relied on";
+        return wheel_valid.get() ? "the drive is not enabled" : "the measuring wheel is not to be relied on";
     }
     [[nodiscard]] bool drive_is_lost() noexcept TAPPET_REALTIME { return !follows_; }
 
@@ -51,6 +52,7 @@ struct Line {
                       input<&Line::emergency_stop>("emergency_stop", "", "it is pressed"),
                       input<&Line::lines_faulted>("lines_faulted", "", "nobody knows whether it is"),
                       input<&Line::bus_faulted>("bus_faulted", "", "the drive is not heard"),
+                      input<&Line::wheel_valid>("wheel_valid", "", "it is known where the web is"),
                       output<&Line::controlword>("controlword", "", "of the feed drive (CiA 402)"),
                       output<&Line::target>("target", "m/s", "speed of the web"),
                       output<&Line::lamp>("lamp", "", "the line runs"),
@@ -83,9 +85,8 @@ inline constexpr auto line_states = state_machine<Line>("line_states",
         transition("ready",     "running",   on("io.start.rises"), guard<&Line::may_run>.because<&Line::obstacle>("the line may not run")),
         transition("running",   "ready",     on("io.stop.rises"), because("stop was pressed")),
         transition("running",   "emergency", guard<&Line::drive_is_lost>, because("the drive does not follow")),
-        transition("running",   "emergency", on("measuring.wheel_lost"), because("the measuring wheel is silent")),
-        transition("running",   "emergency", guard<&Line::is_in_danger>, because("emergency stop, lines or bus")),
-        transition("ready",     "emergency", guard<&Line::is_in_danger>, because("emergency stop, lines or bus"))));
+        transition("running",   "emergency", guard<&Line::is_in_danger>, because("emergency stop, lines, bus or wheel")),
+        transition("ready",     "emergency", guard<&Line::is_in_danger>, because("emergency stop, lines, bus or wheel"))));
 // clang-format on
 
 } // namespace cut_to_length

@@ -9,8 +9,9 @@ namespace cut_to_length {
 
 using namespace tappet;
 
-inline constexpr double codes_per_mm = 8.0; // of the measuring wheel
+inline constexpr int codes_per_mm = 8; // of the measuring wheel
 inline constexpr int wheel_bits = 16;
+inline constexpr Duration knife_dead_time = 15ms; // from its line's edge to the blade in the web
 
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(

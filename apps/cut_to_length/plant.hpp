@@ -1,7 +1,7 @@
 // The web, its drive and its knife at the other end of the wires; it measures each piece that is cut.
 #pragma once
 
-#include "apps/cut_to_length/measuring.hpp"
+#include "apps/cut_to_length/maps.hpp"
 #include "drivers/can/far_end.hpp"
 #include "drivers/canopen/simulated_drive.hpp"
 #include "drivers/gpio/far_end.hpp"
@@ -72,6 +72,8 @@ public:
     void silence_wheel() { can.send_every("wheel", Duration::zero()); }
     void pull_web(double mm) { web_mm_ += mm; }
     [[nodiscard]] bool web_stands() const { return speed_ == 0.0; }
+    [[nodiscard]] bool knife_is_driven() { return io.get("knife"); }
+    [[nodiscard]] std::int64_t cuts() const { return cuts_; }
     [[nodiscard]] std::int64_t pieces() const { return pieces_; }
     [[nodiscard]] double worst_mm() const { return worst_mm_; }
 
@@ -95,6 +97,7 @@ private:
     }
     void cut(double at_mm) {
         blade_at_ = never;
+        ++cuts_;
         if (cut_before_) {
             ++pieces_;
             worst_mm_ = std::max(worst_mm_, std::abs(at_mm - last_cut_mm_ - length_mm));
@@ -111,7 +114,7 @@ private:
     bool cut_before_ = false, emergency_ = false, started_ = false;
     Time start_at_ = never - 1s;
     double last_cut_mm_ = 0.0, worst_mm_ = 0.0;
-    std::int64_t pieces_ = 0, wanted_ = 60;
+    std::int64_t cuts_ = 0, pieces_ = 0, wanted_ = 60;
 };
 
 } // namespace cut_to_length

@@ -5,6 +5,7 @@
 #include "drivers/gpio/line_map.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/facet_name.hpp"
 
 #include <array>
 #include <bit>
@@ -16,18 +17,9 @@ namespace tappet::gpio {
 
 /// The names of a map's facets: "line", "line.rises", "line.falls", "line.set", "line.clear".
 template <const auto& map> struct LineNames {
-    struct Name {
-        std::array<char, 64> characters{};
-        std::size_t length = 0;
-        [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters.data(), length}; }
-    };
     static constexpr auto with(std::string_view ending) {
-        std::array<Name, map.rows.size()> names{};
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            for (const char character : map.rows[i].line.name)
-                names[i].characters[names[i].length++] = character;
-            for (const char character : ending) names[i].characters[names[i].length++] = character;
-        }
+        std::array<FacetName, map.rows.size()> names{};
+        for (std::size_t i = 0; i < names.size(); ++i) names[i] = {map.rows[i].line.name, ending};
         return names;
     }
     static constexpr auto rises = with(".rises");

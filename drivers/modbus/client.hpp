@@ -5,6 +5,7 @@
 #include "drivers/modbus/session.hpp"
 #include "drivers/modbus/transport.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/facet_name.hpp"
 
 #include <array>
 #include <cstdint>
@@ -14,21 +15,10 @@
 namespace tappet::modbus {
 
 template <const auto& map> struct RegisterNames {
-    struct Name {
-        std::array<char, 64> characters{};
-        std::size_t length = 0;
-        constexpr void add(std::string_view piece) {
-            for (const char character : piece) characters[length++] = character;
-        }
-        [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters.data(), length}; }
-    };
     static constexpr auto all = [] {
-        std::array<Name, map.registers.size()> names{};
-        for (std::size_t v = 0; v < names.size(); ++v) {
-            names[v].add(map.rows[map.row_of[v]].name);
-            names[v].add(".");
-            names[v].add(map.registers[v].name);
-        }
+        std::array<FacetName, map.registers.size()> names{};
+        for (std::size_t v = 0; v < names.size(); ++v)
+            names[v] = {map.rows[map.row_of[v]].name, ".", map.registers[v].name};
         return names;
     }();
 };

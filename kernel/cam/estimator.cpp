@@ -43,10 +43,10 @@ static_assert(outlier_deviations > manoeuvre_deviations,
 
 } // namespace
 
-ShaftEstimator::ShaftEstimator(const ShaftProperties& properties) noexcept
+ShaftEstimator::ShaftEstimator(const ShaftProperties& properties) noexcept TAPPET_REALTIME
     : properties_(properties),
       step_deg_(360.0 / properties.codes_per_turn),
-      step_variance_(step_deg_ * step_deg_ / 12.0),
+      step_variance_(step_deg_* step_deg_ / 12.0),
       jitter_s_(to_seconds(properties.stamp_jitter)) {
     motion_.horizon_s = to_seconds(properties.acceleration_horizon);
 }

@@ -71,7 +71,7 @@ struct ShaftCounters {
 class ShaftEstimator {
 public:
     /// check(properties) is empty.
-    explicit ShaftEstimator(const ShaftProperties& properties) noexcept;
+    explicit ShaftEstimator(const ShaftProperties& properties) noexcept TAPPET_REALTIME;
 
     /// One reading of the encoder: it showed `code` in [0, codes_per_turn) at `stamp`. Real-time, no loop.
     void sample(std::uint32_t code, Time stamp) noexcept TAPPET_REALTIME;

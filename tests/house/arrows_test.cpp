@@ -27,7 +27,7 @@ const std::vector<Row> house{
     {"kernel/cam",        {"kernel/base"}},
     {"kernel/motion",     {"kernel/base"}},
     {"kernel/component",  {"kernel/os", "kernel/exchange"}},
-    {"kernel/pieces",     {"kernel/component"}},
+    {"kernel/pieces",     {"kernel/component", "kernel/cam"}},
     {"kernel/activity",   {"kernel/component"}},
     {"kernel/program",    {"kernel/activity"}},
     {"kernel/statechart", {"kernel/program"}},

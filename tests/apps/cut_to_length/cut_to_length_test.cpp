@@ -1,6 +1,5 @@
 // The cutter with its plant under virtual time: each piece has its length, and nothing cuts that should not.
 #include "apps/cut_to_length/line.hpp"
-#include "apps/cut_to_length/measuring.hpp"
 #include "toolchain/machine/test.hpp"
 
 namespace cut_to_length {
@@ -60,16 +59,28 @@ TEST_P(Cutter, goes_to_emergency_when_the_wheel_falls_silent) {
     EXPECT_EQ(state(), "emergency");
 }
 
+TEST_P(Cutter, does_not_run_a_web_that_nobody_measures) {
+    ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s));
+    plant.silence_wheel();
+    run.run_for(100ms);
+    EXPECT_EQ(state(), "emergency") << "though nothing moves";
+    plant.press_start(run.now() + 100ms);
+    run.run_for(1s);
+    EXPECT_EQ(state(), "emergency");
+    EXPECT_EQ(run.instance().find<Line>("line")->obstacle(), "the measuring wheel is not to be relied on");
+}
+
 TEST_P(Cutter, does_not_cut_a_web_that_somebody_pulls_by_hand) {
     ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 2; }, 20s));
     plant.press_emergency_stop(true);
     ASSERT_TRUE(run.run_until([this] { return plant.web_stands(); }, 3s));
-    const std::int64_t cuts = run.instance().find<Measuring>("measuring")->cuts.last();
+    EXPECT_FALSE(plant.knife_is_driven());
+    const std::int64_t cuts = plant.cuts();
     for (int i = 0; i < 2000; ++i) {
         plant.pull_web(1.0);
         run.run_for(2ms);
     }
-    EXPECT_EQ(run.instance().find<Measuring>("measuring")->cuts.last(), cuts);
+    EXPECT_EQ(plant.cuts(), cuts);
 }
 
 INSTANTIATE_TEST_SUITE_P(seeds, Cutter, testing::Values(1, 2, 3));

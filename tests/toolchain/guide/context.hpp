@@ -20,6 +20,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
+#include "kernel/pieces/cam_shaft.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
 #include "toolchain/machine/host.hpp"

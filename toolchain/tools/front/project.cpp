@@ -79,11 +79,9 @@ std::string write_project(const fs::path& templates, const Choice& choice) {
     for (const auto& entry : fs::recursive_directory_iterator{templates}) {
         if (entry.path().extension() != ".in") continue;
         const fs::path to = fs::path{choice.name} / fs::relative(entry.path(), templates).replace_extension();
-        const std::string text = filled(contents_of(entry.path()), choice);
-        if (text.empty()) continue; // of something that was not chosen
         fs::create_directories(to.parent_path(), error);
         std::ofstream file{to, std::ios::binary};
-        file << text;
+        file << filled(contents_of(entry.path()), choice);
         if (!file.flush()) return "cannot write " + to.string() + "; check the folder's rights and the disk";
     }
     return {};

@@ -10,6 +10,7 @@
 #include "drivers/modbus/client.hpp"
 #include "kernel/base/decimal.hpp"
 #include "kernel/control/control.hpp"
+#include "kernel/pieces/cam_shaft.hpp"
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
@@ -36,6 +37,7 @@ constexpr auto frames = can::signal_map(
     can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                   can::signal("measure", 16, 16).times(0.1).in("mm"))
         .safe_by_silence());
+constexpr auto cams = cam_table(300_rpm, cam("point", at(0_deg)), cam("window", window(80_deg, 120_deg)));
 constexpr auto lines = gpio::line_map(gpio::sensor("sensor"), gpio::output("output", gpio::safe(false)),
                                       gpio::actuator("actuator", gpio::safe(false)));
 constexpr auto registers =
@@ -72,6 +74,7 @@ const Described components[] = {
     {"kernel/services/tasks/component_life.hpp", "ComponentLife", "ComponentLife",
      component_type<ComponentLife>},
     {"kernel/control/chain_switch.hpp", "ChainSwitch", "ChainSwitch", component_type<ChainSwitch>},
+    {"kernel/pieces/cam_shaft.hpp", "CamShaft", "CamShaft<cam_table>", component_type<CamShaft<cams>>},
     {"kernel/pieces/kept.hpp", "HourMeter", "HourMeter", component_type<HourMeter>},
     {"kernel/pieces/kept.hpp", "Total", "Total", component_type<Total>},
     {"kernel/services/configuration/property_keeper.hpp", "PropertyKeeper", "PropertyKeeper",

@@ -55,12 +55,12 @@ TEST_F(ChartProgram, shows_who_runs_how_often_by_when_and_how_urgently) {
 
 TEST_F(ChartProgram, shows_data_as_solid_arrows_and_what_makes_something_happen_as_dashed_ones) {
     const std::string table = made(CUTTER_CHART, "dot", "cut_to_length.dot");
-    EXPECT_THAT(table, HasSubstr("c0 -> c2 [label=\"wheel.position, stale after 20 ms, wakes\"];"));
+    EXPECT_THAT(table, HasSubstr("c0 -> c2 [label=\"wheel.position → code, stale after 20 ms, wakes\"];"));
     EXPECT_THAT(table,
                 HasSubstr("c0 -> c3 [label=\"feed.statusword, stale after 50 ms\\nfaulted → bus_faulted\"];"))
         << "the rows between the same two are one arrow";
     EXPECT_THAT(table,
-                HasSubstr("c2 -> c1 [label=\"cut_now: tell knife.set\\nknife_turned: tell knife.clear\", "
+                HasSubstr("c2 -> c1 [label=\"cut.enters: tell knife.set\\ncut.leaves: tell knife.clear\", "
                           "style=dashed"));
     EXPECT_THAT(table, HasSubstr("c1 -> c3 [label=\"start.rises\\nstop.rises\", style=dashed"))
         << "what a state machine hears";

@@ -1,0 +1,26 @@
+// A facet's name that the compiler puts together, for components whose facets follow from a constexpr map.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+
+namespace tappet {
+
+/// Of pieces, one behind the other; more than 63 characters do not compile.
+class FacetName {
+public:
+    constexpr FacetName() noexcept = default;
+    constexpr FacetName(std::initializer_list<std::string_view> pieces) {
+        for (const std::string_view piece : pieces)
+            for (const char each : piece) characters_[length_++] = each;
+    }
+    [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters_.data(), length_}; }
+
+private:
+    std::array<char, 63> characters_{};
+    std::size_t length_ = 0;
+};
+
+} // namespace tappet

@@ -1,0 +1,254 @@
+// A cam table as a component of a machine, under virtual time: what fires where, and what does not.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "kernel/pieces/cam_shaft.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace tappet {
+namespace {
+
+constexpr auto cams =
+    cam_table(300_rpm, cam("mark", at(40_deg)), cam("eject", window(80_deg, 120_deg), dead_time(5ms)));
+
+/// Turns at its speed; its code is a place in the turn, or a counter of 16 bits that runs on. Every 1 ms.
+struct Encoder {
+    Output<std::int64_t> code, counter;
+    Output<bool> runs;
+    bool enabled = true, silent = false, fights = false;
+    double deg_s = 360.0, deg = 0.0;
+    std::int64_t offset = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        deg += deg_s * 1e-3;
+        runs.write(enabled);
+        if (silent) return;
+        const auto codes = static_cast<std::int64_t>(std::floor(deg / 360.0 * 4000.0)) + offset;
+        // A second encoder, that stands elsewhere, sends under the same identifier.
+        is_other_ = fights && !is_other_;
+        code.write(is_other_ ? 3000 : (codes % 4000 + 4000) % 4000);
+        counter.write(codes & 0xFFFF);
+    }
+    static constexpr auto interface() {
+        return facets(output<&Encoder::code>("code", "", "in a turn"),
+                      output<&Encoder::counter>("counter", "", "runs on"),
+                      output<&Encoder::runs>("runs", "", "cams may fire"));
+    }
+
+private:
+    bool is_other_ = false;
+};
+
+struct Ejector {
+    const Encoder* encoder = nullptr; ///< to look where it is
+    std::vector<double> marks, hits, rests;
+    int lost = 0;
+    void mark() noexcept TAPPET_REALTIME { note(marks); }
+    void hit() noexcept TAPPET_REALTIME { note(hits); }
+    void rest() noexcept TAPPET_REALTIME { note(rests); }
+    void lose() noexcept TAPPET_REALTIME { ++lost; }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(operation<&Ejector::mark>("mark", "it is there"),
+                      operation<&Ejector::hit>("hit", "it is there"),
+                      operation<&Ejector::rest>("rest", "it is not there"),
+                      operation<&Ejector::lose>("lose", "nobody knows"));
+    }
+    [[nodiscard]] bool is_driven() const { return hits.size() > rests.size() - 1; } // one rest is the start's
+
+private:
+    void note(std::vector<double>& where) const noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("the test's record", where.push_back(encoder == nullptr ? 0.0 : encoder->deg));
+    }
+};
+
+inline constexpr Board board{.name = "host",
+                             .world = "host",
+                             .memory_budget_bytes = 4'000'000,
+                             .processors = 1,
+                             .highest_priority = 40};
+
+// clang-format off
+#define TAPPET_CAM_TABLE(CODE, ...) machine("press", \
+    components(component<Encoder>("encoder"), component<CamShaft<cams>>("shaft", set("codes_per_turn", 4000) __VA_OPT__(,) __VA_ARGS__), \
+               component<Ejector>("ejector")), \
+    activities(activity("encoder", every(1ms), budget(5us), runs("encoder")), \
+               activity("shaft", on_work(), at_most(4, 1ms), deadline(500us), budget(20us), runs("shaft", "ejector"))), \
+    connections(data(CODE, "shaft.code", wakes, stale_after(15ms), hold), data("encoder.runs", "shaft.enabled")), \
+    reactions(when("shaft.mark", call("ejector.mark")), when("shaft.lost", call("ejector.lose")), \
+              when("shaft.eject.enters", call("ejector.hit")), when("shaft.eject.leaves", call("ejector.rest"))), \
+    behaviours())
+// clang-format on
+inline constexpr auto absolute = TAPPET_CAM_TABLE("encoder.code");
+inline constexpr auto counting = TAPPET_CAM_TABLE("encoder.counter", set("counter_bits", 16));
+
+struct Turning : testing::Test {
+    explicit Turning(const AcceptedMachine& machine = Firmware<absolute, board>::machine())
+        : instance{machine, clock} {
+        const auto configured = instance.configure({});
+        EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
+        world.start();
+        ejector.encoder = &encoder;
+    }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance;
+    VirtualWorld world{instance};
+    Encoder& encoder = *instance.find<Encoder>("encoder");
+    CamShaft<cams>& shaft = *instance.find<CamShaft<cams>>("shaft");
+    Ejector& ejector = *instance.find<Ejector>("ejector");
+};
+
+/// Degrees within the turn.
+void expect_near(const std::vector<double>& where, double at, double within) {
+    for (const double deg : where) EXPECT_NEAR(std::fmod(deg, 360.0), at, within);
+}
+
+TEST_F(Turning, points_fire_at_their_angle_and_windows_their_dead_time_earlier) {
+    ejector.rests.clear(); // the start's
+    run(3s);
+    EXPECT_EQ(ejector.marks.size(), 3u);
+    EXPECT_EQ(ejector.hits.size(), 3u);
+    EXPECT_EQ(ejector.rests.size(), 3u);
+    expect_near(ejector.marks, 40.0, 0.5);
+    expect_near(ejector.hits, 80.0 - 1.8, 0.5);
+    expect_near(ejector.rests, 120.0 - 1.8, 0.5);
+    EXPECT_EQ(shaft.fired.last(), 6);
+    EXPECT_EQ(shaft.skipped.last(), 0);
+    EXPECT_NEAR(shaft.speed_rpm.last(), 60.0, 0.5);
+    EXPECT_TRUE(shaft.valid.last());
+}
+
+TEST_F(Turning, nothing_fires_while_it_is_not_enabled_and_what_is_driven_rests_at_once) {
+    run(250ms); // 90 degrees
+    EXPECT_TRUE(ejector.is_driven());
+    encoder.enabled = false;
+    run(3ms);
+    EXPECT_FALSE(ejector.is_driven());
+    run(2s);
+    EXPECT_EQ(ejector.hits.size(), 1u);
+    encoder.enabled = true;
+    run(1s);
+    EXPECT_EQ(ejector.hits.size(), 2u) << "the angle was followed meanwhile";
+}
+
+TEST_F(Turning, a_silence_loses_the_angle_once_and_what_is_driven_rests) {
+    run(250ms);
+    EXPECT_TRUE(ejector.is_driven());
+    encoder.silent = true;
+    run(20ms);
+    EXPECT_FALSE(ejector.is_driven());
+    EXPECT_FALSE(shaft.valid.last());
+    EXPECT_EQ(shaft.speed_rpm.last(), 0.0);
+    encoder.silent = false;
+    run(150ms);
+    EXPECT_EQ(ejector.lost, 1);
+    EXPECT_FALSE(shaft.valid.last()) << "who looks seldom sees it, too";
+    run(100ms);
+    EXPECT_TRUE(shaft.valid.last());
+    EXPECT_EQ(ejector.hits.size(), 1u);
+}
+
+TEST_F(Turning, what_was_passed_unseen_does_not_fire_afterwards) {
+    run(90ms); // 32 degrees
+    encoder.silent = true;
+    run(20ms);
+    encoder.silent = false;
+    run(220ms); // 119 degrees
+    EXPECT_TRUE(shaft.valid.last());
+    EXPECT_TRUE(ejector.marks.empty());
+}
+
+TEST_F(Turning, an_encoder_that_jumps_is_not_believed_and_what_is_driven_rests) {
+    run(250ms);
+    EXPECT_TRUE(ejector.is_driven());
+    encoder.offset = -1000; // a quarter of a turn, for good
+    run(10ms);
+    EXPECT_EQ(ejector.lost, 1);
+    EXPECT_FALSE(ejector.is_driven());
+    EXPECT_FALSE(shaft.valid.last());
+    run(300ms);
+    EXPECT_TRUE(shaft.valid.last());
+}
+
+TEST_F(Turning, two_encoders_that_send_by_turns_are_none) {
+    encoder.deg_s = 0.0;
+    run(100ms);
+    EXPECT_TRUE(shaft.valid.last());
+    encoder.fights = true;
+    run(50ms);
+    EXPECT_EQ(ejector.lost, 1);
+    run(2s);
+    EXPECT_FALSE(shaft.valid.last());
+    EXPECT_EQ(shaft.fired.last(), 0);
+}
+
+TEST_F(Turning, an_angle_that_was_seen_too_late_is_counted) {
+    encoder.deg_s = 12'000.0; // far beyond what the table is for
+    encoder.deg = 345.0 - 720.0;
+    run(60ms);
+    encoder.silent = true; // 14 ms are 168 degrees, and no loss yet
+    run(13ms);
+    encoder.silent = false;
+    const std::size_t marks = ejector.marks.size();
+    run(2ms);
+    EXPECT_EQ(ejector.marks.size(), marks);
+    EXPECT_EQ(shaft.skipped.last(), 1);
+    EXPECT_EQ(ejector.lost, 0);
+}
+
+TEST_F(Turning, the_encoder_is_described_at_a_start_only) {
+    const auto asks = [](CamShaft<cams>& of) {
+        const std::array<std::byte, sizeof(std::int64_t)> finer{std::byte{8}};
+        const ProposedValue value{reinterpret_cast<std::byte*>(&of.codes_per_turn), finer.data()};
+        return of.accepts(Proposal{{&value, 1}});
+    };
+    EXPECT_EQ(asks(shaft).view(), "the encoder is described at a start; write it into the table");
+    CamShaft<cams> early;
+    EXPECT_TRUE(asks(early).empty());
+}
+
+TEST_F(Turning, windows_are_told_to_be_left_at_start_and_stop) {
+    EXPECT_EQ(ejector.rests.size(), 1u);
+    EXPECT_TRUE(ejector.hits.empty());
+    world.stop();
+    EXPECT_EQ(ejector.rests.size(), 2u);
+}
+
+struct Counting : Turning {
+    Counting() : Turning{Firmware<counting, board>::machine()} {}
+};
+
+TEST_F(Counting, a_turn_begins_where_a_counter_was_seen_first_and_wraps_do_not_matter) {
+    encoder.offset = 65'000;
+    run(20s); // 80'000 codes
+    EXPECT_EQ(ejector.hits.size(), 20u);
+    expect_near(ejector.hits, 80.0 - 1.8 + 0.36, 0.5); // the first code came after a millisecond
+    EXPECT_EQ(ejector.lost, 0);
+}
+
+TEST_F(Counting, a_turn_begins_anew_after_a_loss) {
+    run(250ms);
+    encoder.silent = true;
+    run(100ms);
+    encoder.silent = false;
+    encoder.deg = 0.0;
+    ejector.hits.clear();
+    run(1s);
+    ASSERT_EQ(ejector.hits.size(), 1u);
+    expect_near(ejector.hits, 80.0 - 1.8, 0.8);
+}
+
+TEST_F(Counting, backwards_nothing_fires) {
+    encoder.deg_s = -360.0;
+    run(3s);
+    EXPECT_EQ(shaft.fired.last(), 0);
+    EXPECT_TRUE(shaft.valid.last());
+    EXPECT_NEAR(shaft.speed_rpm.last(), -60.0, 0.5);
+}
+
+} // namespace
+} // namespace tappet
