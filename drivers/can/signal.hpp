@@ -90,23 +90,33 @@ constexpr unsigned bit_place(const Signal& s, unsigned i) noexcept TAPPET_REALTI
     return 8u * (from_left / 8u) + (7u - from_left % 8u);
 }
 
+namespace detail {
+/// Where a signal lies in the eight bytes read as one number: the first byte the lowest, of a Motorola signal
+/// the highest. Its bits follow each other there.
+constexpr unsigned shift_of(const Signal& s) noexcept TAPPET_REALTIME {
+    if (s.order == Order::intel) return s.start;
+    return 64u - (8u * (s.start / 8u) + (7u - s.start % 8u)) - s.bits;
+}
+constexpr std::uint64_t in_order(std::uint64_t bytes, const Signal& s) noexcept TAPPET_REALTIME {
+    constexpr bool little = std::endian::native == std::endian::little;
+    return little == (s.order == Order::intel) ? bytes : std::byteswap(bytes);
+}
+constexpr std::uint64_t mask_of(const Signal& s) noexcept TAPPET_REALTIME {
+    return s.bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << s.bits) - 1;
+}
+} // namespace detail
+
 /// The raw bits, as many as the signal has. Real-time; the signal lies inside the frame.
 constexpr std::uint64_t extract(const Payload& data, const Signal& s) noexcept TAPPET_REALTIME {
-    std::uint64_t raw = 0;
-    for (unsigned i = 0; i < s.bits; ++i) {
-        const unsigned place = bit_place(s, i);
-        raw |= std::uint64_t{(data[place / 8u] >> (place % 8u)) & 1u} << i;
-    }
-    return raw;
+    const std::uint64_t whole = detail::in_order(std::bit_cast<std::uint64_t>(data), s);
+    return whole >> detail::shift_of(s) & detail::mask_of(s);
 }
 
 constexpr void insert(Payload& data, const Signal& s, std::uint64_t raw) noexcept TAPPET_REALTIME {
-    for (unsigned i = 0; i < s.bits; ++i) {
-        const unsigned place = bit_place(s, i);
-        const unsigned mask = 1u << (place % 8u);
-        const unsigned old = data[place / 8u];
-        data[place / 8u] = static_cast<std::uint8_t>(((raw >> i) & 1u) != 0 ? old | mask : old & ~mask);
-    }
+    const std::uint64_t mask = detail::mask_of(s);
+    const std::uint64_t whole = detail::in_order(std::bit_cast<std::uint64_t>(data), s);
+    const unsigned shift = detail::shift_of(s);
+    data = std::bit_cast<Payload>(detail::in_order((whole & ~(mask << shift)) | (raw & mask) << shift, s));
 }
 
 /// Raw bits as a whole number, sign extended. Real-time.
