@@ -14,8 +14,8 @@ namespace wires = loom::wires;
 namespace detail {
 
 constexpr auto heartbeat(std::string_view name, std::uint8_t node) {
-    return can::receive(can::standard(wires::cob::heartbeat + node), name,
-                        can::bytes(wires::length::heartbeat), can::signal("state", 0, 8));
+    return can::receive(can::standard(wires::cob::heartbeat + node), name, can::bytes(1),
+                        can::signal("state", 0, 8));
 }
 
 } // namespace detail

@@ -77,33 +77,23 @@ void Plant::take_wires(Time own) {
         if (io_.changed(each.name))
             loom().set_line(each.offset, io_.get(each.name), io_.changed_at() - *origin_);
     can::Frame frame;
-    while (can_.receive(frame)) loom().receive({frame.id, frame.length, frame.data}, own);
+    while (can_.receive(frame)) loom().receive(frame, own);
 }
 
 void Plant::give_frames(Time now) {
-    const auto send = [this, now](const loom::CanFrame& frame) {
-        can::Frame out;
-        out.id = frame.id;
-        out.length = frame.length;
-        out.data = frame.data;
-        out.stamp = now;
-        static_cast<void>(can_.send(out)); // a full bus loses it, as a real node would; the end counts it
+    // A full bus loses it, as a real node would; the end counts it.
+    const auto send = [this, now](can::Frame frame) {
+        frame.stamp = now;
+        static_cast<void>(can_.send(frame));
     };
-    loom::CanFrame frame;
-    std::optional<loom::CanFrame> sample;
-    Time due;
-    while (loom().transmit(frame, due)) {
+    bool is_sampled = false;
+    for (can::Frame frame; loom().transmit(frame);) {
         if (frame.id == loom::wires::cob::encoder_position)
-            sample = frame;
+            is_sampled = true; // who comes late sends the shaft as it is, once, not as it was
         else
             send(frame);
     }
-    if (!sample) return;
-    // Who comes late sends the shaft as it is, once, not as it was.
-    const std::uint16_t code = loom().encoder_code();
-    sample->data[0] = static_cast<std::uint8_t>(code & 0xFFu);
-    sample->data[1] = static_cast<std::uint8_t>(code >> 8);
-    send(*sample);
+    if (is_sampled) send(loom().encoder_sample());
 }
 
 void Plant::give_lines(Time now) {

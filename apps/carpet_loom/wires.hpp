@@ -44,20 +44,6 @@ inline constexpr std::uint32_t feeder_status = 0x185;     // {status u8, winding
 inline constexpr std::uint32_t dobby_status = 0x186;      // {pick number taken u32, level u8}; on change
 } // namespace cob
 
-namespace length {
-inline constexpr std::uint8_t nmt = 2;
-inline constexpr std::uint8_t emergency = 8;
-inline constexpr std::uint8_t heartbeat = 1;
-inline constexpr std::uint8_t drive_command = 6;
-inline constexpr std::uint8_t drive_status = 6;
-inline constexpr std::uint8_t feeder_command = 3;
-inline constexpr std::uint8_t dobby_command = 6;
-inline constexpr std::uint8_t encoder_position = 4;
-inline constexpr std::uint8_t load_cell_tension = 3;
-inline constexpr std::uint8_t feeder_status = 3;
-inline constexpr std::uint8_t dobby_status = 5;
-} // namespace length
-
 namespace nmt_command {
 inline constexpr std::uint8_t start = 0x01;
 inline constexpr std::uint8_t stop = 0x02;

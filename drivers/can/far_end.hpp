@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/can/device.hpp"
-#include "drivers/can/signal_store.hpp"
+#include "drivers/can/node_signals.hpp"
 #include "drivers/twin/far_end.hpp"
 
 #include <array>
@@ -47,16 +47,6 @@ private:
     std::uint64_t refused_ = 0;
 };
 
-/// A machine's map as the nodes see it: what it receives they send.
-template <std::size_t F, std::size_t S>
-constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
-    for (FrameRow& row : map.frames)
-        row.direction = row.direction == Direction::receive ? Direction::transmit : Direction::receive;
-    std::swap(map.received, map.transmitted);
-    std::swap(map.received_count, map.transmitted_count);
-    return map;
-}
-
 /// By the names of the map, which the compiler checks:
 ///     can.get("drive_command.speed")      as the machine sent it last, in the signal's unit; 0 before
 ///     can.came("drive_command")           since the plant moved last
@@ -64,58 +54,21 @@ constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
 ///     can.send("drive")                   in this move
 ///     can.send_every("encoder", 1ms)      from now on; 0: no more
 template <const auto& map>
-class FarEnd final : public RawFarEnd {
-    TAPPET_ACCEPTED(map.fault);
-    static constexpr auto nodes = seen_from_the_nodes(map);
-
-    template <Direction direction>
-    struct FrameName {
-        std::size_t index;
-        consteval FrameName(const char* name) : index{nodes.frame(name)} {
-            if (index == no_such || nodes.frames[index].direction != direction) {
-                const auto meant = tappet::FarEnd::nearest_to(name, nodes.frames.size(), [](std::size_t i) {
-                    const bool fits = nodes.frames[i].direction == direction;
-                    return Meant{{}, fits ? std::string_view{nodes.frames[i].name} : std::string_view{}};
-                });
-                RawFarEnd::did_you_mean(meant.of.data(), meant.name.data());
-            }
-        }
-    };
-    template <Direction direction>
-    struct SignalName {
-        std::size_t index;
-        consteval SignalName(const char* path) : index{nodes.signal(path)} {
-            if (index == no_such || nodes.frames[nodes.frame_of[index]].direction != direction) {
-                const auto meant = tappet::FarEnd::nearest_to(path, nodes.signals.size(), [](std::size_t i) {
-                    const auto& frame = nodes.frames[nodes.frame_of[i]];
-                    const bool fits = frame.direction == direction;
-                    return Meant{std::string_view{frame.name},
-                                 fits ? std::string_view{nodes.signals[i].name} : std::string_view{}};
-                });
-                RawFarEnd::did_you_mean(meant.of.data(), meant.name.data());
-            }
-        }
-    };
+class FarEnd final : public RawFarEnd, public NodeSignals<map> {
+    using Signals = NodeSignals<map>;
+    using Signals::nodes;
+    using Signals::store_;
 
 public:
-    using Received = FrameName<Direction::receive>;
-    using Sent = FrameName<Direction::transmit>;
-    using ReceivedSignal = SignalName<Direction::receive>;
-    using SentSignal = SignalName<Direction::transmit>;
+    using typename Signals::Received;
+    using typename Signals::Sent;
 
     using RawFarEnd::RawFarEnd;
 
-    [[nodiscard]] double get(ReceivedSignal signal) const noexcept { return store_.physical(signal.index); }
-    /// A set of bits, or a counter: before factor and offset.
-    [[nodiscard]] std::int64_t integer(ReceivedSignal signal) const noexcept {
-        return store_.integer(signal.index);
-    }
     [[nodiscard]] bool came(Received frame) const noexcept { return came_[frame.index]; }
     /// When the frame came last; Time::min() before.
     [[nodiscard]] Time came_at(Received frame) const noexcept { return came_at_[frame.index]; }
 
-    void set(SentSignal signal, double value) noexcept { store_.set_physical(signal.index, value); }
-    void set_integer(SentSignal signal, std::uint64_t bits) noexcept { store_.set_bits(signal.index, bits); }
     using RawFarEnd::send;
     void send(Sent frame) noexcept { wanted_[frame.index] = true; }
     void send_every(Sent frame, Duration period) noexcept {
@@ -156,7 +109,6 @@ private:
         return times;
     }();
 
-    SignalStore<nodes.frames.size(), nodes.signals.size()> store_{nodes};
     std::array<bool, nodes.frames.size()> came_{};
     std::array<Time, nodes.frames.size()> came_at_ = [] {
         std::array<Time, nodes.frames.size()> times{};

@@ -45,8 +45,7 @@ public:
     /// When give() has something to do that nobody asks for: the next frame that goes out by itself.
     [[nodiscard]] virtual Time next() const noexcept { return never; }
 
-protected:
-    virtual bool take_wire(const ProvidedDevice& wire) noexcept = 0;
+    // ---- for what takes names
 
     /// Not defined and not a constant: the compiler's message names it when a plant names what its map has
     /// not.
@@ -76,6 +75,9 @@ protected:
         }
         return meant;
     }
+
+protected:
+    virtual bool take_wire(const ProvidedDevice& wire) noexcept = 0;
 
 private:
     std::string_view device_;

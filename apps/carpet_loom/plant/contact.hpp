@@ -2,7 +2,8 @@
 // time.
 #pragma once
 
-#include "apps/carpet_loom/plant/can_frame.hpp"
+#include "apps/carpet_loom/plant/outbox.hpp"
+#include "kernel/base/digest.hpp"
 #include "kernel/base/random.hpp"
 
 #include <algorithm>

@@ -17,14 +17,14 @@ public:
     [[nodiscard]] std::uint16_t pattern() const noexcept TAPPET_REALTIME { return pattern_; }
     [[nodiscard]] std::uint32_t taken() const noexcept TAPPET_REALTIME { return taken_; }
 
-    void command(const CanFrame& frame) noexcept TAPPET_REALTIME {
-        if (!node_.alive() || !node_.operational() || frame.length < wires::length::dobby_command) return;
-        offered_ = field_of(frame, 0, 4);
-        offered_pattern_ = static_cast<std::uint16_t>(field_of(frame, 4, 2));
+    void command(const Wire& wire) noexcept TAPPET_REALTIME {
+        if (!node_.alive() || !node_.operational()) return;
+        offered_ = static_cast<std::uint32_t>(wire.signals.integer(pick));
+        offered_pattern_ = static_cast<std::uint16_t>(wire.signals.integer(pattern_bits));
     }
     void restart() noexcept TAPPET_REALTIME { offered_ = taken_; }
     /// The harnesses cross level. False when no new pick was offered: the old pattern is woven again.
-    bool cross(Time now, FrameOutbox& out) noexcept TAPPET_REALTIME {
+    bool cross(Time now, Wire& out) noexcept TAPPET_REALTIME {
         const bool fresh = offered_ != taken_;
         taken_ = offered_;
         pattern_ = offered_pattern_;
@@ -32,7 +32,7 @@ public:
         return fresh;
     }
     /// The shaft stands at an angle at this moment.
-    void follow(double angle_deg, Time now, FrameOutbox& out) noexcept TAPPET_REALTIME {
+    void follow(double angle_deg, Time now, Wire& out) noexcept TAPPET_REALTIME {
         const double off = angle_deg - wires::nominal::stop_deg;
         const bool level = off >= -level_deg && off <= level_deg;
         if (level == level_ && told_) return;
@@ -40,13 +40,20 @@ public:
         tell(now, out);
     }
     /// After its network was started it says once where it stands.
-    void introduce(Time now, FrameOutbox& out) noexcept TAPPET_REALTIME { tell(now, out); }
+    void introduce(Time now, Wire& out) noexcept TAPPET_REALTIME { tell(now, out); }
 
 private:
-    void tell(Time now, FrameOutbox& out) noexcept TAPPET_REALTIME {
+    static constexpr Wire::Signals::ReceivedSignal pick{"dobby_command.pick"};
+    static constexpr Wire::Signals::ReceivedSignal pattern_bits{"dobby_command.pattern"};
+    static constexpr Wire::Signals::Sent status{"dobby"};
+    static constexpr Wire::Signals::SentSignal pick_taken{"dobby.pick_taken"}, is_level{"dobby.level"};
+
+    void tell(Time now, Wire& out) noexcept TAPPET_REALTIME {
         told_ = true;
         if (!node_.alive() || !node_.operational()) return;
-        out.push({FrameWriter(wires::cob::dobby_status).u32(taken_).u8(level_ ? 1 : 0).frame(), now});
+        out.signals.set_integer(pick_taken, taken_);
+        out.signals.set_integer(is_level, level_ ? 1 : 0);
+        out.send(status, now);
     }
 
     Node node_;

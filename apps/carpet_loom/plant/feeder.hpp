@@ -18,10 +18,10 @@ public:
     [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return empty_; }
     [[nodiscard]] std::uint8_t colour() const noexcept TAPPET_REALTIME { return colour_; }
 
-    void command(const CanFrame& frame) noexcept TAPPET_REALTIME {
-        if (!node_.alive() || !node_.operational() || frame.length < wires::length::feeder_command) return;
-        colour_ = frame.data[0];
-        per_minute_ = field_of(frame, 1, 2);
+    void command(const Wire& wire) noexcept TAPPET_REALTIME {
+        if (!node_.alive() || !node_.operational()) return;
+        colour_ = static_cast<std::uint8_t>(wire.signals.integer(selected));
+        per_minute_ = static_cast<std::uint32_t>(wire.signals.integer(speed));
     }
     void restart() noexcept TAPPET_REALTIME { per_minute_ = 0; }
     void run_out() noexcept TAPPET_REALTIME { empty_ = true; }
@@ -34,7 +34,7 @@ public:
         windings_ -= std::min(wanted, windings_);
     }
     /// Every status period: winds by the commanded speed, then tells.
-    void tick(Time due, FrameOutbox& out) noexcept TAPPET_REALTIME {
+    void tick(Time due, Wire& out) noexcept TAPPET_REALTIME {
         if (!empty_ && windings_ < drum) {
             wound_ +=
                 per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period_us / 1000); // 1/60000
@@ -45,14 +45,17 @@ public:
         std::uint8_t status = 0;
         if (fed() && !empty_) status |= wires::feeder_bit::ready;
         if (empty_) status |= wires::feeder_bit::empty;
-        out.push({FrameWriter(wires::cob::feeder_status)
-                      .u8(status)
-                      .u16(static_cast<std::uint16_t>(windings_))
-                      .frame(),
-                  due});
+        out.signals.set_integer(status_bits, status);
+        out.signals.set_integer(stock, windings_);
+        out.send(frame, due);
     }
 
 private:
+    static constexpr Wire::Signals::ReceivedSignal selected{"feeder_command.colour"};
+    static constexpr Wire::Signals::ReceivedSignal speed{"feeder_command.speed"};
+    static constexpr Wire::Signals::Sent frame{"feeder"};
+    static constexpr Wire::Signals::SentSignal status_bits{"feeder.status"}, stock{"feeder.windings"};
+
     static constexpr std::uint32_t drum = 20; // windings it holds
 
     Node node_;

@@ -1,8 +1,7 @@
 // A CANopen node's life on the bus (CiA 301): boot-up message, NMT state, heartbeat, and falling silent.
 #pragma once
 
-#include "apps/carpet_loom/plant/can_frame.hpp"
-#include "apps/carpet_loom/wires.hpp"
+#include "apps/carpet_loom/plant/wire.hpp"
 #include "kernel/base/random.hpp"
 
 #include <algorithm>
@@ -58,17 +57,16 @@ public:
 
     /// Sends the boot-up message or the heartbeat when due. True when the process data is due: the caller
     /// sends it.
-    bool tick(Time now, FrameOutbox& out) noexcept TAPPET_REALTIME {
+    bool tick(Time now, Wire& out) noexcept TAPPET_REALTIME {
         if (!alive_) return false;
         if (boot_at_ <= now) {
-            out.push(
-                {FrameWriter(wires::cob::heartbeat + id_).u8(wires::nmt_state::boot_up).frame(), boot_at_});
+            beat(wires::nmt_state::boot_up, boot_at_, out);
             heartbeat_.start(boot_at_);
             boot_at_ = never;
             state_ = wires::nmt_state::pre_operational;
         }
         if (heartbeat_.next <= now) {
-            out.push({FrameWriter(wires::cob::heartbeat + id_).u8(state_).frame(), heartbeat_.next});
+            beat(state_, heartbeat_.next, out);
             heartbeat_.done();
         }
         if (pdo_.next > now) return false;
@@ -83,6 +81,20 @@ public:
     }
 
 private:
+    struct Heartbeat {
+        Wire::Signals::Sent frame;
+        Wire::Signals::SentSignal state;
+    };
+    static constexpr Heartbeat heartbeats[wires::node::count] = {
+        {"heartbeat_1", "heartbeat_1.state"}, {"heartbeat_2", "heartbeat_2.state"},
+        {"heartbeat_3", "heartbeat_3.state"}, {"heartbeat_4", "heartbeat_4.state"},
+        {"heartbeat_5", "heartbeat_5.state"}, {"heartbeat_6", "heartbeat_6.state"}};
+
+    void beat(std::uint8_t state, Time due, Wire& out) const noexcept TAPPET_REALTIME {
+        const Heartbeat& own = heartbeats[id_ - 1];
+        out.signals.set_integer(own.state, state);
+        out.send(own.frame, due);
+    }
     void leave_operational(std::uint8_t state) noexcept TAPPET_REALTIME {
         state_ = state;
         pdo_.stop();

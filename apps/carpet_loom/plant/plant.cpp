@@ -9,9 +9,13 @@ constexpr double let_off_unit_rad_s = rad_s_per_rpm / wires::let_off_velocity_pe
 constexpr Duration blocked_limit = 500ms;
 constexpr double load_cell_noise_n = 2.0;
 
-std::int32_t in_units(double rad_s, double unit_rad_s) noexcept TAPPET_REALTIME {
-    return static_cast<std::int32_t>(round_to_int(rad_s / unit_rad_s));
-}
+// The names of what the plant itself sends and hears.
+using Signals = Wire::Signals;
+constexpr Signals::Received nmt{"nmt"}, feeder_command{"feeder_command"}, dobby_command{"dobby_command"};
+constexpr Signals::ReceivedSignal nmt_command{"nmt.command"}, nmt_node{"nmt.node"};
+constexpr Signals::Sent load_cell_frame{"load_cell"};
+constexpr Signals::SentSignal encoder_sample_number{"encoder.sample"};
+constexpr Signals::SentSignal tension{"load_cell.tension"}, load_cell_status{"load_cell.status"};
 
 } // namespace
 
@@ -19,8 +23,8 @@ Plant::Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALT
     : settings_(settings),
       seed_(seed),
       random_(seed),
-      main_(wires::node::main_drive, random_),
-      let_off_(wires::node::let_off_drive, random_),
+      main_(wires::node::main_drive, main_drive_names, random_),
+      let_off_(wires::node::let_off_drive, let_off_names, random_),
       encoder_(wires::node::encoder, wires::encoder_period_us, random_),
       load_cell_(wires::node::load_cell, wires::load_cell_period_us, random_),
       feeder_(random_),
@@ -50,7 +54,7 @@ void Plant::advance(Time now) noexcept TAPPET_REALTIME {
 }
 
 Time Plant::leap(Time until) noexcept TAPPET_REALTIME {
-    for (Time next; frames_.empty() && edges_.empty(); pass(next))
+    for (Time next; wire_.empty() && edges_.empty(); pass(next))
         if ((next = next_event()) >= until) return next;
     return now_;
 }
@@ -72,10 +76,10 @@ void Plant::begin_step() noexcept TAPPET_REALTIME {
     const double speed = shaft_.speed_rad_s();
     const std::uint64_t faults_before = main_.faults() + let_off_.faults();
     main_.supervise(speed > -0.05 && speed < 0.05, std::abs(speed - main_target) < 0.5, shaft_.saturated(),
-                    step_begin_, frames_);
+                    step_begin_, wire_);
     const double let_off_target = let_off_unit_rad_s * static_cast<double>(let_off_.target());
     let_off_.supervise(warp_.standing(), std::abs(warp_.beam_rad_s() - let_off_target) < 0.002, false,
-                       step_begin_, frames_);
+                       step_begin_, wire_);
 
     const bool main_idle = main_.power() == Power::off || main_.target() == 0;
     const bool let_off_idle = let_off_.power() != Power::follow || let_off_.target() == 0;
@@ -92,7 +96,7 @@ void Plant::begin_step() noexcept TAPPET_REALTIME {
         blocked_since_ = step_begin_;
     else if (step_begin_ - blocked_since_ > blocked_limit && main_.power() == Power::follow) {
         ++report_.damage.motor_blocked;
-        main_.trip(wires::emergency_code::motor_blocked, step_begin_, frames_);
+        main_.trip(wires::emergency_code::motor_blocked, step_begin_, wire_);
     }
     if (main_.faults() + let_off_.faults() != faults_before) blame(StopCause::fault);
 }
@@ -108,7 +112,7 @@ void Plant::end_step() noexcept TAPPET_REALTIME {
     if (after == before && !stopped) return;
     insertion_.follow(before, after, step_begin_, dt_s);
     pass_marks(after);
-    dobby_.follow(after - turn_deg_, step_end_, frames_);
+    dobby_.follow(after - turn_deg_, step_end_, wire_);
     measure_motion(after - before, dt);
     if (stopped) record_standstill(step_begin_ + Duration{round_to_int(shaft_.stopped_into_s() * 1e9)});
 }
@@ -161,18 +165,16 @@ void Plant::run_timers(Time now) noexcept TAPPET_REALTIME {
 
 void Plant::tick_nodes(Time now) noexcept TAPPET_REALTIME {
     const double into_s = into_step_s(now);
-    if (main_.node().next() <= now && main_.node().tick(now, frames_))
-        main_.send_status(in_units(shaft_.speed_rad_s_at(into_s), main_unit_rad_s), now, frames_);
-    if (let_off_.node().next() <= now && let_off_.node().tick(now, frames_))
-        let_off_.send_status(in_units(warp_.beam_rad_s(), let_off_unit_rad_s), now, frames_);
-    if (encoder_.next() <= now && encoder_.tick(now, frames_)) {
-        frames_.push({FrameWriter(wires::cob::encoder_position)
-                          .u16(encoder_code_at(now))
-                          .u16(encoder_samples_++)
-                          .frame(),
-                      now});
+    if (main_.node().next() <= now && main_.node().tick(now, wire_))
+        main_.send_status(shaft_.speed_rad_s_at(into_s) / rad_s_per_rpm, now, wire_);
+    if (let_off_.node().next() <= now && let_off_.node().tick(now, wire_))
+        let_off_.send_status(warp_.beam_rad_s() / rad_s_per_rpm, now, wire_);
+    if (encoder_.next() <= now && encoder_.tick(now, wire_)) {
+        wire_.signals.set_integer(encoder_position, encoder_code_at(now));
+        wire_.signals.set_integer(encoder_sample_number, encoder_samples_++);
+        wire_.send(encoder_frame, now);
     }
-    if (load_cell_.next() <= now && load_cell_.tick(now, frames_)) {
+    if (load_cell_.next() <= now && load_cell_.tick(now, wire_)) {
         const double first = random_.unit();
         const double second = random_.unit();
         const double noisy =
@@ -180,58 +182,50 @@ void Plant::tick_nodes(Time now) noexcept TAPPET_REALTIME {
         const std::uint8_t status = noisy > Warp::hard_high_n
                                         ? wires::load_cell_bit::valid | wires::load_cell_bit::overload
                                         : wires::load_cell_bit::valid;
-        frames_.push({FrameWriter(wires::cob::load_cell_tension)
-                          .i16(static_cast<std::int16_t>(
-                              round_to_int(clamp_to(noisy * wires::tension_per_n, 32000.0))))
-                          .u8(status)
-                          .frame(),
-                      now});
+        wire_.signals.set(tension, noisy);
+        wire_.signals.set_integer(load_cell_status, status);
+        wire_.send(load_cell_frame, now);
     }
-    if (feeder_.node().next() <= now && feeder_.node().tick(now, frames_)) feeder_.tick(now, frames_);
-    if (dobby_.node().next() <= now) static_cast<void>(dobby_.node().tick(now, frames_));
+    if (feeder_.node().next() <= now && feeder_.node().tick(now, wire_)) feeder_.tick(now, wire_);
+    if (dobby_.node().next() <= now) static_cast<void>(dobby_.node().tick(now, wire_));
 }
 static_assert((wires::encoder_codes_per_turn & (wires::encoder_codes_per_turn - 1)) == 0,
               "codes are masked out of the position");
 
-void Plant::manage_network(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME {
-    if (frame.length < wires::length::nmt) return;
+void Plant::manage_network(Time now) noexcept TAPPET_REALTIME {
+    const auto command = static_cast<std::uint8_t>(wire_.signals.integer(nmt_command));
+    const auto meant = static_cast<std::uint8_t>(wire_.signals.integer(nmt_node));
     for (std::uint8_t id = 1; id <= wires::node::count; ++id) {
         Node* const node = node_of(id);
         const bool was_operational = node->operational();
-        if (node->network_management(frame.data[0], frame.data[1], now)) restart_application(id);
-        if (id == wires::node::dobby && !was_operational && node->operational())
-            dobby_.introduce(now, frames_);
+        if (node->network_management(command, meant, now)) restart_application(id);
+        if (id == wires::node::dobby && !was_operational && node->operational()) dobby_.introduce(now, wire_);
     }
 }
 
-void Plant::receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME {
+void Plant::hear(std::size_t row) noexcept TAPPET_REALTIME {
+    if (row == nmt.index) manage_network(now_);
+    if (row == feeder_command.index) feeder_.command(wire_);
+    if (row == dobby_command.index) dobby_.command(wire_);
+    for (Drive* const drive : {&main_, &let_off_})
+        if (drive->hears(row)) drive->command(now_, wire_);
+}
+
+void Plant::receive(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
     advance(now);
-    log_.add(to_ns(now_));
-    log_.add((std::uint64_t{frame.id} << 8) | frame.length);
-    log_.add(std::bit_cast<std::uint64_t>(frame.data));
-    switch (frame.id) {
-    case wires::cob::nmt: manage_network(frame, now_); break;
-    case wires::cob::main_drive_command:
-        main_.command(frame, now_, frames_);
-        shorten_rest();
+    Wire::note(frame, now_, log_);
+    std::size_t row = 0;
+    switch (wire_.signals.decode(frame, row)) {
+    case can::Decoded::yes: hear(row); break;
+    case can::Decoded::wrong_length:
+        if (frame.id == wires::cob::main_drive_command) main_.refuse(now_, wire_);
+        if (frame.id == wires::cob::let_off_drive_command) let_off_.refuse(now_, wire_);
         break;
-    case wires::cob::let_off_drive_command:
-        let_off_.command(frame, now_, frames_);
-        shorten_rest();
-        break;
-    case wires::cob::feeder_command: feeder_.command(frame); break;
-    case wires::cob::dobby_command: dobby_.command(frame); break;
-    default: break;
+    case can::Decoded::unknown_identifier: break;
     }
+    if (frame.id == wires::cob::main_drive_command || frame.id == wires::cob::let_off_drive_command)
+        shorten_rest();
     find_next_timer();
-}
-
-bool Plant::transmit(CanFrame& frame, Time& due) noexcept TAPPET_REALTIME {
-    SentFrame sent;
-    if (!frames_.pop(sent)) return false;
-    frame = sent.frame;
-    due = sent.due;
-    return true;
 }
 
 void Plant::set_line(unsigned output, bool level, Time now) noexcept TAPPET_REALTIME {

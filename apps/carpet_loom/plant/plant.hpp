@@ -38,16 +38,17 @@ public:
     }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return now_; }
 
-    // CAN: a frame from the machine; the plant's own frames, in the order they were due. Unknown identifiers
-    // are none of the plant's business, wrong lengths are ignored (a drive answers with an emergency
-    // message).
-    void receive(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME;
-    [[nodiscard]] bool transmit(CanFrame& frame, Time& due) noexcept TAPPET_REALTIME;
+    // CAN: a frame from the machine; the plant's own frames, in the order they were due, which is their
+    // stamp. Unknown identifiers are none of the plant's business, wrong lengths are ignored (a drive answers
+    // with an emergency message).
+    void receive(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool transmit(can::Frame& frame) noexcept TAPPET_REALTIME { return wire_.pop(frame); }
 
-    /// The code the encoder would sample now: a world in real time that is late sends the shaft as it is, not
-    /// as it was.
-    [[nodiscard]] std::uint16_t encoder_code() const noexcept TAPPET_REALTIME {
-        return encoder_code_at(now_);
+    /// The encoder's last sample, as it would be now: a world in real time that is late sends the shaft as it
+    /// is, not as it was.
+    [[nodiscard]] can::Frame encoder_sample() noexcept TAPPET_REALTIME {
+        wire_.signals.set_integer(encoder_position, encoder_code_at(now_));
+        return wire_.signals.encode(encoder_frame, now_);
     }
 
     // GPIO: offsets of wires::line. Lines that are no outputs of the machine are ignored.
@@ -88,6 +89,9 @@ public:
     [[nodiscard]] const Feeder& feeder() const noexcept TAPPET_REALTIME { return feeder_; }
 
 private:
+    static constexpr Wire::Signals::Sent encoder_frame{"encoder"};
+    static constexpr Wire::Signals::SentSignal encoder_position{"encoder.position"};
+
     struct ActiveFault {
         Fault fault = Fault::weft_break;
         std::uint8_t node = 0;
@@ -113,7 +117,8 @@ private:
         const double codes = position_deg_at(at) * (wires::encoder_codes_per_turn / 360.0);
         return static_cast<std::uint16_t>(floor_to_int(codes) & (wires::encoder_codes_per_turn - 1));
     }
-    void manage_network(const CanFrame& frame, Time now) noexcept TAPPET_REALTIME;
+    void manage_network(Time now) noexcept TAPPET_REALTIME;
+    void hear(std::size_t row) noexcept TAPPET_REALTIME;
 
     // weaving.cpp: what happens at the angles of a turn, and its measures
     void pass_marks(double position_deg) noexcept TAPPET_REALTIME;
@@ -138,7 +143,7 @@ private:
     Settings settings_;
     std::uint64_t seed_;
     Random random_;
-    FrameOutbox frames_;
+    Wire wire_;
     EdgeOutbox edges_;
     Digest log_;
 

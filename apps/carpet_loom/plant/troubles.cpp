@@ -47,9 +47,9 @@ void Plant::start_fault(const ScriptedFault& row) noexcept TAPPET_REALTIME {
     }
     case Fault::drive_fault:
         if (row.node == wires::node::let_off_drive)
-            let_off_.trip(wires::emergency_code::over_current, now_, frames_);
+            let_off_.trip(wires::emergency_code::over_current, now_, wire_);
         else
-            main_.trip(wires::emergency_code::over_current, now_, frames_);
+            main_.trip(wires::emergency_code::over_current, now_, wire_);
         blame(StopCause::fault);
         stays = false;
         break;

@@ -28,7 +28,7 @@ void Plant::pass_marks(double position_deg) noexcept TAPPET_REALTIME {
             beat_up();
             break;
         case Mark::level:
-            if (!dobby_.cross(step_end_, frames_)) ++report_.patterns_repeated;
+            if (!dobby_.cross(step_end_, wire_)) ++report_.patterns_repeated;
             note_pattern();
             break;
         }
@@ -169,10 +169,10 @@ Report Plant::report() const noexcept TAPPET_REALTIME {
     report.weaving_s = to_seconds(weaving_);
     report.tension_out_of_band_s = to_seconds(out_of_band_);
     report.drive_faults = main_.faults() + let_off_.faults();
-    report.frames_lost = frames_.lost();
+    report.frames_lost = wire_.lost();
     report.edges_lost = edges_.lost();
     Digest digest = log_;
-    digest.add(frames_.log().value());
+    digest.add(wire_.log().value());
     digest.add(edges_.log().value());
     report.digest = digest.value();
     return report;

@@ -78,7 +78,7 @@ TEST_P(Wires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
     ASSERT_TRUE(rig.weave());
     can::Frame lie; // the shaft stands at code 0, it says
     lie.id = cob::encoder_position;
-    lie.length = wires::length::encoder_position;
+    lie.length = 4;
     rig.bus().babble(lie, 300us, rig.now());
     EXPECT_TRUE(rig.run_until_state("fault", 50ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the encoder is stale");
@@ -95,7 +95,7 @@ TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_saf
     ASSERT_TRUE(rig.weave());
     can::Frame frozen;
     frozen.id = cob::encoder_position;
-    frozen.length = wires::length::encoder_position;
+    frozen.length = 4;
     frozen.data[1] = 0x08; // half a turn
     rig.plant().inject({.fault = Fault::node_lost, .lasts = 500ms, .node = wires::node::encoder});
     rig.bus().babble(frozen, 1ms, rig.now());

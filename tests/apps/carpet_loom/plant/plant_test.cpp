@@ -1,5 +1,6 @@
 // The plant at its wires: nodes that boot and fall silent, lines, registers, bad input.
 #include "apps/carpet_loom/plant/plant.hpp"
+#include "tests/apps/carpet_loom/plant/machine_side.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +13,9 @@ namespace {
 constexpr std::uint64_t seeds = 8;
 
 struct Traffic {
-    std::map<std::uint32_t, std::vector<SentFrame>> of;
+    std::map<std::uint32_t, std::vector<can::Frame>> of;
     void fetch(Plant& plant) {
-        SentFrame sent;
-        while (plant.transmit(sent.frame, sent.due)) of[sent.frame.id].push_back(sent);
+        for (can::Frame sent; plant.transmit(sent);) of[sent.id].push_back(sent);
     }
     void run(Plant& plant, Duration duration) {
         for (const Time end = plant.now() + duration; plant.now() < end;) {
@@ -25,8 +25,12 @@ struct Traffic {
     }
 };
 
-CanFrame network(std::uint8_t command, std::uint8_t node) {
-    return FrameWriter(wires::cob::nmt).u8(command).u8(node).frame();
+can::Frame network(std::uint8_t command, std::uint8_t node) { return MachineSide{}.network(command, node); }
+
+std::int64_t sample_of(const can::Frame& encoder) {
+    MachineSide machine;
+    EXPECT_EQ(machine.take(encoder), "encoder");
+    return machine.integer("encoder", "sample");
 }
 
 Settings alone() {
@@ -44,9 +48,9 @@ TEST(Nodes, boot_beat_and_are_mute_until_they_are_started) {
         for (std::uint32_t node = 1; node <= wires::node::count; ++node) {
             const auto& beats = traffic.of[wires::cob::heartbeat + node];
             ASSERT_GT(beats.size(), 8U);
-            EXPECT_EQ(beats[0].frame.data[0], wires::nmt_state::boot_up);
-            EXPECT_EQ(beats[1].frame.data[0], wires::nmt_state::pre_operational);
-            EXPECT_NEAR(to_seconds(beats[2].due - beats[1].due), 0.1, 1e-5);
+            EXPECT_EQ(beats[0].data[0], wires::nmt_state::boot_up);
+            EXPECT_EQ(beats[1].data[0], wires::nmt_state::pre_operational);
+            EXPECT_NEAR(to_seconds(beats[2].stamp - beats[1].stamp), 0.1, 1e-5);
         }
     }
 }
@@ -64,13 +68,13 @@ TEST(Nodes, send_at_their_rates_once_operational) {
         const auto& frames = traffic.of[id];
         EXPECT_NEAR(static_cast<double>(frames.size()), static_cast<double>(rate.first), 1.0)
             << std::hex << id;
-        for (const SentFrame& sent : frames) EXPECT_EQ(sent.frame.length, rate.second);
+        for (const can::Frame& sent : frames) EXPECT_EQ(sent.length, rate.second);
     }
     EXPECT_EQ(traffic.of[0x186].size(), 1U) << "the dobby introduces itself and then speaks on change";
-    EXPECT_EQ(traffic.of[0x701].back().frame.data[0], wires::nmt_state::operational);
+    EXPECT_EQ(traffic.of[0x701].back().data[0], wires::nmt_state::operational);
     const auto& encoder = traffic.of[0x183];
     for (std::size_t i = 1; i < encoder.size(); ++i)
-        EXPECT_EQ(field_of(encoder[i].frame, 2, 2), field_of(encoder[i - 1].frame, 2, 2) + 1);
+        EXPECT_EQ(sample_of(encoder[i]), sample_of(encoder[i - 1]) + 1);
 }
 
 TEST(Nodes, obey_the_network_one_by_one) {
@@ -86,12 +90,12 @@ TEST(Nodes, obey_the_network_one_by_one) {
     traffic.of.clear();
     traffic.run(plant, 200ms);
     EXPECT_TRUE(traffic.of[0x183].empty());
-    EXPECT_EQ(traffic.of[0x703].back().frame.data[0], wires::nmt_state::stopped);
+    EXPECT_EQ(traffic.of[0x703].back().data[0], wires::nmt_state::stopped);
     plant.receive(network(wires::nmt_command::reset_node, wires::node::encoder), plant.now());
     traffic.of.clear();
     traffic.run(plant, 150ms);
     ASSERT_FALSE(traffic.of[0x703].empty());
-    EXPECT_EQ(traffic.of[0x703].front().frame.data[0], wires::nmt_state::boot_up);
+    EXPECT_EQ(traffic.of[0x703].front().data[0], wires::nmt_state::boot_up);
 }
 
 TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
@@ -110,7 +114,7 @@ TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
     plant.repair();
     traffic.run(plant, 300ms);
     ASSERT_FALSE(traffic.of[0x703].empty());
-    EXPECT_EQ(traffic.of[0x703].front().frame.data[0], wires::nmt_state::boot_up);
+    EXPECT_EQ(traffic.of[0x703].front().data[0], wires::nmt_state::boot_up);
     EXPECT_TRUE(traffic.of[0x183].empty());
 }
 
@@ -123,8 +127,8 @@ TEST(Nodes, lost_for_a_time_come_back_by_themselves) {
     traffic.run(plant, 2s);
     const auto& beats = traffic.of[0x704];
     std::vector<Time> boots;
-    for (const SentFrame& sent : beats)
-        if (sent.frame.data[0] == wires::nmt_state::boot_up) boots.push_back(sent.due);
+    for (const can::Frame& sent : beats)
+        if (sent.data[0] == wires::nmt_state::boot_up) boots.push_back(sent.stamp);
     ASSERT_EQ(boots.size(), 2U);
     EXPECT_NEAR(to_seconds(boots[1] - Time{}), 0.8, 0.02);
 }
@@ -134,7 +138,7 @@ TEST(BadInput, changes_nothing) {
     Traffic traffic;
     traffic.run(plant, 200ms);
     for (std::uint32_t id = 0; id < 0x800; ++id) {
-        CanFrame frame;
+        can::Frame frame;
         frame.id = id;
         frame.length = static_cast<std::uint8_t>(id % 2);
         plant.receive(frame, plant.now());
@@ -146,7 +150,7 @@ TEST(BadInput, changes_nothing) {
         EXPECT_FALSE(plant.line(line));
     }
     traffic.run(plant, 200ms);
-    EXPECT_EQ(traffic.of[0x701].back().frame.data[0], wires::nmt_state::pre_operational);
+    EXPECT_EQ(traffic.of[0x701].back().data[0], wires::nmt_state::pre_operational);
     EXPECT_EQ(plant.speed_rpm(), 0.0);
     EXPECT_EQ(plant.report().damage.total(), 0U);
 }

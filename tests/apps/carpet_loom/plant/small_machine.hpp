@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/carpet_loom/plant/plant.hpp"
+#include "tests/apps/carpet_loom/plant/machine_side.hpp"
 
 #include <vector>
 
@@ -45,9 +46,7 @@ public:
 private:
     void cycle() {
         plant.advance(now);
-        CanFrame frame;
-        Time due;
-        while (plant.transmit(frame, due)) take(frame, due);
+        for (can::Frame frame; plant.transmit(frame);) take(frame);
         Edge edge;
         while (plant.next_edge(edge)) take(edge);
         think();
@@ -55,31 +54,26 @@ private:
         if (releases) cam();
     }
 
-    void take(const CanFrame& frame, Time due) {
-        namespace cob = wires::cob;
+    void take(const can::Frame& frame) {
         ++frames;
-        if (frame.id > cob::heartbeat && frame.data[0] == wires::nmt_state::boot_up && frame.length == 1)
-            plant.receive(FrameWriter(cob::nmt)
-                              .u8(wires::nmt_command::start)
-                              .u8(static_cast<std::uint8_t>(frame.id - cob::heartbeat))
-                              .frame(),
-                          now);
-        if (frame.id > cob::emergency && frame.id < cob::emergency + 16)
-            emergencies.push_back(static_cast<std::uint16_t>(field_of(frame, 0, 2)));
-        if (frame.id == cob::main_drive_status) {
-            main_status = static_cast<std::uint16_t>(field_of(frame, 0, 2));
-            const double rpm = static_cast<std::int32_t>(field_of(frame, 2, 4)) / 10.0;
+        if (frame.id > wires::cob::emergency && frame.id < wires::cob::emergency + 16)
+            emergencies.push_back(static_cast<std::uint16_t>(emergency_of(frame).code));
+        const std::string_view name = wire.take(frame);
+        if (name.starts_with("heartbeat_") && wire.integer(name, "state") == wires::nmt_state::boot_up)
+            plant.receive(wire.network(wires::nmt_command::start, frame.id - wires::cob::heartbeat), now);
+        if (name == "main_drive") {
+            main_status = static_cast<std::uint16_t>(wire.integer(name, "statusword"));
+            const double rpm = static_cast<double>(wire.integer(name, "velocity")) / 10.0;
             acceleration = (rpm - speed_rpm) * 6.0 / 0.002;
             speed_rpm = rpm;
         }
-        if (frame.id == cob::let_off_drive_status)
-            let_off_status = static_cast<std::uint16_t>(field_of(frame, 0, 2));
-        if (frame.id == cob::encoder_position) {
-            angle_deg = (field_of(frame, 0, 2) + 0.5) * 360.0 / wires::encoder_codes_per_turn;
-            angle_at = due;
+        if (name == "let_off") let_off_status = static_cast<std::uint16_t>(wire.integer(name, "statusword"));
+        if (name == "encoder") {
+            const auto code = static_cast<double>(wire.integer(name, "position"));
+            angle_deg = (code + 0.5) * 360.0 / wires::encoder_codes_per_turn;
+            angle_at = frame.stamp;
         }
-        if (frame.id == cob::load_cell_tension)
-            tension_n = static_cast<std::int16_t>(field_of(frame, 0, 2)) / 10.0;
+        if (name == "load_cell") tension_n = static_cast<double>(wire.integer(name, "tension")) / 10.0;
     }
 
     double angle_at_time(Time t) const {
@@ -166,30 +160,25 @@ private:
     }
 
     void send() {
-        namespace cob = wires::cob;
         const bool reset = state == State::prepare && now.time_since_epoch() % 10ms < 5ms;
         const double rpm = state == State::running && now >= run_at ? wanted_rpm : 0.0;
-        plant.receive(FrameWriter(cob::main_drive_command)
-                          .u16(quick ? 0x02 : controlword(main_status, reset))
-                          .i32(static_cast<std::int32_t>(rpm * 10.0))
-                          .frame(),
-                      now);
+        plant.receive(
+            wire.frame("main_drive_command", {{"controlword", quick ? 0x02 : controlword(main_status, reset)},
+                                              {"velocity", static_cast<std::int32_t>(rpm * 10.0)}}),
+            now);
         const double error = tension_n - wires::nominal::tension_n;
         if (holds_tension) integral = clamp_to(integral + 0.02 * error * 0.001, 0.2);
         const double forward = speed_rpm * wires::nominal::pick_spacing_mm /
                                (2.0 * 3.14159265 * wires::nominal::beam_radius_mm); // rpm of the beam
         const double beam_rpm = holds_tension ? forward + 0.004 * error + integral : 0.0;
-        plant.receive(FrameWriter(cob::let_off_drive_command)
-                          .u16(controlword(let_off_status, reset))
-                          .i32(static_cast<std::int32_t>(round_to_int(beam_rpm * 1000.0)))
-                          .frame(),
+        plant.receive(wire.frame("let_off_command", {{"controlword", controlword(let_off_status, reset)},
+                                                     {"velocity", round_to_int(beam_rpm * 1000.0)}}),
                       now);
         if (now.time_since_epoch() % 100ms == 0ms)
-            plant.receive(FrameWriter(cob::feeder_command).u8(1).u16(1500).frame(), now);
-        const auto pick = static_cast<std::uint32_t>(plant.dobby().taken() + 1);
+            plant.receive(wire.frame("feeder_command", {{"colour", 1}, {"speed", 1500}}), now);
+        const std::int64_t pick = plant.dobby().taken() + 1;
         if (!repeats_pattern && now.time_since_epoch() % 10ms == 0ms)
-            plant.receive(
-                FrameWriter(cob::dobby_command).u32(pick).u16(static_cast<std::uint16_t>(pick)).frame(), now);
+            plant.receive(wire.frame("dobby_command", {{"pick", pick}, {"pattern", pick}}), now);
         if (now == Time{} + 100ms) static_cast<void>(plant.climate().write_coil(0, true));
     }
 
@@ -208,6 +197,7 @@ private:
                        now + Duration{static_cast<std::int64_t>(std::max(0.0, in_s) * 1e9)});
     }
 
+    MachineSide wire;
     double angle_deg = 0.0;
     Time angle_at{};
     double speed_rpm = 0.0;

@@ -200,7 +200,7 @@ TEST(Damage, counts_a_shaft_that_coasts) {
     SmallMachine machine(quick_hands(), 7);
     ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 10s));
     machine.speaks = false;
-    machine.plant.receive(FrameWriter(wires::cob::main_drive_command).u16(0).i32(0).frame(), machine.now);
+    machine.plant.receive(MachineSide{}.frame("main_drive_command", {}), machine.now);
     machine.run_until(machine.now + 80ms);
     EXPECT_EQ(machine.plant.report().damage.moved_unpowered, 1U);
 }

@@ -1,0 +1,94 @@
+// A bus's signals as the nodes see them, by the names of the machine's map: what it receives they send.
+#pragma once
+
+#include "drivers/can/signal_store.hpp"
+#include "drivers/twin/far_end.hpp"
+
+#include <cstdint>
+#include <utility>
+
+namespace tappet::can {
+
+/// A machine's map as the nodes see it.
+template <std::size_t F, std::size_t S>
+constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
+    for (FrameRow& row : map.frames)
+        row.direction = row.direction == Direction::receive ? Direction::transmit : Direction::receive;
+    std::swap(map.received, map.transmitted);
+    std::swap(map.received_count, map.transmitted_count);
+    return map;
+}
+
+/// Their values, without a wire: of nodes that make and take their frames themselves. The compiler checks the
+/// names. Real-time; who is that, too, has the names as constants outside of its functions.
+template <const auto& map>
+class NodeSignals {
+    TAPPET_ACCEPTED(map.fault);
+
+protected:
+    static constexpr auto nodes = seen_from_the_nodes(map);
+
+    template <Direction direction>
+    struct FrameName {
+        std::size_t index;
+        consteval FrameName(const char* name) : index{nodes.frame(name)} {
+            if (index == no_such || nodes.frames[index].direction != direction) {
+                const auto meant = tappet::FarEnd::nearest_to(name, nodes.frames.size(), [](std::size_t i) {
+                    const bool fits = nodes.frames[i].direction == direction;
+                    return tappet::FarEnd::Meant{
+                        {}, fits ? std::string_view{nodes.frames[i].name} : std::string_view{}};
+                });
+                tappet::FarEnd::did_you_mean(meant.of.data(), meant.name.data());
+            }
+        }
+    };
+    template <Direction direction>
+    struct SignalName {
+        std::size_t index;
+        consteval SignalName(const char* path) : index{nodes.signal(path)} {
+            if (index == no_such || nodes.frames[nodes.frame_of[index]].direction != direction) {
+                const auto meant = tappet::FarEnd::nearest_to(path, nodes.signals.size(), [](std::size_t i) {
+                    const auto& frame = nodes.frames[nodes.frame_of[i]];
+                    const bool fits = frame.direction == direction;
+                    return tappet::FarEnd::Meant{std::string_view{frame.name},
+                                                 fits ? std::string_view{nodes.signals[i].name}
+                                                      : std::string_view{}};
+                });
+                tappet::FarEnd::did_you_mean(meant.of.data(), meant.name.data());
+            }
+        }
+    };
+
+public:
+    using Received = FrameName<Direction::receive>;
+    using Sent = FrameName<Direction::transmit>;
+    using ReceivedSignal = SignalName<Direction::receive>;
+    using SentSignal = SignalName<Direction::transmit>;
+
+    [[nodiscard]] double get(ReceivedSignal signal) const noexcept TAPPET_REALTIME {
+        return store_.physical(signal.index);
+    }
+    /// A set of bits, or a counter: before factor and offset.
+    [[nodiscard]] std::int64_t integer(ReceivedSignal signal) const noexcept TAPPET_REALTIME {
+        return store_.integer(signal.index);
+    }
+    void set(SentSignal signal, double value) noexcept TAPPET_REALTIME {
+        store_.set_physical(signal.index, value);
+    }
+    void set_integer(SentSignal signal, std::uint64_t bits) noexcept TAPPET_REALTIME {
+        store_.set_bits(signal.index, bits);
+    }
+    /// With the values as they are; `at` becomes its stamp.
+    [[nodiscard]] Frame encode(Sent frame, Time at) const noexcept TAPPET_REALTIME {
+        return store_.encode(frame.index, at);
+    }
+    /// Takes the values of a frame of the machine's in, whole or not at all; `which` becomes its row.
+    [[nodiscard]] Decoded decode(const Frame& frame, std::size_t& which) noexcept TAPPET_REALTIME {
+        return store_.decode(frame, which);
+    }
+
+protected:
+    SignalStore<nodes.frames.size(), nodes.signals.size()> store_{nodes};
+};
+
+} // namespace tappet::can
