@@ -94,9 +94,7 @@ bench::Scenario scenario_of(const Options& options, const TemporaryFolder& folde
                       {options.plant, "/bin/carpet-loom-plant"},
                       {options.browser, "/bin/tappet-browse"},
                       {options.behaviours, "/weaves"}};
-    scenario.can = {"can0"};
-    scenario.gpio = {{"io", 32}};
-    scenario.settings = {{"/proc/sys/kernel/sched_rt_runtime_us", "-1"}};
+    bench::add_board(scenario);
     // How long the requests of a browser take is the host's affair: the plant weaves on until they are
     // through, and some picks more.
     const bool changes_weaves = options.picks >= least_picks_for_weaves;

@@ -55,6 +55,10 @@ struct Scenario {
     bool keep = false;         // leave the working folder behind
 };
 
+/// All that a machine finds on the board "bench": its buses and lines, and real-time threads that nobody
+/// throttles.
+void add_board(Scenario& scenario);
+
 struct Outcome {
     // The bench itself worked: it booted, ran every step it had to run, and switched off.
     bool completed = false;

@@ -22,6 +22,8 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
                          "- COMMAND" may fail. Also: @sleep S, @write PATH TEXT, @link NAME up|down,
                          @signal NAME TERM|INT|KILL|STOP|CONT|USR1|HUP, @wait NAME [while OTHER]
   --file HOST=GUEST      a file or folder for the guest; programs bring their shared libraries
+  --board                all that a machine finds on the board "bench": can0, can1, io and panel with 32 lines,
+                         and real-time threads that nobody throttles
   --tool NAME            a program of this machine for the guest's /bin; python3 brings its standard library
   --can NAME             a virtual CAN interface
   --gpio-chip NAME:LINES simulated GPIO: /dev/NAME, its outside at /sim/NAME/sim_gpioN/pull and .../value
@@ -119,6 +121,8 @@ Request parse(int count, char** arguments) {
             request.verbose = true;
         } else if (option == "--keep") {
             request.scenario.keep = true;
+        } else if (option == "--board") {
+            add_board(request.scenario);
         } else if (i + 1 >= count) {
             refuse("'" + option + "' is unknown or lacks its value");
         } else if (!take(request, option, arguments[++i])) {

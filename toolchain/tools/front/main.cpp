@@ -160,34 +160,12 @@ int bench(const Given& given) {
     if (machine.empty()) return wrong_use;
     if (!is_built({machine + "-bench", machine + "-plant"})) return 1;
     use_what_is_installed();
-    // All that the bench's board has: what the machine is not bound to lies idle.
     return become({(beside_us() / "tappet-bench").string(),
-                   "--timeout",
-                   "600",
-                   "--file",
-                   "build/" + machine + "-bench.stripped=/bin/firmware",
-                   "--file",
-                   "build/" + machine + "-plant=/bin/plant",
-                   "--can",
-                   "can0",
-                   "--can",
-                   "can1",
-                   "--gpio-chip",
-                   "io:32",
-                   "--gpio-chip",
-                   "panel:32",
-                   "--set",
-                   "/proc/sys/kernel/sched_rt_runtime_us=-1",
-                   "--run",
-                   "plant &",
-                   "--run",
-                   "@sleep 0.3",
-                   "--run",
-                   "firmware --for " + std::string{given.line.text("--for", "10")},
-                   "--run",
-                   "@signal plant TERM",
-                   "--run",
-                   "@wait plant"});
+                   "--board", // what the machine is not bound to lies idle
+                   "--timeout", "600", "--file", "build/" + machine + "-bench.stripped=/bin/firmware",
+                   "--file", "build/" + machine + "-plant=/bin/plant", "--run", "plant &", "--run",
+                   "@sleep 0.3", "--run", "firmware --for " + std::string{given.line.text("--for", "10")},
+                   "--run", "@signal plant TERM", "--run", "@wait plant"});
 }
 
 /// For the bench's board the plant comes along, since nobody else stands at its wires.
