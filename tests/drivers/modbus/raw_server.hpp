@@ -26,11 +26,11 @@ enum class Manner {
     wrong_transaction,
     short_answer,
     exception,
-    late,
+    late, ///< the answer waits until the test calls let_go()
     close,
     wrong_checksum,
     drip,   ///< half of the answer, and no more
-    dribble ///< all of it, a byte every 10 ms
+    dribble ///< all of it, a byte every 50 ms
 };
 
 using Bytes = std::vector<std::uint8_t>;
@@ -97,6 +97,12 @@ public:
     [[nodiscard]] Bytes last_request() const {
         const std::lock_guard lock{mutex_};
         return last_;
+    }
+    /// What is late goes out; it has when this returns.
+    void let_go() {
+        const unsigned before = answered_;
+        let_go_ = true;
+        while (answered_ == before) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     std::atomic<Manner> manner{Manner::right};
 
@@ -174,11 +180,13 @@ private:
             answer.push_back(
                 static_cast<std::uint8_t>(how == Manner::wrong_checksum ? ~crc >> 8 & 0xFF : crc >> 8));
         }
-        if (how == Manner::late) std::this_thread::sleep_for(std::chrono::milliseconds{250});
+        while (how == Manner::late && !let_go_ && !stop_)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
         if (how == Manner::drip) answer.resize(answer.size() / 2);
         const std::size_t at_once = how == Manner::dribble ? 1 : answer.size();
         for (std::size_t i = 0; i < answer.size() && !stop_ && put(answer.data() + i, at_once); i += at_once)
-            if (how == Manner::dribble) std::this_thread::sleep_for(std::chrono::milliseconds{10});
+            if (how == Manner::dribble) std::this_thread::sleep_for(std::chrono::milliseconds{50});
+        ++answered_;
     }
     [[nodiscard]] bool put(const std::uint8_t* bytes, std::size_t count) const {
         return (line_ == Line::tcp ? ::send(peer_, bytes, count, MSG_NOSIGNAL)
@@ -193,7 +201,8 @@ private:
     std::string terminal_;
     mutable std::mutex mutex_;
     Bytes last_;
-    std::atomic<bool> stop_{false};
+    std::atomic<bool> stop_{false}, let_go_{false};
+    std::atomic<unsigned> answered_{0};
     std::thread thread_;
 };
 
