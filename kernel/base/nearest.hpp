@@ -62,13 +62,19 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
 
 /// Shows every candidate to consider() and keeps the nearest one that is near enough to be meant: at most two
 /// edits, or a third of the written name. Of two equally near the one nearer in lower case wins, then the
-/// first shown. The same name in other case is always near. The candidates' characters must outlive it.
+/// first shown. The same name in other case is always near, and so is one that goes on after a dot. The
+/// candidates' characters must outlive it.
 class Nearest {
 public:
     explicit constexpr Nearest(std::string_view written) noexcept
         : written_{written}, distance_{std::max<std::size_t>(2, written.size() / 3) + 1} {}
 
     constexpr void consider(std::string_view candidate) noexcept {
+        if (candidate.size() > written_.size() && candidate.starts_with(written_) &&
+            candidate[written_.size()] == '.') {
+            if (distance_ > 1) best_ = candidate, distance_ = folded_ = 1;
+            return;
+        }
         const std::size_t folded = edit_distance(written_, candidate, distance_, LetterCase::ignored);
         if (folded > distance_) return; // respecting case never brings texts nearer
         std::size_t distance = edit_distance(written_, candidate, distance_);

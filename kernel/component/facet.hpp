@@ -113,6 +113,7 @@ struct Facet {
     bool required =
         false; ///< an input or a call that must be connected, an operation that a reaction must name
     bool valid_to_start = false;      ///< an input: its component does not start before it has a valid value
+    bool grows_stale = false;         ///< an input: its row says when its value is stale
     std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
     bool may_block = false;           ///< a method or a command; never in a real-time activity

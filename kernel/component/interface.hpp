@@ -38,6 +38,9 @@ inline constexpr Required required{};
 /// for it. (One that is started while the machine runs needs all its required inputs, circles apart.)
 struct ValidToStart {};
 inline constexpr ValidToStart valid_to_start{};
+/// Marks an input by whose age its component tells a silence: its row must say stale_after(...).
+struct GrowsStale {};
+inline constexpr GrowsStale grows_stale{};
 /// An event that means something to the machine's safety: at least so many reaction rows must name it.
 struct HeardBy {
     std::uint8_t reactions = 1;
@@ -93,6 +96,7 @@ struct TimerCall<Method> {
 constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; }
 constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
 constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start = true; }
+constexpr void apply(Facet& facet, GrowsStale) noexcept { facet.grows_stale = true; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
 constexpr void apply(Facet& facet, MayBlock) noexcept { facet.may_block = true; }

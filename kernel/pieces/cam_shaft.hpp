@@ -89,7 +89,8 @@ template <const auto& cams> struct CamShaft {
                                                    "no longer; also when the shaft stands or is lost");
         }
         for (const Facet& each :
-             facets(input<&CamShaft::code>("code", "", "of the encoder, within a turn or of a counter"),
+             facets(input<&CamShaft::code>("code", "", "of the encoder, within a turn or of a counter",
+                                           grows_stale),
                     input<&CamShaft::enabled>("enabled", "", "cams may fire"),
                     output<&CamShaft::angle_deg>("angle_deg", "deg", "now"),
                     output<&CamShaft::speed_rpm>("speed_rpm", "rpm", "now; 0 while the angle is not known"),

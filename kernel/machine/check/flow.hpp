@@ -137,6 +137,9 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
     if (row.when_stale == WhenStale::stop && row.max_age == Duration::zero())
         return of_connection(row,
                              " says what a stale value means but not when it is stale; add stale_after(...)");
+    if (to.grows_stale && row.max_age == Duration::zero())
+        return of_connection(row, " never grows stale, but \"", row.to,
+                             "\" tells a silence by it; add stale_after(...) and hold");
     if (row.wakes_reader && m.activities[reader].periodic())
         return of_connection(row, " wakes activity \"", m.activities[reader].name,
                              "\", which is periodic; remove wakes");

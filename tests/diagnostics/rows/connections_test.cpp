@@ -19,11 +19,12 @@ struct Talker {
 };
 struct Hearer {
     Input<Text<8>> word;
-    Input<std::int8_t> count;
+    Input<std::int8_t> count, pulse;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Hearer::word>("word", "", "that it hears", optional),
-                      input<&Hearer::count>("count", "", "of the words", optional));
+                      input<&Hearer::count>("count", "", "of the words", optional),
+                      input<&Hearer::pulse>("pulse", "", "of who talks", optional, grows_stale));
     }
 };
 void add_talk(Table& m, const ConnectionRow& row) {
@@ -95,6 +96,8 @@ INSTANTIATE_TEST_SUITE_P(ends, Refusal, testing::ValuesIn(planted_into(small_loo
 constexpr Fault option_faults[] = {
     {"connection_stale_never", [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stop_machine)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" says what a stale value means but not when it is stale; add stale_after(...))"},
+    {"connection_never_stale", [](Table& m) { add_talk(m, data("talker.count", "hearer.pulse")); },
+     R"(loom: connection "talker.count" -> "hearer.pulse" never grows stale, but "hearer.pulse" tells a silence by it; add stale_after(...) and hold)"},
     {"connection_stale_twice",
      [](Table& m) {
          m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(0), stop_machine));

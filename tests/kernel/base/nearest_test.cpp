@@ -128,6 +128,12 @@ TEST(Nearest, recognises_the_same_name_in_other_case_however_long) {
     EXPECT_EQ(nearest("AB", {"ab"}), "ab");
 }
 
+TEST(Nearest, recognises_a_name_that_goes_on_after_a_dot) {
+    EXPECT_EQ(nearest("start", {"stop.rises", "start.rises", "start.falls"}), "start.rises");
+    EXPECT_EQ(nearest("start", {"starts.rises"}), "");
+    EXPECT_EQ(nearest("start", {"start.rises", "Start"}), "Start") << "one letter's case is nearer";
+}
+
 TEST(Nearest, compares_names_of_more_than_64_characters_with_nothing) {
     const std::string long_name(65, 'x');
     Nearest search{long_name};
