@@ -1,6 +1,7 @@
 // Runs a firmware from its command line to its exit code.
 #include "toolchain/machine/firmware.hpp"
 
+#include "kernel/machine/map/view.hpp"
 #include "kernel/machine/plan_text.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/notify.hpp"
@@ -220,8 +221,21 @@ private:
         if (proof.output.empty()) return running >= 60s;
         End end{};
         static_cast<void>(resolve(instance.machine().table, proof.output, FacetKind::output, end));
-        return static_cast<const Output<std::int64_t>*>(instance.facet(end))->last() >= proof.count;
+        std::int64_t count = 0;
+        const auto read = [&] {
+            count = static_cast<const Output<std::int64_t>*>(instance.facet(end))->last();
+        };
+        // Of another thread: what it writes meanwhile is looked at the next time. Where nobody looks into the
+        // machine it tells no generations, and an aligned word is whole.
+        const auto activity = static_cast<std::uint32_t>(instance.machine().index.activity[end.component]);
+        const auto view = map::View::open(instance.observation().shared_memory());
+        if (!view)
+            read();
+        else if (!view->consistent(activity, proof_attempts, read))
+            return false;
+        return count >= proof.count;
     }
+    static constexpr int proof_attempts = 100;
 
     Ending end(MachineInstance& instance, RealWorld& world, PropertyFiles& properties,
                Duration start_to_armed, bool time_is_over) {
