@@ -378,7 +378,7 @@ template <auto Function, class Component, class R, class... P>
 struct BlockingCommand<Function, R (Component::*)(P...) const noexcept>
     : CommandFunctionOf<Function, true, Component, R, P...> {};
 
-template <auto Action, auto Completion, bool blocks>
+template <auto Action, auto Completion, bool blocks = false>
 struct CommandOf {
     using Begin = std::conditional_t<blocks, BlockingCommand<Action>, CommandFunction<Action>>;
     using Follow = CommandFunction<Completion>;
