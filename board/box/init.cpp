@@ -39,7 +39,7 @@ constexpr int wrong_set_up = 2;          // Ending::wrong_set_up: nothing was to
 constexpr double stop_patience_s = 15.0; // for the firmware's orderly end
 constexpr double again_after_s = 1.0;
 constexpr double says_what_it_is_s = 1.0; // a stick that was plugged in just now
-constexpr double tell_trial_s = 5.0; // for who stands there to read why
+constexpr double tell_trial_s = 5.0;      // for who stands there to read why
 constexpr std::string_view notify_name{"\0tappet-init", 12};
 
 std::string text_of(double seconds) {
