@@ -21,6 +21,10 @@ public:
     Plant(const loom::Settings& settings, std::uint64_t seed) : settings_{settings}, seed_{seed} {}
 
     Time move(Time now) override;
+    [[nodiscard]] Time next_edge() const override {
+        const Time next = loom().next_contact();
+        return next == never ? never : next + origin_.value_or(Duration::zero());
+    }
     [[nodiscard]] std::optional<Time> leap(Time until) override;
     [[nodiscard]] std::string_view usage() const override { return loom::usage(); }
     bool take_option(std::string_view option, std::string_view value, Sentence& fault) override;

@@ -32,6 +32,10 @@ public:
     /// often anyway. The clock is the machine's.
     virtual Time move(Time now) = 0;
 
+    /// On the bench, where lines take one edge at a time: when it has the next one, of a contact that
+    /// bounces, faster than it is moved anyway.
+    [[nodiscard]] virtual Time next_edge() const { return never; }
+
     /// Under virtual time: nothing comes in and nobody looks before `until`. It may move on by itself as far
     /// as nothing leaves it; the answer is as that of move(). Nothing: it does not know how.
     [[nodiscard]] virtual std::optional<Time> leap(Time /*until*/) { return {}; }

@@ -128,8 +128,7 @@ void Plant::find_next_timer() noexcept TAPPET_REALTIME {
     Time next = std::min({main_.node().next(), let_off_.node().next(), encoder_.next(), load_cell_.next(),
                           feeder_.node().next(), dobby_.node().next(), insertion_.next(), climate_at_,
                           operator_at_, valve_check_at_, faults_end_at_});
-    for (const Contact& contact : contacts_) next = std::min(next, contact.next());
-    next_timer_ = next;
+    next_timer_ = std::min(next, next_contact());
 }
 
 void Plant::run_timers(Time now) noexcept TAPPET_REALTIME {

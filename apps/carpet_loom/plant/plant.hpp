@@ -36,6 +36,12 @@ public:
     [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME {
         return std::min(next_timer_, step_end_);
     }
+    /// When a contact closes, opens or bounces next.
+    [[nodiscard]] Time next_contact() const noexcept TAPPET_REALTIME {
+        Time next = never;
+        for (const Contact& contact : contacts_) next = std::min(next, contact.next());
+        return next;
+    }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return now_; }
 
     // CAN: a frame from the machine; the plant's own frames, in the order they were due, which is their
