@@ -5,6 +5,7 @@
 //     tell("io.ejector.clear"))
 #pragma once
 
+#include "kernel/base/unwrapped_count.hpp"
 #include "kernel/cam/estimator.hpp"
 #include "kernel/cam/schedule.hpp"
 #include "kernel/cam/trust.hpp"
@@ -140,13 +141,10 @@ private:
 
     void sample(std::int64_t now) noexcept TAPPET_REALTIME {
         const std::int64_t turn = shaft_.codes_per_turn;
-        if (const auto unused = static_cast<unsigned>(64 - counter_bits.get()); unused < 64) {
-            // A narrow counter wraps; what it went on by is the difference's lower bits, with their sign.
-            const auto way = (static_cast<std::uint64_t>(now) - static_cast<std::uint64_t>(last_)) << unused;
-            place_ = seen_ ? (place_ + (static_cast<std::int64_t>(way) >> unused)) % turn : 0;
-            if (place_ < 0) place_ += turn;
-            last_ = now;
-            now = place_;
+        if (const auto bits = static_cast<int>(counter_bits.get()); bits != 0) {
+            const std::int64_t way = counted_.take(now, bits);
+            if (!seen_) begun_at_ = way;
+            now = ((way - begun_at_) % turn + turn) % turn;
         }
         seen_ = true;
         const bool is_place = now >= 0 && now < turn; // else it is counted as a bad code
@@ -197,8 +195,9 @@ private:
     ShaftEstimator estimator_{shaft_};
     CamSchedule<count> schedule_{cams};
     EncoderTrust trust_{};
-    std::int64_t place_ = 0, last_ = 0; // of a counter: in the turn, and its code
-    std::int64_t missed_ = 0;           // by the schedule
+    UnwrappedCount counted_{}; // of a counter, which begins its turns where it was first seen
+    std::int64_t begun_at_ = 0;
+    std::int64_t missed_ = 0; // by the schedule
     bool is_configured_ = false, seen_ = false, knows_ = false;
     Changed<bool> valid_;
 };
