@@ -30,7 +30,7 @@ install(FILES README.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY toolchain/guide "${PROJECT_BINARY_DIR}/guide" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet/examples")
 # The bench's kernels, unpacked, and the box's: without them a machine runs on the host only.
-install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign")
+install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign" PATTERN "*-aarch64" EXCLUDE)
 
 # They find each other beside themselves.
 install(TARGETS tappet tappet-bench tappet-browse tappet-image bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")

@@ -15,7 +15,13 @@ target_link_options(tappet_options INTERFACE -Wl,--build-id=sha1)
 
 # One seed gives one run, bit for bit, with both compilers: the baseline instruction set, and no a*b+c folded into
 # one rounding where one compiler sees the chance and the other does not.
-target_compile_options(tappet_options INTERFACE -march=x86-64 -ffp-contract=off)
+target_compile_options(tappet_options INTERFACE -ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+    # With the atomic instructions of version 8.1, and no others: before it an exchange is a loop that others can keep going.
+    target_compile_options(tappet_options INTERFACE -march=armv8.1-a+lse -mno-outline-atomics)
+else()
+    target_compile_options(tappet_options INTERFACE -march=x86-64)
+endif()
 
 # A machine is checked in constant expressions; the compilers' own limits are meant for smaller ones.
 target_compile_options(

@@ -61,9 +61,28 @@ add_library(tappet::double_conversion ALIAS tappet_double_conversion)
 set(tappet_routines sin cos sincos tan asin acos atan atan2 exp exp2 log log2 log10 pow sqrt hypot fabs floor ceil round trunc nearbyint rint fmod)
 set(tappet_routine_parts ${tappet_routines} scalbn __sin __cos __tan __rem_pio2 __rem_pio2_large __math_divzero __math_invalid
     __math_oflow __math_uflow __math_xflow exp_data log_data log2_data pow_data)
-find_file(TAPPET_MUSL_ARCHIVE libc.a PATHS /usr/lib/x86_64-linux-musl NO_DEFAULT_PATH)
+find_file(TAPPET_MUSL_ARCHIVE libc.a PATHS /usr/lib/${CMAKE_SYSTEM_PROCESSOR}-linux-musl NO_DEFAULT_PATH)
 if(NOT TAPPET_MUSL_ARCHIVE)
     message(FATAL_ERROR "musl's libc.a is not installed; run ci/setup once as root")
+endif()
+# Where a fused multiply-add is to be had always, musl's logarithms and powers take it and round once less: they are compiled here as
+# they are elsewhere.
+set(tappet_unfused)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+    set(tappet_unfused_parts log log2 pow log_data log2_data pow_data)
+    list(REMOVE_ITEM tappet_routine_parts ${tappet_unfused_parts})
+    list(REMOVE_DUPLICATES tappet_routine_parts)
+    set(tappet_musl "${TAPPET_CACHE}/musl")
+    list(TRANSFORM tappet_unfused_parts REPLACE "(.+)" "${tappet_musl}/src/math/\\1.c")
+    add_library(tappet_unfused OBJECT EXCLUDE_FROM_ALL ${tappet_unfused_parts})
+    set(tappet_unfused $<TARGET_OBJECTS:tappet_unfused>)
+    cmake_path(GET TAPPET_MUSL_ARCHIVE PARENT_PATH place)
+    cmake_path(GET place FILENAME place)
+    target_compile_options(
+        tappet_unfused
+        PRIVATE -w -std=c99 -nostdinc -ffp-contract=off -frounding-math -U__FP_FAST_FMA
+                "SHELL:-I ${tappet_musl}/arch/aarch64 -I ${tappet_musl}/arch/generic -I ${tappet_musl}/src/include -I ${tappet_musl}/src/internal"
+                "SHELL:-I ${CMAKE_SYSROOT}/usr/include/${place} -I ${tappet_musl}/include")
 endif()
 set(tappet_mathematics "${PROJECT_BINARY_DIR}/mathematics")
 file(MAKE_DIRECTORY "${tappet_mathematics}")
@@ -72,12 +91,12 @@ list(TRANSFORM tappet_routine_parts APPEND ".lo" OUTPUT_VARIABLE tappet_members)
 add_custom_command(
     OUTPUT "${tappet_mathematics}/routines.o"
     COMMAND "${CMAKE_AR}" x "${TAPPET_MUSL_ARCHIVE}" ${tappet_members}
-    COMMAND "${CMAKE_LINKER}" -r -o all.o ${tappet_members}
+    COMMAND "${CMAKE_LINKER}" -r -o all.o ${tappet_members} ${tappet_unfused}
     COMMAND "${CMAKE_OBJCOPY}" ${tappet_shown} all.o routines.o
     WORKING_DIRECTORY "${tappet_mathematics}"
-    DEPENDS "${TAPPET_MUSL_ARCHIVE}"
+    DEPENDS "${TAPPET_MUSL_ARCHIVE}" ${tappet_unfused}
     COMMENT "sine and its kin, the same on every processor"
-    VERBATIM)
+    VERBATIM COMMAND_EXPAND_LISTS)
 set_source_files_properties("${tappet_mathematics}/routines.o" PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
 add_library(tappet_mathematics STATIC "${tappet_mathematics}/routines.o")
 set_target_properties(tappet_mathematics PROPERTIES LINKER_LANGUAGE C)

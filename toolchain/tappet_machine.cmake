@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # tappet_machine(<name>
 #     TABLE machine.hpp            holds <namespace>::table
-#     BOARDS bench ipc-x86_64 ..   boards of Tappet by name, or headers of one's own: boards/my_box.hpp holds tappet::board::my_box
+#     BOARDS bench ipc-x86_64 ..   boards of Tappet by name, or headers of one's own: boards/my_box.hpp holds tappet::board::my_box.
+#                                  One whose name ends in an architecture is built for that one only
 #     [BINDINGS bindings.hpp]      holds <namespace>::bindings::<board> for each board that is not simulated
 #     [PLANT plant.hpp]            holds <namespace>::Plant, made from a seed: the other end of the wires
 #     [TESTS test.cpp ..]          cases of GoogleTest about it with its PLANT: they include "toolchain/machine/test.hpp"
@@ -21,7 +22,8 @@
 include_guard(GLOBAL)
 
 # The linker's own: llvm-strip refuses the relocations of a static program.
-find_program(TAPPET_STRIP NAMES x86_64-linux-gnu-strip strip REQUIRED)
+find_program(TAPPET_STRIP NAMES ${CMAKE_SYSTEM_PROCESSOR}-linux-gnu-strip strip REQUIRED)
+find_program(TAPPET_SIZE NAMES ${CMAKE_SYSTEM_PROCESSOR}-linux-gnu-size size REQUIRED)
 
 # A header as a program includes it: what lies in Tappet's own tree from its root, so that another clone compiles the same.
 function(tappet_header path result)
@@ -127,8 +129,11 @@ function(tappet_machine name)
             endif()
             continue()
         endif()
-        tappet_board("${board}" header symbol)
         cmake_path(GET board STEM board_name)
+        if(board_name MATCHES "[-_](x86_64|aarch64)$" AND NOT CMAKE_MATCH_1 STREQUAL CMAKE_SYSTEM_PROCESSOR)
+            continue()
+        endif()
+        tappet_board("${board}" header symbol)
         set(firmware "${name}-${board_name}")
         if(TARGET tappet_sealed_heap)
             add_executable(${firmware} "${mains}/firmware_main.cpp")
@@ -140,7 +145,7 @@ function(tappet_machine name)
             add_custom_command(
                 TARGET ${firmware} POST_BUILD
                 COMMAND "${TAPPET_STRIP}" -o "${stripped}" "$<TARGET_FILE:${firmware}>"
-                COMMAND size "${stripped}"
+                COMMAND "${TAPPET_SIZE}" "${stripped}"
                 COMMENT "${firmware}: static memory, without symbols"
                 VERBATIM)
         else() # no static binary has a sanitizer, but the effects of its functions are looked at

@@ -32,6 +32,9 @@ inline constexpr Binding ipc_x86_64 = binding(
     place("can", 3), place("io", 3),
     place("utility", 0), place("console", 0), place("restarter", 0), place("scope", 0), place("browser", 0),
     proven_by("weft.picks_woven", 100));
+
+// The processors are four there, too.
+inline constexpr Binding ipc_aarch64 = ipc_x86_64;
 // clang-format on
 
 } // namespace tappet::carpet::bindings

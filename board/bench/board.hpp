@@ -23,9 +23,11 @@ inline constexpr Board bench{
     .kernel_command_line = "quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests",
     // Of its image, which makes its CAN interfaces and lines itself: nothing of them leaves the guest.
     .image = {.modules = kernel_modules("can-raw", "vcan", "gpio-sim", "i6300esb heartbeat=20", "nvme",
-                                        "xhci-pci", "usb-storage", "sd_mod", "vfat", "nls_cp437", "nls_ascii",
-                                        "button", "evdev"),
-              .consoles = consoles("ttyS0")},
+                                        "xhci-pci", "usb-storage", "sd_mod", "ext4", "vfat", "nls_cp437",
+                                        "nls_ascii", "button", "evdev", "e1000e"),
+              .consoles = consoles("ttyS0"),
+              .networks = networks(ethernet("eth0", "10.0.2.15/24")), // as the emulator's own network has it
+              .service_port = 4848},
     .properties_directory = "/run",
     // Everybody in the guest may look; two users of its tests may do more.
     .browsing = {.directory = "/run/tappet",

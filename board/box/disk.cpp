@@ -2,11 +2,14 @@
 // Partitions by name, and the loader's file in a slot.
 #include "board/box/disk.hpp"
 
+#include "board/box/update.hpp"
+
 #include <algorithm>
 #include <cerrno>
 
 #include <fcntl.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tappet::box {
@@ -14,6 +17,8 @@ namespace tappet::box {
 namespace {
 
 constexpr const char* slot_folder = "/run/slot";
+constexpr const char* kernel_file = "tappet.efi";
+constexpr std::size_t sector_bytes = 512;
 
 class MountedSlot {
 public:
@@ -57,28 +62,53 @@ std::expected<std::string, std::string> find_partition(const std::string& name) 
     return found;
 }
 
-init::Done mount_data(const std::string& device, const std::string& folder) {
+namespace {
+
+/// Of a partition of blocks of 1 KiB, as the image's writer makes it: where the second copy of its head is.
+const std::vector<std::string> second_head{"-b", "8193", "-B", "1024"};
+
+struct Checked {
+    int code = 8;
+    std::string said{};
+};
+
+/// Mends what needs no guess. Nobody else has children yet.
+Checked check(const std::string& device, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"/bin/e2fsck", "-p"};
+    words.insert(words.end(), more.begin(), more.end());
+    words.push_back(device);
+    int ends[2] = {-1, -1};
+    if (::pipe2(ends, O_CLOEXEC) != 0) return {8, init::failed("pipe").error()};
+    const auto checker = init::start(words, ends[1], "write the image anew");
+    ::close(ends[1]);
+    Checked checked;
+    char piece[1024];
+    for (ssize_t count = 0; (count = ::read(ends[0], piece, sizeof piece)) > 0;)
+        checked.said.append(piece, static_cast<std::size_t>(count));
+    ::close(ends[0]);
+    int status = 0;
+    if (checker && ::waitpid(*checker, &status, 0) == *checker) checked.code = init::to_exit_code(status);
+    std::ranges::replace(checked.said, '\n', ' ');
+    return checked;
+}
+
+} // namespace
+
+std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder) {
+    constexpr int mended = 1; // above: what a human must decide
+    Checked checked = check(device, {});
+    // A power cut may tear the head, of which the sum is then wrong.
+    if (checked.code > mended) checked = check(device, second_head);
+    if (checked.code > mended)
+        return std::unexpected(device + " is damaged, and settings are not guessed: e2fsck says \"" +
+                               checked.said + "\"; mend it by e2fsck on another machine");
     init::make_folder(folder);
     if (::mount(device.c_str(), folder.c_str(), "ext4", MS_NOSUID | MS_NODEV | MS_NOEXEC | MS_NOATIME,
                 "commit=1,errors=remount-ro") != 0)
         return init::failed("mount " + device + " at " + folder);
-    return {};
+    return checked.code == mended ? checked.said : "";
 }
 
-namespace {
-
-std::string state_file() { return MountedSlot::file(init::boot_state_file); }
-
-std::expected<init::BootState, std::string> read_state(const std::string& device) {
-    const MountedSlot slot{device, MS_RDONLY};
-    if (!slot.is_there()) return init::failed("mount " + device);
-    auto state = init::decode(init::read_text(state_file()));
-    if (!state)
-        return std::unexpected(std::string{init::boot_state_file} + " of " + device + " " + state.error());
-    return state;
-}
-
-/// To the disk itself before it returns.
 init::Done write_through(const std::string& path, int how, std::string_view bytes) {
     const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | how, 0600);
     bool written = file >= 0;
@@ -92,6 +122,44 @@ init::Done write_through(const std::string& path, int how, std::string_view byte
     if (file >= 0) ::close(file);
     errno = error;
     return written ? init::Done{} : init::failed("write " + path);
+}
+
+namespace {
+
+std::string state_file() { return MountedSlot::file(init::boot_state_file); }
+
+std::expected<init::BootState, std::string> read_state(const std::string& device, std::string& header) {
+    const MountedSlot slot{device, MS_RDONLY};
+    if (!slot.is_there()) return init::failed("mount " + device);
+    header = init::read_text(MountedSlot::file(header_file));
+    auto state = init::decode(init::read_text(state_file()));
+    if (!state)
+        return std::unexpected(std::string{init::boot_state_file} + " of " + device + " " + state.error());
+    return state;
+}
+
+/// A file system without a file, whatever a power cut left of the one before: clusters of no file would fill
+/// the slot, and a torn table would refuse every version. Its first sector, which says how it is laid out, is
+/// nowhere written.
+init::Done empty_slot(const std::string& device) {
+    const int disk = ::open(device.c_str(), O_RDWR | O_EXCL | O_CLOEXEC);
+    std::array<unsigned char, sector_bytes> head{};
+    bool done = disk >= 0 && ::pread(disk, head.data(), head.size(), 0) == sector_bytes;
+    const auto word = [&](std::size_t at) { return head[at] + 256U * head[at + 1]; };
+    const std::size_t tables = head[16], table_bytes = word(22) * sector_bytes, root_bytes = word(17) * 32;
+    if (done && (word(11) != sector_bytes || tables == 0 || table_bytes == 0)) {
+        ::close(disk);
+        return std::unexpected(device + " has no file system of ours; flash the box anew");
+    }
+    std::string area(tables * table_bytes + root_bytes, '\0');
+    for (std::size_t i = 0; done && i < tables; ++i)
+        area.replace(i * table_bytes, 4, {static_cast<char>(head[21]), '\xff', '\xff', '\xff'});
+    done = done && ::pwrite(disk, area.data(), area.size(), word(14) * sector_bytes) == std::ssize(area) &&
+           ::fsync(disk) == 0;
+    const int error = errno;
+    if (disk >= 0) ::close(disk);
+    errno = error;
+    return done ? init::Done{} : init::failed("empty " + device);
 }
 
 init::Done write_state(const std::string& device, const init::BootState& state) {
@@ -108,7 +176,7 @@ init::Done Slots::look() {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
         slots_[i].state.state = init::SlotState::failed;
         const auto device = find_partition(slot_partitions[i]);
-        const auto state = device ? read_state(*device) : std::unexpected(device.error());
+        const auto state = device ? read_state(*device, slots_[i].header) : std::unexpected(device.error());
         if (device) slots_[i].device = *device;
         if (!state) {
             all_well = std::unexpected(state.error());
@@ -131,33 +199,68 @@ init::Done Slots::end_trial(init::SlotState how) {
     return written;
 }
 
-init::Done Slots::install(std::string_view kernel) {
+std::array<const Slots::Slot*, 2> Slots::in_order() const {
+    const auto rank = [&](const Slot& slot) {
+        return slot.state.state == init::SlotState::failed ? 0 : slot.state.revision;
+    };
+    const std::size_t running = on_trial() ? trial_ : rank(slots_[0]) >= rank(slots_[1]) ? 0 : 1;
+    return {&slots_[running], &slots_[1 - running]};
+}
+
+std::expected<std::size_t, std::string> Slots::free_slot() const {
     if (on_trial())
         return std::unexpected("revision " + std::to_string(revision_) + " is on trial; that must end first");
-    const auto rank = [&](std::size_t i) {
-        return slots_[i].state.state == init::SlotState::failed ? 0 : slots_[i].state.revision;
-    };
-    const std::size_t running = rank(0) >= rank(1) ? 0 : 1;
-    const Slot& other = slots_[1 - running];
-    if (rank(running) == 0 || other.device.empty())
+    const auto [running, other] = in_order();
+    if (running->state.state == init::SlotState::failed || other->device.empty())
         return std::unexpected("the disk has no two slots; flash the box anew");
-    const std::string file = "tappet.efi";
+    return static_cast<std::size_t>(other - slots_.data());
+}
+
+namespace {
+/// Of the slot's file system, as the loader looks for it.
+std::string label_of(std::size_t slot) { return slot == 0 ? "SLOTA" : "SLOTB"; }
+} // namespace
+
+init::Done Slots::put_on_trial(std::size_t slot, std::uint16_t watchdog_s) {
+    init::BootState next;
+    next.kernel = "C:" + label_of(slot) + ":" + kernel_file;
+    next.revision = std::max(slots_[0].state.revision, slots_[1].state.revision) + 1;
+    next.watchdog_s = watchdog_s;
+    next.state = init::SlotState::installed;
+    return write_state(slots_[slot].device, next);
+}
+
+init::Done Slots::install(std::string_view kernel, std::string_view header) {
+    const auto free = free_slot();
+    if (!free) return std::unexpected(free.error());
+    const std::string& device = slots_[*free].device;
+    std::string label; // UTF-16
+    for (const char character : label_of(*free)) label += {character, '\0'};
+    const std::array<std::pair<std::string_view, std::string_view>, 3> files{
+        {{"EFILABEL", label}, {kernel_file, kernel}, {header_file, header}}};
+    if (auto emptied = empty_slot(device); !emptied) return emptied;
     {
-        const MountedSlot slot{other.device, 0};
-        if (!slot.is_there()) return init::failed("mount " + other.device);
-        if (auto written = write_through(MountedSlot::file(file), O_CREAT | O_TRUNC, kernel); !written)
-            return written;
+        const MountedSlot slot{device, 0};
+        if (!slot.is_there()) return init::failed("mount " + device);
+        for (const auto& [name, bytes] : files)
+            if (auto written = write_through(MountedSlot::file(name), O_CREAT, bytes); !written)
+                return written;
     }
     { // mounted anew, it is read from the disk
-        const MountedSlot slot{other.device, MS_RDONLY};
-        if (!slot.is_there() || init::read_text(MountedSlot::file(file)) != kernel)
-            return std::unexpected(other.device + " does not keep what is written to it; change the disk");
+        const MountedSlot slot{device, MS_RDONLY};
+        for (const auto& [name, bytes] : files)
+            if (!slot.is_there() || init::read_text(MountedSlot::file(name)) != bytes)
+                return std::unexpected(device + " does not keep what is written to it; change the disk");
     }
-    init::BootState next = slots_[running].state;
-    next.kernel = std::string{"C:SLOT"} + (running == 0 ? "B" : "A") + ":" + file;
-    next.revision = std::max(slots_[0].state.revision, slots_[1].state.revision) + 1;
-    next.state = init::SlotState::installed;
-    return write_state(other.device, next);
+    return put_on_trial(*free, in_order()[0]->state.watchdog_s);
+}
+
+init::Done Slots::roll_back() {
+    const auto free = free_slot();
+    if (!free) return std::unexpected(free.error());
+    if (slots_[*free].state.state == init::SlotState::failed)
+        return std::unexpected("the other slot holds a version that failed, or none; bring an update");
+    return put_on_trial(*free, slots_[*free].state.watchdog_s);
 }
 
 } // namespace tappet::box

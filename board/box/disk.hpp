@@ -18,8 +18,13 @@ inline constexpr const char* slot_partitions[] = {"tappet-a", "tappet-b"};
 /// disks have one.
 [[nodiscard]] std::expected<std::string, std::string> find_partition(const std::string& name);
 
-/// Read and written, every write followed to the disk within a second.
-[[nodiscard]] init::Done mount_data(const std::string& device, const std::string& folder);
+/// Read and written, every write followed to the disk within a second. Checked before by the image's
+/// /bin/e2fsck: what that mended without a guess, else nothing. The error: only a human can mend it.
+[[nodiscard]] std::expected<std::string, std::string> mount_data(const std::string& device,
+                                                                 const std::string& folder);
+
+/// To the disk itself before it returns. `how`: of open(), beside writing.
+[[nodiscard]] init::Done write_through(const std::string& path, int how, std::string_view bytes);
 
 /// The two slots as the loader's files say. One runs, perhaps on trial; the other takes the next version.
 class Slots {
@@ -34,16 +39,26 @@ public:
     /// between, the loader finds the sum wrong and boots the other slot.
     [[nodiscard]] init::Done end_trial(init::SlotState state);
 
-    /// A kernel image into the slot that is not in use, read back from the disk; then, last, on trial at the
-    /// next boot. The error, also when there is a trial: that must end first.
-    [[nodiscard]] init::Done install(std::string_view kernel);
+    /// A kernel image and the header of its update into the slot that is not in use, which is emptied first
+    /// and boots nothing meanwhile; read back from the disk; then, last, on trial at the next boot. The
+    /// error, also when there is a trial: that must end first.
+    [[nodiscard]] init::Done install(std::string_view kernel, std::string_view header);
+    /// What the other slot holds goes on trial at the next boot. The error: it failed, or see install().
+    [[nodiscard]] init::Done roll_back();
 
-private:
-    static constexpr std::size_t none = 2;
     struct Slot {
         std::string device{};
         init::BootState state{}; ///< of revision 0, failed, when it cannot be read
+        std::string header{};    ///< of what lies in it; empty: it was written without
     };
+    /// That runs, then the other.
+    [[nodiscard]] std::array<const Slot*, 2> in_order() const;
+
+private:
+    static constexpr std::size_t none = 2;
+    /// The slot that does not run, if both are of use. The error: they are not, or there is a trial.
+    [[nodiscard]] std::expected<std::size_t, std::string> free_slot() const;
+    [[nodiscard]] init::Done put_on_trial(std::size_t slot, std::uint16_t watchdog_s);
     std::array<Slot, 2> slots_{};
     std::size_t trial_ = none;
     std::uint32_t revision_ = 0;

@@ -12,6 +12,7 @@
 #include <linux/gpio.h>
 #include <sched.h>
 #include <sys/ioctl.h>
+#include <sys/mount.h>
 #include <unistd.h>
 
 namespace tappet::box {
@@ -140,6 +141,12 @@ void raise_interrupts(const Facts& facts, const Voice& voice) {
                 voice.say("no interrupt thread is named after " + device[0] +
                           ", so none of it has priority " + priority + "; see /proc/interrupts for its name");
         }
+}
+
+bool is_locked_down() {
+    ::mount("securityfs", "/sys/kernel/security", "securityfs", 0, nullptr);
+    const std::string how = init::read_line("/sys/kernel/security/lockdown");
+    return how.contains("[integrity]") || how.contains("[confidentiality]");
 }
 
 } // namespace tappet::box

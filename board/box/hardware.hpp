@@ -35,4 +35,7 @@ void set_governor(const Voice& voice);
 /// The threads of the bound devices' interrupts, which the kernel starts when somebody opens the device.
 void raise_interrupts(const Facts& facts, const Voice& voice);
 
+/// The kernel locks itself down when the box's firmware says that it checked it: Secure Boot.
+[[nodiscard]] bool is_locked_down();
+
 } // namespace tappet::box

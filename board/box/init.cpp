@@ -5,7 +5,8 @@
 
 #include "board/box/disk.hpp"
 #include "board/box/hardware.hpp"
-#include "board/box/stick.hpp"
+#include "board/box/renewal.hpp"
+#include "board/box/service.hpp"
 #include "board/init/devices.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/watchdog.hpp"
@@ -17,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <utility>
 
 #include <fcntl.h>
 #include <linux/input.h>
@@ -25,7 +27,9 @@
 #include <sys/reboot.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tappet::box {
@@ -38,21 +42,24 @@ constexpr int no_firmware = -1;
 constexpr int wrong_set_up = 2;          // Ending::wrong_set_up: nothing was touched
 constexpr double stop_patience_s = 15.0; // for the firmware's orderly end
 constexpr double again_after_s = 1.0;
-constexpr double says_what_it_is_s = 1.0; // a stick that was plugged in just now
-constexpr double tell_trial_s = 5.0;      // for who stands there to read why
+constexpr double renewal_patience_s = 300.0;
+constexpr int starts_anew = 1;
+constexpr std::size_t longest_last_words = 240;
+constexpr double tell_trial_s = 5.0; // for who stands there to read why
 constexpr std::string_view notify_name{"\0tappet-init", 12};
 
-std::string text_of(double seconds) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3f s", seconds);
-    return text.data();
-}
+/// Where the data partition is mounted: settings, learned values, black boxes, what was said.
+constexpr const char* data_folder = "/var/lib/tappet";
+const std::string layout_file = std::string{data_folder} + "/layout";
+const std::string log_file = std::string{data_folder} + "/box.log";
+constexpr std::size_t told_of_log = 4000;
 
 class Init {
 public:
     [[noreturn]] void live() {
         begin();
         bring_up_box();
+        start_service();
         start_plant();
         if (may_start_) start_firmware();
         for (;;) look();
@@ -65,6 +72,11 @@ private:
         voice_.say("Tappet, " + facts_.one("machine") + " on board " + facts_.one("board") + ", image " +
                    facts_.one("image", 0, "without a number"));
         if (!mounted) voice_.say(mounted.error());
+        if (facts_.one("build") == "debug") voice_.say("A DEBUG BUILD, which is not for production");
+        if (!facts_.all("plant").empty()) voice_.say("A TEST IMAGE: it carries a plant, and touches no wire");
+        is_locked_down_ = box::is_locked_down();
+        voice_.say(is_locked_down_ ? "Secure Boot is on: nothing but signed code runs"
+                                   : "Secure Boot is off: who has the disk can change what runs");
         ::setenv("PATH", "/bin", 1);
         ::setenv("NOTIFY_SOCKET", "@tappet-init", 1);
         ::reboot(RB_DISABLE_CAD); // Ctrl-Alt-Del comes as SIGINT, and ends in order
@@ -96,33 +108,95 @@ private:
             needs.push_back({"watchdog " + path, "check that the board's modules name its driver",
                              [path] { return ::access(path.c_str(), F_OK) == 0; },
                              [this] { return hold_watchdog(); }});
-        if (const std::string folder = facts_.one("data"); !folder.empty()) {
-            may_start_ = false; // settings are never guessed
-            needs.push_back({"data partition at " + folder, "flash the box anew, or check its disk",
-                             [] { return find_partition(data_partition).has_value(); },
-                             [this, folder]() -> init::Done {
-                                 const auto device = find_partition(data_partition);
-                                 if (!device) return std::unexpected(device.error());
-                                 const auto mounted = mount_data(*device, folder);
-                                 data_folder_ = folder;
-                                 may_start_ = mounted.has_value();
-                                 return mounted;
-                             }});
-        }
+        needs.push_back({std::string{"data partition at "} + data_folder,
+                         "check its disk, or flash the box anew, which loses its settings",
+                         [] { return find_partition(data_partition).has_value(); },
+                         [this] { return take_data_partition(); }});
         box::bring_up(needs, modules_, voice_, patience);
         stage(std::to_string(modules_.loaded()) + " kernel modules and the board's devices");
         set_governor(voice_);
         if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
         if (slots_.on_trial()) voice_.say("revision " + std::to_string(slots_.revision()) + " is on trial");
+        const auto [running, other] = slots_.in_order();
+        if (other->state.state == init::SlotState::failed)
+            voice_.say("what lies in the other slot failed its trial; what it said last stands in " +
+                       log_file);
         open_power_buttons();
         stage("slots and buttons");
         if (!may_start_)
             voice_.say("the firmware is not started: without the data partition it has no settings");
     }
 
+    init::Done take_data_partition() {
+        const auto device = find_partition(data_partition);
+        if (!device) return std::unexpected(device.error());
+        const auto mounted = mount_data(*device, data_folder);
+        if (!mounted) return std::unexpected(mounted.error());
+        if (!mounted->empty()) voice_.say("the data partition is mended: " + *mounted);
+        data_device_ = *device;
+        may_start_ = true;
+        if (const auto kept = voice_.keep_in(log_file); !kept) voice_.say(kept.error());
+        init::make_folder(properties_folder(facts_.one("layout")));
+        return {};
+    }
+
+    /// Each layout of properties has its own, so that a version that knows fewer loses none of the others'.
+    static std::string properties_folder(const std::string& layout) {
+        return std::string{data_folder} + "/properties-" + layout;
+    }
+
+    /// The layout that was in use last, and proven. A trial that fails has changed nothing of it.
+    void note_layout() {
+        const std::string layout = facts_.one("layout");
+        if (slots_.on_trial() || init::read_line(layout_file) == layout) return;
+        if (const auto kept = write_through(layout_file + ".new", O_CREAT | O_TRUNC, layout + "\n"); !kept)
+            voice_.say(kept.error());
+        else
+            ::rename((layout_file + ".new").c_str(), layout_file.c_str());
+    }
+
+    void start_service() {
+        const std::string port = facts_.one("service");
+        if (port.empty() || !may_start_service_) return;
+        if (service_ == no_firmware) {
+            init::make_folder(service_folder);
+            ::mount("tmpfs", service_folder, "tmpfs", MS_NOSUID | MS_NODEV | MS_NOEXEC,
+                    "size=50%,mode=0700,uid=65534,gid=65534");
+        }
+        tell_status();
+        service_ =
+            init::start({"/init", "service", nonce_}, spoken_, "write the image anew").value_or(no_firmware);
+    }
+
+    /// For who asks over the network.
+    void tell_status() const {
+        if (facts_.one("service").empty()) return;
+        const auto [running, other] = slots_.in_order();
+        std::string text = "machine " + facts_.one("machine") + ", board " + facts_.one("board") + ", " +
+                           (is_locked_down_ ? "Secure Boot" : "no Secure Boot") + "\n";
+        for (const Slots::Slot* slot : {running, other}) {
+            const Manifest manifest = manifest_of(slot->header);
+            text += std::string{slot == running ? "runs" : "other"} + ": version " +
+                    (manifest.version == 0 ? "unknown" : std::to_string(manifest.version)) + ", revision " +
+                    std::to_string(slot->state.revision) + ", " +
+                    std::string{init::name_of(slot->state.state)} + "\n";
+        }
+        text += std::string{"firmware: "} +
+                (firmware_ == no_firmware ? "does not run"
+                 : is_armed_              ? "is armed"
+                                          : "has not armed") +
+                (last_ending_.empty() ? "" : "; before: " + last_ending_) + "\n" +
+                init::read_text(std::string{data_folder} + "/" + measured_file) + "what was said last:\n";
+        const std::string log = init::read_text(log_file);
+        text += log.substr(log.size() - std::min(log.size(), told_of_log));
+        const std::string file = std::string{service_folder} + "/" + status_file;
+        static_cast<void>(write_through(file, O_CREAT | O_TRUNC, text));
+        ::chmod(file.c_str(), 0644); // who serves it is nobody
+    }
+
     void stage(const std::string& what) {
         const double now = uptime_s();
-        voice_.say(what + ": " + text_of(now - last_stage_s_));
+        voice_.say(what + ": " + text_of_seconds(now - last_stage_s_));
         last_stage_s_ = now;
     }
 
@@ -148,9 +222,16 @@ private:
         watchdog_.hand_over();
         start_s_ = uptime_s();
         outputs_are_safe_ = false;
-        const auto started = init::start({"/bin/firmware"}, spoken_, "write the image anew");
+        is_armed_ = false;
+        const std::string layout = facts_.one("layout"), last = init::read_line(layout_file);
+        std::vector<std::string> words{"/bin/firmware", "--properties", properties_folder(layout),
+                                       "--black-box", data_folder};
+        if (!last.empty() && last != layout)
+            words.insert(words.end(), {"--take-over", properties_folder(last)});
+        const auto started = init::start(words, spoken_, "write the image anew");
         firmware_ = started.value_or(no_firmware);
         if (!started) voice_.say(started.error());
+        tell_status();
     }
 
     /// Of a test board. Its ends of the wires come first.
@@ -182,10 +263,16 @@ private:
         }
     }
 
-    void pass_on() const {
+    void pass_on() {
         std::array<char, 4096> text{};
-        for (ssize_t count = 0; (count = ::read(heard_, text.data(), text.size())) > 0;)
-            voice_.pass_on({text.data(), static_cast<std::size_t>(count)});
+        for (ssize_t count = 0; (count = ::read(heard_, text.data(), text.size())) > 0;) {
+            const std::string_view piece{text.data(), static_cast<std::size_t>(count)};
+            voice_.pass_on(piece);
+            for (const char character : piece) {
+                if (character != '\n' && line_.size() < longest_last_words) line_ += character;
+                if (character == '\n' && !line_.empty()) last_words_ = std::exchange(line_, {});
+            }
+        }
     }
 
     void take_notices() {
@@ -196,18 +283,30 @@ private:
                 plant_is_ready_ = true;
             } else if (notice == "READY=1") {
                 const double now = uptime_s();
-                voice_.say("armed " + text_of(now - begun_s_) + " after init began, " +
-                           text_of(now - start_s_) + " of it in the firmware; memory left: " + memory_left());
+                voice_.say("armed " + text_of_seconds(now - begun_s_) + " after init began, " +
+                           text_of_seconds(now - start_s_) +
+                           " of it in the firmware; memory left: " + memory_left());
                 raise_interrupts(facts_, voice_);
+                is_armed_ = true;
+                note_layout();
+                tell_status();
             } else if (notice == "X_TAPPET_OUTPUTS=safe") {
                 outputs_are_safe_ = true;
+            } else if (notice.starts_with("X_TAPPET_LATE=") && slots_.on_trial() && !is_ending_) {
+                voice_.say(
+                    "activity \"" + std::string{notice.substr(notice.find('=') + 1)} +
+                    "\" missed its deadline on trial: the machine is stopped, and the box goes back to "
+                    "the other slot");
+                restart();
             } else if (notice == "X_TAPPET_PROVEN=1" && slots_.on_trial()) {
                 const double before = uptime_s();
                 const auto ended = slots_.end_trial(init::SlotState::good);
                 voice_.say(ended ? "revision " + std::to_string(slots_.revision()) +
                                        " has proven itself and stays, written in " +
-                                       text_of(uptime_s() - before)
+                                       text_of_seconds(uptime_s() - before)
                                  : "the trial is not over: " + ended.error());
+                note_layout();
+                tell_status();
             }
         }
     }
@@ -241,6 +340,10 @@ private:
                 end_in_order("the end of its plant", false);
             }
             if (pid == firmware_) firmware_ended(code);
+            if (pid == service_) {
+                may_start_service_ = code != 1; // it has said why
+                start_service();
+            }
         });
     }
 
@@ -249,8 +352,9 @@ private:
         pass_on();
         take_notices();
         if (is_ending_) return;
-        voice_.say("the firmware ended with code " + std::to_string(code) + " after " +
-                   text_of(uptime_s() - start_s_));
+        last_ending_ = "the firmware ended with code " + std::to_string(code) + " after " +
+                       text_of_seconds(uptime_s() - start_s_) + "; it said last: " + last_words_;
+        voice_.say(last_ending_);
         if (outputs_are_safe_ || code == wrong_set_up) {
             if (const auto held = hold_watchdog(); !held && !facts_.one("watchdog").empty())
                 voice_.say(held.error());
@@ -269,6 +373,7 @@ private:
             voice_.say("it ended " + facts_.one("restarts") + " times within " + facts_.one("restarts", 1) +
                        " s and is left; repair what it names, then switch the box off and on");
         }
+        tell_status();
     }
 
     bool may_start_again() {
@@ -295,8 +400,9 @@ private:
         if (firmware_ != no_firmware) voice_.say("the firmware does not end; it is killed");
         ::kill(-1, SIGKILL);
         ::sync();
-        if (!data_folder_.empty() && ::umount(data_folder_.c_str()) != 0)
-            ::mount(nullptr, data_folder_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr);
+        voice_.let_go();
+        if (!data_device_.empty() && ::umount(data_folder) != 0)
+            ::mount(nullptr, data_folder, nullptr, MS_REMOUNT | MS_RDONLY, nullptr);
         watchdog_.stand_down();
     }
 
@@ -304,7 +410,7 @@ private:
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
         voice_.say(by + " ends it");
         stop_everything();
-        again |= !again && take_update();
+        again |= !again && renew_under_watchdog();
         if (slots_.on_trial())
             if (const auto kept = slots_.end_trial(init::SlotState::installed); !kept)
                 voice_.say(kept.error());
@@ -313,41 +419,26 @@ private:
         init::power_off();
     }
 
-    /// The machine stands, and who pressed the button is at it. True when there is something to start anew
-    /// for.
-    bool take_update() {
-        static_cast<void>(modules_.load_what_fits()); // of a stick that came later
-        std::optional<std::string> disk = find_update();
-        const double begun_s = uptime_s();
-        const auto may_come = [begun_s] {
-            const double waited_s = uptime_s() - begun_s;
-            return waited_s < says_what_it_is_s ||
-                   (has_usb_storage() && waited_s < std::chrono::duration<double>(patience).count());
-        };
-        while (!disk && may_come()) {
-            init::pause_for(milliseconds{250});
-            static_cast<void>(modules_.load_what_fits());
-            disk = find_update();
+    /// A watchdog that cannot be stopped counts on, and writing a slot takes its time: a child does it, and
+    /// is waited for so long and no longer.
+    bool renew_under_watchdog() {
+        if (const auto held = hold_watchdog(); !held && !facts_.one("watchdog").empty())
+            voice_.say(held.error());
+        const pid_t worker = ::fork();
+        if (worker == 0)
+            ::_exit(renew(facts_, nonce_, data_device_, slots_, modules_, voice_) ? starts_anew : 0);
+        int status = 0;
+        const double until_s = uptime_s() + renewal_patience_s;
+        while (worker > 0 && ::waitpid(worker, &status, WNOHANG) == 0) {
+            watchdog_.kick(os::Clock::monotonic());
+            if (uptime_s() > until_s) {
+                voice_.say("it takes too long, and is given up; what ran before starts again");
+                ::kill(worker, SIGKILL);
+            }
+            init::pause_for(milliseconds{100});
         }
-        if (!disk) return false;
-        voice_.say("there is an update on " + *disk);
-        const auto refuse = [&](const std::string& why) {
-            voice_.say("the update on " + *disk + " is not taken: " + why);
-            return false;
-        };
-        const auto key = key_of(facts_.one("key"));
-        if (!key) return refuse("this box's image has no key; flash one that was written with --key");
-        const auto update = read_update(*disk, *key);
-        if (!update) return refuse(update.error());
-        const Manifest own{facts_.one("machine"), facts_.one("board"),
-                           static_cast<std::uint32_t>(std::atoi(facts_.one("image", 0, "0").c_str())), 0};
-        if (const std::string why = refusal_of(update->manifest, own); !why.empty()) return refuse(why);
-        const double before = uptime_s();
-        if (const auto installed = slots_.install(update->kernel); !installed)
-            return refuse(installed.error());
-        voice_.say("version " + std::to_string(update->manifest.version) + " is written and read back in " +
-                   text_of(uptime_s() - before) + ", and goes on trial");
-        return true;
+        watchdog_.stand_down();
+        return worker > 0 && WIFEXITED(status) && WEXITSTATUS(status) == starts_anew;
     }
 
     [[noreturn]] void restart() {
@@ -363,15 +454,23 @@ private:
     Voice voice_{};
     Slots slots_{};
     os::Watchdog watchdog_{};
-    bool may_start_ = true;
+    const std::string nonce_ = new_nonce();
+    bool may_start_ = false; // settings are never guessed: not without the data partition
+    bool may_start_service_ = true;
+    bool is_armed_ = false;
+    bool is_locked_down_ = false;
     bool plant_is_ready_ = false;
     bool is_ending_ = false;
     bool outputs_are_safe_ = false; // told by the guardian of the last firmware
-    std::string data_folder_{};
+    std::string data_device_{};
+    std::string line_{}; // of what firmware and plant say, as far as it came
+    std::string last_words_{};
+    std::string last_ending_{};
     std::vector<int> buttons_{};
     std::deque<double> restarts_s_{};
     pid_t firmware_ = no_firmware;
     pid_t plant_ = no_firmware;
+    pid_t service_ = no_firmware;
     double start_s_ = 0.0;
     double again_at_s_ = 0.0; // 0: nothing is started or restarted
     int signals_ = -1;
@@ -383,7 +482,13 @@ private:
 } // namespace
 } // namespace tappet::box
 
-int main() {
-    tappet::box::Init init;
+int main(int count, char** words) {
+    using namespace tappet;
+    if (count == 3 && std::string_view{words[1]} == "service") {
+        const box::Facts facts{init::read_text("/etc/tappet/box")};
+        box::serve_network({static_cast<std::uint16_t>(std::atoi(facts.one("service").c_str())),
+                            box::key_of(facts.one("key")), box::manifest_of(facts), words[2]});
+    }
+    box::Init init;
     init.live();
 }

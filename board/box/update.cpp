@@ -65,18 +65,32 @@ std::uint64_t claimed_bytes(std::string_view header) {
     return update_header_bytes + number(lines_of(header), "kernel");
 }
 
-std::string encode(const Update& update, const SecretKey& key) {
+std::string header_of(const Update& update, const SecretKey* key) {
+    const Manifest& of = update.manifest;
     std::string header{mark};
-    header += "machine " + update.manifest.machine + "\nboard " + update.manifest.board + "\nimage " +
-              std::to_string(update.manifest.version) + "\nleast " + std::to_string(update.manifest.least) +
-              "\nkernel " + std::to_string(update.kernel.size()) + "\n";
+    header += "machine " + of.machine + "\nboard " + of.board + "\nlayout " + of.layout + "\nimage " +
+              std::to_string(of.version) + "\nleast " + std::to_string(of.least) + "\nkernel " +
+              std::to_string(update.kernel.size()) + "\n";
     header.resize(signed_bytes, '\0');
-    crypto_sign_state state;
-    take_in(state, header, update.kernel);
     std::array<unsigned char, crypto_sign_BYTES> signature{};
-    crypto_sign_final_create(&state, signature.data(), nullptr, key.data());
-    header.append(reinterpret_cast<const char*>(signature.data()), signature.size());
-    return header + update.kernel;
+    if (key != nullptr) {
+        crypto_sign_state state;
+        take_in(state, header, update.kernel);
+        crypto_sign_final_create(&state, signature.data(), nullptr, key->data());
+    }
+    return header.append(reinterpret_cast<const char*>(signature.data()), signature.size());
+}
+
+Manifest manifest_of(std::string_view header) {
+    if (claimed_bytes(header) == 0) return {};
+    const Facts facts = lines_of(header);
+    return {facts.one("machine"), facts.one("board"), facts.one("layout"),
+            static_cast<std::uint32_t>(number(facts, "image")),
+            static_cast<std::uint32_t>(number(facts, "least"))};
+}
+
+std::string encode(const Update& update, const SecretKey& key) {
+    return header_of(update, &key) + update.kernel;
 }
 
 std::expected<Update, std::string> decode(std::string_view bytes, const PublicKey& key) {
@@ -91,11 +105,7 @@ std::expected<Update, std::string> decode(std::string_view bytes, const PublicKe
     if (crypto_sign_final_verify(&state, signature.data(), key.data()) != 0)
         return std::unexpected(
             "its signature does not fit this box's key: it is somebody else's, or damaged");
-    const Facts facts = lines_of(bytes);
-    return Update{{facts.one("machine"), facts.one("board"),
-                   static_cast<std::uint32_t>(number(facts, "image")),
-                   static_cast<std::uint32_t>(number(facts, "least"))},
-                  std::string{kernel}};
+    return Update{manifest_of(bytes), std::string{kernel}, std::string{bytes.substr(0, update_header_bytes)}};
 }
 
 std::string refusal_of(const Manifest& offered, const Manifest& own) {
@@ -109,6 +119,35 @@ std::string refusal_of(const Manifest& offered, const Manifest& own) {
         return "it wants version " + std::to_string(offered.least) + " before it, and this box has " +
                std::to_string(own.version);
     return {};
+}
+
+namespace {
+
+std::string text_of(const Order& order) {
+    return "tappet-order 1\n" + order.verb + "\n" + order.machine + "\n" + order.board + "\n" + order.nonce +
+           "\n";
+}
+
+} // namespace
+
+std::string sign(const Order& order, const SecretKey& key) {
+    const std::string text = text_of(order);
+    std::array<unsigned char, crypto_sign_BYTES> signature{};
+    crypto_sign_detached(signature.data(), nullptr, bytes_of(text), text.size(), key.data());
+    std::array<char, 2 * crypto_sign_BYTES + 1> digits{};
+    sodium_bin2hex(digits.data(), digits.size(), signature.data(), signature.size());
+    return digits.data();
+}
+
+bool is_signed(const Order& order, std::string_view signature, const PublicKey& key) {
+    std::array<unsigned char, crypto_sign_BYTES> bytes{};
+    std::size_t length = 0;
+    const std::string text = text_of(order);
+    return !order.nonce.empty() &&
+           sodium_hex2bin(bytes.data(), bytes.size(), signature.data(), signature.size(), nullptr, &length,
+                          nullptr) == 0 &&
+           length == bytes.size() && signature.size() == 2 * bytes.size() &&
+           crypto_sign_verify_detached(bytes.data(), bytes_of(text), text.size(), key.data()) == 0;
 }
 
 } // namespace tappet::box

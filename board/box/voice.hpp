@@ -2,6 +2,8 @@
 // What init and firmware say, on every console of the board.
 #pragma once
 
+#include "board/init/system.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,14 +16,25 @@ public:
     void open(const std::string& console);
     /// One line with the time since the power came.
     void say(std::string_view sentence) const;
+    /// What is said, and was said before, is kept in that file too: who comes later reads why. The error: a
+    /// sentence.
+    [[nodiscard]] init::Done keep_in(const std::string& file);
+    /// The file's disk is about to go.
+    void let_go();
     /// As it comes. A console that takes nothing more (Ctrl-S, a slow line) loses it: nobody waits for it.
     void pass_on(std::string_view text) const;
 
 private:
+    void keep(std::string_view line) const;
+
     std::vector<int> consoles_;
+    int file_ = -1;
+    mutable std::string said_before_{}; ///< while there is no file
 };
 
 /// Since the kernel began.
 [[nodiscard]] double uptime_s();
+/// "1.250 s"
+[[nodiscard]] std::string text_of_seconds(double seconds);
 
 } // namespace tappet::box

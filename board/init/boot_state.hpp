@@ -2,6 +2,7 @@
 // What the box's loader, EFI Boot Guard, reads of each slot: the file BGENV.DAT of 132,104 bytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <expected>
 #include <string>
@@ -12,6 +13,11 @@ namespace tappet::init {
 /// The loader boots the highest revision that has not failed. It makes `installed` `testing` before it boots
 /// it, and a slot that it finds in `testing` at the next boot has failed: it had one trial.
 enum class SlotState : std::uint8_t { good = 0, installed = 1, testing = 2, failed = 3 };
+
+constexpr std::string_view name_of(SlotState state) noexcept {
+    constexpr std::string_view names[] = {"good", "installed for a trial", "on trial", "failed"};
+    return names[static_cast<std::size_t>(state) % 4];
+}
 
 struct BootState {
     std::string kernel{}; ///< "C:SLOTA:tappet.efi": the label of its partition, and its file

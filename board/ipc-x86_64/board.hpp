@@ -43,8 +43,10 @@ inline constexpr Board ipc_x86_64{
                   // The port to the utility unit; the power button.
                   "igb", "igc", "e1000e", "r8169", "realtek", "button", "evdev"),
               .consoles = consoles("tty0", "ttyS0,115200"),
-              .networks = networks(ethernet("eth0", "192.168.7.1/24")),
-              .interrupt_priority = 85},
+              // The utility unit's, and the service person's.
+              .networks = networks(ethernet("eth0", "192.168.7.1/24"), ethernet("eth1", "192.168.8.1/24")),
+              .interrupt_priority = 85,
+              .service_port = 4848},
     .properties_directory = "/var/lib/tappet",
     // Root, and nobody else, until the box's image has groups for its people: name them here.
     .browsing = {.directory = "/run/tappet", .mode = 0660},

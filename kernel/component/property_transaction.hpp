@@ -51,6 +51,11 @@ public:
         used_ += needed;
         return place;
     }
+    /// The change that was asked for last is none after all.
+    void withdraw_last() noexcept {
+        --count_;
+        used_ -= bytes_for(type_->facets[values_[count_].facet]);
+    }
     [[nodiscard]] bool changes(std::size_t facet_index) const noexcept {
         for (const ProposedValue& each : values())
             if (each.facet == facet_index) return true;

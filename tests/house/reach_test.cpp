@@ -36,7 +36,8 @@ std::vector<std::regex> sources_of(const File& cmake) {
 /// includes its context.
 bool has_no_target(const File& file) {
     return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/gpio_sim") ||
-           file.is_under("toolchain/libmodbus") || file.path == "tests/toolchain/guide/context.hpp";
+           file.is_under("toolchain/libmodbus") || file.is_under("toolchain/aarch64") ||
+           file.path == "tests/toolchain/guide/context.hpp";
 }
 
 Findings dead(const Tree& files) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -111,12 +112,15 @@ void add_disassembly(Program& into, std::string_view text) {
     std::vector<Open> open;
     std::set<std::string> known;
     std::string section;
+    bool is_aarch64 = false;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
         text = text.substr(std::min(end + 1, text.size()));
         static constexpr std::string_view heading = "Disassembly of section ";
-        if (line.starts_with(heading)) {
+        if (line.contains("file format ")) {
+            is_aarch64 = line.ends_with("aarch64");
+        } else if (line.starts_with(heading)) {
             section = line.substr(heading.size());
         } else if (line.ends_with(">:")) {
             const std::size_t name = line.find('<');
@@ -131,10 +135,15 @@ void add_disassembly(Program& into, std::string_view text) {
             if (!hexadecimal(trimmed(line.substr(0, colon)), address)) continue;
             auto& code = open.back().function.code;
             const std::string_view rest = trimmed(line.substr(colon + 1));
-            if (!rest.starts_with("R_X86_64_"))
+            if (rest.starts_with("R_AARCH64_") || rest.starts_with("R_X86_64_")) {
+                if (!code.empty() && (code.back().is_call() || code.back().mnemonic[0] == 'j'))
+                    relocate(code.back(),
+                             trimmed(rest.substr(std::min(rest.find_first_of(" \t"), rest.size()))));
+            } else if (is_aarch64) {
+                std::ranges::move(of_aarch64(address, rest), std::back_inserter(code));
+            } else {
                 code.push_back(instruction(address, rest));
-            else if (!code.empty() && (code.back().is_call() || code.back().mnemonic[0] == 'j'))
-                relocate(code.back(), trimmed(rest.substr(std::min(rest.find_first_of(" \t"), rest.size()))));
+            }
         }
     }
     resolve(open);
@@ -144,7 +153,7 @@ void add_disassembly(Program& into, std::string_view text) {
 Program disassemble(const std::vector<std::string>& objects) {
     Program program;
     for (const std::string& object : objects) {
-        const std::string command = "objdump -d -r --no-show-raw-insn -M intel '" + object + "'";
+        const std::string command = TAPPET_OBJDUMP " -d -r --no-show-raw-insn '" + object + "'";
         std::FILE* const pipe =
             popen(command.c_str(), "r"); // NOLINT: the command is made of the build's own names
         if (pipe == nullptr) return {};

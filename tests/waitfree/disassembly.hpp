@@ -1,5 +1,5 @@
-// The object code of functions as `objdump -d -r -M intel` prints it: instructions, where each may go next,
-// and what is called.
+// The object code of functions as objdump prints it: instructions, where each may go next, and what is
+// called. In the words of x86-64: of aarch64 it is said in those.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,8 @@ struct Instruction {
     /// Within the function: index of the jump's target. none: no jump, or one that leaves.
     std::size_t target = none;
 
+    bool keeps_flags = false; ///< whatever its name says
+
     [[nodiscard]] bool is(std::string_view name) const { return mnemonic == name; }
     [[nodiscard]] bool is_call() const { return mnemonic == "call"; }
     [[nodiscard]] bool is_jump() const { return mnemonic == "jmp"; }
@@ -45,6 +47,9 @@ struct Function {
 };
 
 using Program = std::map<std::string, Function>;
+
+/// One of aarch64, as `objdump -M no-aliases` has it.
+std::vector<Instruction> of_aarch64(std::uint64_t address, std::string_view text);
 
 /// From what objdump printed for one object; what is met in several objects is taken once. Of several
 /// functions of one name in one object, each but the first has its address after an @.

@@ -274,7 +274,8 @@ bool jumps_by_table(const Function& function, std::size_t at) {
     const Instruction& jump = function.code[at];
     if (!jump.is_jump() || jump.target != none || !jump.symbol.empty() || jump.operands.empty()) return false;
     if (jump.mnemonic != "jmp" || jump.operands[0].contains('*')) return true;
-    return at > 0 && function.code[at - 1].is("add") && function.code[at - 1].operands[0] == jump.operands[0];
+    if (at == 0 || !(function.code[at - 1].is("add") || function.code[at - 1].is("lea"))) return false;
+    return function.code[at - 1].operands[0] == jump.operands[0];
 }
 
 class Walk {

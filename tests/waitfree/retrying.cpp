@@ -31,7 +31,15 @@ void retry_push(std::atomic<Node*>& head, Node* node) noexcept {
     }
 }
 
-/// No loop is written here: the compiler makes it, because the result is used and an or has none.
+#if defined(__aarch64__)
+/// No loop is written here: before the atomic instructions of version 8.1 the compiler makes it.
+[[gnu::target("no-lse")]] std::uint64_t retry_add_without_lse(std::uint64_t& word) noexcept {
+    return __atomic_fetch_add(&word, 1, __ATOMIC_ACQ_REL);
+}
+#endif
+
+/// No loop is written here: the compiler makes it, because the result is used and an or of x86-64 has none.
+/// Of aarch64 it has: there this retries nothing.
 bool retry_set_bit(std::atomic<std::uint64_t>& word, std::uint64_t bits) noexcept {
     return (word.fetch_or(bits, std::memory_order_acq_rel) & bits) != bits;
 }

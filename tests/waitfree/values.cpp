@@ -19,7 +19,7 @@ constexpr std::array word{"ax",  "cx",  "dx",   "bx",   "sp",   "bp",   "si",   
 constexpr std::array low{"al",  "cl",  "dl",   "bl",   "spl",  "bpl",  "sil",  "dil",
                          "r8b", "r9b", "r10b", "r11b", "r12b", "r13b", "r14b", "r15b"};
 constexpr std::array high{"ah", "ch", "dh", "bh"};
-constexpr std::int64_t rax = 0, rcx = 1, rdx = 2, rbx = 3, rsp = 4, rbp = 5, rsi = 6, rdi = 7;
+constexpr std::int64_t rax = 0, rcx = 1, rdx = 2, rbx = 3, rsp = 4, rbp = 5, rsi = 6, rdi = 7, x0 = 32;
 constexpr std::int64_t word_bytes = 8;
 
 Place number(std::int64_t index) { return {Place::Kind::number, index}; }
@@ -39,7 +39,13 @@ std::optional<Register> as_register(std::string_view name) {
     if (const auto found = in(half, 4)) return found;
     if (const auto found = in(word, 2)) return found;
     if (const auto found = in(low, 1)) return found;
-    return in(high, 1);
+    if (const auto found = in(high, 1)) return found;
+    // Of aarch64, behind those; its stack pointer goes by the other's name.
+    std::int64_t index = 0;
+    if (name.size() < 2 || (name[0] != 'x' && name[0] != 'w')) return std::nullopt;
+    const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), index);
+    if (error != std::errc{} || end != name.data() + name.size() || index > 30) return std::nullopt;
+    return Register{x0 + index, name[0] == 'x' ? 8 : 4};
 }
 
 std::optional<std::int64_t> as_number(std::string_view text) {
@@ -134,7 +140,9 @@ bool begins_with_any(std::string_view text, std::initializer_list<std::string_vi
 } // namespace
 
 std::string to_string(const Place& place) {
-    if (place.kind == Place::Kind::number) return wide[static_cast<std::size_t>(place.at)];
+    if (place.kind == Place::Kind::number)
+        return place.at >= x0 ? "x" + std::to_string(place.at - x0)
+                              : wide[static_cast<std::size_t>(place.at)];
     return "frame[" + std::to_string(place.at) + "]";
 }
 
@@ -171,6 +179,7 @@ Value value_of(const State& state, const std::string& operand) {
 
 bool writes_flags(const Instruction& one) {
     if (one.is_call()) return true;
+    if (one.keeps_flags) return false;
     return !begins_with_any(one.mnemonic,
                             {"mov", "lea", "nop", "push", "pop", "cmov", "set", "j", "xchg", "prefetch",
                              "not", "bswap", "cdq", "cqo", "cvt", "pxor", "punpck", "pshuf"});
@@ -181,7 +190,8 @@ void execute(const Instruction& one, State& state) {
     const auto operand = [&](std::size_t i) -> const std::string& { return one.operands[i]; };
     const std::size_t count = one.operands.size();
     if (one.is_call()) {
-        forget(state, {rax, rcx, rdx, rsi, rdi, 8, 9, 10, 11});
+        forget(state, {rax, rcx, rdx, rsi, rdi, 8, 9, 10, 11, x0 + 30});
+        for (std::int64_t i = 0; i < 19; ++i) forget(state, {x0 + i});
     } else if (begins_with_any(name,
                                {"cmp", "test", "j", "nop", "ret", "prefetch", "ud2", "endbr", "xchg"}) &&
                name != "cmpxchg" && name != "xchg") {

@@ -86,10 +86,19 @@ TEST_P(Retry, is_refused) {
     for (const std::string& fault : verdict.faults) std::cout << fault << "\n";
 }
 
+#if defined(__aarch64__)
+constexpr const char* made_by_the_compiler = "retry_add_without_lse";
+TEST(Check, accepts_an_atomic_operation_that_is_one_instruction) {
+    EXPECT_TRUE(check(program(), "retry_set_bit", plain).faults.empty());
+}
+#else
+constexpr const char* made_by_the_compiler = "retry_set_bit";
+#endif
+
 INSTANTIATE_TEST_SUITE_P(Deliberate, Retry,
-                         testing::Values("retry_push", "retry_set_bit", "retry_wait_for_flag", "retry_read",
-                                         "retry_while_more_comes", "retry_with_a_counter_that_is_set_back",
-                                         "retry_by_recursion"),
+                         testing::Values("retry_push", made_by_the_compiler, "retry_wait_for_flag",
+                                         "retry_read", "retry_while_more_comes",
+                                         "retry_with_a_counter_that_is_set_back", "retry_by_recursion"),
                          [](const auto& one) { return one.param; });
 
 TEST(Check, finds_the_loop_of_a_sum_and_its_count) {
@@ -137,11 +146,53 @@ TEST(Check, takes_the_same_test_on_each_path_for_one) {
     EXPECT_EQ(verdict.loops.at(0).passes.value_or(0), 16u);
 }
 
+Verdict of_aarch64_code(std::string_view lines) {
+    Program hand;
+    std::string text =
+        "f.o:     file format elf64-littleaarch64\nDisassembly of section .text:\n0000000000000000 <f>:\n";
+    add_disassembly(hand, text.append(lines));
+    return check(hand, "f", plain);
+}
+
+TEST(Aarch64, counts_down_in_the_instruction_that_compares) {
+    const Verdict verdict = of_aarch64_code(" 0:\tmovz\tx8, #0x28\n 4:\tldr\tx9, [x0], #8\n 8:\tsubs\tx8, "
+                                            "x8, #0x1\n c:\tb.ne\t4 <f+0x4>  // b.any\n 10:\tret\n");
+    ASSERT_TRUE(verdict.faults.empty());
+    EXPECT_EQ(verdict.loops.at(0).passes.value_or(0), 40u);
+}
+
+TEST(Aarch64, follows_a_counter_that_is_kept_in_the_frame_over_a_call_and_a_pair) {
+    const Verdict verdict = of_aarch64_code(" 0:\tstp\tx29, x30, [sp, #-32]!\n 4:\torr\tx8, xzr, xzr\n "
+                                            "8:\tstp\tx0, x8, [sp, #16]\n c:\tldadd\tx9, x8, [x0]\n"
+                                            " 10:\tldp\tx0, x8, [sp, #16]\n 14:\tadd\tx8, x8, #0x10\n "
+                                            "18:\tsubs\txzr, x8, #0x140\n 1c:\tb.cc\t8 <f+0x8>\n"
+                                            " 20:\tldp\tx29, x30, [sp], #32\n 24:\tret\n");
+    ASSERT_TRUE(verdict.faults.empty());
+    EXPECT_EQ(verdict.loops.at(0).passes.value_or(0) / 2, 10u);
+}
+
 struct Shape {
     std::string name;
     std::string lines;
 };
 void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
+class Aarch64Uncounted : public testing::TestWithParam<Shape> {};
+TEST_P(Aarch64Uncounted, is_refused) { EXPECT_FALSE(of_aarch64_code(GetParam().lines).faults.empty()); }
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, Aarch64Uncounted,
+    testing::Values(
+        Shape{"exclusive_store",          " 0:\tldaxr\tx8, [x0]\n 4:\tadd\tx9, x8, #0x1\n 8:\tstlxr\tw10, x9, [x0]\n c:\tcbnz\tw10, 0 <f>\n 10:\tret\n"},
+        Shape{"compare_and_swap",         " 0:\tldr\tx8, [x0]\n 4:\torr\tx9, xzr, x8\n 8:\tcasal\tx9, x1, [x0]\n c:\tsubs\txzr, x9, x8\n 10:\tb.ne\t0 <f>\n 14:\tret\n"},
+        Shape{"bit_of_shared_memory",     " 0:\tldarb\tw8, [x0]\n 4:\ttbz\tw8, #0, 0 <f>\n 8:\tret\n"},
+        Shape{"counter_set_by_an_atomic", " 0:\torr\tx8, xzr, xzr\n 4:\tadd\tx8, x8, #0x1\n 8:\tswpal\tx9, x8, [x0]\n c:\tsubs\txzr, x8, #0x28\n 10:\tb.cc\t4 <f+0x4>\n 14:\tret\n"},
+        Shape{"flags_of_another",         " 0:\torr\tx8, xzr, xzr\n 4:\tadd\tx8, x8, #0x1\n 8:\tsubs\txzr, x8, #0x28\n c:\tccmp\tx9, #0x0, #0x4, cc\n 10:\tb.cc\t4 <f+0x4>\n 14:\tret\n"},
+        Shape{"counter_lost_in_a_call",   " 0:\torr\tx8, xzr, xzr\n 4:\tbl\t20 <f+0x20>\n 8:\tadd\tx8, x8, #0x1\n c:\tsubs\txzr, x8, #0x28\n 10:\tb.cc\t4 <f+0x4>\n 14:\tret\n"},
+        Shape{"base_that_is_written_back", " 0:\torr\tx8, xzr, xzr\n 4:\tldr\tx8, [x8, #8]!\n 8:\tsubs\txzr, x8, #0x28\n c:\tb.cc\t4 <f+0x4>\n 10:\tret\n"}),
+    [](const auto& one) { return one.param.name; });
+// clang-format on
 
 class Uncounted : public testing::TestWithParam<Shape> {};
 TEST_P(Uncounted, is_refused) { EXPECT_FALSE(of(GetParam().lines).faults.empty()); }

@@ -2,9 +2,49 @@
 // Lines of one word and its values.
 #include "toolchain/machine/board_text.hpp"
 
+#include "kernel/base/digest.hpp"
 #include "kernel/machine/check/board.hpp"
 
+#include <array>
+#include <bit>
+
 namespace tappet {
+
+namespace {
+
+void add(Digest& digest, std::string_view text) {
+    for (const char character : text) digest.add(std::uint64_t{static_cast<unsigned char>(character)});
+    digest.add(std::uint64_t{256}); // "ab", "c" is not "a", "bc"
+}
+
+/// Of all properties that lie in files: their names, types and ranges. Of two versions with the same one each
+/// reads what the other wrote.
+std::uint64_t layout_of(const MachineView& table) {
+    Digest digest;
+    for (const ComponentRow& row : table.components) {
+        if (!row.has_properties_file) continue;
+        add(digest, row.name);
+        add(digest, row.properties.name);
+        for (const Facet& facet : row.type->facets) {
+            if (facet.kind != FacetKind::property) continue;
+            add(digest, facet.name);
+            add(digest, facet.type->name);
+            add(digest, facet.unit);
+            digest.add(std::bit_cast<std::uint64_t>(facet.range.low));
+            digest.add(std::bit_cast<std::uint64_t>(facet.range.high));
+            for (const std::string_view each : facet.property->element->names) add(digest, each);
+        }
+    }
+    return digest.value();
+}
+
+std::array<char, 16> hexadecimal(std::uint64_t value) {
+    std::array<char, 16> digits{};
+    for (std::size_t i = digits.size(); i-- != 0; value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
+    return digits;
+}
+
+} // namespace
 
 void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void* to, std::string_view)) {
     const Board& board = *machine.board;
@@ -25,8 +65,12 @@ void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void*
     if (board.image.interrupt_priority != 0) say("interrupts ", board.image.interrupt_priority);
     if (board.watchdog != nullptr)
         say("watchdog ", board.watchdog, " ", static_cast<std::int64_t>(board.watchdog_within / 1s));
-    // What is kept must outlive the power: the data partition is mounted there.
-    if (board.properties_directory.starts_with("/var/")) say("data ", board.properties_directory);
+    const auto layout = hexadecimal(layout_of(machine.table));
+    say("layout ", std::string_view{layout.data(), layout.size()});
+    if (board.image.service_port != 0) say("service ", board.image.service_port);
+#ifndef __OPTIMIZE__
+    say("build debug");
+#endif
     say("restarts ", board.image.restarts.most, " ",
         static_cast<std::int64_t>(board.image.restarts.within / 1s));
 }

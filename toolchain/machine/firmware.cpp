@@ -9,6 +9,7 @@
 #include "kernel/services/configuration/property_files.hpp"
 #include "toolchain/machine/board_text.hpp"
 #include "toolchain/machine/guardian.hpp"
+#include "toolchain/machine/measure.hpp"
 #include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
 
@@ -35,10 +36,13 @@ constexpr Duration away_while_stopping = 10s;
 struct Options {
     const char* summary = nullptr;
     const char* properties = nullptr;
+    const char* take_over = nullptr;
     const char* browse = nullptr;
     const char* seconds = nullptr;
+    const char* measure = nullptr;
     const char* black_box = nullptr;
     Duration time = Duration::max();
+    Duration measured{};
     bool help = false;
     bool plan = false;
     bool board = false;
@@ -52,6 +56,8 @@ constexpr std::string_view usage =
     "  --properties DIR   reads the components' properties there and saves them at the end, instead of in "
     "the "
     "board's directory\n"
+    "  --take-over DIR    and takes over from there what another version of the machine saved later, as far "
+    "as it fits\n"
     "  --browse DIR       opens the browsers' socket there instead of in the board's directory\n"
     "  --black-box DIR    keeps there what is left of an ending that nobody asked for, instead of in the "
     "board's directory\n"
@@ -59,7 +65,20 @@ constexpr std::string_view usage =
     "  --no-guardian      for tests: what a crash leaves on the outputs stays there\n"
     "  --plan             what the compiler derived from the table: priorities, order, mailboxes, memory\n"
     "  --board            what the box must bring up for it, for its image\n"
+    "  --measure SECONDS  whether this box can hold what the table claims; the machine does not run\n"
     "  --help             this text\n";
+
+void read_seconds(std::string_view option, const char* given, Duration& into, Sentence& error) {
+    if (given == nullptr) return;
+    const std::string_view digits = given;
+    std::uint32_t seconds = 0;
+    const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+    if (fault != std::errc{} || end != digits.data() + digits.size() || seconds == 0)
+        error = Sentence{"option ", option, ": \"", digits, "\" is no time; write whole seconds, as in ",
+                         option,    " 60"};
+    else
+        into = std::chrono::seconds{seconds};
+}
 
 Options parse(int count, char** words, bool has_own) {
     Options options;
@@ -67,8 +86,10 @@ Options parse(int count, char** words, bool has_own) {
         const std::string_view word = words[i];
         const char** place = word == "--summary"      ? &options.summary
                              : word == "--properties" ? &options.properties
+                             : word == "--take-over"  ? &options.take_over
                              : word == "--browse"     ? &options.browse
                              : word == "--for"        ? &options.seconds
+                             : word == "--measure"    ? &options.measure
                              : word == "--black-box"  ? &options.black_box
                                                       : nullptr;
         if (word == "--help")
@@ -82,23 +103,17 @@ Options parse(int count, char** words, bool has_own) {
         else if (place == nullptr && !(has_own && options.own.push(words[i])))
             options.error = Sentence{
                 "option ", word,
-                " is unknown; there are --summary FILE, --properties DIRECTORY, --browse "
-                "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --no-guardian, --plan, --board and --help"};
+                " is unknown; there are --summary FILE, --properties DIRECTORY, --take-over DIRECTORY, "
+                "--browse "
+                "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --measure SECONDS, --no-guardian, --plan, "
+                "--board and --help"};
         else if (place != nullptr && i + 1 == count)
             options.error = Sentence{"option ", word, " needs a name after it"};
         else if (place != nullptr)
             *place = words[++i];
     }
-    if (options.seconds != nullptr) {
-        const std::string_view digits = options.seconds;
-        std::uint32_t seconds = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
-        if (error != std::errc{} || end != digits.data() + digits.size() || seconds == 0)
-            options.error =
-                Sentence{"option --for: \"", digits, "\" is no time; write whole seconds, as in --for 60"};
-        else
-            options.time = std::chrono::seconds{seconds};
-    }
+    read_seconds("--for", options.seconds, options.time, options.error);
+    read_seconds("--measure", options.measure, options.measured, options.error);
     return options;
 }
 
@@ -147,6 +162,9 @@ private:
         if (options_.browse != nullptr) instance.browse_in(options_.browse);
         if (const auto configured = instance.configure(devices_.provided()); !configured)
             return fail(Ending::wrong_set_up, configured.error());
+        if (options_.take_over != nullptr)
+            if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
+                return fail(Ending::wrong_set_up, fault);
         if (hooks_.configured != nullptr) hooks_.configured(instance);
         return Ending::well;
     }
@@ -199,7 +217,7 @@ private:
         });
         const Time begin = machine_clock.now();
         ReasonTeller reasons;
-        bool proven = false;
+        bool judged = false;
         for (int look = 1;; ++look) {
             const Duration left = options_.time - (machine_clock.now() - begin);
             if (left <= Duration::zero()) return true;
@@ -207,16 +225,25 @@ private:
             if (guard_.guardian_is_lost()) return false;
             if (!world.supervise(std::min<Duration>(left, 100ms))) return false;
             reasons.tell(instance, name_);
-            if (!proven && (proven = is_proven(instance, machine_clock.now() - begin)))
-                os::notify_starter("X_TAPPET_PROVEN=1");
+            if (!judged) judged = judge(instance, machine_clock.now() - begin);
             if (look % 10 == 0) print_timing(instance);
         }
     }
 
-    /// What its binding asks of a new version before it stays on the box.
+    /// A new version stays on the box once it has done what its binding asks, and goes when it is late. True
+    /// when there is no more to tell.
+    static bool judge(MachineInstance& instance, Duration running) {
+        for (const Engine& engine : instance.engines()) {
+            if (!engine.plan().real_time || engine.statistics().misses == 0) continue;
+            os::notify_starter(Sentence{"X_TAPPET_LATE=", engine.name()}.view());
+            return true;
+        }
+        if (!is_proven(instance, running)) return false;
+        os::notify_starter("X_TAPPET_PROVEN=1");
+        return true;
+    }
+
     static bool is_proven(MachineInstance& instance, Duration running) {
-        for (const Engine& engine : instance.engines())
-            if (engine.plan().real_time && engine.statistics().misses != 0) return false;
         const Proof& proof = instance.machine().binding->proof;
         if (proof.output.empty()) return running >= 60s;
         End end{};
@@ -333,12 +360,17 @@ int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int co
     if (options.plan) describe_plan(machine, nullptr, print_line);
     if (options.board) describe_board(machine, nullptr, print_line);
     if (options.plan || options.board) return 0;
+    if (options.measure != nullptr) return measure_box(machine, options.measured);
     if (hooks.take != nullptr)
         if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())
             return static_cast<int>(run.fail(Ending::wrong_set_up, refusal));
     static MachineInstance instance{machine, machine_clock};
     static PropertyFiles properties{options.properties != nullptr ? std::string_view{options.properties}
                                                                   : machine.board->properties_directory};
+    if (options.take_over != nullptr)
+        properties.take_over(options.take_over, [](const Sentence& fault) {
+            os::print(Sentence{"left out: ", fault, "\n"}.view());
+        });
     static RealWorld world{instance};
     return run.live(instance, world, properties, begun);
 }

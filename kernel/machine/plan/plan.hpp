@@ -16,6 +16,13 @@ namespace tappet {
 
 namespace detail {
 
+/// The C library starts no thread on less, whatever the row claims.
+#if defined(__aarch64__)
+inline constexpr std::size_t least_stack_bytes = 128 * 1024;
+#else
+inline constexpr std::size_t least_stack_bytes = 16 * 1024;
+#endif
+
 class Layout {
 public:
     constexpr std::size_t take(std::size_t bytes, std::size_t align) noexcept {
@@ -194,7 +201,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const Binding
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& plan = p.activities[a];
         const ActivityRow& row = m.activities[a];
-        plan.stack_bytes = (row.stack + page - 1) / page * page;
+        plan.stack_bytes = (std::max(row.stack, detail::least_stack_bytes) + page - 1) / page * page;
         plan.stack_at = layout.take(plan.stack_bytes, page);
         plan.priority = row.real_time ? board.highest_priority - static_cast<int>(r.rank[a]) : 0;
         plan.processor = checks::processor_of(board, binding, row.name);

@@ -70,6 +70,9 @@ struct BoardImage {
     int interrupt_priority =
         0; ///< SCHED_FIFO of the bound devices' interrupt threads; 0: as the kernel has them
     BoardRestarts restarts{};
+    /// TCP, on every network of the box: tells what runs, takes signed updates and orders, which wait for
+    /// consent at the machine. 0: none.
+    std::uint16_t service_port = 0;
 };
 
 struct Board {

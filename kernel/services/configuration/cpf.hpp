@@ -26,11 +26,16 @@ namespace tappet {
 
 inline constexpr std::size_t max_cpf_bytes = 64 * 1024;
 
+/// Told of a property that does not fit: the fault that it would be.
+using LeftOut = void (*)(const Sentence& fault);
+
 /// Proposes what the text says for the transaction's component. An empty sentence; or the first fault, with
 /// `file`, line, component and cure, and the transaction is worth nothing. What the transaction holds before
-/// is overruled. Takes heap: only before arming.
-[[nodiscard]] Sentence read_cpf(std::string_view text, std::string_view file,
-                                PropertyTransaction& into) noexcept;
+/// is overruled. With `left_out`, for a file that another version of the machine wrote: a property that this
+/// one does not know, or not with this type or value, is told there and stays as it was; only a file that is
+/// no properties file is a fault. Takes heap: only before arming.
+[[nodiscard]] Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransaction& into,
+                                LeftOut left_out = nullptr) noexcept;
 
 /// Writes every value of the transaction, in the order of the component's interface, with its description.
 /// The length, or 0 and `fault` says why. No heap. What it writes read_cpf reads to the same values.

@@ -64,8 +64,8 @@ struct Path {
 
 class Reader {
 public:
-    Reader(std::string_view text, std::string_view file, PropertyTransaction& into) noexcept
-        : text_{text}, file_{file}, into_{into}, facets_{into.type().facets} {}
+    Reader(std::string_view text, std::string_view file, PropertyTransaction& into, LeftOut left_out) noexcept
+        : text_{text}, file_{file}, into_{into}, facets_{into.type().facets}, left_out_{left_out} {}
 
     Sentence read() noexcept {
         if (const auto zero = text_.find('\0'); zero != text_.npos)
@@ -107,7 +107,10 @@ private:
                 described = true;
                 continue;
             }
-            if (Sentence fault = read_property(node, path); !fault.empty()) return fault;
+            if (Sentence fault = read_property(node, path); !fault.empty()) {
+                if (left_out_ == nullptr) return fault;
+                left_out_(fault);
+            }
         }
         return {};
     }
@@ -142,16 +145,29 @@ private:
                                                                          : "no property; remove it"}
                                 .view());
         if (Sentence fault = note(node, index); !fault.empty()) return fault;
+        return read_value(node, index, is_list);
+    }
+
+    /// A value that is wrong leaves what was proposed before.
+    Sentence read_value(const pugi::xml_node& node, std::size_t index, bool is_list) noexcept {
+        const Facet& facet = facets_[index];
+        const bool was_changed = into_.changes(index);
         std::byte* place = into_.change(index);
         if (place == nullptr)
             return at(node, "has more properties than a transaction holds; divide the component");
-        if (Sentence fault =
-                is_list ? read_list(node, facet, place) : read_simple(node, facet, *facet.type, place);
-            !fault.empty())
-            return fault;
-        if (const Sentence fault = PropertyTransaction::check_range(facet, place); !fault.empty())
-            return at(node, Sentence{"gives ", fault}.view());
-        return {};
+        const std::size_t bytes = PropertyTransaction::bytes_for(facet);
+        std::copy_n(place, bytes, before_.begin());
+        Sentence fault =
+            is_list ? read_list(node, facet, place) : read_simple(node, facet, *facet.type, place);
+        if (fault.empty())
+            if (const Sentence range = PropertyTransaction::check_range(facet, place); !range.empty())
+                fault = at(node, Sentence{"gives ", range}.view());
+        if (fault.empty()) return {};
+        if (was_changed)
+            std::copy_n(before_.begin(), bytes, place);
+        else
+            into_.withdraw_last();
+        return fault;
     }
 
     Sentence read_list(const pugi::xml_node& node, const Facet& facet, std::byte* place) noexcept {
@@ -319,16 +335,19 @@ private:
     Bounded<Seen, 2 * PropertyTransaction::max_values> seen_{};
     ElementText text_of_value_{};
     ElementText description_{};
+    LeftOut left_out_;
+    std::array<std::byte, PropertyTransaction::max_bytes> before_{};
 };
 
 } // namespace
 
-Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransaction& into) noexcept {
+Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransaction& into,
+                  LeftOut left_out) noexcept {
     if (text.size() > max_cpf_bytes)
         return Sentence{file,          ": component \"",
                         into.name(),   "\": the file has more than ",
                         max_cpf_bytes, " bytes; it is no properties file, or shorten it"};
-    return Reader{text, file, into}.read();
+    return Reader{text, file, into, left_out}.read();
 }
 
 } // namespace tappet

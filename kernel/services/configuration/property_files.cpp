@@ -28,10 +28,10 @@ PropertyStore PropertyFiles::store() noexcept {
             }};
 }
 
-bool PropertyFiles::name_path(const ComponentRow& row) noexcept {
+bool PropertyFiles::name_path(std::string_view directory, const ComponentRow& row) noexcept {
     const std::string_view name = row.properties.name;
-    if (directory_.size() + 1 + name.size() > longest_path) return false;
-    auto end = std::copy(directory_.begin(), directory_.end(), path_.begin());
+    if (directory.size() + 1 + name.size() > longest_path) return false;
+    auto end = std::copy(directory.begin(), directory.end(), path_.begin());
     *end++ = '/';
     end = std::copy(name.begin(), name.end(), end);
     *end = '\0';
@@ -40,36 +40,51 @@ bool PropertyFiles::name_path(const ComponentRow& row) noexcept {
 
 Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into) noexcept {
     if (!keeps()) return row.properties.may_be_missing ? Sentence{} : no_directory(row);
-    if (!name_path(row))
-        return Sentence{"component \"", row.name, "\": the path of its properties file \"",
-                        row.properties.name, "\" is too long; name a shorter properties directory"};
+    auto found = load_from(directory_, row, nullptr, into);
+    if (!found) return found.error();
+    if (!older_.empty()) {
+        const auto there = load_from(older_, row, left_out_, into);
+        if (!there) return there.error();
+        *found |= *there;
+    }
+    if (*found || row.properties.may_be_missing || !name_path(directory_, row)) return {};
+    return Sentence{
+        std::string_view{path_.data()},
+        ": component \"",
+        row.name,
+        "\": its properties file is missing; put it there, name its directory by --properties, or "
+        "say properties_file(\"",
+        row.properties.name,
+        "\", optional) in its row"};
+}
+
+std::expected<bool, Sentence> PropertyFiles::load_from(std::string_view directory, const ComponentRow& row,
+                                                       LeftOut left_out, PropertyTransaction& into) noexcept {
+    if (!name_path(directory, row))
+        return std::unexpected(Sentence{"component \"", row.name, "\": the path of its properties file \"",
+                                        row.properties.name,
+                                        "\" is too long; name a shorter properties directory"});
     const std::string_view path{path_.data()};
     const os::FileText read = os::read_file(path_.data(), text_);
     switch (read.result) {
-    case os::FileRead::good: return read_cpf({text_.data(), read.length}, path, into);
-    case os::FileRead::missing:
-        if (row.properties.may_be_missing) return {};
-        return Sentence{
-            path,
-            ": component \"",
-            row.name,
-            "\": its properties file is missing; put it there, name its directory by --properties, or "
-            "say properties_file(\"",
-            row.properties.name,
-            "\", optional) in its row"};
+    case os::FileRead::good:
+        if (const Sentence fault = read_cpf({text_.data(), read.length}, path, into, left_out);
+            !fault.empty())
+            return std::unexpected(fault);
+        return true;
+    case os::FileRead::missing: return false;
     case os::FileRead::too_large:
-        return Sentence{path,          ": component \"",
-                        row.name,      "\": the file has more than ",
-                        max_cpf_bytes, " bytes; it is no properties file, or shorten it"};
+        return std::unexpected(Sentence{path, ": component \"", row.name, "\": the file has more than ",
+                                        max_cpf_bytes, " bytes; it is no properties file, or shorten it"});
     case os::FileRead::unreadable: break;
     }
-    return Sentence{path, ": component \"", row.name,
-                    "\": its properties file cannot be read; look at its permissions"};
+    return std::unexpected(Sentence{path, ": component \"", row.name,
+                                    "\": its properties file cannot be read; look at its permissions"});
 }
 
 Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction& from) noexcept {
     if (!keeps()) return no_directory(row);
-    if (!name_path(row))
+    if (!name_path(directory_, row))
         return Sentence{"component \"", row.name, "\": the path of its properties file \"",
                         row.properties.name, "\" is too long; name a shorter properties directory"};
     // A component may give itself what nobody checks; the next start would refuse to arm with it.

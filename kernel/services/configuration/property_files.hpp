@@ -6,6 +6,7 @@
 #include "kernel/services/configuration/cpf.hpp"
 
 #include <array>
+#include <expected>
 
 namespace tappet {
 
@@ -20,6 +21,13 @@ public:
 
     /// Another directory; it outlives this too.
     void keep_in(std::string_view directory) noexcept { directory_ = directory; }
+    /// What lies in `older`, which outlives it, was written later, by a machine whose properties may be
+    /// others: it overrules what lies in the directory, as far as it fits; `left_out` is told the rest. Saved
+    /// is in the directory alone, so that nothing of `older` is lost.
+    void take_over(std::string_view older, LeftOut left_out) noexcept {
+        older_ = older;
+        left_out_ = left_out;
+    }
     /// For MachineInstance::read_properties_from.
     [[nodiscard]] PropertyStore store() noexcept;
 
@@ -29,9 +37,15 @@ public:
     [[nodiscard]] bool keeps() const noexcept { return !directory_.empty(); }
 
 private:
-    [[nodiscard]] bool name_path(const ComponentRow& row) noexcept;
+    [[nodiscard]] bool name_path(std::string_view directory, const ComponentRow& row) noexcept;
+    /// Whether there is a file.
+    [[nodiscard]] std::expected<bool, Sentence> load_from(std::string_view directory, const ComponentRow& row,
+                                                          LeftOut left_out,
+                                                          PropertyTransaction& into) noexcept;
 
     std::string_view directory_;
+    std::string_view older_{};
+    LeftOut left_out_ = nullptr;
     std::array<char, longest_path + 1> path_{};
     std::array<char, max_cpf_bytes> text_{};
 };

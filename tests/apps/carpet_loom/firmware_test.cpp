@@ -53,7 +53,11 @@ TEST_P(FirmwareFile, is_a_64_bit_executable) {
     ASSERT_GT(firmware_.bytes.size(), sizeof(Elf64_Ehdr)) << GetParam();
     const Elf64_Ehdr header = firmware_.header();
     EXPECT_EQ(0, std::memcmp(header.e_ident, ELFMAG, SELFMAG));
+#if defined(__aarch64__)
+    EXPECT_EQ(EM_AARCH64, header.e_machine);
+#else
     EXPECT_EQ(EM_X86_64, header.e_machine);
+#endif
 }
 
 TEST_P(FirmwareFile, asks_for_no_interpreter_and_no_library) {

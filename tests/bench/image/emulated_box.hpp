@@ -12,6 +12,7 @@
 
 #include <csignal>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -22,13 +23,16 @@ namespace tappet::bench {
 
 class EmulatedBox {
 public:
-    /// With a copy of the disk, which is gone with this.
-    explicit EmulatedBox(const std::filesystem::path& disk) {
+    /// With a copy of the disk, which is gone with this. `keys`: what an engineer has given to its setup,
+    /// after which it boots nothing but what they signed.
+    explicit EmulatedBox(const std::filesystem::path& disk, const std::filesystem::path& keys = {}) {
         std::string pattern = (std::filesystem::temp_directory_path() / "tappet-box-XXXXXX").string();
         if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder " + pattern);
         folder_ = pattern;
         copy(disk, this->disk());
         copy("/usr/share/OVMF/OVMF_VARS_4M.fd", folder_ / "vars");
+        if (!keys.empty()) enrol(keys);
+        port_ = free_port();
     }
     ~EmulatedBox() {
         switch_off();
@@ -40,22 +44,40 @@ public:
     [[nodiscard]] std::filesystem::path disk() const { return folder_ / "disk"; }
     [[nodiscard]] std::filesystem::path operator/(const char* name) const { return folder_ / name; }
 
+    /// At which its service is reached.
+    [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+    /// From here on all that is written to its disk is also in the log, and every flush.
+    std::filesystem::path record() {
+        std::filesystem::remove(folder_ / "log");
+        const int log = ::open((folder_ / "log").c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
+        if (log < 0 || ::ftruncate(log, 1L << 32) != 0) throw std::runtime_error("no room for a log");
+        ::close(log);
+        is_recorded_ = true;
+        return folder_ / "log";
+    }
+
     /// From power on. `more`: further words for the emulator.
     void switch_on(const std::vector<std::string>& more = {}) {
-        const std::string code = "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd";
         std::vector<std::string> words{
-            "qemu-system-x86_64", "-nodefaults", "-no-user-config", "-display", "none", "-machine",
-            "q35,accel=tcg", "-m", "256",
             // One processor whose time follows its instructions, so that a busy host misses no deadline for
             // it. A wait for the host's disk leaps to the guest's next timer, at worst the watchdog's: hence
             // no flushing, and no bounds.
-            "-icount", "shift=1,sleep=off", "-drive", code, "-drive",
-            "if=pflash,format=raw,file=" + (folder_ / "vars").string(), "-drive",
-            "if=none,id=disk,format=raw,cache=unsafe,file=" + disk().string(), "-device",
-            "nvme,drive=disk,serial=1", "-device", "i6300esb", "-action", "watchdog=reset", "-serial",
-            "stdio", "-monitor", "unix:" + (folder_ / "monitor").string() + ",server=on,wait=off"};
+            "-icount", "shift=1,sleep=off", "-drive",
+            "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd", "-drive",
+            "if=pflash,format=raw,file=" + (folder_ / "vars").string(), "-device", "nvme,drive=disk,serial=1",
+            "-netdev", "user,id=net,hostfwd=tcp:127.0.0.1:" + std::to_string(port_) + "-:4848",
+            // Without the card's own program, which would boot from the network when nothing else may.
+            "-device", "e1000e,netdev=net,romfile="};
         words.insert(words.end(), more.begin(), more.end());
         start(words);
+    }
+
+    /// Another kernel and its root, without the loader, and in the host's time; the disk is at a SATA port,
+    /// whose driver flushes where the emulated NVMe disk would forget that a write was to be on the disk when
+    /// it ended.
+    void switch_on_with(const std::filesystem::path& kernel, const std::filesystem::path& root) {
+        start({"-device", "ide-hd,drive=disk,bus=ide.0", "-kernel", kernel.string(), "-initrd", root.string(),
+               "-append", "console=ttyS0 quiet panic=-1 rdinit=/init", "-no-reboot"});
     }
 
     /// What it has said, once that holds `wanted`, or all when it switched itself off. Empty words never
@@ -69,6 +91,8 @@ public:
         }
         return said_;
     }
+    /// What comes now counts, for await().
+    void forget() { said_.clear(); }
     const std::string& await_end() {
         await(std::string(1, '\0') + "never");
         ::waitpid(pid_, nullptr, 0);
@@ -81,13 +105,14 @@ public:
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
         (folder_ / "monitor").string().copy(address.sun_path, sizeof address.sun_path - 1);
-        const std::string command = "system_powerdown\n";
+        // What is asked after it is answered once it is done; who hangs up before takes the order along.
+        const std::string command = "system_powerdown\ninfo status\n";
         if (::connect(monitor, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
             ::write(monitor, command.data(), command.size()) != static_cast<ssize_t>(command.size()))
             throw std::runtime_error("the emulator's monitor does not answer");
-        char answer = 0;
-        while (answer != '\n' && ::read(monitor, &answer, 1) == 1) {
-        }
+        std::string answer;
+        for (char character = 0; !answer.contains("VM status") && ::read(monitor, &character, 1) == 1;)
+            answer += character;
         ::close(monitor);
     }
 
@@ -109,7 +134,59 @@ private:
         if (std::system(line.c_str()) != 0) throw std::runtime_error(line); // NOLINT: a test's own words
     }
 
-    void start(const std::vector<std::string>& words) {
+    void enrol(const std::filesystem::path& keys) const {
+        const std::string owner = " 74617070-6574-4d00-8000-000000000000 ",
+                          vars = (folder_ / "vars").string();
+        const auto certificate = [&](const char* name) { return owner + (keys / name).string() + ".crt"; };
+        const std::string line = "virt-fw-vars --inplace " + vars + " --set-pk" + certificate("PK") +
+                                 " --add-kek" + certificate("KEK") + " --add-db" + certificate("db") +
+                                 " --sb >/dev/null 2>&1";
+        if (std::system(line.c_str()) != 0) throw std::runtime_error(line); // NOLINT: a test's own words
+    }
+
+    /// Nobody's now; who takes it before the emulator does makes the test fail, not pass.
+    static unsigned free_port() {
+        const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t length = sizeof address;
+        if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), length) != 0 ||
+            ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length) != 0)
+            throw std::runtime_error("no port is left");
+        ::close(socket);
+        return ntohs(address.sin_port);
+    }
+
+    void start(const std::vector<std::string>& more) {
+        const std::string monitor = "unix:" + (folder_ / "monitor").string() + ",server=on,wait=off";
+        std::vector<std::string> words{"qemu-system-x86_64",
+                                       "-nodefaults",
+                                       "-no-user-config",
+                                       "-display",
+                                       "none",
+                                       "-machine",
+                                       "q35,accel=tcg",
+                                       "-m",
+                                       "256",
+                                       "-device",
+                                       "i6300esb",
+                                       "-action",
+                                       "watchdog=reset",
+                                       "-serial",
+                                       "stdio",
+                                       "-monitor",
+                                       monitor};
+        const std::string unflushed = ",cache.no-flush=on,driver=file,filename=";
+        const auto add = [&](const std::string& node) { words.insert(words.end(), {"-blockdev", node}); };
+        add("node-name=file" + unflushed + disk().string());
+        add(std::string{"driver=raw,file=file,cache.no-flush=on,node-name="} +
+            (is_recorded_ ? "plain" : "disk"));
+        if (is_recorded_) {
+            add("node-name=log" + unflushed + (folder_ / "log").string());
+            add("driver=blklogwrites,node-name=disk,file=plain,log=log");
+        }
+        words.insert(words.end(), more.begin(), more.end());
         int ends[2];
         if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe left");
         std::vector<char*> arguments;
@@ -132,8 +209,10 @@ private:
 
     std::filesystem::path folder_{};
     std::string said_{};
+    bool is_recorded_ = false;
     pid_t pid_ = -1;
     int output_ = -1;
+    unsigned port_ = 0;
 };
 
 } // namespace tappet::bench

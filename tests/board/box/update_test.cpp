@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 struct Updates : testing::Test {
     KeyPair keys = new_keys();
-    Update update{{"carpet-loom", "ipc-x86_64", 7, 3}, "a kernel, and more of it"};
+    Update update{{"carpet-loom", "ipc-x86_64", "a5", 7, 3}, "a kernel, and more of it", ""};
     std::string bytes = encode(update, keys.secret);
 };
 
@@ -22,7 +22,9 @@ TEST_F(Updates, are_read_as_they_were_made) {
     EXPECT_EQ(read->manifest.board, "ipc-x86_64");
     EXPECT_EQ(read->manifest.version, 7u);
     EXPECT_EQ(read->manifest.least, 3u);
+    EXPECT_EQ(read->manifest.layout, "a5");
     EXPECT_EQ(read->kernel, update.kernel);
+    EXPECT_EQ(read->header + read->kernel, bytes);
     EXPECT_EQ(claimed_bytes(bytes), bytes.size());
 }
 
@@ -43,16 +45,38 @@ TEST_F(Updates, of_somebody_else_or_cut_short_are_refused) {
 }
 
 TEST_F(Updates, are_taken_by_the_box_they_are_for_when_they_are_newer) {
-    const Manifest own{"carpet-loom", "ipc-x86_64", 6, 0};
+    const Manifest own{"carpet-loom", "ipc-x86_64", "a5", 6, 0};
     EXPECT_EQ(refusal_of(update.manifest, own), "");
-    EXPECT_THAT(refusal_of({"carpet-loom", "bench", 7, 3}, own),
+    EXPECT_THAT(refusal_of({"carpet-loom", "bench", "a5", 7, 3}, own),
                 HasSubstr("it is for carpet-loom on board bench"));
-    EXPECT_THAT(refusal_of({"press", "ipc-x86_64", 7, 3}, own), HasSubstr("it is for press"));
-    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", 6, 3}, own),
+    EXPECT_THAT(refusal_of({"press", "ipc-x86_64", "a5", 7, 3}, own), HasSubstr("it is for press"));
+    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", "a5", 6, 3}, own),
                 HasSubstr("it is version 6, and this box has 6"));
-    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", 5, 3}, own), HasSubstr("it is version 5"));
-    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", 9, 7}, own),
+    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", "a5", 5, 3}, own), HasSubstr("it is version 5"));
+    EXPECT_THAT(refusal_of({"carpet-loom", "ipc-x86_64", "a5", 9, 7}, own),
                 HasSubstr("it wants version 7 before it"));
+}
+
+TEST_F(Updates, without_a_signature_tell_what_they_are_and_are_refused) {
+    const std::string header = header_of(update, nullptr);
+    EXPECT_EQ(manifest_of(header).version, 7u);
+    EXPECT_FALSE(decode(header + update.kernel, keys.open));
+    EXPECT_EQ(manifest_of("anything").version, 0u);
+}
+
+TEST(Orders, hold_for_one_box_while_it_is_on) {
+    const KeyPair keys = new_keys();
+    const Order order{"roll-back", "carpet-loom", "ipc-x86_64", "0123"};
+    const std::string signature = sign(order, keys.secret);
+    EXPECT_TRUE(is_signed(order, signature, keys.open));
+    EXPECT_FALSE(is_signed(order, signature, new_keys().open));
+    EXPECT_FALSE(is_signed(order, signature.substr(2), keys.open));
+    EXPECT_FALSE(is_signed(order, "", keys.open));
+    for (const Order& other : {Order{"factory-reset", "carpet-loom", "ipc-x86_64", "0123"},
+                               Order{"roll-back", "press", "ipc-x86_64", "0123"},
+                               Order{"roll-back", "carpet-loom", "bench", "0123"},
+                               Order{"roll-back", "carpet-loom", "ipc-x86_64", "0124"}})
+        EXPECT_FALSE(is_signed(other, signature, keys.open)) << other.verb << other.machine << other.nonce;
 }
 
 TEST(Keys, are_written_in_64_digits) {

@@ -90,6 +90,7 @@ struct Storm {
     std::atomic<Phase> phase{0};
     Phase serving = 0;
     std::atomic<std::size_t> emitting{emitters};
+    std::atomic<std::size_t> heard_once{0};
     std::array<Emissions, emitters> log;
     const std::uint64_t seed = stress_seed();
 
@@ -110,10 +111,12 @@ struct Storm {
     void emit(std::uint32_t own) {
         const RunsActivity here{own};
         Random random{seed * 7 + own};
+        while (phase.load() < 2) std::this_thread::yield();
         for (std::uint64_t n = 0; n < emissions; ++n) {
             log[own].begun[n] = phase.load();
             emitter.event(Argument::of((std::uint64_t{own} << 32) | n));
             log[own].ended[n] = phase.load();
+            if (n == 0) ++heard_once;
             dither(random);
         }
         --emitting;
@@ -133,6 +136,8 @@ struct Storm {
             ++phase;
             for (const EventHandle& handle : watched) handle.connect();
             ++phase;
+            // Of each emitter one is heard, whoever has the processor for how long.
+            while (heard_once.load() < emitters) std::this_thread::yield();
             dither(random);
             ++phase;
             for (const EventHandle& handle : watched) handle.disconnect();

@@ -39,8 +39,19 @@ double seconds_since(SteadyTime start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void pack(const Scenario& scenario, const fs::path& kernel, const fs::path& archive) {
-    Initramfs root(archive);
+// A box is what its programs are built for.
+const Architecture& architecture_for(const Scenario& scenario) {
+    std::vector<fs::path> files;
+    for (const File& file : scenario.files) {
+        files.emplace_back(file.host);
+    }
+    files.emplace_back(scenario.init);
+    return architecture_of_first(files);
+}
+
+void pack(const Scenario& scenario, const Architecture& architecture, const fs::path& kernel,
+          const fs::path& archive) {
+    Initramfs root(archive, architecture);
     std::ostringstream manifest;
 
     std::ifstream modules(kernel / "modules.order");
@@ -64,7 +75,8 @@ void pack(const Scenario& scenario, const fs::path& kernel, const fs::path& arch
         manifest << "collect " << file.guest << '\n';
     }
 
-    const fs::path init = scenario.init.empty() ? fs::canonical("/proc/self/exe").parent_path() / "bench-init"
+    const fs::path init = scenario.init.empty() ? fs::canonical("/proc/self/exe").parent_path() /
+                                                      ("bench-init" + architecture.suffix)
                                                 : fs::path(scenario.init);
     if (!fs::exists(init)) {
         throw BenchError("the guest's PID 1 is not at '" + init.string() +
@@ -84,18 +96,19 @@ void pack(const Scenario& scenario, const fs::path& kernel, const fs::path& arch
     root.finish();
 }
 
-std::vector<std::string> emulator_arguments(const Scenario& scenario, const fs::path& kernel,
-                                            const WorkFolder& work) {
+std::vector<std::string> emulator_arguments(const Scenario& scenario, const Architecture& architecture,
+                                            const fs::path& kernel, const WorkFolder& work) {
     // The self-tests of the kernel's ciphers would be half of the boot.
-    std::string kernel_arguments = "console=ttyS0 quiet panic=-1 rdinit=/init cryptomgr.notests";
+    std::string kernel_arguments =
+        "console=" + architecture.console + " quiet panic=-1 rdinit=/init cryptomgr.notests";
     if (!scenario.kernel_arguments.empty()) {
         kernel_arguments += " " + scenario.kernel_arguments;
     }
     std::vector<std::string> arguments = {
-        "qemu-system-x86_64", "-nodefaults", "-no-user-config", "-display", "none", "-no-reboot",
+        architecture.emulator, "-nodefaults", "-no-user-config", "-display", "none", "-no-reboot",
         // Emulation, also where the host could virtualise: the same everywhere, and the instruction clock
         // needs it.
-        "-machine", "q35,accel=tcg", "-m", std::to_string(scenario.memory_mib), "-smp",
+        "-accel", "tcg", "-m", std::to_string(scenario.memory_mib), "-smp",
         std::to_string(scenario.processors), "-kernel", (kernel / "vmlinux").string(), "-initrd",
         (work / "root.cpio").string(), "-append", kernel_arguments,
         // The kernel's own words go to a file, read only when something went wrong.
@@ -104,7 +117,8 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const fs::
         "-chardev", "file,id=results,path=" + (work / "results").string(), "-device",
         "virtserialport,chardev=results,name=tappet.results",
         // It sleeps until somebody opens it; a reset ends the guest.
-        "-device", "i6300esb"};
+        "-device", "i6300esb", "-machine"};
+    arguments.insert(arguments.end(), architecture.machine.begin(), architecture.machine.end());
     if (scenario.clock == Clock::instructions) {
         arguments.insert(arguments.end(),
                          {"-icount", "shift=" + std::to_string(instruction_shift) + ",sleep=off"});
@@ -137,7 +151,7 @@ struct Emulator {
         }
     }
 
-    void start(const std::vector<std::string>& arguments, const fs::path& log) {
+    void start(const std::vector<std::string>& arguments, const std::string& package, const fs::path& log) {
         int to[2];
         int from[2];
         if (::pipe2(to, O_CLOEXEC) != 0 || ::pipe2(from, O_CLOEXEC) != 0) {
@@ -162,8 +176,8 @@ struct Emulator {
             ::dup2(from[1], STDOUT_FILENO);
             ::dup2(errors, STDERR_FILENO);
             ::execvp(words[0], words.data());
-            ::dprintf(STDERR_FILENO, "cannot run %s: %s; install the package qemu-system-x86\n", words[0],
-                      std::strerror(errno));
+            ::dprintf(STDERR_FILENO, "cannot run %s: %s; install the package %s\n", words[0],
+                      std::strerror(errno), package.c_str());
             ::_exit(127);
         }
         ::close(to[0]);
@@ -302,10 +316,11 @@ bool wait_for_end(Emulator& emulator, double seconds) {
     return false;
 }
 
-void check(const Scenario& scenario, const fs::path& kernel) {
+void check(const Scenario& scenario, const Architecture& architecture, const fs::path& kernel) {
     if (!fs::exists(kernel / "vmlinux") || !fs::exists(kernel / "modules.order")) {
-        throw BenchError("there is no kernel '" + scenario.kernel + "' at " + kernel.string() +
-                         "; use rt or plain, and run ci/setup once as root");
+        throw BenchError("there is no kernel '" + scenario.kernel + "' for " + architecture.name + " at " +
+                         kernel.string() + "; use rt (or plain, on x86-64), and run " + architecture.set_up +
+                         " once as root");
     }
     if (scenario.clock == Clock::instructions && scenario.processors != 1) {
         throw BenchError("the instruction clock drives one processor only, " +
@@ -321,14 +336,16 @@ void check(const Scenario& scenario, const fs::path& kernel) {
 }
 
 Outcome run_checked(const Scenario& scenario, const Output& output, const Cancelled& cancelled) {
-    const fs::path kernel = cache_folder() / "kernel" / scenario.kernel;
-    check(scenario, kernel);
+    const Architecture& architecture = architecture_for(scenario);
+    const fs::path kernel = cache_folder() / "kernel" / (scenario.kernel + architecture.suffix);
+    check(scenario, architecture, kernel);
     const WorkFolder work("tappet-bench", scenario.keep);
-    pack(scenario, kernel, work / "root.cpio");
+    pack(scenario, architecture, kernel, work / "root.cpio");
 
     const auto start = std::chrono::steady_clock::now();
     Emulator emulator;
-    emulator.start(emulator_arguments(scenario, kernel, work), work / "emulator.log");
+    emulator.start(emulator_arguments(scenario, architecture, kernel, work), architecture.package,
+                   work / "emulator.log");
     Outcome outcome;
     const End end = stream(emulator, start, scenario.timeout_s, output, cancelled, outcome.boot_wall_s);
     const bool stopped = end == End::complete ? wait_for_end(emulator, 10) : end == End::emulator_gone;

@@ -28,14 +28,6 @@ std::string read_file(const fs::path& path) {
     return std::move(content).str();
 }
 
-bool is_program(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 4> magic{};
-    file.read(magic.data(), magic.size());
-    return file && std::string_view(magic.data(), magic.size()) == "\x7f"
-                                                                   "ELF";
-}
-
 // The loader itself says what a program needs; a static program makes it say nothing.
 std::string libraries_of(const fs::path& program) {
     int ends[2];
@@ -86,7 +78,8 @@ fs::path find_program(const std::string& name) {
     throw BenchError("the program '" + name + "' is not on this machine; run ci/setup once as root");
 }
 
-Initramfs::Initramfs(const fs::path& archive) : archive_(std::fopen(archive.c_str(), "wb")) {
+Initramfs::Initramfs(const fs::path& archive, const Architecture& architecture)
+    : architecture_(architecture), archive_(std::fopen(archive.c_str(), "wb")) {
     if (archive_ == nullptr) {
         throw BenchError("cannot write '" + archive.string() +
                          "'; check the space and rights of the temporary folder");
@@ -138,10 +131,16 @@ void Initramfs::add_file(const fs::path& host, const std::string& guest) {
     }
     add_folder(guest.substr(0, guest.rfind('/')));
     const std::string content = read_file(host);
+    const std::uint16_t elf = elf_machine_of(host);
+    if (elf != 0 && elf != architecture_.elf) {
+        throw BenchError("'" + host.string() + "' is a program for " + architecture_of(elf, host).name +
+                         ", and the first one given makes this box an " + architecture_.name +
+                         "; give programs of one architecture, and of the host's tools none to another");
+    }
     present_.insert(guest);
     // Not the file's own mode, which depends on who built it: the same files make the same archive.
     entry(guest, S_IFREG | (::access(host.c_str(), X_OK) == 0 ? 0755U : 0644U), content);
-    if (is_program(host)) {
+    if (elf != 0) {
         add_libraries(host);
     }
 }

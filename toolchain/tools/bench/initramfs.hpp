@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "toolchain/tools/bench/architecture.hpp"
+
 namespace tappet::bench {
 
 // What is wrong with a scenario or its surroundings; the text names what, where and the cure.
@@ -18,7 +20,8 @@ struct BenchError : std::runtime_error {
 
 class Initramfs {
 public:
-    explicit Initramfs(const std::filesystem::path& archive);
+    // For a box of this architecture, which refuses programs of another.
+    Initramfs(const std::filesystem::path& archive, const Architecture& architecture);
     ~Initramfs();
     Initramfs(const Initramfs&) = delete;
     Initramfs& operator=(const Initramfs&) = delete;
@@ -38,6 +41,7 @@ private:
     void entry(const std::string& guest, unsigned mode, std::string_view content, unsigned major = 0,
                unsigned minor = 0);
 
+    const Architecture& architecture_;
     std::FILE* archive_;
     std::set<std::string> present_;
     unsigned next_inode_ = 1;

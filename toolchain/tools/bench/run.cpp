@@ -21,7 +21,8 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --run COMMAND          run in the guest, in order; may be given often. "COMMAND &" runs in the background,
                          "- COMMAND" may fail. Also: @sleep S, @write PATH TEXT, @link NAME up|down,
                          @signal NAME TERM|INT|KILL|STOP|CONT|USR1|HUP, @wait NAME [while OTHER]
-  --file HOST=GUEST      a file or folder for the guest; programs bring their shared libraries
+  --file HOST=GUEST      a file or folder for the guest; programs bring their shared libraries. The box is of the
+                         architecture of the first program: x86-64 or aarch64
   --board                all that a machine finds on the board "bench": can0, can1, io and panel with 32 lines,
                          and real-time threads that nobody throttles
   --tool NAME            a program of this machine for the guest's /bin; python3 brings its standard library
@@ -35,7 +36,7 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --memory MIB           memory of the guest (default 256)
   --append TEXT          more kernel arguments
   --timeout S            of wall time from the first command on (default 120)
-  --init FILE            PID 1 (default: bench-init beside this program)
+  --init FILE            PID 1 (default: bench-init, or bench-init-aarch64, beside this program)
   --verbose              boot and total time at the end
   --keep                 leave the working folder in the temporary folder
 )";

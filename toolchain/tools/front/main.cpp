@@ -195,10 +195,11 @@ int image(const Given& given) {
     return is_built(targets) ? become(program) : 1;
 }
 
-int flash(const Given& given) {
-    Words program{(beside_us() / "tappet-image").string(), "flash"};
-    return become(with(program, given.words));
+template <const char* word>
+int hand_to_image(const Given& given) {
+    return become(with({(beside_us() / "tappet-image").string(), word}, given.words));
 }
+constexpr char flash_word[] = "flash", update_word[] = "update", box_word[] = "box";
 
 int chart(const Given& given) {
     const std::string machine = machine_here(given);
@@ -309,7 +310,18 @@ constexpr Command commands[] = {
      .help = "writes an image onto a disk, and reads it back",
      .options = image::flash_options,
      .others = Others::words,
-     .run = &flash},
+     .run = &hand_to_image<flash_word>},
+    {.name = "update",
+     .takes = "BOX FILE",
+     .help = "sends a signed new version to a box, for who stands there to consent",
+     .others = Others::words,
+     .run = &hand_to_image<update_word>},
+    {.name = "box",
+     .takes = "BOX [ORDER]",
+     .help = "tells what runs on a box; or orders: roll-back, factory-reset, measure",
+     .options = image::box_options,
+     .others = Others::words,
+     .run = &hand_to_image<box_word>},
     {.name = "browse",
      .takes = "[WORD...]",
      .help = "looks into a running machine",

@@ -2,6 +2,7 @@
 // Partitions laid out here, written by sgdisk, mtools and mke2fs, none of which needs root or a mount.
 #include "toolchain/tools/image/disk.hpp"
 
+#include "board/box/update.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
 #include <array>
@@ -31,7 +32,7 @@ void put(const fs::path& fat, const fs::path& file, const std::string& name) {
 }
 
 /// The file system of a slot: the kernel, the loader's state, its label.
-void write_slot(const fs::path& file, const Partition& partition, const fs::path& kernel,
+void write_slot(const fs::path& file, const Partition& partition, const DiskParts& parts,
                 const init::BootState& state, unsigned number, const fs::path& work) {
     make_fat(file, partition, number);
     std::string label;
@@ -40,7 +41,9 @@ void write_slot(const fs::path& file, const Partition& partition, const fs::path
     write_file(work / init::boot_state_file, init::encode(state));
     put(file, work / "EFILABEL", "EFILABEL");
     put(file, work / init::boot_state_file, std::string{init::boot_state_file});
-    put(file, kernel, file_in_slot);
+    write_file(work / box::header_file, parts.header);
+    put(file, work / box::header_file, std::string{box::header_file});
+    put(file, parts.kernel, file_in_slot);
 }
 
 /// Blocks of zeros stay holes.
@@ -80,10 +83,9 @@ std::uint64_t disk_bytes() {
            1024 * 1024; // the table's second copy stands there
 }
 
-void write_disk(const fs::path& disk, const fs::path& loader, const fs::path& kernel,
-                std::uint16_t watchdog_s, const fs::path& work) {
+void write_disk(const fs::path& disk, const DiskParts& parts, const fs::path& work) {
     const std::vector<Partition>& rows = partitions();
-    if (const std::uint64_t needed = fs::file_size(kernel) + 1024 * 1024; needed > rows[1].bytes())
+    if (const std::uint64_t needed = fs::file_size(parts.kernel) + 1024 * 1024; needed > rows[1].bytes())
         throw Fault("the image has " + std::to_string(needed) + " bytes, and a slot " +
                     std::to_string(rows[1].bytes()) + "; leave modules out of the board");
     fs::remove(disk);
@@ -103,10 +105,13 @@ void write_disk(const fs::path& disk, const fs::path& loader, const fs::path& ke
 
     make_fat(work / "loader.img", rows[0], 0);
     run_tool({"mmd", "-i", (work / "loader.img").string(), "::EFI", "::EFI/BOOT"});
-    put(work / "loader.img", loader, "EFI/BOOT/BOOTX64.EFI");
+    put(work / "loader.img", parts.loader, "EFI/BOOT/BOOTX64.EFI");
+    if (!parts.certificates.empty()) run_tool({"mmd", "-i", (work / "loader.img").string(), "::KEYS"});
+    for (const fs::path& each : parts.certificates)
+        put(work / "loader.img", each, "KEYS/" + each.filename().string());
     for (std::uint32_t slot = 1; slot <= 2; ++slot)
-        write_slot(work / (rows[slot].name + ".img"), rows[slot], kernel,
-                   {kernel_of(rows[slot]), 3 - slot, watchdog_s, init::SlotState::good}, slot, work);
+        write_slot(work / (rows[slot].name + ".img"), rows[slot], parts,
+                   {kernel_of(rows[slot]), 3 - slot, parts.watchdog_s, init::SlotState::good}, slot, work);
     const fs::path data = work / "data.img";
     write_file(data, "");
     fs::resize_file(data, rows[3].bytes());

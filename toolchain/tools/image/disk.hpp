@@ -30,10 +30,16 @@ inline constexpr const char* file_in_slot = "tappet.efi";
 /// As the loader names it.
 [[nodiscard]] std::string kernel_of(const Partition& slot);
 
-/// Writes the whole disk. `kernel` is the unified image of both slots, of which the first is the newer. The
-/// same in makes the same out, bit by bit.
-void write_disk(const std::filesystem::path& disk, const std::filesystem::path& loader,
-                const std::filesystem::path& kernel, std::uint16_t watchdog_s,
-                const std::filesystem::path& work);
+/// What goes onto a disk beside its file systems.
+struct DiskParts {
+    std::filesystem::path loader{};
+    std::filesystem::path kernel{};                    ///< the unified image of both slots
+    std::string header{};                              ///< of its update, to tell what it is
+    std::vector<std::filesystem::path> certificates{}; ///< for the box's setup, on the loader's partition
+    std::uint16_t watchdog_s = 0;
+};
+
+/// Writes the whole disk; of its slots the first is the newer. The same in makes the same out, bit by bit.
+void write_disk(const std::filesystem::path& disk, const DiskParts& parts, const std::filesystem::path& work);
 
 } // namespace tappet::image

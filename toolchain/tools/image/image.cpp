@@ -8,10 +8,11 @@
 #include "toolchain/tools/bench/initramfs.hpp"
 #include "toolchain/tools/image/disk.hpp"
 #include "toolchain/tools/image/kernel_modules.hpp"
+#include "toolchain/tools/image/keys.hpp"
 #include "toolchain/tools/image/sbom.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
-#include <algorithm>
+#include <cstdlib>
 
 namespace tappet::image {
 
@@ -35,6 +36,7 @@ std::string bill_of(const Request& request, const box::Facts& facts, const std::
     const std::string version = first_line(read_file(request.kernel / "version"));
     parts.push_back({"linux-image-" + release, version, "operating-system"});
     parts.push_back(debian_package("efibootguard", "firmware"));
+    parts.push_back(debian_package("e2fsck-static", "application"));
     parts.push_back({"tappet", TAPPET_VERSION, "framework", false});
     return bill_of_materials(facts.one("machine"), facts.one("board"), request.version, std::move(parts));
 }
@@ -54,14 +56,47 @@ std::string command_line_of(const box::Facts& facts) {
 
 } // namespace
 
-void write_keys(const fs::path& folder) {
-    if (fs::exists(folder / "secret"))
-        throw Fault((folder / "secret").string() + " is there already; name another folder");
-    fs::create_directories(folder);
-    const box::KeyPair keys = box::new_keys();
-    write_file(folder / "public", box::digits_of(keys.open) + "\n");
-    write_file(folder / "secret", {reinterpret_cast<const char*>(keys.secret.data()), keys.secret.size()});
-    fs::permissions(folder / "secret", fs::perms::owner_read);
+namespace {
+
+/// What sign() finds in the folder.
+struct Folder {
+    fs::path at;
+    [[nodiscard]] fs::path disk() const { return at / "disk.img"; }
+    [[nodiscard]] fs::path kernel() const { return at / "tappet.efi"; }
+    [[nodiscard]] fs::path loader() const { return at / "loader.efi"; }
+    [[nodiscard]] fs::path update() const { return at / "update.tap"; }
+    /// Without a signature, with the watchdog's time behind it.
+    [[nodiscard]] fs::path header() const { return at / "manifest"; }
+};
+
+/// The disk and the update from what lies in the folder, signed if there are keys.
+void finish(const Folder& folder, const fs::path& keys) {
+    const std::string known = read_file(folder.header());
+    DiskParts parts{.loader = folder.loader(), .kernel = folder.kernel(), .header = {}, .certificates = {}};
+    box::Update update{box::manifest_of(known), {}, {}};
+    parts.watchdog_s = static_cast<std::uint16_t>(std::strtoul(
+        box::Facts{std::string_view{known}.substr(box::update_header_bytes)}.one("watchdog").c_str(), nullptr,
+        10));
+    if (keys.empty()) {
+        parts.header = box::header_of({update.manifest, read_file(folder.kernel()), {}}, nullptr);
+    } else {
+        for (const fs::path& program : {folder.loader(), folder.kernel()}) sign_program(program, keys);
+        update.kernel = read_file(folder.kernel());
+        const box::SecretKey secret = secret_key(keys);
+        parts.header = box::header_of(update, &secret);
+        parts.certificates = certificates(keys);
+        write_file(folder.update(), parts.header + update.kernel);
+    }
+    const bench::WorkFolder work("tappet-disk");
+    write_disk(folder.disk(), parts, work / "");
+}
+
+} // namespace
+
+void sign(const fs::path& folder, const fs::path& keys) {
+    if (!can_sign(keys))
+        throw Fault(keys.string() + " has no secret key; name the folder that tappet-image key wrote");
+    finish(Folder{folder}, keys);
 }
 
 Written write_image(const Request& request) {
@@ -70,6 +105,10 @@ Written write_image(const Request& request) {
                     "; run ci/setup once as root");
     if (!fs::exists(request.firmware))
         throw Fault("there is no firmware at " + request.firmware.string() + "; build it first");
+    const bench::Architecture& architecture = bench::architecture_of_first({request.firmware});
+    if (!architecture.suffix.empty())
+        throw Fault(request.firmware.string() + " is for " + architecture.name +
+                    ", for which no image is written; start it on a system of the box's own");
     std::string lines = run_tool({fs::absolute(request.firmware).string(), "--board"});
     const box::Facts facts{lines};
     if (facts.one("board").empty())
@@ -79,17 +118,8 @@ Written write_image(const Request& request) {
         throw Fault("board \"" + facts.one("board") +
                     "\" says nothing of an image; give it .image with modules and consoles");
     lines += "image " + std::to_string(request.version) + "\n";
-    box::SecretKey secret{};
-    if (!request.keys.empty()) {
-        const std::string open = first_line(read_file(request.keys / "public"));
-        if (const auto key = box::key_of(open); !key)
-            throw Fault((request.keys / "public").string() + ": " + key.error());
-        lines += "key " + open + "\n";
-        const std::string bytes = read_file(request.keys / "secret");
-        if (bytes.size() != secret.size())
-            throw Fault((request.keys / "secret").string() + " is no secret key; write keys anew");
-        std::ranges::copy(bytes, secret.begin());
-    }
+    if (!request.keys.empty())
+        lines += "key " + public_key(request.next_keys.empty() ? request.keys : request.next_keys) + "\n";
     if (!request.plant.empty()) lines += "plant /bin/plant " + request.plant_words + "\n";
 
     std::vector<std::string> rows;
@@ -100,10 +130,11 @@ Written write_image(const Request& request) {
 
     const bench::WorkFolder work("tappet-image");
     fs::create_directories(request.folder);
-    bench::Initramfs root{work / "root.cpio"};
+    bench::Initramfs root{work / "root.cpio", architecture};
     root.add(request.init, "/init");
     root.add(request.firmware, "/bin/firmware");
     if (!request.plant.empty()) root.add(request.plant, "/bin/plant");
+    root.add("/sbin/e2fsck.static", "/bin/e2fsck");
     root.add_text("/etc/tappet/box", lines);
     root.add_text("/etc/tappet/modules", modules.table);
     for (const auto& [name, file] : modules.files) root.add(file, "/modules/" + name + ".ko");
@@ -113,8 +144,9 @@ Written write_image(const Request& request) {
     Written written;
     written.bill = request.folder / "sbom.cdx.json";
     write_file(written.bill, bill);
-    written.disk = request.folder / "disk.img";
-    written.kernel = request.folder / "tappet.efi";
+    const Folder folder{request.folder};
+    written.disk = folder.disk();
+    written.kernel = folder.kernel();
     written.root = request.folder / "root.cpio.zst";
     written.command_line = command_line_of(facts);
     run_tool({"zstd", "-q", "-f", "-19", "--no-progress", (work / "root.cpio").string(), "-o",
@@ -122,14 +154,15 @@ Written write_image(const Request& request) {
     run_tool({"bg_gen_unified_kernel", std::string{boot_guard} + "kernel-stubx64.efi",
               (request.kernel / "vmlinuz").string(), written.kernel.string(), "--cmdline",
               written.command_line, "--initrd", written.root.string()});
-    write_disk(written.disk, std::string{boot_guard} + "efibootguardx64.efi", written.kernel,
-               request.watchdog_s, work / "");
-    if (!request.keys.empty()) {
-        written.update = request.folder / "update.tap";
-        const box::Manifest manifest{facts.one("machine"), facts.one("board"), request.version,
-                                     request.least};
-        write_file(written.update, box::encode({manifest, read_file(written.kernel)}, secret));
-    }
+    write_file(folder.loader(), read_file(std::string{boot_guard} + "efibootguardx64.efi"));
+    const box::Manifest manifest{facts.one("machine"), facts.one("board"), facts.one("layout"),
+                                 request.version, request.least};
+    write_file(folder.header(), box::header_of({manifest, read_file(written.kernel), {}}, nullptr) +
+                                    "watchdog " + std::to_string(request.watchdog_s) + "\n");
+    fs::remove(folder.update());
+    const bool is_signed = can_sign(request.keys);
+    finish(folder, is_signed ? request.keys : fs::path{});
+    if (is_signed) written.update = folder.update();
     written.kernel_bytes = fs::file_size(request.kernel / "vmlinuz");
     written.root_bytes = fs::file_size(written.root);
     written.slot_bytes = fs::file_size(written.kernel);

@@ -15,8 +15,11 @@ struct Request {
     std::string plant_words{};        ///< its options
     std::filesystem::path kernel{};   ///< ci/setup's: vmlinuz, release, lib/modules
     std::filesystem::path folder{};   ///< where everything goes
-    std::filesystem::path keys{};     ///< of write_keys(); empty: the box takes no updates, and this is none
-    std::uint32_t least = 1;          ///< version that a box must have to be updated to this one
+    /// Of write_keys(); empty: the box takes no updates, and nothing is signed. One without `secret`: sign()
+    /// does it where that is.
+    std::filesystem::path keys{};
+    std::filesystem::path next_keys{}; ///< which the box's next updates are signed with; empty: the same
+    std::uint32_t least = 1;           ///< version that a box must have to be updated to this one
     std::uint32_t version = 1;
     std::uint16_t watchdog_s = 30; ///< armed by the loader; 0: none, for a box without one
 };
@@ -35,11 +38,11 @@ struct Written {
     std::size_t modules = 0;
 };
 
-/// A new pair into a folder, unless one is there: "public" goes into images, "secret" signs updates and stays
-/// with their maker.
-void write_keys(const std::filesystem::path& folder);
-
 /// Bit by bit the same from the same parts. What is wrong is thrown: a Fault, or a bench::BenchError.
 Written write_image(const Request& request);
+
+/// Signs what write_image() left unsigned in a folder: loader, kernel, disk and update. Needs that folder and
+/// the keys, no network and no sources.
+void sign(const std::filesystem::path& folder, const std::filesystem::path& keys);
 
 } // namespace tappet::image

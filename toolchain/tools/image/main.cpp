@@ -4,11 +4,14 @@
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/image/flash.hpp"
 #include "toolchain/tools/image/image.hpp"
+#include "toolchain/tools/image/keys.hpp"
 #include "toolchain/tools/image/options.hpp"
+#include "toolchain/tools/image/remote.hpp"
 #include "toolchain/tools/image/slots.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -31,9 +34,12 @@ constexpr std::array write_options{
            .most = 4'000'000'000},
     image_options[0],
     image_options[1],
-    image_options[2]};
+    image_options[2],
+    image_options[3]};
 constexpr std::array key_options{Option{"--to", "DIR", "where public and secret go"}};
+constexpr std::array sign_options{Option{"--key", "DIR", "of tappet-image key, with what is secret"}};
 constexpr std::array install_options{Option{"--kernel", "FILE", "a tappet.efi"}};
+constexpr std::span<const Option> no_options{};
 
 constexpr double goal_mb = 12.0;
 
@@ -56,6 +62,9 @@ int write(const CommandLine& line) {
     request.version = static_cast<std::uint32_t>(line.number("--version", 1));
     request.watchdog_s = static_cast<std::uint16_t>(line.number("--watchdog", 30));
     request.keys = line.text("--key");
+    request.next_keys = line.text("--next-key");
+    if (request.keys.empty() && !request.next_keys.empty())
+        return fail("--next-key without --key: the box could not know who hands it over");
     request.least = static_cast<std::uint32_t>(line.number("--least", 1));
     const Written written = write_image(request);
     const auto mb = [](std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; };
@@ -65,9 +74,28 @@ int write(const CommandLine& line) {
                 mb(written.root_bytes), written.modules);
     std::printf("  command line: %s\n  what is inside: %s\n", written.command_line.c_str(),
                 written.bill.c_str());
-    if (!written.update.empty()) std::printf("  as an update, for a stick: %s\n", written.update.c_str());
+    if (!written.update.empty())
+        std::printf("  signed; as an update, for the network or a stick: %s\n", written.update.c_str());
+    else if (!request.keys.empty())
+        std::printf("  NOT SIGNED: %s has no secret key; where it is, say tappet-image sign --key DIR %s\n",
+                    request.keys.c_str(), request.folder.c_str());
     return 0;
 }
+
+/// A progress by tenths.
+class Tenths {
+public:
+    void operator()(std::uint64_t bytes, std::uint64_t of) {
+        const std::uint64_t tenth = 10 * bytes / of;
+        if (tenth == told_) return;
+        told_ = tenth;
+        std::printf("%s%llu0 %%", told_ > 1 ? ", " : "", static_cast<unsigned long long>(told_));
+        std::fflush(stdout);
+    }
+
+private:
+    std::uint64_t told_ = 0;
+};
 
 int flash(const CommandLine& line) {
     if (!line.has("--image") || line.words.size() != 1)
@@ -75,14 +103,7 @@ int flash(const CommandLine& line) {
     const std::filesystem::path image = line.text("--image"), device = line.words[0];
     if (const std::string refusal = refusal_to_flash(image, device, line.has("--erase")); !refusal.empty())
         return fail(refusal);
-    std::uint64_t told = 0;
-    image::flash(image, device, [&](std::uint64_t bytes, std::uint64_t of) {
-        if (const std::uint64_t tenth = 10 * bytes / of; tenth != told) {
-            told = tenth;
-            std::printf("%s%llu0 %%", told > 1 ? ", " : "", static_cast<unsigned long long>(told));
-            std::fflush(stdout);
-        }
-    });
+    image::flash(image, device, Tenths{});
     std::printf("\n%s holds the image: written, and read back from it\n", device.c_str());
     return 0;
 }
@@ -90,9 +111,45 @@ int flash(const CommandLine& line) {
 int make_keys(const CommandLine& line) {
     if (!line.has("--to")) return fail("say key --to DIR, a folder that stays with who makes the images");
     write_keys(line.text("--to"));
-    std::printf("%s: secret signs updates and leaves this machine for nobody; public goes into images\n",
-                std::string{line.text("--to")}.c_str());
+    std::printf(
+        "%s: secret and *.key sign and leave this machine for nobody; public goes into images, and the "
+        "*.cer\n  into the box's setup (Secure Boot: db, then KEK, then PK)\n",
+        std::string{line.text("--to")}.c_str());
     return 0;
+}
+
+int sign(const CommandLine& line) {
+    if (!line.has("--key") || line.words.size() != 1)
+        return fail("say sign --key DIR FOLDER; the folder is what write --to named");
+    const std::filesystem::path folder = line.words[0];
+    image::sign(folder, line.text("--key"));
+    std::printf("%s: loader, kernel, disk and update are signed\n", folder.c_str());
+    return 0;
+}
+
+int show(const Answer& answer) {
+    std::printf("%s", answer.text.c_str());
+    return answer.is_accepted ? 0 : 1;
+}
+
+int update(const CommandLine& line) {
+    if (line.words.size() != 2) return fail("say update BOX update.tap; BOX is its address");
+    const Answer answer = send_update(std::string{line.words[0]}, line.words[1], Tenths{});
+    std::printf("\n%s", answer.is_accepted ? "" : "the box refuses it: ");
+    return show(answer);
+}
+
+int box(const CommandLine& line) {
+    if (line.words.empty() || line.words.size() > 2)
+        return fail("say box BOX, or box BOX roll-back --key DIR; BOX is its address");
+    const std::string address{line.words[0]};
+    if (line.words.size() == 1) return show(ask_status(address));
+    if (std::ranges::find(box::order_verbs, line.words[1]) == box::order_verbs.end())
+        return fail("\"" + std::string{line.words[1]} + "\" is no order" +
+                    did_you_mean(line.words[1], box::order_verbs,
+                                 "; there are roll-back, factory-reset and measure"));
+    if (!line.has("--key")) return fail("an order is signed: say --key DIR");
+    return show(send_order(address, std::string{line.words[1]}, secret_key(line.text("--key"))));
 }
 
 int install(const CommandLine& line) {
@@ -115,7 +172,14 @@ constexpr std::array words_known{
     Word{"flash", flash_options, &flash, "flash --image FILE [--erase] DEVICE: onto a disk, and read back"},
     Word{"install", install_options, &install,
          "install --kernel FILE DISK: a new version into the slot that is not in use, for one trial"},
-    Word{"key", key_options, &make_keys, "key --to DIR: a new pair for signed updates"}};
+    Word{"key", key_options, &make_keys, "key --to DIR: new keys, for updates and for Secure Boot"},
+    Word{"sign", sign_options, &sign,
+         "sign --key DIR FOLDER: what write left unsigned, on a machine without a network"},
+    Word{"update", no_options, &update, "update BOX update.tap: to a box, for who stands there to consent"},
+    Word{"box", box_options, &box,
+         "box BOX [roll-back | factory-reset | measure --key DIR]: what runs there, or an order that waits "
+         "for "
+         "consent"}};
 
 int main(int count, char** words) {
     const std::vector<std::string_view> all(words + 1, words + count);
@@ -127,7 +191,7 @@ int main(int count, char** words) {
     const auto word = std::ranges::find(words_known, all[0], &Word::name);
     if (word == words_known.end())
         return fail("\"" + std::string{all[0]} +
-                    "\" is no word of it; there are write, flash, install and key");
+                    "\" is no word of it; there are write, flash, install, key, sign, update and box");
     const auto line = read_command_line(word->options, std::span{all}.subspan(1), Others::words);
     if (!line) return fail(line.error());
     try {

@@ -21,7 +21,13 @@ inline constexpr std::array image_options{
            .is_number = true,
            .least = 0,
            .most = 255},
-    Option{"--key", "DIR", "of tappet-image key: the box takes updates signed with it, and one is written"}};
+    Option{
+        "--key", "DIR",
+        "of tappet-image key: the image is signed for Secure Boot, the box takes updates signed with it, and "
+        "one is written"},
+    Option{"--next-key", "DIR", "the box's later updates are signed with these instead"}};
+
+inline constexpr std::array box_options{Option{"--key", "DIR", "of tappet-image key, for an order"}};
 
 inline constexpr std::array flash_options{Option{"--image", "FILE", "a disk.img"},
                                           Option{"--erase", "", "what is on the disk may be lost"}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolchain/tools/image/slots.hpp"
 
+#include "board/box/update.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
@@ -47,6 +48,8 @@ std::uint32_t install(const fs::path& disk, const fs::path& kernel) {
     if (read_file(work / "back") != read_file(kernel))
         throw Fault(disk.string() + " does not keep what was written to " + slot.name +
                     "; take another disk");
+    // What it is its header would tell, and that is an update's.
+    run_tool({"mdel", "-i", place(disk, slot), "::" + std::string{box::header_file}}, Trouble::is_told);
     init::BootState state = read_slot(disk, of_a < of_b ? b : a).value();
     state.kernel = kernel_of(slot);
     state.revision = std::max(of_a, of_b) + 1;

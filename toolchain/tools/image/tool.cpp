@@ -15,9 +15,6 @@ namespace tappet::image {
 
 namespace {
 
-/// 1980-01-02: a FAT knows nothing older.
-constexpr const char* standing_clock = "315619200";
-
 [[noreturn]] void become(const std::vector<std::string>& words, int output) {
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);

@@ -16,6 +16,9 @@ struct Fault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The clock of those programs, in seconds: 1980-01-02, since a FAT knows nothing older.
+inline constexpr const char* standing_clock = "315619200";
+
 /// Runs a program of this machine under a clock that stands still, so that what it writes is the same at any
 /// time. Its standard output; a fault carries its last words.
 enum class Trouble : std::uint8_t { is_a_fault, is_told }; ///< told: the caller reads it in what was said

@@ -12,6 +12,7 @@
 #include "kernel/control/control.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
 #include "kernel/pieces/kept.hpp"
+#include "kernel/services/box/box.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
@@ -67,6 +68,7 @@ const Described components[] = {
      component_type<instruments::ForceSensor>},
     {"drivers/instruments/velocity_axis.hpp", "VelocityAxis", "instruments::VelocityAxis<\"m/s\">",
      component_type<instruments::VelocityAxis<"m/s">>},
+    {"kernel/services/box/box.hpp", "Box", "Box", component_type<Box>},
     {"kernel/services/time/timed_event.hpp", "TimedEvent", "TimedEvent", component_type<TimedEvent>},
     {"kernel/services/time/watchdog.hpp", "Watchdog", "Watchdog", component_type<Watchdog>},
     {"kernel/services/tasks/behaviour_task.hpp", "BehaviourTask", "BehaviourTask<script, \"instance\">",

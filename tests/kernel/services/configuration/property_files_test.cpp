@@ -15,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tappet {
 namespace {
@@ -255,6 +256,55 @@ TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_rea
     EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
     EXPECT_EQ(configure(), "") << "the next start reads it";
     EXPECT_EQ(tension("warp").gain_when_configured, 3.5);
+}
+
+std::vector<std::string> left_out;
+
+struct PropertyFilesOfAnotherVersion : PropertyFilesOfAMachine {
+    std::string older = directory_name + "/older";
+    PropertyFilesOfAnotherVersion() {
+        std::filesystem::create_directory(older);
+        left_out.clear();
+        files->take_over(older, [](const Sentence& fault) { left_out.emplace_back(fault.view()); });
+    }
+};
+
+TEST_F(PropertyFilesOfAnotherVersion, go_before_its_own_as_far_as_they_fit) {
+    put("warp.cpf", cpf(real("gain", "3.5") + band(real("low", "100") + real("high", "200"))));
+    put("older/warp.cpf", cpf(real("gain", "4.5") + "\n" + real("speed", "7") + "\n" +
+                              band(real("low", "-3") + "\n" + real("high", "300"))));
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(tension("warp").gain.get(), 4.5);
+    EXPECT_EQ(tension("warp").band.low.get(), 100.0) << "as it was";
+    EXPECT_EQ(tension("warp").band.high.get(), 300.0);
+    ASSERT_EQ(left_out.size(), 2u);
+    EXPECT_THAT(left_out[0],
+                AllOf(HasSubstr("older/warp.cpf:3: component \"warp\""), HasSubstr("\"speed\"")));
+    EXPECT_THAT(left_out[1], AllOf(HasSubstr("older/warp.cpf:4"), HasSubstr("under its least value 0")));
+}
+
+TEST_F(PropertyFilesOfAnotherVersion, leave_to_the_row_what_does_not_fit) {
+    put("older/warp.cpf", cpf("<simple name=\"gain\" type=\"string\"><value>much</value></simple>"));
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(tension("warp").gain.get(), 2.0);
+    EXPECT_EQ(left_out.size(), 1u);
+}
+
+TEST_F(PropertyFilesOfAnotherVersion, are_saved_beside_and_stay_as_they_are) {
+    const std::string text = cpf(real("gain", "4.5") + real("speed", "7"));
+    put("older/warp.cpf", text);
+    ASSERT_EQ(configure(), "");
+    ASSERT_TRUE(instance.save_properties(instance.standing()).empty());
+    EXPECT_THAT(get("warp.cpf"), HasSubstr("<value>4.5</value>"));
+    EXPECT_EQ(get("older/warp.cpf"), text);
+}
+
+TEST_F(PropertyFilesOfAnotherVersion,
+       are_wrong_when_they_are_no_properties_and_missing_when_neither_is_there) {
+    put("older/warp.cpf", "<properties>");
+    EXPECT_THAT(configure(), HasSubstr("malformed"));
+    std::filesystem::remove(older + "/warp.cpf");
+    EXPECT_THAT(configure(), AllOf(StartsWith(directory_name + "/warp.cpf"), HasSubstr("is missing")));
 }
 
 using PropertyFilesOfAMachineDeathTest = PropertyFilesOfAMachine;

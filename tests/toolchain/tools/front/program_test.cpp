@@ -24,8 +24,8 @@ using testing::Not;
 using testing::StartsWith;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> every_word{"new",   "build", "run",   "test",   "chart", "figures",
-                                          "bench", "image", "flash", "browse", "scope"};
+const std::vector<std::string> every_word{"new",   "build", "run",    "test", "chart",  "figures", "bench",
+                                          "image", "flash", "update", "box",  "browse", "scope"};
 
 /// In a new machine's folder, which is gone with the test.
 struct Door : testing::Test {

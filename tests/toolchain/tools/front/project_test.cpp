@@ -76,10 +76,10 @@ TEST_F(Folder, gets_a_whole_machine_in_few_lines) {
     const struct {
         Choice choice;
         std::ptrdiff_t lines;
-    } projects[] = {{{"lines"}, 124},
-                    {{"on_can", true}, 144},
-                    {{"on_modbus", true, true}, 158},
-                    {{"with_all", true, true, true}, 178}};
+    } projects[] = {{{"lines"}, 126},
+                    {{"on_can", true}, 146},
+                    {{"on_modbus", true, true}, 160},
+                    {{"with_all", true, true, true}, 180}};
     for (const auto& [choice, lines] : projects) {
         ASSERT_THAT(write_project(TAPPET_TEMPLATE, choice), IsEmpty());
         const auto written = lines_of(choice.name);

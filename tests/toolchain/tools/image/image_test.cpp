@@ -2,7 +2,9 @@
 // disks are made up.
 #include "toolchain/tools/image/disk.hpp"
 #include "toolchain/tools/image/flash.hpp"
+#include "toolchain/tools/image/image.hpp"
 #include "toolchain/tools/image/kernel_modules.hpp"
+#include "toolchain/tools/image/keys.hpp"
 #include "toolchain/tools/image/sbom.hpp"
 #include "toolchain/tools/image/slots.hpp"
 #include "toolchain/tools/image/tool.hpp"
@@ -94,7 +96,13 @@ struct Disk : Folder {
     void make(const std::string& kernel) const {
         write_file(folder / "tappet.efi", kernel);
         write_file(folder / "loader.efi", "a loader");
-        write_disk(disk, folder / "loader.efi", folder / "tappet.efi", 30, folder);
+        write_disk(disk,
+                   {.loader = folder / "loader.efi",
+                    .kernel = folder / "tappet.efi",
+                    .header = box::header_of({{"loom", "my_box", "0", 7, 1}, kernel, {}}, nullptr),
+                    .certificates = {},
+                    .watchdog_s = 30},
+                   folder);
     }
     [[nodiscard]] init::BootState slot(std::size_t i) const {
         return read_slot(disk, partitions()[i]).value();
@@ -138,6 +146,50 @@ TEST_F(Disk, without_slots_of_ours_is_refused) {
 TEST_F(Disk, takes_no_kernel_that_is_larger_than_a_slot) {
     EXPECT_THAT(fault_of([&] { make(std::string(partitions()[1].bytes(), 'x')); }),
                 HasSubstr("leave modules out of the board"));
+}
+
+TEST_F(Disk, tells_of_each_slot_what_lies_in_it) {
+    make("version 7");
+    for (const std::size_t i : {1u, 2u}) {
+        const std::string at =
+            disk.string() + "@@" + std::to_string(partitions()[i].first_sector * sector_bytes);
+        run_tool(
+            {"mcopy", "-n", "-i", at, "::" + std::string{box::header_file}, (folder / "header").string()});
+        EXPECT_EQ(box::manifest_of(read_file(folder / "header")).version, 7u);
+    }
+}
+
+struct Keys : Folder {
+    fs::path keys = folder / "keys", loader = folder / "loader.efi";
+    Keys() {
+        write_keys(keys);
+        write_file(loader, read_file("/usr/lib/x86_64-linux-gnu/efibootguard/efibootguardx64.efi"));
+    }
+    [[nodiscard]] std::string verify(const fs::path& certificate) const {
+        return run_tool({"osslsigncode", "verify", "-CAfile", certificate.string(), "-in", loader.string()},
+                        Trouble::is_told);
+    }
+};
+
+TEST_F(Keys, sign_what_boots_the_same_each_time_and_nobody_elses_fit) {
+    sign_program(loader, keys);
+    const std::string first = read_file(loader);
+    EXPECT_THAT(verify(keys / "db.crt"), HasSubstr("Succeeded"));
+    EXPECT_THAT(verify(keys / "KEK.crt"), Not(HasSubstr("Succeeded")));
+    write_file(loader, read_file("/usr/lib/x86_64-linux-gnu/efibootguard/efibootguardx64.efi"));
+    sign_program(loader, keys);
+    EXPECT_TRUE(read_file(loader) == first);
+}
+
+TEST_F(Keys, are_never_written_over_and_only_their_owner_reads_what_signs) {
+    EXPECT_THAT(fault_of([&] { write_keys(keys); }), HasSubstr("is there already; name another folder"));
+    for (const char* secret : {"secret", "db.key", "KEK.key", "PK.key"})
+        EXPECT_EQ(fs::status(keys / secret).permissions(), fs::perms::owner_read) << secret;
+}
+
+TEST_F(Keys, without_what_is_secret_sign_nothing) {
+    fs::remove(keys / "secret");
+    EXPECT_THAT(fault_of([&] { sign(folder, keys); }), HasSubstr("has no secret key"));
 }
 
 struct Flash : Folder {

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a box says and takes over its network: who asks is told what runs; a signed update or order is kept
+// until somebody consents at the machine. It reads what strangers send, so it is a process of its own, which
+// may do nothing else: nobody's, in a folder of its own, and after everything that the machine does.
+#pragma once
+
+#include "board/box/update.hpp"
+
+#include <cstdint>
+#include <expected>
+#include <string>
+
+namespace tappet::box {
+
+/// Where the process lives and leaves what was accepted. In memory: nothing of it outlives the power.
+inline constexpr const char* service_folder = "/run/service";
+inline constexpr const char* status_file = "status"; ///< init's text for who asks
+inline constexpr const char* offered_update = "update";
+inline constexpr const char* offered_order = "order"; ///< the verb and the signature, each in a line
+
+/// Of boards that do not say another.
+inline constexpr std::uint16_t service_port = 4848;
+
+struct ServiceFacts {
+    std::uint16_t port = 0;
+    std::expected<PublicKey, std::string> key{};
+    Manifest own{};
+    std::string nonce{};
+};
+
+/// Drawn anew at each start of the box; empty when the kernel has no random numbers, and then no order fits.
+[[nodiscard]] std::string new_nonce();
+
+/// The whole life of the process, in the folder, which is there. Ends when it cannot listen.
+[[noreturn]] void serve_network(const ServiceFacts& facts);
+
+// Line by line, the client first:
+//     status                      -> ok, then the box's text
+//     update, then the file       -> ok or refused, then a sentence
+//     order VERB SIGNATURE        -> ok or refused, then a sentence
+// The box says "tappet-box 1 MACHINE BOARD NONCE" before that, and hangs up afterwards.
+inline constexpr std::string_view service_greeting = "tappet-box 1 ";
+
+} // namespace tappet::box

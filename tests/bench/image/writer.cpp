@@ -1,0 +1,189 @@
+// A PID 1 that writes to a box's disk what init and firmware write there, by their own code and the real
+// kernel's file systems, and says between by marks what a power cut may leave. Then the same with one fsync
+// forgotten, each of them once: that must be found.
+#include "board/box/disk.hpp"
+#include "board/box/modules.hpp"
+#include "board/box/voice.hpp"
+#include "tests/bench/image/settings.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/mount.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace {
+
+std::string forgotten; // path of the file whose fsync does nothing; empty: none
+
+} // namespace
+
+/// This program's own.
+extern "C" int fsync(int file) {
+    std::array<char, 256> path{};
+    const ssize_t length =
+        ::readlink(("/proc/self/fd/" + std::to_string(file)).c_str(), path.data(), path.size());
+    if (length > 0 && forgotten == std::string_view{path.data(), static_cast<std::size_t>(length)}) return 0;
+    return static_cast<int>(::syscall(SYS_fsync, file));
+}
+
+namespace tappet::bench {
+namespace {
+
+const std::string data = "/data";
+
+class Writer {
+public:
+    [[noreturn]] void live() {
+        static_cast<void>(init::mount_kernel_files());
+        voice_.open("ttyS0");
+        if (const auto done = write_all(); !done) voice_.say("the writer gives up: " + done.error());
+        voice_.say("the writer ends");
+        init::power_off();
+    }
+
+private:
+    init::Done write_all() {
+        box::Modules modules{init::read_text("/etc/tappet/modules")};
+        for (int i = 0; i < 100 && !box::find_partition(box::data_partition); ++i) {
+            static_cast<void>(modules.load_what_fits());
+            init::pause_for(std::chrono::milliseconds{50});
+        }
+        const auto partition = box::find_partition(box::data_partition);
+        if (!partition) return std::unexpected(partition.error());
+        const auto mounted = box::mount_data(*partition, data);
+        if (!mounted) return std::unexpected(mounted.error());
+        voice_.say("mounted: " + *mounted);
+        disk_ = ::open(partition->substr(0, partition->find_last_not_of("0123456789") + 1).c_str(),
+                       O_WRONLY | O_DIRECT | O_CLOEXEC);
+        if (auto begun = begin("sound", ""); !begun) return begun;
+        for (int i = 0; i < 20; ++i)
+            if (auto saved = save(); !saved) return saved;
+        if (auto filled = fill(); !filled) return filled;
+        for (int i = 0; i < 3; ++i)
+            if (auto updated = update(); !updated) return updated;
+        for (const char* file : {"/run/slot/tappet.efi", "/run/slot/BGENV.DAT"}) {
+            if (auto begun = begin(file, file); !begun) return begun;
+            if (auto updated = update(); !updated) return updated;
+        }
+        if (auto begun = begin(data, data); !begun) return begun;
+        for (int i = 0; i < 5; ++i)
+            if (auto saved = save(); !saved) return saved;
+        return begin("end", "");
+    }
+
+    init::Done begin(const std::string& phase, const std::string& forgets) {
+        forgotten.clear();
+        ::sync();
+        if (::fsync(disk_) != 0) return init::failed("flush the disk");
+        phase_ = phase;
+        forgotten = forgets;
+        return mark();
+    }
+
+    /// What may be on the disk from here on, up to the next mark.
+    init::Done mark() {
+        alignas(512) static std::array<char, 512> sector;
+        const std::string text = phase_ + " " + std::to_string(settings_.least) + " " +
+                                 std::to_string(settings_.most) + " " + std::to_string(version_.least) + " " +
+                                 std::to_string(version_.most);
+        sector.fill('\0');
+        text.copy(sector.data(), sector.size() - 1);
+        if (::pwrite(disk_, sector.data(), sector.size(), marks_at_byte) !=
+            static_cast<ssize_t>(sector.size()))
+            return init::failed("write a mark");
+        return {};
+    }
+
+    init::Done save() {
+        ++settings_.most;
+        if (auto marked = mark(); !marked) return marked;
+        if (const std::string refused = save_settings(data, settings_.most); !refused.empty())
+            return std::unexpected(refused);
+        settings_.least = settings_.most;
+        write_history(200);
+        return mark();
+    }
+
+    /// What nobody waits for, as a black box: it keeps the journal busy.
+    static bool write_history(std::size_t bytes) {
+        const int file = ::open((data + "/history").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+        const bool written =
+            ::write(file, std::string(bytes, 'h').data(), bytes) == static_cast<ssize_t>(bytes);
+        ::close(file);
+        return written;
+    }
+
+    /// Until nothing more goes onto the partition: then saving is refused, and what was saved stays.
+    init::Done fill() {
+        for (std::size_t piece = 1 << 20; piece != 0; piece /= 2)
+            while (write_history(piece)) {
+            }
+        ::sync();
+        const std::string refused = save_settings(data, settings_.most + 1);
+        voice_.say(refused.empty() ? "a full disk takes settings" : "on a full disk: " + refused);
+        ::unlink((data + "/history").c_str());
+        return save();
+    }
+
+    init::Done update() {
+        ++version_.most;
+        if (auto marked = mark(); !marked) return marked;
+        box::Slots slots;
+        static_cast<void>(slots.look());
+        if (auto installed = slots.install(kernel_of_version(version_.most), "its header"); !installed)
+            return installed;
+        const std::uint32_t before = version_.least;
+        version_.least = version_.most;
+        if (auto marked = mark(); !marked) return marked;
+        version_.least = before; // a cut in the trial goes back
+        if (auto marked = mark(); !marked) return marked;
+        if (auto begun = begin_trial(); !begun) return begun;
+        if (const auto looked = slots.look(); !looked) return looked;
+        if (!slots.on_trial()) return std::unexpected("there is no trial");
+        if (auto ended = slots.end_trial(init::SlotState::good); !ended) return ended;
+        version_.least = version_.most;
+        return mark();
+    }
+
+    /// What the loader does to the slot that it boots for the first time.
+    static init::Done begin_trial() {
+        for (const char* name : box::slot_partitions) {
+            const auto partition = box::find_partition(name);
+            if (!partition) return std::unexpected(partition.error());
+            init::make_folder("/run/loader");
+            if (::mount(partition->c_str(), "/run/loader", "vfat", 0, "codepage=437,iocharset=ascii") != 0)
+                return init::failed("mount " + *partition);
+            const std::string file = "/run/loader/" + std::string{init::boot_state_file};
+            auto state = init::decode(init::read_text(file));
+            if (state && state->state == init::SlotState::installed) {
+                state->state = init::SlotState::testing;
+                static_cast<void>(init::write_text(file, init::encode(*state)));
+            }
+            ::umount("/run/loader");
+        }
+        return {};
+    }
+
+    struct Range {
+        std::uint32_t least = 0;
+        std::uint32_t most = 0;
+    };
+    box::Voice voice_{};
+    std::string phase_{};
+    Range settings_{0, 0};
+    Range version_{1, 1};
+    int disk_ = -1;
+};
+
+} // namespace
+} // namespace tappet::bench
+
+int main() {
+    tappet::bench::Writer writer;
+    writer.live();
+}

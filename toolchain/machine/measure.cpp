@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Threads that wake, threads that load, and the kernel's own tracer.
+#include "toolchain/machine/measure.hpp"
+
+#include "kernel/machine/check/time.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/latency.hpp"
+#include "kernel/os/memory.hpp"
+#include "kernel/os/sleep.hpp"
+#include "kernel/os/system_file.hpp"
+#include "kernel/os/terminal.hpp"
+#include "kernel/os/thread.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <new>
+
+#include <ctime>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/mount.h>
+#include <unistd.h>
+
+namespace tappet {
+
+namespace {
+
+constexpr std::size_t most_processors = 16;
+constexpr Duration wakes_every = 1ms;
+constexpr const char* tracing = "/sys/kernel/tracing";
+/// Longer than it needs to be looked at, shorter than a gap that any deadline here would miss.
+constexpr Duration hardware_gap = 10us;
+
+struct Load {
+    std::array<std::byte, 4 * 1024 * 1024> from, to;
+};
+
+/// What one processor does to who wants to wake on it.
+struct Probe {
+    alignas(64) std::array<std::byte, 64 * 1024> stack{}, load_stack{};
+    os::Thread sleeper{}, loader{};
+    Time until{};
+    const std::atomic<bool>* loaded = nullptr;
+    Load* memory = nullptr; ///< that the loads of several processors write it is as good
+    Duration latest{-1};
+    std::uint64_t wakes = 0;
+
+    static void wake(void* self) noexcept {
+        Probe& own = *static_cast<Probe*>(self);
+        Time due = os::Clock::monotonic() + wakes_every;
+        for (; due < own.until; due += wakes_every) {
+            const std::int64_t ns = to_ns(due);
+            const timespec at{ns / 1'000'000'000, ns % 1'000'000'000};
+            while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) != 0) {
+            }
+            const Duration late = os::Clock::monotonic() - due;
+            own.latest = std::max(own.latest, late);
+            ++own.wakes;
+            if (late > wakes_every) due += late / wakes_every * wakes_every;
+        }
+    }
+    static void load(void* self) noexcept {
+        const Probe& own = *static_cast<Probe*>(self);
+        while (own.loaded->load(std::memory_order_relaxed))
+            std::memcpy(own.memory->to.data(), own.memory->from.data(), own.memory->to.size());
+    }
+};
+
+/// Of the system, not of the firmware's static memory, which is locked while a machine runs. Gone with the
+/// process.
+template <class T>
+T* pages_for() {
+    void* const at = ::mmap(nullptr, sizeof(T), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return at == MAP_FAILED ? nullptr : new (at) T{};
+}
+
+bool put(const char* name, std::string_view text) {
+    const Sentence path{std::string_view{tracing}, "/", std::string_view{name}};
+    const int file = ::open(path.characters, O_WRONLY | O_CLOEXEC);
+    const bool well =
+        file >= 0 && ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    if (file >= 0) ::close(file);
+    return well;
+}
+
+/// The kernel stops all else on a processor and looks at the clock: who takes it then is no program.
+class HardwareLatency {
+public:
+    HardwareLatency() {
+        ::mount("tracefs", tracing, "tracefs", 0, nullptr); // it may be mounted
+        is_on_ = put("current_tracer", "hwlat") &&
+                 put("tracing_thresh", Sentence{hardware_gap / 1us}.view()) &&
+                 put("tracing_max_latency", "0") && put("tracing_on", "1");
+    }
+    ~HardwareLatency() { static_cast<void>(put("current_tracer", "nop")); }
+    HardwareLatency(const HardwareLatency&) = delete;
+    HardwareLatency& operator=(const HardwareLatency&) = delete;
+
+    [[nodiscard]] Sentence tell() const {
+        if (!is_on_) return Sentence{"gaps of the hardware: not measured, this kernel has no tracer hwlat"};
+        const os::SystemFile seen{"", Sentence{std::string_view{tracing}, "/tracing_max_latency"}};
+        return Sentence{"gaps of the hardware: ", seen.text() == "0" ? "none over 10" : seen.text(), " us"};
+    }
+
+private:
+    bool is_on_ = false;
+};
+
+/// As the compiler accepted them.
+struct Claims {
+    std::array<int, max_activities> processors{};
+    std::array<Duration, max_activities> worst_response{};
+
+    void take(const AcceptedMachine& machine) {
+        const MachineView& table = machine.table;
+        for (std::size_t a = 0; a < table.activities.size(); ++a)
+            processors[a] = checks::processor_of(*machine.board, *machine.binding, table.activities[a].name);
+        const auto on_grid = checks::find_on_grid(table, machine.index.activity);
+        for (std::size_t a = 0; a < table.activities.size(); ++a)
+            if (table.activities[a].real_time)
+                worst_response[a] = Duration{
+                    checks::worst_response(table, machine.index.rank, processors, on_grid, a).worst_ns};
+    }
+};
+
+Sentence in_us(Duration time) { return Sentence{time.count() / 1000, " us"}; }
+
+} // namespace
+
+int measure_box(const AcceptedMachine& machine, Duration time) {
+    const auto say = [](const Sentence& line) { os::print(Sentence{line, "\n"}.view()); };
+    auto* const memory = pages_for<Load>();
+    auto* const all = pages_for<std::array<Probe, most_processors>>();
+    auto* const claimed = pages_for<Claims>();
+    if (memory == nullptr || all == nullptr || claimed == nullptr) {
+        say(Sentence{"no memory is left to measure with; stop what else runs"});
+        return 2;
+    }
+    claimed->take(machine);
+    const Claims& claims = *claimed;
+    std::array<Probe, most_processors>& probes = *all;
+    std::array<bool, most_processors> wanted{};
+    for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
+        if (!machine.table.activities[a].real_time) continue;
+        const auto processor = static_cast<std::size_t>(claims.processors[a]);
+        if (processor >= most_processors) {
+            say(Sentence{"processor ", processor, " is none of the first 16, which can be measured"});
+            return 2;
+        }
+        wanted[processor] = true;
+    }
+    const auto awake = os::hold_cpu_dma_latency();
+    if (!awake) say(awake.error());
+    std::atomic<bool> loaded{true};
+    {
+        const HardwareLatency hardware;
+        const Time until = os::Clock::monotonic() + time;
+        for (std::size_t p = 0; p < most_processors; ++p) {
+            if (!wanted[p]) continue;
+            Probe& probe = probes[p];
+            probe.until = until;
+            probe.loaded = &loaded;
+            probe.memory = memory;
+            const auto load = probe.loader.start({.name = "load",
+                                                  .processor = static_cast<int>(p),
+                                                  .stack = probe.load_stack,
+                                                  .body = &Probe::load,
+                                                  .context = &probe});
+            const auto sleep = probe.sleeper.start({.name = "wakes",
+                                                    .fifo_priority = machine.board->highest_priority,
+                                                    .processor = static_cast<int>(p),
+                                                    .stack = probe.stack,
+                                                    .body = &Probe::wake,
+                                                    .context = &probe});
+            if (!load || !sleep) {
+                say(!sleep ? sleep.error() : load.error());
+                loaded = false;
+                return 2;
+            }
+        }
+        for (Probe& probe : probes) probe.sleeper.join();
+        loaded = false;
+        for (Probe& probe : probes) probe.loader.join();
+        say(hardware.tell());
+    }
+    bool holds = true;
+    for (std::size_t p = 0; p < most_processors; ++p)
+        if (wanted[p])
+            say(Sentence{"processor ", p, ": woke at most ", in_us(probes[p].latest), " late, of ",
+                         probes[p].wakes, " times"});
+    for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
+        const ActivityRow& row = machine.table.activities[a];
+        if (!row.real_time) continue;
+        const Duration room = row.deadline() - claims.worst_response[a];
+        const Duration latest = probes[static_cast<std::size_t>(claims.processors[a])].latest;
+        const bool fits = latest <= room;
+        holds = holds && fits;
+        say(Sentence{"activity ", row.name, ": may begin ", in_us(room),
+                     " late beside its worst response of ", in_us(claims.worst_response[a]),
+                     fits ? ": holds" : ": DOES NOT HOLD"});
+    }
+    say(Sentence{holds ? "the box can hold the table's claims"
+                       : "the box cannot hold the table's claims; take a "
+                         "quicker one, or longer deadlines"});
+    return holds ? 0 : 1;
+}
+
+} // namespace tappet
