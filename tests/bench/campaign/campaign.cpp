@@ -214,9 +214,9 @@ public:
         }
         be_fifo(0);
         After after = fault.after;
-        if (after == After::either && machine_->runs() && verdict.lines == WallDuration{}) {
+        if (after == After::either && comes_back()) {
             after = After::untouched;
-            verdict = {};
+            verdict = {}; // its lines needed not be safe
         }
         const std::string end = judge_end(fault, after, machine);
         if (verdict.fault.empty()) verdict.fault = end;
@@ -247,6 +247,18 @@ private:
                 return true;
             },
             20s, 20ms);
+    }
+    /// Until it weaves, perhaps after it stood for a weft that came late; false: it ended, or does neither.
+    bool comes_back() {
+        seen_ = said().size();
+        bool ended = false;
+        return soon(
+                   [&] {
+                       return (ended = !machine_->runs()) ||
+                              said().find("state=weave", seen_) != std::string::npos;
+                   },
+                   20s, 20ms) &&
+               !ended;
     }
     static std::string end_of(const std::string& told) {
         return told.substr(told.size() - std::min<std::size_t>(told.size(), 800));
@@ -286,9 +298,12 @@ private:
         switch (after) {
         case After::either:
         case After::dead: {
+            const bool ended = soon([&] { return !machine_->runs(); }, 20s);
+            if (!ended) machine_->signal(SIGKILL);
             const int code = machine_->wait();
             const std::string told = said();
             forget_machine();
+            if (!ended) return "it does not end: " + end_of(told);
             if (code != fault.code) return "its exit code is " + std::to_string(code);
             if (!told.contains("the guardian wrote the lines"))
                 return "the guardian does not say what it did";
