@@ -22,6 +22,6 @@ inline Sentence draw_picture(const tappet::Plant& room) {
                     "\"; name a file in a folder that exists"};
 }
 
-inline constexpr HostHooks host_hooks{Record::every, &look, &draw_picture};
+inline constexpr HostHooks host_hooks{.look_every = Record::every, .look = &look, .ended = &draw_picture};
 
 } // namespace tappet::car_tracking

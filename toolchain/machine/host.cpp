@@ -47,7 +47,7 @@ public:
             if (!plant_.take_option(option, value, fault)) return fail(unknown(option));
             if (!fault.empty()) return fail(Sentence{"option ", option, ": ", fault});
         }
-        if (!is_virtual_ && hooks_.look != nullptr)
+        if (!is_virtual_ && hooks_.look != nullptr && !hooks_.in_real_time)
             return fail(Sentence{"option --real: this program looks into its machine, which has to wait "
                                  "meanwhile; leave it out"});
         return is_virtual_ ? run_virtual() : run_real();

@@ -6,8 +6,9 @@
 
 namespace tappet {
 
-/// It looks into machine and plant; then it has virtual time only. Not real-time.
+/// It looks into machine and plant, which has to wait meanwhile: under virtual time. Not real-time.
 struct HostHooks {
+    bool in_real_time = false; ///< the program has real time too, in which nobody looks
     Duration look_every{};
     /// Between two moments of the machine, and once when everything stands.
     void (*look)(MachineInstance& machine, Plant& plant, Time now) = nullptr;

@@ -1,8 +1,9 @@
 // Writes the picture as SVG: lines, circles and characters only, so that any browser shows it.
 #include "apps/car_tracking/host/picture.hpp"
 
+#include "toolchain/machine/svg.hpp"
+
 #include <algorithm>
-#include <charconv>
 
 namespace tappet::car_tracking {
 
@@ -34,44 +35,6 @@ constexpr std::array<StateColour, 7> states{{{"Startup", "#9aa5b1"},
 constexpr double error_top = time_top + static_cast<double>(states.size() + 1) * row_height + 25.0;
 constexpr double height = error_top + error_height + 45.0;
 constexpr double width = left + map_width + 230.0;
-
-class Svg {
-public:
-    Svg& raw(std::string_view characters) {
-        text_ += characters;
-        return *this;
-    }
-    Svg& number(double value) {
-        std::array<char, 32> digits{};
-        const auto end =
-            std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, 2);
-        text_.append(digits.data(), end.ptr);
-        return *this;
-    }
-    Svg& at(std::string_view attribute, double value) {
-        return raw(" ").raw(attribute).raw("=\"").number(value).raw("\"");
-    }
-    Svg& rectangle(double x, double y, double w, double h, std::string_view style) {
-        raw("<rect").at("x", x).at("y", y).at("width", w).at("height", h);
-        return raw(" ").raw(style).raw("/>\n");
-    }
-    Svg& line(double x1, double y1, double x2, double y2, std::string_view style) {
-        raw("<line").at("x1", x1).at("y1", y1).at("x2", x2).at("y2", y2);
-        return raw(" ").raw(style).raw("/>\n");
-    }
-    Svg& circle(double x, double y, double radius, std::string_view style) {
-        raw("<circle").at("cx", x).at("cy", y).at("r", radius);
-        return raw(" ").raw(style).raw("/>\n");
-    }
-    Svg& words(double x, double y, std::string_view characters, std::string_view style = {}) {
-        raw("<text").at("x", x).at("y", y);
-        return raw(" ").raw(style).raw(">").raw(characters).raw("</text>\n");
-    }
-    [[nodiscard]] std::string take() { return std::move(text_); }
-
-private:
-    std::string text_;
-};
 
 double map_x(double x) { return left + x * map_scale; }
 double map_y(double y) { return map_top + (map_far - y) * map_scale; }
@@ -202,18 +165,13 @@ void draw_looks(Svg& svg, std::span<const Moment> moments, std::span<const Look>
 } // namespace
 
 std::string picture_of(std::span<const Moment> moments, std::span<const Look> looks) {
-    Svg svg;
-    svg.raw("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\"");
-    svg.at("width", width).at("height", height);
-    svg.raw(" font-family=\"sans-serif\" font-size=\"13\">\n");
-    svg.rectangle(0, 0, width, height, "fill=\"#fff\"");
+    Svg svg{width, height};
     svg.words(left, 35, "A camera tracks a car", "font-size=\"20\"");
     draw_map(svg, moments, looks);
     draw_legend(svg);
     const TimeAxis time{moments};
     draw_states(svg, moments, time);
     draw_looks(svg, moments, looks, time);
-    svg.raw("</svg>\n");
     return svg.take();
 }
 

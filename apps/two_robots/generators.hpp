@@ -1,0 +1,277 @@
+// Generators of both robots: set points of the joints from rest, from rates, from paths and from frames.
+#pragma once
+
+#include "apps/two_robots/follower.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/component/operation_interface.hpp"
+#include "kernel/motion/synchronised.hpp"
+
+#include <cmath>
+
+namespace two_robots {
+
+/// What every Generator of joints has: it begins where the joints are, as fast as they were told to go.
+struct JointGenerator {
+    Input<Joints> positions, sent;
+    Output<Joints> target, rate;
+
+protected:
+    void put(const Joints& next, const Joints& next_rate) noexcept TAPPET_REALTIME {
+        target.write(next);
+        rate.write(next_rate);
+    }
+    template <class Own, class... Facets>
+    static constexpr auto joint_facets(const Facets&... more) {
+        return facets(input<&Own::positions>("positions", "rad", "of the joints"),
+                      input<&Own::sent>("sent", "rad/s", "to the drives in the step before"),
+                      output<&Own::target>("target", "rad", "where the joints shall be next"),
+                      output<&Own::rate>("rate", "rad/s", "as they pass there"), more...);
+    }
+};
+
+/// Wherever the joints are, there they shall be: for brakes that hold them. Real-time, as all that follow.
+struct Idle : JointGenerator {
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME { put(positions.get(), Joints::Zero()); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
+    static constexpr auto interface() { return joint_facets<Idle>(); }
+};
+
+/// Comes to rest from whatever rate, and stays there.
+struct Standing : JointGenerator {
+    Property<double> acceleration{0.4};
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        follower_.start(positions.get(), sent.get());
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        follower_.go(Joints::Zero(), acceleration.get(), to_seconds(cycle.period));
+        put(follower_.target(), follower_.rate());
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
+    static constexpr auto interface() {
+        return joint_facets<Standing>(property<&Standing::acceleration>(
+            "acceleration", "rad/s^2", "with which it brakes", range(0.05, 4.0)));
+    }
+
+private:
+    FrameFollower follower_;
+};
+
+/// Rates that somebody asks for, joint by joint.
+struct Turning : JointGenerator {
+    Property<double> acceleration{0.4};
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        wanted_ = Joints::Zero();
+        rate_ = sent.get();
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const double most_change = acceleration.get() * to_seconds(cycle.period);
+        rate_ += (wanted_ - rate_).cwiseMax(-most_change).cwiseMin(most_change); // each joint for itself
+        put(positions.get(), rate_); // a counter may be set meanwhile: no place is kept
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
+    void turn(int axis, double rad_per_s) noexcept TAPPET_REALTIME {
+        if (axis >= 1 && axis <= 6) wanted_[axis - 1] = std::clamp(rad_per_s, -most, most);
+    }
+    static constexpr auto interface() {
+        return joint_facets<Turning>(
+            property<&Turning::acceleration>("acceleration", "rad/s^2", "from rate to rate",
+                                             range(0.05, 4.0)),
+            method<&Turning::turn>("turn", "joint 1 to 6, at so many rad/s from now on"));
+    }
+
+private:
+    static constexpr double most = 0.4;
+    Joints wanted_ = Joints::Zero(), rate_ = Joints::Zero();
+};
+
+/// From rest to a posture; the joints set off and arrive together.
+struct JointPath : JointGenerator {
+    Property<Joints> ready{Joints::Zero()};
+    Property<double> most_rate{0.3}, most_acceleration{0.3}, most_jerk{2.0};
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        path_ = {};
+        rest_ = positions.get();
+        is_under_way_ = begins_ = false;
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        if (begins_) began_ = cycle.now;
+        begins_ = false;
+        if (!is_under_way_) {
+            put(rest_, Joints::Zero());
+            return;
+        }
+        const auto next = path_.at(cycle.now - began_);
+        put(next.position, next.velocity);
+        rest_ = next.position;
+        if (to_seconds(cycle.now - began_) < path_.duration_s()) return;
+        const Joints missing = positions.get() - rest_;
+        is_under_way_ = missing.cwiseAbs().maxCoeff() > close;
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        is_under_way_ = false;
+        rate.write(Joints::Zero());
+    }
+    bool go(double j1, double j2, double j3, double j4, double j5, double j6) noexcept TAPPET_REALTIME {
+        return plan(Joints{j1, j2, j3, j4, j5, j6});
+    }
+    CommandProgress gone(double, double, double, double, double, double) noexcept TAPPET_REALTIME {
+        return arrived();
+    }
+    bool go_ready() noexcept TAPPET_REALTIME { return plan(ready.get()); }
+    CommandProgress arrived() noexcept TAPPET_REALTIME {
+        return is_under_way_ ? CommandProgress::executing : CommandProgress::done;
+    }
+    bool is_ready() noexcept TAPPET_REALTIME {
+        return (positions.get() - ready.get()).cwiseAbs().maxCoeff() < 5.0 * close;
+    }
+    // clang-format off
+    static constexpr auto interface() {
+        return joint_facets<JointPath>(
+            method<&JointPath::is_ready>("is_ready", "the joints are where work begins"),
+            command<&JointPath::go, &JointPath::gone>("go", "to these angles, rad; rejected on the way elsewhere", for_people(Role::machine_operator)),
+            command<&JointPath::go_ready, &JointPath::arrived>("go_ready", "to where work begins"),
+            property<&JointPath::ready>("ready", "rad", "where work begins", range(-6.3, 6.3)),
+            property<&JointPath::most_rate>("most_rate", "rad/s", "of each joint", range(0.01, 0.4)),
+            property<&JointPath::most_acceleration>("most_acceleration", "rad/s^2", "of each joint", range(0.05, 4.0)),
+            property<&JointPath::most_jerk>("most_jerk", "rad/s^3", "of each joint", range(0.1, 100.0)));
+    }
+    // clang-format on
+
+private:
+    static constexpr double close = 1e-3; // rad
+    using Path = motion::Synchronised<6>;
+
+    bool plan(const Joints& to) noexcept TAPPET_REALTIME {
+        Path::Limits limits;
+        limits.fill({most_rate.get(), most_acceleration.get(), most_jerk.get()});
+        const auto planned = Path::plan(rest_, to, limits);
+        if (is_under_way_ || !planned) return false;
+        path_ = *planned;
+        return is_under_way_ = begins_ = true;
+    }
+
+    Path path_{};
+    Joints rest_ = Joints::Zero();
+    Time began_{};
+    bool is_under_way_ = false, begins_ = false;
+};
+
+/// What every Generator of frames has beside.
+struct FrameGenerator : JointGenerator {
+    MethodCall<Posture(const SixNumbers&)> posture;
+    Property<double> gain{20.0}, most_rate{0.4}, most_acceleration{4.0};
+
+protected:
+    void begin() noexcept TAPPET_REALTIME { follower_.start(positions.get(), sent.get()); }
+    void follow(const FlangeCommand& command, const Cycle& cycle) noexcept TAPPET_REALTIME {
+        follower_.step(posture, command, {gain.get(), most_rate.get(), most_acceleration.get()},
+                       to_seconds(cycle.period));
+        put(follower_.target(), follower_.rate());
+    }
+    template <class Own, class... Facets>
+    static constexpr auto frame_facets(const Facets&... more) {
+        return joint_facets<Own>(
+            calls<&Own::posture>("posture", "of the flange for some joints"),
+            property<&Own::gain>("gain", "1/s", "on what is missing of the frame", range(0.0, 50.0)),
+            property<&Own::most_rate>("most_rate", "rad/s", "of each joint", range(0.01, 0.4)),
+            property<&Own::most_acceleration>("most_acceleration", "rad/s^2", "of each joint",
+                                              range(0.05, 10.0)),
+            more...);
+    }
+
+    FrameFollower follower_;
+};
+
+/// Leads the flange where the level above commands it.
+struct Cartesian : FrameGenerator {
+    Input<FlangeCommand> command;
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        begin();
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME { follow(command.get(), cycle); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
+    static constexpr auto interface() {
+        return frame_facets<Cartesian>(
+            input<&Cartesian::command>("command", "", "where the flange shall be, and its twist there"));
+    }
+};
+
+/// Twists of the flange that somebody asks for, along the axes of its base.
+struct Twisting : FrameGenerator {
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        wanted_ = {};
+        begin();
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        FlangeCommand command{posture(SixNumbers{follower_.target()}).frame(), wanted_};
+        follow(command, cycle);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
+    void twist(double x, double y, double z, double rx, double ry, double rz) noexcept TAPPET_REALTIME {
+        wanted_ = {{x, y, z}, {rx, ry, rz}};
+    }
+    static constexpr auto interface() {
+        return frame_facets<Twisting>(method<&Twisting::twist>(
+            "twist", "of the flange from now on: m/s, rad/s, along the base's axes"));
+    }
+
+private:
+    FlangeTwist wanted_{};
+};
+
+/// A body that breathes: the flange goes to and fro about where it began.
+struct BodySimulation : FrameGenerator {
+    Property<double> stroke{0.010}, frequency{0.25};
+    Property<Eigen::Vector3d> direction{Eigen::Vector3d{0, 0, 1}};
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        begin();
+        centre_ = posture(SixNumbers{positions.get()}).frame();
+        phase_ = 0.0;
+        swell_ = 0.0;
+        step(cycle);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        const double h = to_seconds(cycle.period);
+        const double turn = 2.0 * std::numbers::pi * frequency.get();
+        phase_ += turn * h;
+        if (phase_ > 2.0 * std::numbers::pi) phase_ -= 2.0 * std::numbers::pi;
+        swell_ = std::min(1.0, swell_ + h / swelling_s); // a body does not begin at full stroke
+        const auto [sine, cosine] = motion::sine_cosine(phase_);
+        const double reach = 0.5 * stroke.get() * swell_;
+        FlangeCommand command{.frame = centre_};
+        const Eigen::Vector3d along = direction.get() / std::sqrt(direction.get().dot(direction.get()));
+        command.frame.position += reach * sine * along;
+        command.twist.linear = reach * turn * cosine * along;
+        follow(command, cycle);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
+    static constexpr auto interface() {
+        return frame_facets<BodySimulation>(
+            property<&BodySimulation::stroke>("stroke", "m", "from end to end", range(0.0, 0.010)),
+            property<&BodySimulation::frequency>("frequency", "Hz", "of the breath", range(0.05, 0.5)),
+            property<&BodySimulation::direction>("direction", "", "along the base's axes", range(-1.0, 1.0)));
+    }
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        const Eigen::Vector3d& wanted = proposal.of(direction);
+        if (wanted.dot(wanted) > 0.01) return {};
+        return Sentence{"a body that moves goes somewhere; write a direction that is not nought"};
+    }
+
+private:
+    static constexpr double swelling_s = 4.0;
+    FlangeFrame centre_{};
+    double phase_ = 0.0, swell_ = 0.0;
+};
+
+} // namespace two_robots

@@ -1,0 +1,155 @@
+// The arm that operates, the camera, and the other robot with the body: that machine runs in here, at the
+// same time.
+#pragma once
+
+#include "apps/two_robots/arm_plant.hpp"
+#include "apps/two_robots/cell.hpp"
+#include "apps/two_robots/host/record.hpp"
+#include "apps/two_robots/k160/plant.hpp"
+#include "apps/two_robots/k361/machine.hpp"
+#include "toolchain/machine/host.hpp"
+
+#include <string>
+#include <vector>
+
+namespace two_robots::k160 {
+
+AcceptedMachine on_host();
+
+} // namespace two_robots::k160
+
+namespace two_robots::k361 {
+
+class Plant final : public ArmPlant {
+public:
+    static constexpr double tool_length = 0.40;
+    static constexpr Duration noted_every = 10ms;
+
+    explicit Plant(std::uint64_t seed) : Plant{seed, Random{seed ^ 0x361}} {}
+    ~Plant() override {
+        if (body_robot_runs_) body_robot_.stop();
+    }
+
+    Time move(Time now) override {
+        move_arm(now);
+        move_body(now);
+        const BodyFrame body = body_held_by(body_arm_.joints());
+        camera.look(now, body);
+        judge(tip_in_body(body, joints(), tool_length));
+        now_.body = body.position;
+        if (works_by_itself_) work(now);
+        return now + 1ms;
+    }
+    [[nodiscard]] Duration usual_time() const override { return 120s; }
+    [[nodiscard]] Sentence fault() const override {
+        if (beyond() > 0.0) return Sentence{"a joint was turned beyond its end"};
+        if (hit_) return Sentence{"the tip hit the chest beside the hole"};
+        if (worst_beside_ > hole_radius) return Sentence{"the shaft left the hole"};
+        return body_arm_.fault();
+    }
+    [[nodiscard]] std::uint64_t digest() const override {
+        Digest digest;
+        digest.add(ArmPlant::digest());
+        digest.add(body_arm_.digest());
+        digest.add(digest_of(body_robot_.instance(), body_arm_));
+        return digest.value();
+    }
+    void report(JsonText& json) const override {
+        json.field("worst_beside_hole_mm", worst_beside_ * 1e3);
+        json.field("tip_x_mm", now_.tip.x() * 1e3).field("tip_y_mm", now_.tip.y() * 1e3);
+        json.field("tip_z_mm", now_.tip.z() * 1e3).field("body_z_mm", now_.body.z() * 1e3);
+    }
+    [[nodiscard]] std::span<const ProvidedDevice> devices() override { return devices_; }
+
+    void leave_alone() { works_by_itself_ = false; }
+    void forget_worst_shaft() { worst_beside_ = 0.0; }
+    /// As it is now, without the states.
+    [[nodiscard]] const Moment& now() const { return now_; }
+    [[nodiscard]] double worst_beside_hole() const { return worst_beside_; } ///< m
+    /// For the picture, with the states that the robots are in.
+    void note(std::string_view tool_robot, std::string_view body_robot) {
+        moments_.push_back(now_);
+        moments_.back().at_s = to_seconds(elapsed());
+        moments_.back().tool_robot = tool_robot;
+        moments_.back().body_robot = body_robot;
+    }
+    [[nodiscard]] const std::vector<Moment>& moments() const { return moments_; }
+    [[nodiscard]] VirtualRun& body_robot() { return body_robot_; }
+    [[nodiscard]] k160::Plant& body_arm() { return body_arm_; }
+
+    [[nodiscard]] std::string_view usage() const override {
+        return "  --picture FILE      draws the run as SVG: the tip's path, the shaft in the hole, the body, "
+               "the states\n";
+    }
+    bool take_option(std::string_view option, std::string_view value, Sentence&) override {
+        if (option == "--picture") picture = value;
+        return option == "--picture";
+    }
+
+    SimulatedCamera camera;
+    std::string picture{}; ///< the file to write; empty: none
+
+private:
+    Plant(std::uint64_t seed, Random place)
+        : ArmPlant{seed, ArmFacts{counts_per_rad, volts_per_rate, switch_angles, lowest, highest, true},
+                   [&] {
+                       Joints at;
+                       for (int i = 0; i < 6; ++i) at[i] = 0.6 * (place.unit() - 0.5);
+                       return at;
+                   }()},
+          camera{seed},
+          body_arm_{seed},
+          body_robot_{k160::on_host(), body_arm_, seed} {}
+
+    /// From where it passes the chest downwards to where it comes out again the shaft is in the hole.
+    void judge(const BodyTip& tip) {
+        const Eigen::Vector3d& at = now_.tip = tip.position;
+        const double beside_axis = std::sqrt(at.x() * at.x() + at.y() * at.y());
+        const bool is_below = at.z() < 0.0;
+        if (is_below && was_above_ && beside_axis < chest_radius) {
+            now_.is_inside = beside_axis < hole_radius;
+            hit_ |= !now_.is_inside;
+        }
+        if (!is_below) now_.is_inside = false;
+        was_above_ = !is_below;
+        now_.beside_hole = now_.is_inside ? shaft_beside_hole(tip) : 0.0;
+        worst_beside_ = std::max(worst_beside_, now_.beside_hole);
+    }
+    void move_body(Time) {
+        if (!body_robot_runs_) {
+            const auto started = body_robot_.start();
+            TAPPET_CONTRACT(started.has_value(), Contract::precondition, 0);
+            body_robot_runs_ = true;
+        }
+        body_robot_.run_for(elapsed() - moved_);
+        moved_ = elapsed();
+    }
+    /// Ready as soon as there is power; work when the body lies there and breathes.
+    void work(Time now) {
+        const Duration t = elapsed();
+        if (t > 100ms && t < 200ms) press("start", now + 100ms);
+        if (!stands()) stood_since_ = now;
+        if (now - stood_since_ < 1s || t < 2s) return;
+        stood_since_ = now;
+        if (!ready_pressed_) press("ready", now + 100ms);
+        const bool breathes =
+            body_robot_.instance().find<ChainSwitch>("mode")->chain.last().view() == "simulate";
+        if (ready_pressed_ && breathes) press("work", now + 100ms);
+        ready_pressed_ = true;
+    }
+
+    k160::Plant body_arm_;
+    mutable VirtualRun body_robot_;
+    bool body_robot_runs_ = false, works_by_itself_ = true, ready_pressed_ = false;
+    Duration moved_{};
+    Time stood_since_{};
+    static constexpr double chest_radius = 0.15; // m
+    bool was_above_ = false, hit_ = false;
+    Moment now_{};
+    double worst_beside_ = 0.0;
+    std::vector<Moment> moments_;
+    std::array<ProvidedDevice, 1> devices_{
+        {{type_id<Datagrams>, "camera-link", static_cast<Datagrams*>(&camera)}}};
+};
+
+} // namespace two_robots::k361

@@ -1,0 +1,106 @@
+// The arms as tables, and the process component that answers what the data flow asks of them (thesis
+// fig. 3.10 a).
+#pragma once
+
+#include "apps/two_robots/values.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/component/operation_interface.hpp"
+#include "kernel/motion/closed_form.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace two_robots {
+
+// clang-format off
+/// Rz(q1) Tz(l1) Rx(-q2) Tz(l2) Rx(-q3) Tz(l3) Rz(q4) Rx(-q5) Rz(q6) Tz(l6): how KUKA's 160 and, with the wrist below, its
+/// 361 are built; lengths in m.
+constexpr motion::Chain<Base, Flange, 6> kuka_arm(double l1, double l2, double l3, double l6) noexcept {
+    return {{{
+        {.alpha_deg = 90, .d_m = l1, .theta_deg = 90},
+        {.a_m = l2, .theta_deg = 90, .reversed = true},
+        {.alpha_deg = -90, .theta_deg = -90, .reversed = true},
+        {.alpha_deg = 90, .d_m = l3},
+        {.alpha_deg = -90, .reversed = true},
+        {.d_m = l6, .theta_deg = -90},
+    }}};
+}
+inline constexpr auto k361_arm = kuka_arm(1.020, 0.480, 0.645, 0.120);
+inline constexpr auto k160_arm = kuka_arm(0.900, 0.970, 1.080, 0.180);
+// clang-format on
+
+/// A wrist whose three axes meet at right angles: angles of the table are those of the joints.
+struct PlainWrist {
+    static Joints angles(const Joints& q) noexcept TAPPET_REALTIME { return q; }
+    static Joints joints(const Joints& angles) noexcept TAPPET_REALTIME { return angles; }
+    static void columns(const Joints&, Eigen::Matrix<double, 6, 6>&) noexcept TAPPET_REALTIME {}
+};
+
+/// That of the K361: joint 5 turns two cones of 30 degrees against each other. It amounts to a plain wrist
+/// bent by `th` that joints 4 and 6 see turned by `al`.
+struct ConeWrist {
+    static Joints angles(const Joints& q) noexcept TAPPET_REALTIME {
+        const auto [sine, cosine] = motion::sine_cosine(0.5 * q[4]);
+        const double al = 0.5 * std::numbers::pi - std::atan2(std::numbers::sqrt3 * sine, 2.0 * cosine);
+        Joints angles = q;
+        angles[3] += al;
+        angles[4] = 4.0 * std::asin(0.5 * sine);
+        angles[5] -= al;
+        return angles;
+    }
+    /// A bend of more than 120 degrees it cannot make: it makes those.
+    static Joints joints(const Joints& angles) noexcept TAPPET_REALTIME {
+        const double sine = std::min(std::max(2.0 * motion::sine_cosine(0.25 * angles[4]).sine, -1.0), 1.0);
+        const double cosine = std::sqrt(1.0 - sine * sine);
+        const double al = 0.5 * std::numbers::pi - std::atan2(std::numbers::sqrt3 * sine, 2.0 * cosine);
+        Joints q = angles;
+        q[3] -= al;
+        q[4] = 2.0 * std::asin(sine);
+        q[5] += al;
+        return q;
+    }
+    /// From how the flange moves with the angles to how it moves with the joints.
+    static void columns(const Joints& q, Eigen::Matrix<double, 6, 6>& jacobian) noexcept TAPPET_REALTIME {
+        const double cosine = motion::sine_cosine(q[4]).cosine;
+        const double half = motion::sine_cosine(0.5 * q[4]).cosine;
+        const double of_al = -2.0 * std::numbers::sqrt3 / (7.0 + cosine);
+        const double of_th = 2.0 * std::numbers::sqrt2 * half / std::sqrt(7.0 + cosine);
+        jacobian.col(4) = of_th * jacobian.col(4) + of_al * (jacobian.col(3) - jacobian.col(5));
+    }
+};
+
+struct JointSolution {
+    bool found = false;
+    SixNumbers joints{};
+};
+
+/// Process component of an arm: where its flange is for some joints, and the joints for a place. Real-time.
+template <const auto& arm, class Wrist>
+struct Kinematics {
+    Posture posture(const SixNumbers& joints) noexcept TAPPET_REALTIME {
+        const Joints q = joints.joints();
+        auto pose = motion::forward_with_jacobian(motion::folded<arm>, Wrist::angles(q));
+        Wrist::columns(q, pose.jacobian.matrix);
+        Posture posture{.flange = FrameNumbers{pose.frame}};
+        Eigen::Map<Eigen::Matrix<double, 6, 6>>{posture.jacobian_numbers.data()} = pose.jacobian.matrix;
+        return posture;
+    }
+    /// The nearest one to `near`, without a look at where the joints end.
+    JointSolution solve(const FrameNumbers& flange, const SixNumbers& near) noexcept TAPPET_REALTIME {
+        const Joints from = Wrist::angles(near.joints());
+        const auto all = motion::closed_form(motion::folded<arm>, flange.frame(), from);
+        const auto best = motion::nearest<6>(all, from);
+        if (!best) return {};
+        return {true, SixNumbers{Wrist::joints(*best)}};
+    }
+    static constexpr auto interface() {
+        return facets(method<&Kinematics::posture>("posture", "of the flange for these joints", any_thread),
+                      method<&Kinematics::solve>("solve", "the joints for a place of the flange, near others",
+                                                 any_thread));
+    }
+};
+
+using K361Kinematics = Kinematics<k361_arm, ConeWrist>;
+using K160Kinematics = Kinematics<k160_arm, PlainWrist>;
+
+} // namespace two_robots

@@ -1,0 +1,45 @@
+// Controller of the tool's loop: what the tip shall do in the body's frame, superimposed on what the body
+// does, is what the flange is commanded (thesis fig. 3.11).
+#pragma once
+
+#include "apps/two_robots/tool/replay.hpp"
+
+namespace two_robots {
+
+/// Writes nothing while it does not know the body: whom it commands falls back. Real-time.
+struct Superposition {
+    Input<TipSetPoint> set_point;
+    Input<BodyModel> model;
+    Output<FlangeCommand> command;
+    Property<double> tool_length{0.40};
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!model.good() || !set_point.good()) return;
+        const BodyModel body = model.get();
+        const TipSetPoint tip = set_point.get();
+        const FlangeTip tool = tip_of_tool(tool_length.get());
+        FlangeCommand next;
+        next.frame = body.frame * tip.frame * inverse(tool);
+        const Eigen::Matrix3d& turned = body.frame.rotation;
+        const Eigen::Vector3d at_tip = turned * tip.frame.position;
+        const Eigen::Vector3d to_flange = next.frame.position - body.frame.position - at_tip;
+        next.twist.angular = body.twist.angular + turned * tip.twist.angular;
+        next.twist.linear = body.twist.linear + body.twist.angular.cross(at_tip) + turned * tip.twist.linear +
+                            next.twist.angular.cross(to_flange);
+        command.write(next);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        FlangeCommand last = command.last();
+        last.twist = {};
+        command.write(last);
+    }
+    static constexpr auto interface() {
+        return facets(input<&Superposition::set_point>("set_point", "", "of the tip in the body's frame"),
+                      input<&Superposition::model>("model", "", "where the body is"),
+                      output<&Superposition::command>("command", "", "of the flange, and its twist"),
+                      property<&Superposition::tool_length>("tool_length", "m", "from flange to tip",
+                                                            range(0.05, 1.0)));
+    }
+};
+
+} // namespace two_robots
