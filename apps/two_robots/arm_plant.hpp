@@ -28,6 +28,7 @@ class ArmPlant : public Plant {
 public:
     static constexpr double drive_lag_s = 0.010, brake_lag_s = 0.005;
     static constexpr double repeatability = 0.5e-3; ///< rad: of a switch, either way
+    static constexpr double to_buffers = 0.01; ///< rad: from where a joint may go to where it hits something
 
     ArmPlant(std::uint64_t seed, const ArmFacts& facts, const Joints& at)
         : facts_{facts}, random_{seed}, at_{at} {
@@ -46,7 +47,7 @@ public:
     [[nodiscard]] double worst_change() const { return worst_change_; } ///< rad/s2 of what was asked
     [[nodiscard]] bool brakes_are_on() const { return !released_; }
     [[nodiscard]] bool stands() const { return rate_.cwiseAbs().maxCoeff() < 1e-4; }
-    /// Where a joint was beyond its ends, rad; 0: nowhere.
+    /// How far a joint pressed into a buffer, rad; 0: none.
     [[nodiscard]] double beyond() const { return beyond_; }
 
     // ---- for tests and stories: what people and faults do
@@ -80,7 +81,8 @@ protected:
                 wanted * h + (before - wanted) * (1.0 - keeps) * (released_ ? drive_lag_s : brake_lag_s);
             worst_rate_[i] = std::max(worst_rate_[i], std::abs(rate_[i]));
             if (h > 0.0) worst_change_ = std::max(worst_change_, std::abs(rate_[i] - before) / h);
-            beyond_ = std::max({beyond_, facts_.lowest[at] - at_[i], at_[i] - facts_.highest[at]});
+            beyond_ = std::max(
+                {beyond_, facts_.lowest[at] - to_buffers - at_[i], at_[i] - facts_.highest[at] - to_buffers});
         }
         give_encoders();
         give_switches();

@@ -1,0 +1,132 @@
+// The robot that holds the body, with its plant under virtual time: homing, states, set points, ends of
+// joints.
+#include "toolchain/machine/test.hpp"
+
+namespace two_robots::k160 {
+namespace {
+
+struct K160 : MachineTest, testing::WithParamInterface<std::uint64_t> {
+    K160() : MachineTest{GetParam()} {}
+    template <class Component>
+    Component& of(std::string_view name) {
+        return *run.instance().find<Component>(name);
+    }
+    [[nodiscard]] std::string_view state() {
+        const auto path = run.instance().state_machine_of("robot")->path();
+        return path.empty() ? std::string_view{} : path[0];
+    }
+    bool comes_to(std::string_view wanted, Duration within = 60s) {
+        return run.run_until([&] { return state() == wanted; }, within);
+    }
+    void runs(std::string_view chain) {
+        run.run_for(50ms); // its state has been entered
+        ScriptText name;
+        ASSERT_TRUE(name.assign(chain));
+        ASSERT_TRUE(of<ChainSwitch>("mode").run(name));
+        ASSERT_TRUE(run.run_until([&] { return of<ChainSwitch>("mode").chain.last().view() == chain; }, 1s));
+    }
+};
+
+TEST_P(K160, goes_from_power_on_through_homing_to_the_breath) {
+    std::vector<std::string> entered;
+    run.judge_by([&](Time) {
+        if (const auto now = state(); !now.empty() && (entered.empty() || entered.back() != now))
+            entered.emplace_back(now);
+    });
+    ASSERT_TRUE(comes_to("Simulating", 120s)) << state();
+    run.run_for(10ms);
+    const std::vector<std::string> wanted{"Off",    "PoweredOn", "Homing",    "Waiting",
+                                          "Moving", "Waiting",   "Simulating"};
+    EXPECT_EQ(entered, wanted);
+    run.run_for(10s);
+    EXPECT_EQ(state(), "Simulating");
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+}
+
+TEST_P(K160, knows_its_joints_within_what_a_switch_repeats) {
+    ASSERT_TRUE(comes_to("Waiting")) << state();
+    run.run_for(100ms);
+    const Joints error = of<JointSensor>("joints").positions.last() - plant.joints();
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error.transpose();
+    EXPECT_LT(of<JointSensor>("joints").positions.last().cwiseAbs().maxCoeff(), 2e-3) << "it is at zero";
+}
+
+TEST_P(K160, is_safe_when_a_joint_is_jammed) {
+    const int axis = static_cast<int>(1 + GetParam() % 6);
+    plant.jam(axis);
+    ASSERT_TRUE(comes_to("Faulted", 10s)) << state();
+    run.run_for(100ms);
+    EXPECT_TRUE(plant.brakes_are_on());
+    EXPECT_EQ(of<JointEffector>("drives").sent.last(), Joints{Joints::Zero()});
+    EXPECT_TRUE(plant.stands());
+    EXPECT_FALSE(of<Homing>("homing").homed.last());
+    plant.jam(0); // it was mended, and somebody starts it again
+    plant.press("start", run.now() + 200ms);
+    EXPECT_TRUE(comes_to("Waiting")) << state();
+}
+
+TEST_P(K160, stops_looking_for_its_zeros_when_stop_is_pressed) {
+    ASSERT_TRUE(comes_to("Homing"));
+    plant.leave_alone();
+    run.run_for(Duration{137ms} * static_cast<int>(GetParam()));
+    plant.press("stop", run.now() + 100ms);
+    ASSERT_TRUE(comes_to("Faulted", 1s));
+    EXPECT_TRUE(run.run_until([this] { return plant.stands() && plant.brakes_are_on(); }, 1s));
+}
+
+TEST_P(K160, does_not_breathe_where_it_is_not_ready) {
+    plant.leave_alone();
+    plant.press("start", run.now() + 200ms);
+    ASSERT_TRUE(comes_to("Waiting"));
+    plant.press("work", run.now() + 200ms);
+    run.run_for(1s);
+    EXPECT_EQ(state(), "Waiting");
+}
+
+// Thesis 3.4.3: PID and feed-forward. The rate that is known beforehand leaves less to the error.
+TEST_P(K160, follows_a_ramp_closer_with_feed_forward_and_both_come_to_the_step) {
+    plant.leave_alone();
+    plant.press("start", run.now() + 200ms);
+    ASSERT_TRUE(comes_to("Waiting"));
+    const auto worst_on_the_way = [&](std::string_view chain, double to) {
+        runs(chain);
+        JointPath& path = of<JointPath>("path");
+        EXPECT_TRUE(path.go(to, to, -to, to, to, to));
+        double worst = 0.0;
+        for (int i = 0; i < 4000; ++i) {
+            run.run_for(2ms);
+            worst = std::max(
+                worst,
+                (path.target.last() - of<JointSensor>("joints").positions.last()).cwiseAbs().maxCoeff());
+        }
+        EXPECT_LT((path.target.last() - of<JointSensor>("joints").positions.last()).cwiseAbs().maxCoeff(),
+                  1e-3)
+            << chain;
+        return worst;
+    };
+    const double by_feed_forward = worst_on_the_way("path", 0.6);
+    const double by_error = worst_on_the_way("path_pid", -0.3);
+    EXPECT_LT(by_feed_forward, 0.01);
+    EXPECT_GT(by_error, 0.05) << "the rate over the gain";
+}
+
+TEST_P(K160, never_turns_faster_or_further_than_it_may) {
+    plant.leave_alone();
+    plant.press("start", run.now() + 200ms);
+    ASSERT_TRUE(comes_to("Waiting"));
+    runs("path");
+    ASSERT_TRUE(of<JointPath>("path").go(9, -9, 9, -9, 9, -9)); // far beyond the ends
+    run.run_for(30s);
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+    EXPECT_LE(plant.worst_rates().maxCoeff(), 0.41);
+    for (int i = 0; i < 6; ++i)
+        EXPECT_LT(std::min(std::abs(plant.joints()[i] - highest[static_cast<std::size_t>(i)]),
+                           std::abs(plant.joints()[i] - lowest[static_cast<std::size_t>(i)])),
+                  0.02)
+            << "it went as far as it may, joint " << i + 1;
+}
+
+INSTANTIATE_TEST_SUITE_P(seeds, K160, testing::Range<std::uint64_t>(1, 13));
+
+} // namespace
+} // namespace two_robots::k160

@@ -1,0 +1,190 @@
+// Both robots under virtual time (thesis 3.4): one moves the body, the other one operates through the hole in
+// it.
+#include "toolchain/machine/test.hpp"
+
+#include <gmock/gmock.h>
+
+namespace two_robots::k361 {
+namespace {
+
+struct Operation : MachineTest, testing::WithParamInterface<std::uint64_t> {
+    Operation() : MachineTest{GetParam()} {}
+    template <class Component>
+    Component& of(std::string_view name) {
+        return *run.instance().find<Component>(name);
+    }
+    [[nodiscard]] std::string_view state() {
+        const auto path = run.instance().state_machine_of("robot")->path();
+        return path.empty() ? std::string_view{} : path[0];
+    }
+    bool comes_to(std::string_view wanted, Duration within = 120s) {
+        return run.run_until([&] { return state() == wanted; }, within);
+    }
+    /// Of the tip from the path that was recorded, across and along the shaft, m.
+    [[nodiscard]] double beside_path() const {
+        const Eigen::Vector3d& tip = plant.now().tip;
+        const double round = std::sqrt(tip.x() * tip.x() + tip.y() * tip.y()) - recorded_radius;
+        return std::sqrt(round * round + (tip.z() + 0.15) * (tip.z() + 0.15));
+    }
+    double worst_beside_path(Duration time) {
+        double worst = 0.0;
+        const Time end = run.now() + time;
+        while (run.now() < end) {
+            run.run_for(5ms);
+            worst = std::max(worst, beside_path());
+        }
+        return worst;
+    }
+    /// The body goes across the hole, at its full stroke.
+    void sways() {
+        auto& breath = *plant.body_robot().instance().find<BodySimulation>("breath");
+        breath.direction.set(Eigen::Vector3d{0, 1, 0});
+    }
+};
+
+TEST_P(Operation, leads_the_tip_along_its_path_in_a_body_that_moves) {
+    sways();
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    run.run_for(4s);
+    plant.forget_worst_shaft();
+    EXPECT_LT(worst_beside_path(16s), 0.4e-3);
+    EXPECT_LT(plant.worst_beside_hole(), 0.3e-3);
+    EXPECT_GT(of<Replay>("replay").rounds.last(), 0);
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+}
+
+TEST_P(Operation, needs_an_estimate_of_now_because_the_camera_tells_the_past) {
+    sways();
+    of<BodyEstimator>("body").predicts.set(false);
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    run.run_for(4s);
+    plant.forget_worst_shaft();
+    EXPECT_GT(worst_beside_path(16s), 0.8e-3);
+    EXPECT_GT(plant.worst_beside_hole(), 0.8e-3);
+}
+
+TEST_P(Operation, knows_where_the_body_is) {
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    double worst = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+        run.run_for(2ms);
+        worst = std::max(worst,
+                         (of<BodyEstimator>("body").model.last().frame.position - plant.now().body).norm());
+    }
+    EXPECT_LT(worst, 0.3e-3);
+    const auto& camera = of<LedCamera>("camera");
+    EXPECT_GT(camera.lost.last(), 0);
+    EXPECT_GT(camera.invalid.last() + camera.late.last(), 0);
+}
+
+TEST_P(Operation, goes_on_while_one_led_is_hidden) {
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    plant.camera.faults.hidden_led = static_cast<int>(GetParam() % 6);
+    run.run_for(5s);
+    EXPECT_EQ(state(), "Operating");
+    EXPECT_LT(worst_beside_path(5s), 0.5e-3);
+}
+
+TEST_P(Operation, stands_still_in_the_hole_when_the_body_is_not_seen_and_goes_on_when_it_is) {
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    run.run_for(Duration{531ms} * static_cast<int>(GetParam()));
+    plant.forget_worst();
+    plant.camera.faults.covered = true;
+    const Time covered = run.now();
+    ASSERT_TRUE(comes_to("Holding", 1s)) << state();
+    EXPECT_LT(run.now() - covered, 400ms) << "300 ms after the last exposure";
+    ASSERT_TRUE(run.run_until([this] { return plant.stands(); }, 2s));
+    run.run_for(9s); // more than two breaths
+    EXPECT_TRUE(plant.now().is_inside);
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+    plant.camera.faults.covered = false;
+    run.run_for(1s);
+    plant.press("work", run.now() + 100ms);
+    ASSERT_TRUE(comes_to("Operating", 30s)) << state();
+    run.run_for(2s);
+    EXPECT_LT(worst_beside_path(5s), 0.5e-3);
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+    EXPECT_LT(plant.worst_rates().maxCoeff(), 0.41);
+}
+
+TEST_P(Operation, never_leaves_the_hole_when_the_other_robot_stops_at_any_phase) {
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    run.run_for(Duration{317ms} * static_cast<int>(GetParam()));
+    plant.forget_worst();
+    plant.forget_worst_shaft();
+    plant.body_arm().leave_alone();
+    plant.body_arm().press("stop", run.now() + 100ms);
+    run.run_for(5s);
+    EXPECT_EQ(state(), "Operating");
+    EXPECT_LT(plant.worst_beside_hole(), 2e-3);
+    EXPECT_LT(plant.worst_change(), 4.0) << "rad/s2";
+    EXPECT_LT(worst_beside_path(5s), 0.4e-3) << "the body lies still";
+}
+
+TEST_P(Operation, comes_out_of_the_hole_when_it_is_told_to_stop) {
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    run.run_for(Duration{731ms} * static_cast<int>(GetParam()));
+    plant.leave_alone();
+    plant.press("stop", run.now() + 100ms);
+    ASSERT_TRUE(comes_to("Waiting", 30s)) << state();
+    EXPECT_FALSE(plant.now().is_inside);
+    EXPECT_GT(plant.now().tip.z(), 0.03);
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+}
+
+// Thesis 3.4.5: switching from joint space to Cartesian space looks atomic.
+TEST_P(Operation, is_handed_over_between_joints_and_frames_without_a_jump) {
+    plant.leave_alone();
+    plant.press("start", run.now() + 200ms);
+    ASSERT_TRUE(comes_to("Waiting", 2s)) << state();
+    run.run_for(50ms); // it has been entered
+    Random random{GetParam()};
+    ChainSwitch& mode = of<ChainSwitch>("mode");
+    auto& drives = of<JointEffector>("drives");
+    Joints before = drives.sent.last();
+    double worst_jump = 0.0;
+    const auto look = [&] {
+        const Joints now = drives.sent.last();
+        worst_jump = std::max(worst_jump, (now - before).cwiseAbs().maxCoeff());
+        before = now;
+    };
+    for (int i = 0; i < 84; ++i) {
+        static constexpr std::array<std::string_view, 4> chains{"turn", "twist", "path", "stand"};
+        const std::string_view chain = chains[random.below(4)];
+        ScriptText name;
+        ASSERT_TRUE(name.assign(chain));
+        ASSERT_TRUE(mode.run(name));
+        for (int k = 0; k < 2; ++k) run.run_for(2ms), look();
+        EXPECT_EQ(mode.chain.last().view(), chain);
+        const auto some = [&](double most) { return most * (2.0 * random.unit() - 1.0); };
+        if (chain == "turn") of<Turning>("turning").turn(static_cast<int>(1 + random.below(6)), some(0.3));
+        if (chain == "twist") {
+            const double x = some(0.05), y = some(0.05), z = some(0.05);
+            of<Twisting>("twisting").twist(x, y, z, 0, 0, 0);
+        }
+        if (chain == "path") static_cast<void>(of<JointPath>("path").go_ready());
+        for (auto steps = 1 + random.below(150); steps > 0; --steps) run.run_for(2ms), look();
+    }
+    EXPECT_LE(worst_jump, 4.0 * 0.002 + 1e-9) << "rad/s within a cycle: what the Effector may change";
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+}
+
+INSTANTIATE_TEST_SUITE_P(seeds, Operation, testing::Range<std::uint64_t>(1, 7));
+
+std::uint64_t digest_of_a_run(std::uint64_t seed) {
+    Plant plant{seed};
+    VirtualRun run{on_host(), plant, seed};
+    EXPECT_TRUE(run.start().has_value());
+    run.run_for(50s);
+    run.stop();
+    return digest_of(run.instance(), plant);
+}
+
+TEST(TwoRobots, run_alike_for_one_seed) {
+    const std::uint64_t first = digest_of_a_run(3);
+    EXPECT_EQ(digest_of_a_run(3), first);
+    EXPECT_NE(digest_of_a_run(4), first);
+}
+
+} // namespace
+} // namespace two_robots::k361
