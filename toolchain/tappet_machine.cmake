@@ -8,7 +8,8 @@
 #     [TESTS test.cpp ..]          cases of GoogleTest about it with its PLANT: they include "toolchain/machine/test.hpp"
 #     [PLANT_SOURCES ..]           its own, and
 #     [PLANT_LIBRARIES ..]         what it stands on
-#     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks for its boards, and host_hooks for its program with the PLANT
+#     [HOOKS hooks.hpp]            holds <namespace>::firmware_hooks for its boards
+#     [HOST_HOOKS hooks.hpp]       holds <namespace>::host_hooks for its program with the PLANT
 #     [SWARM swarm.hpp]            holds <namespace>::Swarm: what must never be so of it, whatever goes wrong around it
 #     [MODEL model.hpp]            holds <namespace>::model: what spin is to know and to prove beside the table
 #     [NAMESPACE a::b]             where all of that stands; <name> unless said
@@ -60,7 +61,7 @@ function(tappet_language)
 endfunction()
 
 function(tappet_machine name)
-    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;SWARM;MODEL;NAMESPACE" "BOARDS;LIBRARIES;TESTS;PLANT_SOURCES;PLANT_LIBRARIES")
+    cmake_parse_arguments(PARSE_ARGV 1 machine "" "TABLE;BINDINGS;PLANT;HOOKS;HOST_HOOKS;SWARM;MODEL;NAMESPACE" "BOARDS;LIBRARIES;TESTS;PLANT_SOURCES;PLANT_LIBRARIES")
     if(machine_UNPARSED_ARGUMENTS OR NOT machine_TABLE OR NOT machine_BOARDS)
         message(FATAL_ERROR "tappet_machine(${name} ..): say TABLE <header> and BOARDS <board>..; \"${machine_UNPARSED_ARGUMENTS}\" is unknown")
     endif()
@@ -73,7 +74,7 @@ function(tappet_machine name)
     add_library(${name}_table INTERFACE)
     target_link_libraries(${name}_table INTERFACE tappet_framework ${machine_LIBRARIES})
     set(definitions TAPPET_NAMESPACE=${machine_NAMESPACE}) # of each program: one that looks at two machines links two tables
-    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS SWARM MODEL)
+    foreach(part IN ITEMS TABLE BINDINGS PLANT HOOKS HOST_HOOKS SWARM MODEL)
         if(machine_${part})
             cmake_path(ABSOLUTE_PATH machine_${part} NORMALIZE OUTPUT_VARIABLE path)
             if(NOT EXISTS "${path}")

@@ -4,7 +4,7 @@
 #include "apps/two_robots/kinematics.hpp"
 #include "apps/two_robots/tool/camera.hpp"
 #include "apps/two_robots/tool/replay.hpp"
-#include "drivers/twin/ring.hpp"
+#include "drivers/udp/far_end.hpp"
 #include "kernel/base/random.hpp"
 #include "kernel/base/time.hpp"
 
@@ -43,9 +43,8 @@ inline double shaft_beside_hole(const BodyTip& tip) {
     return std::sqrt(in_hole.x() * in_hole.x() + in_hole.y() * in_hole.y());
 }
 
-/// The 3D camera at 50 Hz, 60 ms late, with noise; its packets are lost and overtake each other. Filled by
-/// the plant's thread, emptied by the machine's.
-class SimulatedCamera final : public Datagrams {
+/// The 3D camera at 50 Hz, 60 ms late, with noise; its packets are lost and overtake each other.
+class SimulatedCamera {
 public:
     struct Faults {
         std::uint64_t lost_one_in = 50, late_one_in = 100, invalid_one_in = 200;
@@ -56,19 +55,13 @@ public:
 
     explicit SimulatedCamera(std::uint64_t seed) : random_{seed} {}
 
-    void look(Time now, const BodyFrame& body) {
+    void look(Time now, const BodyFrame& body, udp::FarEnd& link) {
         if (next_ == Time{}) next_ = now;
         for (; next_ <= now; next_ += exposed_every) expose(next_, body);
         const auto is_due = [now](const OnTheWay& each) { return each.arrives <= now; };
         for (const OnTheWay& each : on_the_way_)
-            if (is_due(each)) static_cast<void>(arrived_.push(each.packet));
+            if (is_due(each)) link.send(each.packet);
         std::erase_if(on_the_way_, is_due);
-    }
-    std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME override {
-        Packet packet;
-        if (!arrived_.pop(packet)) return 0;
-        std::copy_n(packet.begin(), std::min(packet.size(), into.size()), into.begin());
-        return packet.size();
     }
 
     Faults faults{};
@@ -112,7 +105,6 @@ private:
     std::uint16_t cycle_ = 0;
     Time next_{};
     std::vector<OnTheWay> on_the_way_;
-    twin::Ring<Packet, 32> arrived_;
 };
 
 } // namespace two_robots

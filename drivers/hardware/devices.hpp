@@ -68,8 +68,8 @@ public:
 
 /// How many devices of each kind the drivers of a machine name.
 struct DeviceCounts {
-    std::size_t can = 0, gpio = 0, modbus = 0;
-    [[nodiscard]] constexpr std::size_t all() const noexcept { return can + gpio + modbus; }
+    std::size_t can = 0, gpio = 0, modbus = 0, udp = 0;
+    [[nodiscard]] constexpr std::size_t all() const noexcept { return can + gpio + modbus + udp; }
 };
 
 /// Whether a row's driver has a map of what stands on its device, by which that can be opened. A component
@@ -84,6 +84,7 @@ constexpr DeviceCounts count_devices(const MachineView& m) noexcept {
         counts.can += drives(row, "can") ? 1u : 0u;
         counts.gpio += drives(row, "gpio") ? 1u : 0u;
         counts.modbus += drives(row, "modbus") ? 1u : 0u;
+        counts.udp += drives(row, "udp") ? 1u : 0u;
     }
     return counts;
 }

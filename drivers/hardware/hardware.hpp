@@ -113,6 +113,11 @@ private:
                                        static_cast<const modbus::SafeWrites*>(to.row.type->device_map)};
                 return open_device(modbus_[n_.modbus++], to);
             }
+        if constexpr (count.udp > 0)
+            if (drives(to.row, "udp")) {
+                provide<udp::Device>(to.bound.name, udp_[n_.udp]);
+                return open_device(udp_[n_.udp++], to);
+            }
         return {};
     }
 
@@ -122,6 +127,7 @@ private:
     std::array<gpio::Lines, count.gpio> gpio_{};
     std::array<PlacedLines, count.gpio> lines_of_{};
     std::array<modbus::LibmodbusTransport, count.modbus> modbus_{};
+    std::array<udp::Socket, count.udp> udp_{};
     struct Bus {
         std::string_view at;
         const can::Identifiers* map;

@@ -7,6 +7,7 @@
 #include "drivers/gpio/lines.hpp"
 #include "drivers/modbus/libmodbus_transport.hpp"
 #include "drivers/modbus/register_map.hpp"
+#include "drivers/udp/socket.hpp"
 #include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 #include "kernel/machine/table/components.hpp"
@@ -19,8 +20,8 @@ namespace tappet {
 /// The lines of one chip as they are requested; they stay where they are while the chip is open.
 using PlacedLines = std::array<gpio::Line, gpio::most_lines>;
 
-/// What a driver's row is bound to; `device` is null for a server on Ethernet. The check of the table has
-/// found all of it.
+/// What a driver's row is bound to; `device` is null for what is reached by an address. The check of the
+/// table has found all of it.
 struct BoundTo {
     const ComponentRow& row;
     const BoundDevice& bound;
@@ -34,6 +35,7 @@ struct BoundTo {
 std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to);
 std::expected<void, Sentence> open_device(gpio::Lines& chip, PlacedLines& lines, const BoundTo& to);
 std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, const BoundTo& to);
+std::expected<void, Sentence> open_device(udp::Socket& socket, const BoundTo& to);
 
 /// Sends the frames in turns until all are confirmed, for so long at most; how many are not.
 std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept;

@@ -15,7 +15,7 @@ std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, co
     } else {
         const std::string_view address = to.address();
         settings.line = modbus::Tcp{address.substr(0, address.find(':')),
-                                    static_cast<std::uint16_t>(checks::tcp_port_of(address))};
+                                    static_cast<std::uint16_t>(checks::port_of(address))};
     }
     return server.open(settings);
 }

@@ -23,6 +23,7 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
     buses_.clear();
     chips_.clear();
     servers_.clear();
+    ports_.clear();
     const std::span<const ProvidedDevice> own = plant_.devices();
     provided_.assign(own.begin(), own.end());
     std::vector<ProvidedDevice> far;
@@ -35,6 +36,10 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
             if (auto added = add_chip(row); !added) return added;
             far.push_back(
                 {type_id<gpio::Wires>, row.device, static_cast<gpio::Wires*>(&chips_.back()->twin)});
+        } else if (drives(row, "udp")) {
+            udp::Twin& twin = *ports_.emplace_back(std::make_unique<udp::Twin>());
+            provided_.push_back({type_id<udp::Device>, row.device, static_cast<udp::Device*>(&twin)});
+            far.push_back({type_id<udp::Wires>, row.device, static_cast<udp::Wires*>(&twin)});
         } else if (drives(row, "modbus")) {
             servers_.push_back(std::make_unique<Server>(row, AnswerWithin{300ms}.time));
             modbus::Twin& twin = servers_.back()->twin;

@@ -9,6 +9,7 @@
 #include "drivers/hardware/open.hpp"
 #include "drivers/modbus/twin.hpp"
 #include "drivers/plant/plant.hpp"
+#include "drivers/udp/twin.hpp"
 
 #include <array>
 #include <memory>
@@ -91,6 +92,7 @@ private:
     std::vector<std::unique_ptr<Bus>> buses_{};
     std::vector<std::unique_ptr<Chip>> chips_{};
     std::vector<std::unique_ptr<Server>> servers_{};
+    std::vector<std::unique_ptr<udp::Twin>> ports_{};
     std::vector<ProvidedDevice> provided_{};
 };
 

@@ -48,9 +48,10 @@ const std::vector<Row> house{
     {"drivers/can",       {"kernel/component", "drivers/twin"}},
     {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
+    {"drivers/udp",       {"kernel/component", "drivers/twin"}},
     {"drivers/canopen",   {"drivers/can"}},
     {"drivers/instruments", {"kernel/component"}},
-    {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus"}},
+    {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/udp"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
     {"board/init",        {}},

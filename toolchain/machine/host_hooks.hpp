@@ -1,4 +1,4 @@
-// What only one machine's host program does, as its HOOKS header gives it to tappet_machine() of CMake.
+// What only one machine's host program does, as its HOST_HOOKS header gives it to tappet_machine() of CMake.
 #pragma once
 
 #include "drivers/plant/plant.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "apps/two_robots/arm_plant.hpp"
+#include "apps/two_robots/joints_link.hpp"
 #include "apps/two_robots/k160/machine.hpp"
 
 namespace two_robots::k160 {
@@ -13,6 +14,7 @@ public:
 
     Time move(Time now) override {
         move_arm(now);
+        link_.put(joints());
         if (works_by_itself_) work(now);
         return now + 1ms;
     }
@@ -25,6 +27,14 @@ public:
         const Joints& q = joints();
         json.field("j1_rad", q[0]).field("j2_rad", q[1]).field("j3_rad", q[2]);
         json.field("j4_rad", q[3]).field("j5_rad", q[4]).field("j6_rad", q[5]);
+    }
+
+    [[nodiscard]] std::string_view usage() const override {
+        return "  --joints-to PORT        tells the other robot's plant on this box where the joints are\n";
+    }
+    bool take_option(std::string_view option, std::string_view value, Sentence& fault) override {
+        if (option == "--joints-to") fault = link_.tell(value);
+        return option == "--joints-to";
     }
 
     void leave_alone() { works_by_itself_ = false; }
@@ -50,6 +60,7 @@ private:
         ready_pressed_ = true;
     }
 
+    JointsLink link_;
     bool works_by_itself_ = true, ready_pressed_ = false;
     Time stood_since_{};
 };

@@ -5,10 +5,12 @@
 #include "apps/two_robots/arm_plant.hpp"
 #include "apps/two_robots/cell.hpp"
 #include "apps/two_robots/host/record.hpp"
+#include "apps/two_robots/joints_link.hpp"
 #include "apps/two_robots/k160/plant.hpp"
 #include "apps/two_robots/k361/machine.hpp"
 #include "toolchain/machine/host.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,18 +25,17 @@ namespace two_robots::k361 {
 class Plant final : public ArmPlant {
 public:
     static constexpr double tool_length = 0.40;
-    static constexpr Duration noted_every = 10ms;
+    static constexpr Duration noted_every = 40ms;
 
     explicit Plant(std::uint64_t seed) : Plant{seed, Random{seed ^ 0x361}} {}
     ~Plant() override {
-        if (body_robot_runs_) body_robot_.stop();
+        if (body_robot_) body_robot_->stop();
     }
 
     Time move(Time now) override {
         move_arm(now);
-        move_body(now);
-        const BodyFrame body = body_held_by(body_arm_.joints());
-        camera.look(now, body);
+        const BodyFrame body = body_held_by(move_body());
+        camera.look(now, body, camera_link);
         judge(tip_in_body(body, joints(), tool_length));
         now_.body = body.position;
         if (works_by_itself_) work(now);
@@ -51,7 +52,7 @@ public:
         Digest digest;
         digest.add(ArmPlant::digest());
         digest.add(body_arm_.digest());
-        digest.add(digest_of(body_robot_.instance(), body_arm_));
+        if (body_robot_) digest.add(digest_of(body_robot_->instance(), body_arm_));
         return digest.value();
     }
     void report(JsonText& json) const override {
@@ -59,7 +60,6 @@ public:
         json.field("tip_x_mm", now_.tip.x() * 1e3).field("tip_y_mm", now_.tip.y() * 1e3);
         json.field("tip_z_mm", now_.tip.z() * 1e3).field("body_z_mm", now_.body.z() * 1e3);
     }
-    [[nodiscard]] std::span<const ProvidedDevice> devices() override { return devices_; }
 
     void leave_alone() { works_by_itself_ = false; }
     void forget_worst_shaft() { worst_beside_ = 0.0; }
@@ -74,19 +74,29 @@ public:
         moments_.back().body_robot = body_robot;
     }
     [[nodiscard]] const std::vector<Moment>& moments() const { return moments_; }
-    [[nodiscard]] VirtualRun& body_robot() { return body_robot_; }
+    /// The machine that runs in here.
+    [[nodiscard]] VirtualRun& body_robot() {
+        if (!body_robot_) {
+            const auto started = body_robot_.emplace(k160::on_host(), body_arm_, seed_).start();
+            TAPPET_CONTRACT(started.has_value(), Contract::precondition, 0);
+        }
+        return *body_robot_;
+    }
     [[nodiscard]] k160::Plant& body_arm() { return body_arm_; }
 
     [[nodiscard]] std::string_view usage() const override {
-        return "  --picture FILE      draws the run as SVG: the tip's path, the shaft in the hole, the body, "
-               "the states\n";
+        return "  --picture FILE      draws the run as SVG: tip, shaft in the hole, body, states\n"
+               "  --body-at PORT      the body's robot runs elsewhere on this box; its plant tells its "
+               "joints there\n";
     }
-    bool take_option(std::string_view option, std::string_view value, Sentence&) override {
+    bool take_option(std::string_view option, std::string_view value, Sentence& fault) override {
         if (option == "--picture") picture = value;
-        return option == "--picture";
+        if (option == "--body-at") fault = link_.listen(value);
+        return option == "--picture" || option == "--body-at";
     }
 
     SimulatedCamera camera;
+    udp::FarEnd camera_link{ends, "camera-link"};
     std::string picture{}; ///< the file to write; empty: none
 
 private:
@@ -99,7 +109,7 @@ private:
                    }()},
           camera{seed},
           body_arm_{seed},
-          body_robot_{k160::on_host(), body_arm_, seed} {}
+          seed_{seed} {}
 
     /// From where it passes the chest downwards to where it comes out again the shaft is in the hole.
     void judge(const BodyTip& tip) {
@@ -115,32 +125,48 @@ private:
         now_.beside_hole = now_.is_inside ? shaft_beside_hole(tip) : 0.0;
         worst_beside_ = std::max(worst_beside_, now_.beside_hole);
     }
-    void move_body(Time) {
-        if (!body_robot_runs_) {
-            const auto started = body_robot_.start();
-            TAPPET_CONTRACT(started.has_value(), Contract::precondition, 0);
-            body_robot_runs_ = true;
+    /// Of the arm that holds the body, which runs in here, or elsewhere on the box.
+    const Joints& move_body() {
+        if (link_.listens()) {
+            link_.take(told_);
+            return told_;
         }
-        body_robot_.run_for(elapsed() - moved_);
+        body_robot().run_for(elapsed() - moved_);
         moved_ = elapsed();
+        return body_arm_.joints();
+    }
+    /// The body has been where it is operated on for a while, and moves.
+    bool breathes(Time now) {
+        if ((now_.body - seen_body_).norm() > 1e-3) {
+            seen_body_ = now_.body;
+            moved_at_ = now;
+        }
+        if ((now_.body - Eigen::Vector3d{0.75, 0.0, 0.75}).norm() > 0.03) lies_since_ = now;
+        return now - lies_since_ > 2s && now - moved_at_ < 1s;
     }
     /// Ready as soon as there is power; work when the body lies there and breathes.
     void work(Time now) {
         const Duration t = elapsed();
         if (t > 100ms && t < 200ms) press("start", now + 100ms);
         if (!stands()) stood_since_ = now;
+        const bool body_breathes = breathes(now);
         if (now - stood_since_ < 1s || t < 2s) return;
         stood_since_ = now;
-        if (!ready_pressed_) press("ready", now + 100ms);
-        const bool breathes =
-            body_robot_.instance().find<ChainSwitch>("mode")->chain.last().view() == "simulate";
-        if (ready_pressed_ && breathes) press("work", now + 100ms);
+        if (!ready_pressed_)
+            press("ready", now + 100ms);
+        else if (body_breathes)
+            press("work", now + 100ms);
         ready_pressed_ = true;
     }
 
     k160::Plant body_arm_;
-    mutable VirtualRun body_robot_;
-    bool body_robot_runs_ = false, works_by_itself_ = true, ready_pressed_ = false;
+    std::uint64_t seed_;
+    mutable std::optional<VirtualRun> body_robot_;
+    JointsLink link_;
+    Joints told_ = Joints::Zero();
+    Eigen::Vector3d seen_body_{};
+    Time lies_since_{}, moved_at_{};
+    bool works_by_itself_ = true, ready_pressed_ = false;
     Duration moved_{};
     Time stood_since_{};
     static constexpr double chest_radius = 0.15; // m
@@ -148,8 +174,6 @@ private:
     Moment now_{};
     double worst_beside_ = 0.0;
     std::vector<Moment> moments_;
-    std::array<ProvidedDevice, 1> devices_{
-        {{type_id<Datagrams>, "camera-link", static_cast<Datagrams*>(&camera)}}};
 };
 
 } // namespace two_robots::k361

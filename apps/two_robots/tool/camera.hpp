@@ -3,34 +3,26 @@
 #pragma once
 
 #include "apps/two_robots/tool/leds.hpp"
+#include "drivers/udp/device.hpp"
 #include "kernel/component/component.hpp"
+
+#include <algorithm>
 
 namespace two_robots {
 
-/// Where datagrams come in. Real-time, from one activity.
-class Datagrams {
-public:
-    virtual ~Datagrams() = default;
-    /// The next one; nothing: none is there. What is longer than `into` is cut, and then has its size.
-    virtual std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME = 0;
-
-protected:
-    Datagrams() = default;
-    Datagrams(const Datagrams&) = default;
-    Datagrams& operator=(const Datagrams&) = default;
-};
-
-/// Packets that are lost leave a gap, those that come after a later one are left out; both are counted.
-/// Real-time.
+/// Packets that are lost leave a gap, those that come after a later one are left out; both are counted. The
+/// camera exposes evenly, so that the packets which came soonest tell when all were: one that was held up on
+/// its way was not exposed later. Real-time.
 struct LedCamera {
-    static constexpr std::string_view device_kind = "led-camera";
+    static constexpr std::string_view device_kind = "udp";
+    static constexpr udp::Longest device_map{led_packet::most};
 
     Output<Leds> leds;
     Output<std::int64_t> received, lost, late, invalid;
-    Property<Duration> latency{60ms};
+    Property<Duration> latency{60ms}, period{20ms};
 
     Sentence configure(Setup& setup) {
-        datagrams_ = setup.device<Datagrams>();
+        datagrams_ = setup.device<udp::Device>();
         return datagrams_ == nullptr ? setup.no_device() : Sentence{};
     }
     void start(const Cycle&) noexcept TAPPET_REALTIME {
@@ -56,12 +48,15 @@ struct LedCamera {
                       output<&LedCamera::lost>("lost", "", "packets that never came, or came too late"),
                       output<&LedCamera::late>("late", "", "packets that came after a later one"),
                       output<&LedCamera::invalid>("invalid", "", "datagrams that are no measurement"),
-                      property<&LedCamera::latency>(
-                          "latency", "s", "from the exposure to the packet's arrival", range(0.0, 0.5)));
+                      property<&LedCamera::latency>("latency", "s",
+                                                    "from the exposure to the packet's arrival, at the least",
+                                                    range(0.0, 0.5)),
+                      property<&LedCamera::period>("period", "s", "of the exposures", range(0.001, 1.0)));
     }
 
 private:
     static constexpr int most_in_a_step = 4;
+    static constexpr Duration drift = 5us; ///< in a period: so much slower than ours its clock may go
 
     void take(std::span<const std::byte> packet, Time now) noexcept TAPPET_REALTIME {
         Leds seen;
@@ -75,14 +70,16 @@ private:
             return;
         }
         if (has_seen_ && ahead > 1) lost.write(lost.last() + ahead - 1);
+        even_ = has_seen_ ? std::min(even_ + ahead * (period.get() + drift), now) : now;
         cycle_ = seen.cycle;
         has_seen_ = true;
         received.write(received.last() + 1);
-        leds.write(seen, now - latency.get());
+        leds.write(seen, even_ - latency.get());
     }
 
-    Datagrams* datagrams_ = nullptr;
+    udp::Device* datagrams_ = nullptr;
     std::uint16_t cycle_ = 0;
+    Time even_{}; ///< when the last one came, had it not been held up
     bool has_seen_ = false;
 };
 

@@ -15,13 +15,17 @@ constexpr const auto* find_named(const Rows& rows, std::string_view name) noexce
     return decltype(&*rows.begin()){nullptr};
 }
 
-/// What on the board drives this kind: a Modbus server is reached by a serial port, or by an address alone.
+/// A Modbus server may be reached by an address alone, and datagrams come to one of the box.
+constexpr bool has_address(std::string_view device_kind) noexcept {
+    return device_kind == "modbus" || device_kind == "udp";
+}
+/// What on the board drives this kind: a Modbus server, when it is reached by a serial port.
 constexpr std::string_view board_kind_of(std::string_view device_kind) noexcept {
     return device_kind == "modbus" ? "serial" : device_kind;
 }
 
 /// The port of "192.168.7.2:502", numeric IPv4; 0: it is not written so.
-constexpr int tcp_port_of(std::string_view address) noexcept {
+constexpr int port_of(std::string_view address) noexcept {
     int parts = 0, number = -1;
     for (const char character : address) {
         if (character >= '0' && character <= '9') {
@@ -96,17 +100,20 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
     const std::string_view wants = board_kind_of(row.type->device_kind);
     const BoardDevice* device = find_named(board.devices, bound.at);
     if (device == nullptr) {
-        if (row.type->device_kind == "modbus" && tcp_port_of(bound.at) != 0)
+        if (has_address(row.type->device_kind) && port_of(bound.at) != 0)
             return check_bound_facts(row, board, bound);
         Nearest nearest{bound.at};
         for (const auto& each : board.devices)
             if (each.kind == wants) nearest.consider(each.name);
         Sentence text = of_binding(board, bound.name, "the board has no device \"", bound.at, "\"");
-        detail::add_suggestion(text, nearest,
-                               row.type->device_kind == "modbus"
-                                   ? "write a server's address as 192.168.7.2:502, or add a serial port to "
-                                     "the board's devices"
-                                   : "add it to the board's devices");
+        detail::add_suggestion(
+            text, nearest,
+            row.type->device_kind == "modbus"
+                ? "write a server's address as 192.168.7.2:502, or add a serial port to "
+                  "the board's devices"
+            : row.type->device_kind == "udp"
+                ? "write the box's address and the port as 192.168.7.1:5005, or 0.0.0.0:5005"
+                : "add it to the board's devices");
         return text;
     }
     if (device->kind != wants)

@@ -8,6 +8,7 @@
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
 #include "toolchain/machine/bench/can_end.hpp"
+#include "drivers/udp/sender.hpp"
 #include "toolchain/machine/bench/line_end.hpp"
 #include "toolchain/machine/bench/server_end.hpp"
 
@@ -129,7 +130,7 @@ public:
         for (const auto& server : servers_) {
             const std::string_view address = server->bound.at;
             if (auto listens = server->end.listen(std::string{address.substr(0, address.find(':'))},
-                                                  checks::tcp_port_of(address), server->bound.unit.number);
+                                                  checks::port_of(address), server->bound.unit.number);
                 !listens)
                 return listens.error();
         }
@@ -171,6 +172,12 @@ private:
             opened =
                 end.open("/sim/" + name,
                          *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map), bound);
+        } else if (drives(row, "udp")) {
+            auto& end = *ports_.emplace_back(std::make_unique<udp::Sender>());
+            wires_.push_back({type_id<udp::Wires>, row.device, static_cast<udp::Wires*>(&end)});
+            const std::string_view address = bound.at;
+            opened = end.open(address.substr(0, address.find(':')),
+                              static_cast<std::uint16_t>(checks::port_of(address)));
         } else if (drives(row, "modbus")) {
             if (device != nullptr)
                 return Sentence{"the bench has no serial lines; bind it to 127.0.0.1:1502"};
@@ -188,6 +195,7 @@ private:
     };
     std::vector<std::unique_ptr<CanEnd>> buses_{};
     std::vector<std::unique_ptr<LineEnd>> chips_{};
+    std::vector<std::unique_ptr<udp::Sender>> ports_{};
     std::vector<std::unique_ptr<Server>> servers_{};
     std::vector<ProvidedDevice> wires_{};
 };

@@ -1,0 +1,39 @@
+// The other end of datagrams: the instrument that sends them, as a plant holds it.
+#pragma once
+
+#include "drivers/twin/far_end.hpp"
+#include "drivers/udp/twin.hpp"
+
+#include <cstdint>
+
+namespace tappet::udp {
+
+///     udp::FarEnd camera{ends, "camera-link"};
+///     camera.send(packet);
+class FarEnd final : public tappet::FarEnd {
+public:
+    FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "udp"} {}
+
+    /// Now. What does not go out is counted.
+    void send(std::span<const std::byte> datagram) {
+        if (wires_ == nullptr || !wires_->send(datagram)) ++refused_;
+    }
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+
+    void take(Time) override {}
+    void give(Time) override {}
+    [[nodiscard]] Time next() const noexcept override { return never; }
+
+protected:
+    bool take_wire(const ProvidedDevice& wire) noexcept override {
+        if (wire.type != type_id<Wires>) return false;
+        wires_ = static_cast<Wires*>(wire.device);
+        return true;
+    }
+
+private:
+    Wires* wires_ = nullptr;
+    std::uint64_t refused_ = 0;
+};
+
+} // namespace tappet::udp

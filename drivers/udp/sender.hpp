@@ -1,0 +1,26 @@
+// Datagrams to a port at which somebody listens: of plants, where machines run in processes of their own.
+#pragma once
+
+#include "drivers/udp/twin.hpp"
+#include "kernel/base/text.hpp"
+
+#include <cstdint>
+#include <expected>
+#include <string_view>
+
+namespace tappet::udp {
+
+/// Not real-time.
+class Sender final : public Wires {
+public:
+    Sender() = default;
+    ~Sender() override;
+    /// A machine that listens at each address of its box does so at this one's own.
+    std::expected<void, Sentence> open(std::string_view address, std::uint16_t port);
+    bool send(std::span<const std::byte> datagram) noexcept override;
+
+private:
+    int socket_ = -1;
+};
+
+} // namespace tappet::udp

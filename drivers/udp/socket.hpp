@@ -1,0 +1,29 @@
+// Datagrams of the network that are addressed to this box.
+#pragma once
+
+#include "drivers/udp/device.hpp"
+#include "kernel/base/text.hpp"
+
+#include <cstdint>
+#include <expected>
+#include <string_view>
+
+namespace tappet::udp {
+
+/// IPv4.
+class Socket final : public Device {
+public:
+    Socket() = default;
+    Socket(const Socket&) = delete;
+    Socket& operator=(const Socket&) = delete;
+    ~Socket() override;
+
+    /// Listens at that address of this box; 0.0.0.0: at each of them. Not real-time.
+    std::expected<void, Sentence> open(std::string_view address, std::uint16_t port);
+    std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME override;
+
+private:
+    int socket_ = -1;
+};
+
+} // namespace tappet::udp

@@ -1,0 +1,99 @@
+// Datagrams come in as they were sent, at the twin and at a socket of this box; what cannot be opened says
+// why.
+#include "drivers/udp/sender.hpp"
+#include "drivers/udp/socket.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <string>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace tappet::udp {
+namespace {
+
+using testing::HasSubstr;
+
+std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span{text}); }
+std::string received(Device& from, std::size_t room = most_bytes) {
+    std::array<std::byte, most_bytes> bytes;
+    const std::size_t size = from.receive(std::span{bytes}.first(room));
+    return {reinterpret_cast<const char*>(bytes.data()), std::min(size, room)};
+}
+/// A port that is nobody's at this moment.
+std::uint16_t free_port() {
+    const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof at;
+    auto* const address = static_cast<sockaddr*>(static_cast<void*>(&at));
+    EXPECT_EQ(::bind(probe, address, size), 0);
+    EXPECT_EQ(::getsockname(probe, address, &size), 0);
+    ::close(probe);
+    return ntohs(at.sin_port);
+}
+
+TEST(Twin, gives_datagrams_in_their_order_and_nothing_when_none_is_there) {
+    Twin twin;
+    EXPECT_EQ(received(twin), "");
+    EXPECT_TRUE(twin.send(bytes_of("one")));
+    EXPECT_TRUE(twin.send(bytes_of("two")));
+    EXPECT_EQ(received(twin), "one");
+    EXPECT_EQ(received(twin), "two");
+    EXPECT_EQ(received(twin), "");
+}
+
+TEST(Twin, drops_what_nobody_takes_and_what_is_too_long) {
+    Twin twin;
+    int taken = 0;
+    while (twin.send(bytes_of("x")) && taken < 1000) ++taken;
+    EXPECT_EQ(taken, 32);
+    EXPECT_FALSE(Twin{}.send(bytes_of(std::string(most_bytes + 1, 'x'))));
+}
+
+TEST(Twin, tells_the_whole_size_of_what_does_not_fit) {
+    Twin twin;
+    ASSERT_TRUE(twin.send(bytes_of("a long one")));
+    std::array<std::byte, 4> small;
+    EXPECT_EQ(twin.receive(small), 10u);
+}
+
+TEST(Socket, receives_what_is_sent_to_its_port) {
+    const std::uint16_t port = free_port();
+    Socket socket;
+    ASSERT_TRUE(socket.open("127.0.0.1", port).has_value());
+    EXPECT_EQ(received(socket), "") << "it does not wait";
+    Sender sender;
+    ASSERT_TRUE(sender.open("0.0.0.0", port).has_value()) << "each address of this box";
+    ASSERT_TRUE(sender.send(bytes_of("measured")));
+    std::string got;
+    for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(socket);
+    EXPECT_EQ(got, "measured");
+    ASSERT_TRUE(sender.send(bytes_of("a long one")));
+    std::array<std::byte, 4> small;
+    std::size_t size = 0;
+    for (int i = 0; i < 2000 && size == 0; ++i, ::usleep(1000)) size = socket.receive(small);
+    EXPECT_EQ(size, 10u);
+}
+
+TEST(Socket, says_why_it_cannot_be_opened) {
+    Socket first, second, nowhere;
+    const std::uint16_t port = free_port();
+    ASSERT_TRUE(first.open("127.0.0.1", port).has_value());
+    const auto taken = second.open("127.0.0.1", port);
+    ASSERT_FALSE(taken);
+    EXPECT_THAT(std::string{taken.error().view()},
+                HasSubstr("; it must be an address of this box, and its port be free"));
+    const auto wrong = nowhere.open("the camera", port);
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(std::string{wrong.error().view()},
+                HasSubstr("\"the camera\" is no IPv4 address; write it as 192.168.7.1"));
+}
+
+} // namespace
+} // namespace tappet::udp
