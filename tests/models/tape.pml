@@ -1,6 +1,6 @@
 /* An engine writes each of its cycles onto its tape, over the oldest ones, and asks nobody; readers go from the last cycle
    backwards (thesis A.2.1).
-   Source: kernel/activity/cycle_tape.hpp
+   Source: kernel/exchange/word_tape.hpp
    Twins: NO_CHECK CHECK_WITHOUT_ITS_CYCLE HEAD_FIRST
 
    Shown: what a reader takes is whole and of one cycle, and no cycle between two of them is left out, however often the

@@ -1,0 +1,96 @@
+// A tape of words: one writer records over the oldest without asking; whoever reads, from whatever process,
+// is noticed by nobody, and finds out afterwards whether what it read still stood there.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <span>
+
+namespace tappet {
+
+/// Written wait-free, record after record: a store for each word and one that publishes, no load of what
+/// another wrote, and no line that a reader polls. What a record is says who derives from it. Its words lie
+/// after it.
+///
+/// Proof that no torn record is handed out: all words are stored with release and loaded with acquire. A
+/// reader that loads a word of a later round than it meant therefore sees in head() at least the position at
+/// which that later record began, which is less than most_words() before the word; holds() is then false.
+class WordTape {
+public:
+    static constexpr std::size_t alignment = 128; // two lines: the processor fetches them in pairs
+
+    WordTape(const WordTape&) = delete;
+    WordTape& operator=(const WordTape&) = delete;
+
+    /// Whether there are records; any thread, at any time: it holds from the next record on.
+    void turn(bool on) noexcept TAPPET_REALTIME {
+        on_.store(on, std::memory_order_relaxed); // no step: it holds from the next record on
+    }
+    [[nodiscard]] bool is_on() const noexcept TAPPET_REALTIME {
+        return on_.load(std::memory_order_relaxed); // no step: it holds from the next record on
+    }
+    /// After the last complete record; any thread, any process.
+    [[nodiscard]] std::uint64_t head() const noexcept {
+        return head_.load(std::memory_order_acquire); // tape.look
+    }
+    [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+    /// Of one record.
+    [[nodiscard]] std::size_t most_words() const noexcept { return most_words_; }
+    /// What was read from `at` on was not overwritten meanwhile; asked after reading.
+    [[nodiscard]] bool holds(std::uint64_t at) const noexcept {
+        return at + capacity_ >= head() + most_words(); // tape.check
+    }
+    /// Words from `at` on, as many as `into` has room for. False: they are not there any more.
+    [[nodiscard]] bool copy(std::uint64_t at, std::span<std::uint64_t> into) const noexcept {
+        if (at + into.size() > head()) return false;
+        for (std::size_t i = 0; i < into.size(); ++i) into[i] = get(at + i);
+        return holds(at);
+    }
+
+protected:
+    /// `words`: a power of two, more than twice `most_words`, which no record exceeds.
+    WordTape(std::size_t words, std::size_t most_words) noexcept : capacity_{words}, most_words_{most_words} {
+        for (std::size_t i = 0; i < words; ++i)
+            ::new (static_cast<void*>(first() + i)) std::atomic<std::uint64_t>{0};
+    }
+    ~WordTape() = default;
+
+    // The writer's.
+    [[nodiscard]] std::uint64_t position() const noexcept TAPPET_REALTIME { return position_; }
+    void put(std::uint64_t at, std::uint64_t word) noexcept TAPPET_REALTIME {
+        first()[at & (capacity_ - 1)].store(word, std::memory_order_release); // tape.word
+    }
+    /// The record that began at position() ends before `after`.
+    void publish(std::uint64_t after) noexcept TAPPET_REALTIME {
+        position_ = after;
+        head_.store(position_, std::memory_order_release); // tape.head
+    }
+
+    [[nodiscard]] std::uint64_t get(std::uint64_t at) const noexcept {
+        return first()[at & (capacity_ - 1)].load(std::memory_order_acquire); // tape.take
+    }
+
+private:
+    [[nodiscard]] std::atomic<std::uint64_t>* first() noexcept TAPPET_REALTIME {
+        return reinterpret_cast<std::atomic<std::uint64_t>*>(this + 1);
+    }
+    [[nodiscard]] const std::atomic<std::uint64_t>* first() const noexcept {
+        return reinterpret_cast<const std::atomic<std::uint64_t>*>(this + 1);
+    }
+
+    // Read by everybody, written as good as never.
+    alignas(alignment) std::uint64_t capacity_;
+    std::uint64_t most_words_;
+    std::atomic<bool> on_{true};
+    // What readers poll.
+    alignas(alignment) std::atomic<std::uint64_t> head_{0};
+    // The writer's own, and what derives from it.
+    alignas(alignment) std::uint64_t position_ = 0;
+};
+static_assert(sizeof(WordTape) == 3 * WordTape::alignment && std::atomic<std::uint64_t>::is_always_lock_free);
+
+} // namespace tappet
