@@ -27,7 +27,8 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     has_deadline_ = plan.real_time && plan.deadline > Duration::zero();
     least_excess_ = has_deadline_ ? Duration::zero() : Duration::max();
     steps_only_ = plan.timers.empty() && plan.behaviours.empty() && plan.guarded.empty() &&
-                  (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr;
+                  (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr &&
+                  recorder_ == nullptr;
     for (EnginePart& part : plan_.parts) part.step = part.type->step;
     for (const EngineTimer& each : plan_.timers) each.timer->serve();
 }
@@ -114,6 +115,7 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
         if (waking != nullptr) waking->times.add(lap_ - cause_);
         set_running_cause(no_cause);
         watch_inputs();
+        if (recorder_ != nullptr) record_values(due);
         if (measures_processor_) note_processor(used);
     }
     ++statistics_.cycles;
@@ -245,6 +247,11 @@ void Engine::watch_inputs() noexcept TAPPET_REALTIME {
         each.was_valid = flow == Flow::fresh || flow == Flow::old;
         if (flow != Flow::stale && !plan_.periodic) each.expires = each.port->expires(each.input);
     }
+}
+
+void Engine::record_values(bool stepped) noexcept TAPPET_REALTIME {
+    recorder_->record(*recorder_, cycle_, stepped);
+    lap_ = stamps_.now();
 }
 
 // Virtual time has no preemption, and its processor is whatever host runs it.

@@ -121,6 +121,12 @@ struct EnginePlan {
     }
 };
 
+/// Who keeps what cycles made, for observers: called at the end of each, in the activity's thread. `stepped`:
+/// its components ran.
+struct CycleRecorder {
+    void (*record)(CycleRecorder& self, const Cycle&, bool stepped) noexcept TAPPET_REALTIME = nullptr;
+};
+
 /// Counters that an observer may read while the machine runs; each is written by the engine alone.
 struct EngineStatistics {
     std::uint64_t cycles = 0;
@@ -155,6 +161,12 @@ public:
         expect_standing();
         recorded_ = tape;
         steps_only_ = steps_only_ && tape == nullptr;
+    }
+    /// Likewise: values of its components. What it takes counts in the cycle's response and claim.
+    void record_values_by(CycleRecorder* recorder) noexcept {
+        expect_standing();
+        recorder_ = recorder;
+        steps_only_ = steps_only_ && recorder == nullptr;
     }
 
     /// On the starter's thread, while it stands: initialises the components; those that had
@@ -354,6 +366,7 @@ private:
     enum class Expired : std::uint8_t { none, looked, stale };
     [[nodiscard]] Expired look_at_expired() noexcept TAPPET_REALTIME;
     void watch_inputs() noexcept TAPPET_REALTIME;
+    void record_values(bool stepped) noexcept TAPPET_REALTIME;
     void watch_wakes() noexcept TAPPET_REALTIME;
     [[nodiscard]] Duration used_processor() const noexcept TAPPET_REALTIME;
     void note_processor(Duration used) noexcept TAPPET_REALTIME;
@@ -372,7 +385,8 @@ private:
 
     EnginePlan plan_{};
     bool has_deadline_ = false;
-    bool steps_only_ = false; ///< it has no timers, behaviours, guarded inputs, wakes to watch or tape
+    bool steps_only_ =
+        false; ///< it has no timers, behaviours, guarded inputs, wakes to watch, tape or recorder
     bool measures_processor_ = false;
     Time claim_began_ = Time::min(); ///< the time of at_most that is measured
     Duration claim_used_{};
@@ -399,7 +413,8 @@ private:
     Duration worst_usual_{};
     std::uint32_t worst_function_ = Miss::nobody;
     CycleTape* recorded_ = nullptr;
-    CycleTape* tape_ = nullptr;   ///< of this cycle; null: it is not recorded
+    CycleTape* tape_ = nullptr; ///< of this cycle; null: it is not recorded
+    CycleRecorder* recorder_ = nullptr;
     Duration quiet_response_{-1}; ///< one up to here is no maximum of anything and no miss
     std::array<Time, max_wakes_watched> wakes_{};
     std::uint64_t wake_count_ = 0;

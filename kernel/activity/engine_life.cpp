@@ -140,6 +140,7 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     ends_at_ = never;
     if (!hangs) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
+    if (recorder_ != nullptr && !hangs) recorder_->record(*recorder_, cycle_, false);
     commands_.reject_sent();
     awaiting_ = 0;
     was_stopped_ = true;

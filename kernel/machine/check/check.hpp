@@ -33,8 +33,13 @@ constexpr Sentence check(const MachineView& m, const Board& board, const Binding
         if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board, binding); !fault.empty()) return fault;
         if (Sentence fault = checks::check_schedulability(m, board, binding, r); !fault.empty()) return fault;
-        for (std::size_t e = 0; e < m.extras->size(); ++e)
+        for (std::size_t e = 0; e < m.extras->size(); ++e) {
+            const std::string_view once = m.extras->at(e)->stands_once();
+            for (std::size_t other = 0; other < e && !once.empty(); ++other)
+                if (same_text(m.extras->at(other)->stands_once(), once))
+                    return Sentence{once, "(...) stands twice; write all of its rows into one"};
             if (Sentence fault = m.extras->at(e)->check(m, r); !fault.empty()) return fault;
+        }
         return {};
     };
     const Sentence fault = first_fault();

@@ -51,6 +51,7 @@ void MachineBuilder::place_map() {
     header.process = os::own_process();
     header.forced_at = machine_.plan.observed_at;
     header.scope_at = machine_.plan.scope_at;
+    header.report_at = offset_of(instance_.observation().records_);
     const os::BuildId build = os::build_id();
     static_assert(sizeof build.digits < sizeof header.build_id);
     std::memcpy(header.build_id.data(), build.digits.data(), build.length);

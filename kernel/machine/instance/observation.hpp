@@ -44,6 +44,9 @@ public:
     void show_events_to(const EventObserver& observer) noexcept { event_observer_ = observer; }
     /// The component that browsers ask says how it answers. While the machine is configured.
     void answer_by(const BrowsingAnswerer& answerer) noexcept { answerer_ = answerer; }
+    /// The section that records values says where, in the machine's memory, a reader begins. While the
+    /// machine is configured.
+    void records_at(const void* directory) noexcept { records_ = directory; }
     /// The answer of a machine that runs no more to a request that only reads, see
     /// kernel/services/browsing/protocol.hpp; empty: it has none. What stood in the middle of a cycle may be
     /// half written, and what is damaged may end who asks.
@@ -97,6 +100,7 @@ private:
     os::SharedMemory shared_{};
     EventObserver event_observer_{};
     BrowsingAnswerer answerer_{};
+    const void* records_ = nullptr;
 };
 
 } // namespace tappet

@@ -40,6 +40,8 @@ public:
                                                 std::size_t /*to*/) const {
         return false;
     }
+    /// Its name when a table has one of it at most; empty: it may have several.
+    [[nodiscard]] constexpr virtual std::string_view stands_once() const { return {}; }
     /// What it takes of the machine's memory; it begins where any object may stand.
     [[nodiscard]] constexpr virtual std::size_t bytes(const MachineView& table) const = 0;
     /// At start-up, when ports are wired and no component is configured yet. `number`: of this section, for

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/control/control.hpp"
+#include "kernel/services/reporting/check.hpp"
 #include "tests/diagnostics/copy.hpp"
 
 #include <iosfwd>
@@ -17,7 +18,7 @@
 namespace tappet::diagnostics {
 
 /// The section control(...) with rows that a fault may change. It is checked, and never comes to life.
-struct ControlRows final : ExtraSection, ExtraList {
+struct ControlRows final : ExtraSection {
     std::vector<LevelRow> levels;
     std::vector<RoleRow> processes;
     std::vector<ExclusiveRow> exclusives;
@@ -36,8 +37,29 @@ struct ControlRows final : ExtraSection, ExtraList {
     [[nodiscard]] SectionCount counted(std::span<const std::byte>, std::size_t) const noexcept override {
         return {};
     }
-    [[nodiscard]] std::size_t size() const noexcept override { return 1; }
-    [[nodiscard]] const ExtraSection* at(std::size_t) const noexcept override { return this; }
+};
+
+/// The section reporting(...), likewise.
+struct ReportRows final : ExtraSection {
+    std::vector<ReportRow> rows;
+
+    [[nodiscard]] Sentence check(const MachineView& m, const TableIndexView& r) const override {
+        return reporting_detail::check(rows, m, r);
+    }
+    [[nodiscard]] std::string_view stands_once() const override { return "reporting"; }
+    [[nodiscard]] std::size_t bytes(const MachineView&) const override { return 0; }
+    void connect(MachineInstance&, std::size_t, std::span<std::byte>) const override {}
+    [[nodiscard]] Sentence describe_stop(std::size_t) const override { return {}; }
+    [[nodiscard]] SectionCount counted(std::span<const std::byte>, std::size_t) const noexcept override {
+        return {};
+    }
+};
+
+/// Those of a table that are there.
+struct Sections final : ExtraList {
+    std::vector<const ExtraSection*> all;
+    [[nodiscard]] std::size_t size() const noexcept override { return all.size(); }
+    [[nodiscard]] const ExtraSection* at(std::size_t number) const noexcept override { return all[number]; }
 };
 
 /// The rows of a machine, its board and the binding, as a fault may change them.
@@ -48,6 +70,7 @@ struct Table : Copy {
     std::vector<TransitionRow> transitions; ///< likewise
     bool is_controlled = false;             ///< the section is there
     ControlRows control;
+    std::vector<ReportRows> reports; ///< as often as the section stands there
 
     Table(const MachineView& machine, const Board& on, const Binding& bound);
     /// What the check says; empty: it is accepted.

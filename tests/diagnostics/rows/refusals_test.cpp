@@ -45,7 +45,10 @@ std::string Table::refusal() const {
         copy.behaviours[0].type.machine.transitions = transitions;
     }
     MachineView view = copy.view();
-    if (is_controlled) view.extras = &control;
+    Sections sections;
+    if (is_controlled) sections.all.push_back(&control);
+    for (const ReportRows& each : reports) sections.all.push_back(&each);
+    view.extras = &sections;
     return refusal_of(view, board, binding);
 }
 

@@ -1,0 +1,181 @@
+// Which rows of a report are refused, and how large what they record is: the compiler's part.
+#pragma once
+
+#include "kernel/base/compare.hpp"
+#include "kernel/machine/plan/places.hpp"
+#include "kernel/machine/table/section.hpp"
+#include "kernel/services/reporting/layout.hpp"
+#include "kernel/services/reporting/rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <span>
+
+namespace tappet::reporting_detail {
+
+/// A tape holds what its activity records in this time at most: who reads that often misses nothing.
+inline constexpr Duration tape_span = 500ms;
+inline constexpr std::size_t fewest_tape_words = 256;
+
+/// Whether who knows the type knows what all its bytes say.
+constexpr bool can_be_told(TypeId type) noexcept {
+    if (type == nullptr || type->kind == ValueKind::opaque || type->kind == ValueKind::arguments)
+        return false;
+    if (type->element != nullptr && !can_be_told(type->element)) return false;
+    for (const RecordField& field : type->fields)
+        if (!can_be_told(field.type)) return false;
+    return true;
+}
+
+constexpr bool is_number(const TypeTag& type) noexcept {
+    return type.kind == ValueKind::real || type.kind == ValueKind::integer ||
+           type.kind == ValueKind::natural || type.kind == ValueKind::duration;
+}
+
+/// What keeps a facet from being recorded, with the cure; empty: nothing does.
+constexpr Sentence hindrance(const Facet& facet) {
+    if (facet.kind != FacetKind::output && facet.kind != FacetKind::property)
+        return Sentence{to_text(facet.kind), " has no value that stands; name an output or a property"};
+    if (!can_be_told(facet.type))
+        return Sentence{"its type is ", facet.type->name,
+                        ", of which nobody knows what its bytes say; name its fields with fields_of"};
+    if (facet.type->size > recorded::most_value_bytes)
+        return Sentence{"its value has ", facet.type->size, " bytes, and ", recorded::most_value_bytes,
+                        " are recorded at most; write what is of interest to an output of its own"};
+    return {};
+}
+
+constexpr std::size_t all_outputs = nowhere; ///< as a facet: those of the component that can be recorded
+
+/// Of "component.*" the component, and all_outputs.
+constexpr Sentence find(const ReportRow& row, const MachineView& m, std::span<const std::size_t> by_name,
+                        End& found) {
+    if (row.what.ends_with(".*")) {
+        const std::string_view name = row.what.substr(0, row.what.size() - 2);
+        found = {by_name.empty() ? find_component(m, name) : find_component(m, by_name, name), all_outputs};
+        return found.component == nowhere ? unknown_component(m, name) : Sentence{};
+    }
+    return resolve(m, by_name, row.what, FacetKind::output, found);
+}
+
+/// Calls `take` with each value that a row which was checked names.
+template <class Take>
+constexpr void for_each_end(const ReportRow& row, const MachineView& m, Take take) {
+    End end;
+    static_cast<void>(find(row, m, {}, end));
+    if (end.facet != all_outputs) return take(end);
+    const auto facets = m.components[end.component].type->facets;
+    for (std::size_t f = 0; f < facets.size(); ++f)
+        if (facets[f].kind == FacetKind::output && hindrance(facets[f]).empty()) take(End{end.component, f});
+}
+
+/// What one activity records.
+struct OfActivity {
+    std::size_t channels = 0;
+    std::size_t words = 0;      ///< of a cycle that records all of them
+    std::size_t span_words = 0; ///< of tape_span at most
+};
+
+struct Sizes {
+    std::array<OfActivity, max_activities> activities{};
+    std::size_t channels = 0;
+    std::size_t tapes = 0;
+    std::size_t last_words = 0; ///< of the values that are compared
+};
+
+/// Cycles of an activity within tape_span.
+constexpr std::size_t cycles_of(const ActivityRow& row) noexcept {
+    const Duration each = row.periodic() ? row.period : row.at_most_per;
+    const std::int64_t runs = row.periodic() ? 1 : row.at_most_n;
+    return each > Duration::zero() ? static_cast<std::size_t>(runs * (tape_span / each + 1))
+                                   : std::size_t{64};
+}
+
+constexpr Sizes sizes_of(std::span<const ReportRow> rows, const MachineView& m) {
+    Sizes sizes;
+    for (const ReportRow& row : rows)
+        for_each_end(row, m, [&](End end) {
+            const std::size_t activity = activity_of(m, m.components[end.component].name);
+            OfActivity& of = sizes.activities[activity];
+            const std::size_t words = recorded::words_of(facet_at(m, end).type->size);
+            const std::size_t cycles = cycles_of(m.activities[activity]);
+            if (of.channels++ == 0) {
+                ++sizes.tapes;
+                of.words = recorded::Moment::words_beside_samples;
+                of.span_words = of.words * cycles;
+            }
+            ++sizes.channels;
+            of.words += 1 + words;
+            of.span_words +=
+                (1 + words) * (row.on_change ? cycles : cycles / static_cast<std::size_t>(row.every) + 1);
+            if (row.on_change) sizes.last_words += words;
+        });
+    return sizes;
+}
+
+/// A power of two, of which one moment takes an eighth at most.
+constexpr std::size_t tape_words(const OfActivity& of) noexcept {
+    return std::bit_ceil(std::max({fewest_tape_words, 8 * of.words, of.span_words}));
+}
+
+constexpr Sentence check_row(const ReportRow& row, const MachineView& m, const TableIndexView& r) {
+    End end;
+    if (Sentence fault = find(row, m, r.by_name, end); !fault.empty()) return fault;
+    if (row.every <= 0)
+        return Sentence{"every(", row.every, ") records nothing; write every(1) for each step, or more"};
+    if (row.every > std::numeric_limits<std::int32_t>::max())
+        return Sentence{"every(", row.every, ") is never again; write fewer steps"};
+    if (!(row.band >= 0.0 && row.band < std::numeric_limits<double>::infinity()))
+        return Sentence{"its band is negative or no number; give the largest change that is none, or leave "
+                        "it out for any"};
+    if (m.components[end.component].type->loop != nullptr)
+        return Sentence{"\"", m.components[end.component].name,
+                        "\" has a loop() and no steps, after which it could be recorded; give it a step()"};
+    if (end.facet == all_outputs) {
+        std::size_t outputs = 0;
+        for_each_end(row, m, [&](End) { ++outputs; });
+        if (outputs == 0)
+            return Sentence{"\"", m.components[end.component].name,
+                            "\" has no output that can be recorded; leave it out"};
+        if (row.band != 0.0)
+            return Sentence{"a band is of one value's unit, and these are several; name the one"};
+        return {};
+    }
+    if (Sentence fault = hindrance(facet_at(m, end)); !fault.empty()) return fault;
+    if (row.band != 0.0 && !is_number(*facet_at(m, end).type))
+        return Sentence{"its type is ", facet_at(m, end).type->name,
+                        ", which has no band; write on_change() for any change"};
+    return {};
+}
+
+constexpr Sentence check(std::span<const ReportRow> rows, const MachineView& m, const TableIndexView& r) {
+    if (find_observer(m) == nowhere)
+        return Sentence{"reporting: nobody could read what is recorded, since no component sees the machine; "
+                        "add component<BrowserService>(\"browser\")"};
+    std::size_t channels = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto said = [&](const Sentence& fault) {
+            return Sentence{"report \"", rows[i].what, "\": ", fault};
+        };
+        if (const Sentence fault = check_row(rows[i], m, r); !fault.empty()) return said(fault);
+        Sentence twice;
+        for_each_end(rows[i], m, [&](End end) {
+            ++channels;
+            for (std::size_t j = 0; j < i; ++j)
+                for_each_end(rows[j], m, [&](End other) {
+                    if (other == end)
+                        twice = Sentence{"the row of \"", rows[j].what, "\" records \"",
+                                         facet_at(m, end).name, "\" already; keep one"};
+                });
+        });
+        if (!twice.empty()) return said(twice);
+    }
+    if (channels > recorded::most_channels)
+        return Sentence{"reporting: it records ", channels, " values, and ", recorded::most_channels,
+                        " are the most; leave out what nobody looks at"};
+    return {};
+}
+
+} // namespace tappet::reporting_detail

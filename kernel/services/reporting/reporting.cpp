@@ -1,0 +1,181 @@
+// What an engine records at the end of a cycle, and how its channels are placed.
+#include "kernel/services/reporting/reporting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+namespace tappet::reporting_detail {
+
+namespace {
+
+/// Eight bytes of a value, or as many as are left.
+std::uint64_t word_at(const std::byte* from, std::size_t left) noexcept TAPPET_REALTIME {
+    std::uint64_t word = 0;
+    if (left >= sizeof word)
+        std::memcpy(&word, from, sizeof word);
+    else
+        std::memcpy(&word, from, left);
+    return word;
+}
+
+template <class T>
+double as(std::uint64_t word) noexcept TAPPET_REALTIME {
+    T value{};
+    std::memcpy(&value, &word, sizeof value);
+    return static_cast<double>(value);
+}
+double number_of(std::uint64_t word, ValueKind kind, std::uint32_t bytes) noexcept TAPPET_REALTIME {
+    if (kind == ValueKind::real) return bytes == sizeof(float) ? as<float>(word) : as<double>(word);
+    const bool is_signed = kind != ValueKind::natural;
+    switch (bytes) {
+    case 1: return is_signed ? as<std::int8_t>(word) : as<std::uint8_t>(word);
+    case 2: return is_signed ? as<std::int16_t>(word) : as<std::uint16_t>(word);
+    case 4: return is_signed ? as<std::int32_t>(word) : as<std::uint32_t>(word);
+    default: return is_signed ? as<std::int64_t>(word) : as<std::uint64_t>(word);
+    }
+}
+
+/// Otherwise than it was recorded last: a number by more than its band, and what is no number is no number's
+/// neighbour. The first value always is.
+bool has_changed(const Recorded& channel) noexcept TAPPET_REALTIME {
+    if (channel.head.sequence == 0) return true;
+    bool differs = false;
+    for (std::uint32_t i = 0; i < channel.head.words; ++i)
+        differs |= word_at(channel.value + 8 * i, channel.bytes - 8 * i) != channel.last[i];
+    if (!differs || channel.band == 0.0) return differs;
+    const double now = number_of(word_at(channel.value, channel.bytes), channel.kind, channel.bytes);
+    const double then = number_of(channel.last[0], channel.kind, channel.bytes);
+    return !(std::abs(now - then) <= channel.band);
+}
+
+bool is_due(Recorded& channel, bool stepped) noexcept TAPPET_REALTIME {
+    if (channel.every != 0) {
+        if (!stepped || --channel.left != 0) return false;
+        channel.left = channel.every;
+    }
+    if (channel.writes != nullptr && *channel.writes == 0) return false;
+    return channel.every != 0 || has_changed(channel);
+}
+
+void record(CycleRecorder& self, const Cycle& cycle, bool stepped) noexcept TAPPET_REALTIME {
+    auto& recorder = static_cast<Recorder&>(self);
+    recorded::ValueTape& tape = *recorder.tape;
+    tape.begin();
+    for (Recorded& channel : recorder.channels) {
+        if (!is_due(channel, stepped)) continue;
+        tape.add(channel.head.word());
+        ++channel.head.sequence;
+        for (std::uint32_t i = 0; i < channel.head.words; ++i) {
+            const std::uint64_t word = word_at(channel.value + 8 * i, channel.bytes - 8 * i);
+            tape.add(word);
+            if (channel.last != nullptr) channel.last[i] = word;
+        }
+    }
+    tape.end(to_ns(cycle.now));
+}
+
+/// Fills the places of one section, channel after channel.
+class Placer {
+public:
+    Placer(MachineInstance& machine, const Sizes& sizes, std::byte* begin)
+        : machine_{machine}, sizes_{sizes}, places_{places_of(sizes)}, begin_{begin} {}
+
+    void place(std::span<const ReportRow> rows) {
+        auto* directory = new (begin_) recorded::Directory;
+        directory->bytes = places_.bytes;
+        directory->channels_at = places_.channels_at;
+        directory->channels = static_cast<std::uint32_t>(sizes_.channels);
+        directory->tapes_at = places_.tapes_at;
+        directory->tapes = static_cast<std::uint32_t>(sizes_.tapes);
+        const AcceptedMachine& accepted = machine_.machine();
+        for (std::size_t a = 0; a < accepted.table.activities.size(); ++a) {
+            if (sizes_.activities[a].channels == 0) continue;
+            const std::size_t first = channels_;
+            for (const ReportRow& row : rows)
+                for_each_end(row, accepted.table, [&](End end) {
+                    if (accepted.index.activity[end.component] == a) add(row, end);
+                });
+            end_tape(a, first);
+        }
+        machine_.observation().records_at(directory);
+    }
+
+private:
+    template <class T>
+    [[nodiscard]] T* at(std::size_t place) const noexcept {
+        return reinterpret_cast<T*>(begin_ + place);
+    }
+
+    [[nodiscard]] std::uint64_t offset_of(const std::uint32_t& word) const noexcept {
+        return static_cast<std::uint64_t>(reinterpret_cast<const std::byte*>(&word) - begin_);
+    }
+
+    void add(const ReportRow& row, End end) {
+        const Facet& facet = facet_at(machine_.machine().table, end);
+        const auto bytes = static_cast<std::uint32_t>(facet.type->size);
+        const std::uint32_t every = row.on_change ? 0 : static_cast<std::uint32_t>(row.every);
+        auto* channel = new (at<Recorded>(places_.recorded_at) + channels_) Recorded;
+        new (at<recorded::Channel>(places_.channels_at) + channels_)
+            recorded::Channel{.component = static_cast<std::uint32_t>(end.component),
+                              .facet = static_cast<std::uint32_t>(end.facet),
+                              .bytes = bytes,
+                              .tape = tapes_,
+                              .every = every,
+                              .band = row.band,
+                              .next_at = offset_of(channel->head.sequence)};
+        if (facet.port != nullptr) {
+            const PortPlaces port = facet.port->places(machine_.facet(end), false);
+            channel->value = static_cast<const std::byte*>(port.value);
+            channel->writes = port.writes;
+        } else {
+            channel->value = static_cast<const std::byte*>(machine_.facet(end));
+        }
+        channel->bytes = bytes;
+        channel->every = every;
+        channel->kind = facet.type->kind;
+        channel->band = row.band;
+        channel->head.channel = static_cast<std::uint32_t>(channels_);
+        channel->head.words = static_cast<std::uint32_t>(recorded::words_of(bytes));
+        if (row.on_change) {
+            channel->last = at<std::uint64_t>(places_.last_at) + last_words_;
+            std::fill_n(channel->last, channel->head.words, 0);
+            last_words_ += channel->head.words;
+        }
+        ++channels_;
+    }
+
+    void end_tape(std::size_t activity, std::size_t first) {
+        const OfActivity& of = sizes_.activities[activity];
+        const std::size_t place = places_.tape_at[tapes_];
+        auto* recorder = new (at<Recorder>(places_.recorders_at) + tapes_) Recorder;
+        recorder->record = &record;
+        recorder->tape = new (at<recorded::ValueTape>(place)) recorded::ValueTape{tape_words(of), of.words};
+        recorder->channels = {at<Recorded>(places_.recorded_at) + first, channels_ - first};
+        new (at<recorded::Tape>(places_.tapes_at) + tapes_)
+            recorded::Tape{.at = place, .activity = static_cast<std::uint32_t>(activity)};
+        machine_.engines()[activity].record_values_by(recorder);
+        ++tapes_;
+    }
+
+    MachineInstance& machine_;
+    const Sizes& sizes_;
+    Places places_;
+    std::byte* begin_;
+    std::size_t channels_ = 0;
+    std::uint32_t tapes_ = 0;
+    std::size_t last_words_ = 0;
+};
+
+} // namespace
+
+void connect(std::span<const ReportRow> rows, MachineInstance& machine, std::span<std::byte> memory) {
+    constexpr std::size_t alignment = recorded::ValueTape::alignment;
+    const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+    std::byte* begin = memory.data() + (alignment - address % alignment) % alignment;
+    const Sizes sizes = sizes_of(rows, machine.machine().table);
+    Placer{machine, sizes, begin}.place(rows);
+}
+
+} // namespace tappet::reporting_detail

@@ -1,0 +1,105 @@
+// The reporting service (thesis 3.3): a section of the machine table that says which values are recorded. The
+// engines copy them at the end of their cycles onto tapes in the machine's memory; another process reads
+// those and writes files.
+#pragma once
+
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/services/reporting/check.hpp"
+#include "kernel/services/reporting/layout.hpp"
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace tappet {
+
+namespace reporting_detail {
+
+/// What an engine keeps of a channel.
+struct Recorded {
+    const std::byte* value = nullptr;
+    const std::uint64_t* writes = nullptr; ///< of an output: before the first there is no value
+    std::uint32_t bytes = 0;
+    std::uint32_t every = 0; ///< 0: on change
+    std::uint32_t left = 1;  ///< steps until it is recorded again
+    ValueKind kind = ValueKind::opaque;
+    recorded::SampleHead head{};   ///< of the next sample
+    double band = 0.0;             ///< of a number
+    std::uint64_t* last = nullptr; ///< on change: the words recorded last
+};
+
+/// Of one activity.
+struct Recorder : CycleRecorder {
+    recorded::ValueTape* tape = nullptr;
+    std::span<Recorded> channels{};
+};
+
+/// Where what lies in the section's memory, from its first line pair on.
+struct Places {
+    std::size_t channels_at = 0, tapes_at = 0, recorders_at = 0, recorded_at = 0, last_at = 0;
+    std::array<std::size_t, max_activities> tape_at{}; ///< in the order of the activities that have one
+    std::size_t bytes = 0;
+};
+
+constexpr Places places_of(const Sizes& sizes) noexcept {
+    Places places;
+    std::size_t at = sizeof(recorded::Directory);
+    const auto take = [&at](std::size_t bytes) {
+        const std::size_t here = at;
+        at += (bytes + 7) / 8 * 8;
+        return here;
+    };
+    places.channels_at = take(sizes.channels * sizeof(recorded::Channel));
+    places.tapes_at = take(sizes.tapes * sizeof(recorded::Tape));
+    places.recorders_at = take(sizes.tapes * sizeof(Recorder));
+    places.recorded_at = take(sizes.channels * sizeof(Recorded));
+    places.last_at = take(sizes.last_words * sizeof(std::uint64_t));
+    std::size_t tape = 0;
+    for (const OfActivity& each : sizes.activities) {
+        if (each.channels == 0) continue;
+        at = (at + recorded::ValueTape::alignment - 1) / recorded::ValueTape::alignment *
+             recorded::ValueTape::alignment;
+        places.tape_at[tape++] = take(recorded::ValueTape::bytes_for(tape_words(each)));
+    }
+    places.bytes = at;
+    return places;
+}
+static_assert(alignof(Recorder) <= 8 && alignof(Recorded) <= 8 && sizeof(Recorded) % 8 == 0);
+
+void connect(std::span<const ReportRow> rows, MachineInstance& machine, std::span<std::byte> memory);
+
+} // namespace reporting_detail
+
+template <std::size_t N>
+struct Reporting final : ExtraSection {
+    std::array<ReportRow, N> rows{};
+
+    constexpr explicit Reporting(const std::array<ReportRow, N>& r) : rows{r} {}
+
+    [[nodiscard]] constexpr Sentence check(const MachineView& m, const TableIndexView& r) const override {
+        return reporting_detail::check(rows, m, r);
+    }
+    [[nodiscard]] constexpr std::size_t bytes(const MachineView& m) const override {
+        // It begins on a line pair, wherever its memory does.
+        return reporting_detail::places_of(reporting_detail::sizes_of(rows, m)).bytes +
+               recorded::ValueTape::alignment;
+    }
+    void connect(MachineInstance& machine, std::size_t, std::span<std::byte> memory) const override {
+        reporting_detail::connect(rows, machine, memory);
+    }
+    [[nodiscard]] constexpr std::string_view stands_once() const override { return "reporting"; }
+    [[nodiscard]] Sentence describe_stop(std::size_t) const override { return {}; } // no row stops a machine
+    [[nodiscard]] SectionCount counted(std::span<const std::byte>, std::size_t) const noexcept override {
+        return {}; // who reads the tapes counts
+    }
+};
+
+/// The section: rows of report(..). A component of the table has to see the machine, a BrowserService, so
+/// that somebody can read what is recorded.
+template <class... Rows>
+constexpr Reporting<sizeof...(Rows)> reporting(const Rows&... rows) {
+    static_assert(sizeof...(Rows) != 0, "reporting() without a row records nothing; leave the section out");
+    return Reporting<sizeof...(Rows)>{{rows...}};
+}
+
+} // namespace tappet

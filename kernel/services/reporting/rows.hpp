@@ -1,0 +1,68 @@
+// What of a machine is recorded, as rows of the table (thesis 3.3, Reporting):
+//     reporting(report("shaft.position", every(2)),
+//               report("tension.force", on_change(0.5)),
+//               report("weft.*", on_change(), before(200ms), after(1s), trigger("weft.missed")))
+#pragma once
+
+#include "kernel/base/time.hpp"
+#include "kernel/statechart/rows.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace tappet {
+
+struct ReportRow {
+    std::string_view what{}; ///< "component.facet", or "component.*": all its outputs
+    std::int64_t every = 1;  ///< so many steps of its activity
+    bool on_change = false;
+    double band = 0.0;
+    std::string_view trigger{}; ///< the event around which it counts
+    Duration before{};
+    Duration after{};
+};
+
+struct EverySteps {
+    std::int64_t steps;
+};
+/// Recorded in the first step of its activity and in each n-th one after it. The default: in each.
+constexpr EverySteps every(std::int64_t steps) noexcept { return {steps}; }
+struct OnChange {
+    double band;
+};
+/// Recorded when a cycle leaves it otherwise than it was recorded last: by more than `band` of its unit.
+constexpr OnChange on_change(double band = 0.0) noexcept { return {band}; }
+struct Before {
+    Duration time;
+};
+/// Of a row with a trigger: what was recorded so long before the event is kept. What is kept after it:
+/// after(time).
+constexpr Before before(Duration time) noexcept { return {time}; }
+struct TriggerEvent {
+    std::string_view event;
+};
+/// Recorded values are kept around this event only: "component.event".
+constexpr TriggerEvent trigger(std::string_view event) noexcept { return {event}; }
+
+namespace detail {
+
+constexpr void apply(ReportRow& row, EverySteps option) noexcept { row.every = option.steps; }
+constexpr void apply(ReportRow& row, OnChange option) noexcept {
+    row.on_change = true;
+    row.band = option.band;
+}
+constexpr void apply(ReportRow& row, Before option) noexcept { row.before = option.time; }
+constexpr void apply(ReportRow& row, statechart::After option) noexcept { row.after = option.time; }
+constexpr void apply(ReportRow& row, TriggerEvent option) noexcept { row.trigger = option.event; }
+
+} // namespace detail
+
+/// An output or a property, and when it is recorded: every(steps) or on_change(band).
+template <class... Options>
+constexpr ReportRow report(std::string_view what, const Options&... options) {
+    ReportRow row{.what = what};
+    (detail::apply(row, options), ...);
+    return row;
+}
+
+} // namespace tappet
