@@ -64,7 +64,7 @@ const std::vector<Row> house{
 
     // A browser meets a machine at its memory and its socket only.
     {"toolchain/tools/browser", {"kernel/base", "kernel/machine/map/layout.hpp", "kernel/machine/map/black_box.hpp", "kernel/machine/map/view.hpp",
-                           "kernel/machine/plan/scope_layout.hpp", "kernel/activity/cycle_tape.hpp",
+                           "kernel/machine/plan/scope_layout.hpp", "kernel/activity/cycle_tape.hpp", "kernel/services/reporting/layout.hpp",
                            "kernel/services/browsing/protocol.hpp"}},
 
     {"toolchain",         {"kernel/base"}},

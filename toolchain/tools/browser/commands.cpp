@@ -36,6 +36,8 @@ constexpr auto table = std::to_array<Command>({
     {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "what a guardian kept of a machine that ended otherwise than asked: why, where each activity stood; or a command that reads, as of a machine that lives", Takes::nothing, 1, any, run_post_mortem},
     {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
                                                            "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
+    {"report", "report [list | start FILE.mcap [--for TIME] | stop FILE.mcap | convert FILE.mcap FILE.csv]",
+                                                           "the values that the machine's table says are recorded; start: into a file, until ^C, stop or TIME; convert: such a file as a table", Takes::nothing, 0, 3, run_report},
 });
 // clang-format on
 

@@ -85,5 +85,10 @@ Result<void> run_scope(Work& work);
 Result<void> run_reactions(Work& work);
 Result<void> run_post_mortem(Work& work);
 Result<void> run_manifest(Work& work);
+Result<void> run_report(Work& work);
+
+/// What needs no machine: recordings that are there, or are being made.
+[[nodiscard]] bool is_about_files(const Line& line);
+Result<void> run_report_of_files(const Line& line, std::ostream& out);
 
 } // namespace tappet::browser

@@ -126,6 +126,10 @@ int run(std::span<const std::string> words, Surroundings& surroundings) {
         return tell(surroundings, {Fault::bad_request, unknown_command(line->words.front())}, line->json);
     if (const auto fits = check_options(command, *line); !fits)
         return tell(surroundings, fits.error(), line->json);
+    if (is_about_files(*line)) {
+        const auto done = run_report_of_files(*line, surroundings.out);
+        return done ? 0 : tell(surroundings, done.error(), line->json);
+    }
     auto session = open_session(*line);
     if (!session) return tell(surroundings, session.error(), line->json);
     if (line->words.empty()) return run_lines(**session, *line, surroundings);

@@ -48,6 +48,7 @@ template <class Real> std::string real_text(Real value, Style style) {
                                                            std::chars_format::general, 6)
                                            : std::to_chars(text.data(), text.data() + text.size(), value);
     const std::string number{text.data(), end.ptr};
+    if (style == Style::plain && !std::isfinite(value)) return "null";
     return style == Style::json && !std::isfinite(value) ? in_quotes(number) : number;
 }
 
@@ -87,6 +88,7 @@ public:
                                               : real_text(load<double>(bytes), style_);
         case Shape::duration: {
             const auto nanoseconds = load<std::int64_t>(bytes);
+            if (style_ == Style::plain) return real_text(static_cast<double>(nanoseconds) * 1e-9, style_);
             if (style_ == Style::brief)
                 return is_clock(map_, type) ? clock_text(nanoseconds) : rounded_time(nanoseconds, 6);
             return style_ == Style::json ? in_quotes(duration_text(nanoseconds)) : duration_text(nanoseconds);
@@ -100,16 +102,17 @@ public:
         case Shape::opaque: break;
         }
         const std::string what = "<" + std::to_string(type.size) + " bytes>";
-        return style_ == Style::json ? in_quotes(what) : what;
+        return is_json() ? in_quotes(what) : what;
     }
 
 private:
+    [[nodiscard]] bool is_json() const { return style_ == Style::json || style_ == Style::plain; }
     [[nodiscard]] std::string text(const map::Type& type, Bytes bytes) const {
         const std::uint64_t length =
             std::min<std::uint64_t>(natural(bytes.subspan(type.length_at), type.length_bytes), type.columns);
         const std::string_view characters{reinterpret_cast<const char*>(bytes.data()) + type.items_at,
                                           length};
-        if (style_ != Style::json) return in_quotes(characters);
+        if (!is_json()) return in_quotes(characters);
         // Characters that are no UTF-8 become U+FFFD.
         return nlohmann::json(characters).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     }
@@ -122,7 +125,7 @@ private:
             if (each.value == value ||
                 (type.size < 8 && each.value == static_cast<std::int64_t>(natural(bytes, type.size)))) {
                 const std::string_view name = map_.text(each.name);
-                return style_ == Style::json ? in_quotes(name) : std::string{name};
+                return is_json() ? in_quotes(name) : std::string{name};
             }
         }
         return std::to_string(value);
@@ -170,7 +173,7 @@ private:
             const map::Field& each = map_.fields()[type.first_field + i];
             if (i > 0) all += ", ";
             const std::string_view name = map_.text(each.name);
-            all += style_ == Style::json ? in_quotes(name) : std::string{name};
+            all += is_json() ? in_quotes(name) : std::string{name};
             all += ": " + field(each, bytes);
         }
         return all + "}";
@@ -180,7 +183,7 @@ private:
         std::string all = list(type.field_count, [&](std::uint64_t i) {
             return field(map_.fields()[type.first_field + i], bytes);
         });
-        if (style_ == Style::json) return all;
+        if (is_json()) return all;
         all.front() = '(';
         all.back() = ')';
         return all;

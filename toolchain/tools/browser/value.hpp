@@ -8,7 +8,9 @@ namespace tappet::browser {
 enum class Style {
     exact, ///< read back it gives the same value; spelled as `set` takes it
     brief, ///< for people: six significant digits
-    json ///< a JSON value; times, enumerations and what is no number are strings, as in the machine's replies
+    json,  ///< a JSON value; times, enumerations and what is no number are strings, as in the machine's
+           ///< replies
+    plain  ///< a JSON value for who computes: times are seconds, and what is no number is null
 };
 
 /// `bytes` are at least as many as the type is large.

@@ -1,0 +1,211 @@
+// Records of MCAP: an opcode, a length, and fields in little-endian order; texts and maps have a length of
+// four bytes before them.
+#include "toolchain/tools/browser/mcap.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace tappet::browser::mcap {
+
+namespace {
+
+template <class Number> void put(std::string& into, Number number) {
+    for (std::size_t i = 0; i < sizeof number; ++i) into += static_cast<char>(number >> (8 * i) & 0xff);
+}
+void put_text(std::string& into, std::string_view text) {
+    put(into, static_cast<std::uint32_t>(text.size()));
+    into += text;
+}
+void put_pairs(std::string& into, const Pairs& pairs) {
+    std::string all;
+    for (const auto& [key, value] : pairs) {
+        put_text(all, key);
+        put_text(all, value);
+    }
+    put_text(into, all);
+}
+void put_record(std::string& file, Opcode opcode, std::string_view fields) {
+    file += static_cast<char>(opcode);
+    put(file, std::uint64_t{fields.size()});
+    file += fields;
+}
+
+/// Takes fields off the front of a record; what is not there leaves it broken.
+class Fields {
+public:
+    explicit Fields(std::string_view left) : left_{left} {}
+
+    template <class Number> Number number() {
+        const std::string_view bytes = take(sizeof(Number));
+        Number value = 0;
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+            value = static_cast<Number>(value | Number{static_cast<unsigned char>(bytes[i])} << (8 * i));
+        return value;
+    }
+    std::string_view text() { return take(number<std::uint32_t>()); }
+    Pairs pairs() {
+        Fields all{text()};
+        Pairs found;
+        while (!all.left_.empty() && !all.broken_) {
+            const std::string key{all.text()};
+            found.emplace_back(key, all.text());
+        }
+        broken_ |= all.broken_;
+        return found;
+    }
+    [[nodiscard]] std::string_view rest() const { return left_; }
+    [[nodiscard]] bool is_broken() const { return broken_; }
+
+private:
+    std::string_view take(std::size_t bytes) {
+        if (bytes > left_.size()) {
+            broken_ = true;
+            left_ = {};
+            return {};
+        }
+        const std::string_view taken = left_.substr(0, bytes);
+        left_.remove_prefix(bytes);
+        return taken;
+    }
+
+    std::string_view left_;
+    bool broken_ = false;
+};
+
+/// Reads one record's fields into what is known so far; false: they contradict their length.
+bool take_record(Opcode opcode, std::string_view bytes, Contents& into) {
+    Fields fields{bytes};
+    switch (opcode) {
+    case Opcode::schema: {
+        const auto id = fields.number<std::uint16_t>();
+        static_cast<void>(fields.text()); // its name
+        static_cast<void>(fields.text()); // its encoding
+        into.schemas[id] = fields.text();
+        break;
+    }
+    case Opcode::channel: {
+        Channel channel;
+        channel.id = fields.number<std::uint16_t>();
+        channel.schema = fields.number<std::uint16_t>();
+        channel.topic = fields.text();
+        channel.encoding = fields.text();
+        channel.metadata = fields.pairs();
+        if (std::ranges::find(into.channels, channel.id, &Channel::id) == into.channels.end())
+            into.channels.push_back(std::move(channel));
+        break;
+    }
+    case Opcode::message: {
+        Message message;
+        message.channel = fields.number<std::uint16_t>();
+        message.sequence = fields.number<std::uint32_t>();
+        message.log_ns = fields.number<std::uint64_t>();
+        static_cast<void>(fields.number<std::uint64_t>()); // when it was sent
+        message.data = fields.rest();
+        into.messages.push_back(message);
+        break;
+    }
+    case Opcode::metadata: {
+        const std::string name{fields.text()};
+        into.metadata[name] = fields.pairs();
+        break;
+    }
+    case Opcode::footer: into.has_end = true; break;
+    case Opcode::header:
+    case Opcode::data_end: break;
+    }
+    return !fields.is_broken();
+}
+
+} // namespace
+
+void put_begin(std::string& file, std::string_view library) {
+    file += magic;
+    std::string fields;
+    put_text(fields, ""); // no profile
+    put_text(fields, library);
+    put_record(file, Opcode::header, fields);
+}
+
+void put_schema(std::string& file, std::uint16_t id, std::string_view name, std::string_view json_schema) {
+    std::string fields;
+    put(fields, id);
+    put_text(fields, name);
+    put_text(fields, "jsonschema");
+    put_text(fields, json_schema);
+    put_record(file, Opcode::schema, fields);
+}
+
+void put_channel(std::string& file, const Channel& channel) {
+    std::string fields;
+    put(fields, channel.id);
+    put(fields, channel.schema);
+    put_text(fields, channel.topic);
+    put_text(fields, channel.encoding);
+    put_pairs(fields, channel.metadata);
+    put_record(file, Opcode::channel, fields);
+}
+
+void put_message(std::string& file, const Message& message) {
+    std::string fields;
+    put(fields, message.channel);
+    put(fields, message.sequence);
+    put(fields, message.log_ns);
+    put(fields, message.log_ns);
+    fields += message.data;
+    put_record(file, Opcode::message, fields);
+}
+
+void put_metadata(std::string& file, std::string_view name, const Pairs& values) {
+    std::string fields;
+    put_text(fields, name);
+    put_pairs(fields, values);
+    put_record(file, Opcode::metadata, fields);
+}
+
+void put_end(std::string& file) {
+    std::string fields;
+    put(fields, std::uint32_t{0}); // no checksum
+    put_record(file, Opcode::data_end, fields);
+    fields.clear();
+    put(fields, std::uint64_t{0}); // no summary
+    put(fields, std::uint64_t{0});
+    put(fields, std::uint32_t{0});
+    put_record(file, Opcode::footer, fields);
+    file += magic;
+}
+
+std::expected<Contents, std::string> read(std::string_view file) {
+    if (!file.starts_with(magic.substr(0, file.size())))
+        return std::unexpected(std::string{"is no MCAP file; 'report start' writes such"});
+    Contents contents;
+    if (file.size() < magic.size()) return contents;
+    contents.whole_bytes = magic.size();
+    std::string_view left = file.substr(magic.size());
+    constexpr std::size_t head_bytes = 9;
+    while (!contents.has_end && left.size() >= head_bytes) {
+        const auto opcode = static_cast<unsigned char>(left[0]);
+        const auto length = Fields{left.substr(1)}.number<std::uint64_t>();
+        if (opcode == 0)
+            return std::unexpected("holds no record at byte " + std::to_string(contents.whole_bytes) +
+                                   "; it is damaged");
+        if (length > left.size() - head_bytes) break; // cut off
+        if (opcode == 0x06)
+            return std::unexpected(
+                std::string{"is in chunks, which are not read here; write it anew without"});
+        if (!take_record(static_cast<Opcode>(opcode), left.substr(head_bytes, length), contents))
+            return std::unexpected("contradicts itself at byte " + std::to_string(contents.whole_bytes) +
+                                   "; it is damaged");
+        left.remove_prefix(head_bytes + length);
+        contents.whole_bytes = file.size() - left.size();
+    }
+    contents.has_end = contents.has_end && left.starts_with(magic);
+    std::set<std::uint16_t> known;
+    for (const Channel& each : contents.channels) known.insert(each.id);
+    for (const Message& each : contents.messages)
+        if (!known.contains(each.channel))
+            return std::unexpected("has messages of channel " + std::to_string(each.channel) +
+                                   ", which is not there; it is damaged");
+    return contents;
+}
+
+} // namespace tappet::browser::mcap

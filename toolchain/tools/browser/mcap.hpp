@@ -1,0 +1,67 @@
+// Recordings as MCAP, version 0 (mcap.dev/spec): append-only records that say themselves what they hold. They
+// are written without chunks, so that a file that was cut off is good up to its last whole record.
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tappet::browser::mcap {
+
+inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
+
+enum class Opcode : std::uint8_t {
+    header = 0x01,
+    footer = 0x02,
+    schema = 0x03,
+    channel = 0x04,
+    message = 0x05,
+    metadata = 0x0C,
+    data_end = 0x0F
+};
+
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+struct Channel {
+    std::uint16_t id = 0;
+    std::uint16_t schema = 0; ///< 0: none
+    std::string topic{};
+    std::string encoding{};
+    Pairs metadata{};
+};
+
+struct Message {
+    std::uint16_t channel = 0;
+    std::uint32_t sequence = 0;
+    std::uint64_t log_ns = 0;
+    std::string_view data{};
+};
+
+// Each appends one record.
+void put_begin(std::string& file, std::string_view library);
+void put_schema(std::string& file, std::uint16_t id, std::string_view name, std::string_view json_schema);
+void put_channel(std::string& file, const Channel& channel);
+void put_message(std::string& file, const Message& message);
+void put_metadata(std::string& file, std::string_view name, const Pairs& values);
+/// What a file that was not cut off ends with.
+void put_end(std::string& file);
+
+/// A file as far as it goes. Its messages point into the bytes that were read.
+struct Contents {
+    std::vector<Channel> channels{};
+    std::map<std::uint16_t, std::string> schemas{}; ///< what they say
+    std::vector<Message> messages{};                ///< in the order of the file
+    std::map<std::string, Pairs, std::less<>> metadata{};
+    bool has_end = false;        ///< it was not cut off
+    std::size_t whole_bytes = 0; ///< up to the end of its last whole record
+};
+
+/// The error says what is no MCAP that is read here; what stands behind a cut is none. Records that are not
+/// known are passed over.
+[[nodiscard]] std::expected<Contents, std::string> read(std::string_view file);
+
+} // namespace tappet::browser::mcap

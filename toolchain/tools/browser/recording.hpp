@@ -1,0 +1,50 @@
+// What becomes of recorded values: the records of a file that says itself what it holds.
+#pragma once
+
+#include "toolchain/tools/browser/mcap.hpp"
+#include "toolchain/tools/browser/records.hpp"
+
+namespace tappet::browser {
+
+/// The topic of what was missed: {"channel": NAME, "samples": N}.
+inline constexpr std::string_view lost_topic = "lost";
+
+/// Of one file. A sample becomes a message {"value": VALUE}, whose JSON schema stands before it.
+class Recording {
+public:
+    /// `zero_ns`: what to add to the machine's clock for the time since 1970.
+    Recording(const MapReader& map, const std::vector<RecordedChannel>& channels, std::int64_t zero_ns);
+
+    /// Samples in the order of time.
+    void add(std::span<const RecordedSample> samples);
+    /// Nothing follows.
+    void end();
+    /// What has come together since the last call.
+    [[nodiscard]] std::string take() { return std::exchange(bytes_, {}); }
+
+    [[nodiscard]] std::uint64_t samples() const { return samples_; }
+    [[nodiscard]] std::uint64_t lost() const { return lost_; }
+
+private:
+    void describe(std::uint32_t channel);
+    [[nodiscard]] std::uint16_t schema_of(const std::string& name, const std::string& json_schema);
+    [[nodiscard]] std::uint16_t id_of(std::uint32_t channel) const {
+        return static_cast<std::uint16_t>(channel + 2); // the first one is of what was lost
+    }
+    void tell_lost(const RecordedSample& sample);
+    void write(const RecordedSample& sample);
+
+    const MapReader* map_;
+    const std::vector<RecordedChannel>* channels_;
+    std::int64_t zero_ns_;
+    std::map<std::string, std::uint16_t> schemas_{};
+    std::string bytes_{};
+    std::uint64_t samples_ = 0;
+    std::uint64_t lost_ = 0;
+    std::uint32_t lost_messages_ = 0;
+};
+
+/// A value's type as a JSON schema.
+[[nodiscard]] std::string json_schema(const MapReader& map, std::uint32_t type);
+
+} // namespace tappet::browser
