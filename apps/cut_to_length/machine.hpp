@@ -7,6 +7,7 @@
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/reporting/reporting.hpp"
 
 namespace cut_to_length {
 
@@ -44,7 +45,11 @@ inline constexpr auto table = machine("cut-to-length",
     reactions( // execution flow
         when("wheel.cut.enters", tell("io.knife.set")),
         when("wheel.cut.leaves", tell("io.knife.clear"))),
-    behaviours(behaviour("line", compiled<line_states>)));
+    behaviours(behaviour("line", compiled<line_states>)),
+    reporting( // what tappet-browse report writes to files
+        report("line.target"),
+        report("wheel.*",     on_change()),
+        report("line.speed",  on_change())));
 // clang-format on
 
 } // namespace cut_to_length
