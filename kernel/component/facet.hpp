@@ -89,7 +89,8 @@ struct EventOperations {
     /// The next row; `call` points at a typed function pointer. Answers the word of the event's connections,
     /// in which the row has the bit of its turn.
     std::atomic<std::uint64_t>& (*subscribe)(void* event, const void* call, void* context);
-    const void* post; ///< of the asynchronous reaction, likewise
+    const void* post;  ///< of the asynchronous reaction, likewise
+    const void* count; ///< of a reaction that counts in a std::atomic<std::uint64_t>, likewise
     /// With packed arguments, for emitters that know no C++ type.
     void (*emit)(void* event, const std::byte* packed) noexcept TAPPET_REALTIME;
 };
@@ -326,6 +327,13 @@ struct PortAccess {
     static constexpr void (*post)(void*, A...) noexcept TAPPET_REALTIME = &detail::post<A...>;
 
     template <class... A>
+    static constexpr void (*count)(void*, A...) noexcept TAPPET_REALTIME = [](void* counter, A...) noexcept
+        TAPPET_REALTIME {
+            static_cast<std::atomic<std::uint64_t>*>(counter)->fetch_add(
+                1, std::memory_order_relaxed); // no step: looked at again and again
+        };
+
+    template <class... A>
     static constexpr EventOperations event{
         .subscriber_bytes = sizeof(Subscriber<A...>),
         .give_storage =
@@ -339,6 +347,7 @@ struct PortAccess {
             return target.connected_;
         },
         .post = &post<A...>,
+        .count = &count<A...>,
         .emit = [](void* event, const std::byte* packed) noexcept
         TAPPET_REALTIME { detail::emit_packed<A...>(*static_cast<Event<A...>*>(event), packed); },
     };

@@ -1,5 +1,5 @@
-// Wires the subscriptions of events: reaction rows, waits, the triggers of state machines, the observer;
-// their handles and the mailboxes.
+// Wires the subscriptions of events: reaction rows, waits, the triggers of state machines, counters, the
+// observer; their handles and the mailboxes.
 #include "kernel/machine/instance/builder.hpp"
 
 #include <new>
@@ -39,11 +39,17 @@ void MachineBuilder::connect_events() {
             place_lanes(s, *reaction);
             bind_receiver(s, *reaction);
         }
-        std::atomic<std::uint64_t>& connected =
-            row.synchronous ? event.subscribe(instance_.facet(row.event),
-                                              facet_at(machine_.table, row.target).operation->enter,
-                                              instance_.gate_of(row.target.component))
-                            : event.subscribe(instance_.facet(row.event), event.post, reaction);
+        const void* call = event.post;
+        void* context = reaction;
+        if (row.kind == SubscriberKind::counter) {
+            call = event.count;
+            context = machine_.table.extras->at(row.section)
+                          ->counter(instance_.extra_memory(row.section), row.counted);
+        } else if (row.synchronous) {
+            call = facet_at(machine_.table, row.target).operation->enter;
+            context = instance_.gate_of(row.target.component);
+        }
+        std::atomic<std::uint64_t>& connected = event.subscribe(instance_.facet(row.event), call, context);
         if (reaction != nullptr) reaction->connected = &connected;
         const EventHandle handle{connected, bit, reaction == nullptr ? nullptr : &reaction->epoch};
         if (row.is_connected) handle.connect();
@@ -124,6 +130,7 @@ void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {
         reaction.part =
             plan.part_of[find_component(machine_.table, machine_.table.behaviours[row.behaviour].component)];
         break;
+    case SubscriberKind::counter: break; // it is synchronous, and no receiver's
     case SubscriberKind::observer:
         reaction.run = &run_observer;
         reaction.object = new (instance_.at<ObserverBinding>(place.binding_at))

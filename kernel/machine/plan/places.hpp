@@ -16,6 +16,7 @@ enum class SubscriberKind : std::uint8_t {
     operation, ///< of a reaction row
     wait,      ///< of a reaction row: an EventWait
     trigger,   ///< of a behaviour
+    counter,   ///< of a section of another folder
     observer   ///< the component that sees the machine
 };
 
@@ -30,6 +31,8 @@ struct Subscription {
     End handle;                      ///< of a reaction row that has one
     std::size_t behaviour = nowhere; ///< of a trigger
     std::size_t trigger = 0;         ///< number among the events of its unit or slot
+    std::size_t section = nowhere;   ///< of a counter
+    std::size_t counted = 0;         ///< number among the events that the section counts
     std::uint32_t quota = 0;
     std::uint64_t emitters = 0; ///< one bit for each activity that may emit the event
     std::size_t receiver = 0;   ///< activity

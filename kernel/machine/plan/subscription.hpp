@@ -24,6 +24,8 @@ constexpr std::size_t count_subscriptions(const MachineView& m) {
     for (const auto& row : m.reactions) count += row.kind == ReactionKind::when;
     for (const auto& row : m.behaviours)
         count += row.is_slot() ? count_slot_events(m, row) : events_of(row.unit()).count;
+    for (std::size_t e = 0; e < m.extras->size(); ++e)
+        for (std::size_t number = 0; !m.extras->at(e)->counts(number).empty(); ++number) ++count;
     if (find_observer(m) == nowhere) return count;
     for (const auto& row : m.components)
         for (const auto& facet : row.type->facets) count += is_observable(facet);
@@ -74,6 +76,16 @@ constexpr std::size_t collect_subscriptions(const MachineView& m, const TableInd
             hear(event);
         }
     }
+    for (std::size_t e = 0; e < m.extras->size(); ++e)
+        for (std::size_t number = 0; !m.extras->at(e)->counts(number).empty(); ++number) {
+            Subscription& s = into[n++];
+            static_cast<void>(
+                resolve(m, r.by_name, m.extras->at(e)->counts(number), FacetKind::event, s.event));
+            s.kind = SubscriberKind::counter;
+            s.synchronous = true;
+            s.section = e;
+            s.counted = number;
+        }
     const std::size_t observer = find_observer(m);
     if (observer == nowhere) return n;
     for (std::size_t c = 0; c < m.components.size(); ++c)

@@ -4,6 +4,7 @@
 
 #include "kernel/base/text.hpp"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,6 +45,14 @@ public:
     [[nodiscard]] constexpr virtual std::string_view stands_once() const { return {}; }
     /// What it takes of the machine's memory; it begins where any object may stand.
     [[nodiscard]] constexpr virtual std::size_t bytes(const MachineView& table) const = 0;
+    /// The events whose emissions are counted for it, one number after the other, each once; empty: there are
+    /// no more. Of a checked table.
+    [[nodiscard]] constexpr virtual std::string_view counts(std::size_t /*number*/) const { return {}; }
+    /// Where, once it is connected: by the emitter, in whatever activity it runs.
+    [[nodiscard]] virtual std::atomic<std::uint64_t>* counter(std::span<std::byte> /*memory*/,
+                                                              std::size_t /*number*/) const noexcept {
+        return nullptr;
+    }
     /// At start-up, when ports are wired and no component is configured yet. `number`: of this section, for
     /// ask_section_stop.
     virtual void connect(MachineInstance& machine, std::size_t number, std::span<std::byte> memory) const = 0;

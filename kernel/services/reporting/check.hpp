@@ -71,9 +71,29 @@ constexpr void for_each_end(const ReportRow& row, const MachineView& m, Take tak
         if (facets[f].kind == FacetKind::output && hindrance(facets[f]).empty()) take(End{end.component, f});
 }
 
+/// The event of a row's window: its number among those of all rows.
+constexpr std::size_t trigger_number(std::span<const ReportRow> rows, std::string_view event) noexcept {
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (same_text(rows[i].trigger, event)) return number;
+        bool is_first = !rows[i].trigger.empty();
+        for (std::size_t j = 0; j < i && is_first; ++j)
+            is_first = !same_text(rows[j].trigger, rows[i].trigger);
+        number += is_first ? 1 : 0;
+    }
+    return number;
+}
+/// The event of that number; empty: there is none.
+constexpr std::string_view trigger_of(std::span<const ReportRow> rows, std::size_t number) noexcept {
+    for (const ReportRow& row : rows)
+        if (!row.trigger.empty() && trigger_number(rows, row.trigger) == number) return row.trigger;
+    return {};
+}
+
 /// What one activity records.
 struct OfActivity {
     std::size_t channels = 0;
+    std::uint64_t triggers = 0; ///< a bit for each event, by its number: it has a channel of its own
     std::size_t words = 0;      ///< of a cycle that records all of them
     std::size_t span_words = 0; ///< of tape_span at most
 };
@@ -83,6 +103,8 @@ struct Sizes {
     std::size_t channels = 0;
     std::size_t tapes = 0;
     std::size_t last_words = 0; ///< of the values that are compared
+    std::size_t triggers = 0;   ///< events
+    std::size_t emissions = 0;  ///< channels of events
 };
 
 /// Cycles of an activity within tape_span.
@@ -95,29 +117,59 @@ constexpr std::size_t cycles_of(const ActivityRow& row) noexcept {
 
 constexpr Sizes sizes_of(std::span<const ReportRow> rows, const MachineView& m) {
     Sizes sizes;
+    const auto add = [&](std::size_t activity, std::size_t words, std::size_t every, bool is_compared) {
+        OfActivity& of = sizes.activities[activity];
+        const std::size_t cycles = cycles_of(m.activities[activity]);
+        if (of.channels++ == 0) {
+            ++sizes.tapes;
+            of.words = recorded::Moment::words_beside_samples;
+            of.span_words = of.words * cycles;
+        }
+        ++sizes.channels;
+        of.words += 1 + words;
+        of.span_words += (1 + words) * (cycles / every + 1);
+        if (is_compared) sizes.last_words += words;
+    };
     for (const ReportRow& row : rows)
         for_each_end(row, m, [&](End end) {
             const std::size_t activity = activity_of(m, m.components[end.component].name);
-            OfActivity& of = sizes.activities[activity];
-            const std::size_t words = recorded::words_of(facet_at(m, end).type->size);
-            const std::size_t cycles = cycles_of(m.activities[activity]);
-            if (of.channels++ == 0) {
-                ++sizes.tapes;
-                of.words = recorded::Moment::words_beside_samples;
-                of.span_words = of.words * cycles;
-            }
-            ++sizes.channels;
-            of.words += 1 + words;
-            of.span_words +=
-                (1 + words) * (row.on_change ? cycles : cycles / static_cast<std::size_t>(row.every) + 1);
-            if (row.on_change) sizes.last_words += words;
+            add(activity, recorded::words_of(facet_at(m, end).type->size),
+                row.on_change ? 1 : static_cast<std::size_t>(row.every), row.on_change);
+            if (row.trigger.empty()) return;
+            const std::uint64_t bit = std::uint64_t{1} << trigger_number(rows, row.trigger);
+            if ((sizes.activities[activity].triggers & bit) != 0) return;
+            sizes.activities[activity].triggers |= bit;
+            ++sizes.emissions;
+            add(activity, 1, 1, true);
         });
+    while (!trigger_of(rows, sizes.triggers).empty()) ++sizes.triggers;
     return sizes;
 }
 
 /// A power of two, of which one moment takes an eighth at most.
 constexpr std::size_t tape_words(const OfActivity& of) noexcept {
     return std::bit_ceil(std::max({fewest_tape_words, 8 * of.words, of.span_words}));
+}
+
+/// What is wrong with a row's window.
+constexpr Sentence check_window(const ReportRow& row, const MachineView& m, const TableIndexView& r) {
+    if (row.before < Duration::zero() || row.after < Duration::zero())
+        return Sentence{"its window has a negative time; write how long before and after the event"};
+    const bool is_empty = row.before == Duration::zero() && row.after == Duration::zero();
+    if (row.trigger.empty())
+        return is_empty ? Sentence{}
+                        : Sentence{"before and after are around an event, and it names none; add "
+                                   "trigger(\"component.event\")"};
+    End event;
+    if (Sentence fault = resolve(m, r.by_name, row.trigger, FacetKind::event, event); !fault.empty())
+        return fault;
+    if (facet_at(m, event).kind != FacetKind::event)
+        return Sentence{"\"", row.trigger, "\" is ", to_text(facet_at(m, event).kind),
+                        ", and a window is around an event; name one"};
+    if (is_empty)
+        return Sentence{"nothing is kept around \"", row.trigger,
+                        "\", since its window is empty; add before(...), after(...) or both"};
+    return {};
 }
 
 constexpr Sentence check_row(const ReportRow& row, const MachineView& m, const TableIndexView& r) {
@@ -133,6 +185,7 @@ constexpr Sentence check_row(const ReportRow& row, const MachineView& m, const T
     if (m.components[end.component].type->loop != nullptr)
         return Sentence{"\"", m.components[end.component].name,
                         "\" has a loop() and no steps, after which it could be recorded; give it a step()"};
+    if (Sentence fault = check_window(row, m, r); !fault.empty()) return fault;
     if (end.facet == all_outputs) {
         std::size_t outputs = 0;
         for_each_end(row, m, [&](End) { ++outputs; });
@@ -172,6 +225,9 @@ constexpr Sentence check(std::span<const ReportRow> rows, const MachineView& m, 
         });
         if (!twice.empty()) return said(twice);
     }
+    if (!trigger_of(rows, recorded::most_triggers).empty())
+        return Sentence{"reporting: its windows are around more than ", recorded::most_triggers,
+                        " events; let some have one in common"};
     if (channels > recorded::most_channels)
         return Sentence{"reporting: it records ", channels, " values, and ", recorded::most_channels,
                         " are the most; leave out what nobody looks at"};

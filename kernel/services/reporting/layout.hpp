@@ -21,14 +21,16 @@ inline constexpr std::uint32_t none = 0xffffffffu;
 struct Channel {
     std::uint32_t component = 0; ///< of the map
     std::uint32_t facet = 0;     ///< within the component
-    std::uint32_t bytes = 0;     ///< of its value; of an event, how often it was emitted: 8
+    std::uint32_t bytes = 0;     ///< of its value
     std::uint32_t tape = 0;
     std::uint32_t every = 0;      ///< so many steps; 0: when it changes
     std::uint32_t trigger = none; ///< the channel of the event around which its samples count; none: all do
     double band = 0;              ///< a change up to here is none
     std::int64_t before_ns = 0;   ///< samples so long before the event count, and so long after it
     std::int64_t after_ns = 0;
-    std::uint64_t next_at = 0; ///< uint32: the number of its next sample
+    std::uint64_t next_at = 0;  ///< uint32: the number of its next sample
+    std::uint32_t is_event = 0; ///< 1: the facet is an event, and the value how often it was emitted
+    std::uint32_t reserved = 0;
 };
 
 struct Tape {
@@ -55,6 +57,8 @@ static_assert(is_plain<Channel> && is_plain<Tape> && is_plain<Directory>);
 /// So many bytes a recorded value has at most, and so many channels a machine.
 inline constexpr std::size_t most_value_bytes = 4096;
 inline constexpr std::size_t most_channels = 4096;
+/// So many events windows may have.
+inline constexpr std::size_t most_triggers = 64;
 
 /// The first word of a sample; the words of its value follow.
 struct SampleHead {

@@ -2,6 +2,7 @@
 #include "kernel/services/reporting/reporting.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <new>
@@ -63,6 +64,9 @@ void record(CycleRecorder& self, const Cycle& cycle, bool stepped) noexcept TAPP
     auto& recorder = static_cast<Recorder&>(self);
     recorded::ValueTape& tape = *recorder.tape;
     tape.begin();
+    for (Emissions& each : recorder.events)
+        each.seen =
+            each.counter->load(std::memory_order_relaxed); // no step: the next cycle sees it, or this one
     for (Recorded& channel : recorder.channels) {
         if (!is_due(channel, stepped)) continue;
         tape.add(channel.head.word());
@@ -79,26 +83,25 @@ void record(CycleRecorder& self, const Cycle& cycle, bool stepped) noexcept TAPP
 /// Fills the places of one section, channel after channel.
 class Placer {
 public:
-    Placer(MachineInstance& machine, const Sizes& sizes, std::byte* begin)
-        : machine_{machine}, sizes_{sizes}, places_{places_of(sizes)}, begin_{begin} {}
+    Placer(std::span<const ReportRow> rows, MachineInstance& machine, std::byte* begin)
+        : rows_{rows},
+          machine_{machine},
+          table_{machine.machine().table},
+          sizes_{sizes_of(rows, table_)},
+          places_{places_of(sizes_)},
+          begin_{begin} {}
 
-    void place(std::span<const ReportRow> rows) {
+    void place() {
         auto* directory = new (begin_) recorded::Directory;
         directory->bytes = places_.bytes;
         directory->channels_at = places_.channels_at;
         directory->channels = static_cast<std::uint32_t>(sizes_.channels);
         directory->tapes_at = places_.tapes_at;
         directory->tapes = static_cast<std::uint32_t>(sizes_.tapes);
-        const AcceptedMachine& accepted = machine_.machine();
-        for (std::size_t a = 0; a < accepted.table.activities.size(); ++a) {
-            if (sizes_.activities[a].channels == 0) continue;
-            const std::size_t first = channels_;
-            for (const ReportRow& row : rows)
-                for_each_end(row, accepted.table, [&](End end) {
-                    if (accepted.index.activity[end.component] == a) add(row, end);
-                });
-            end_tape(a, first);
-        }
+        for (std::size_t t = 0; t < sizes_.triggers; ++t)
+            new (at<std::atomic<std::uint64_t>>(places_.counters_at) + t) std::atomic<std::uint64_t>{0};
+        for (std::size_t a = 0; a < table_.activities.size(); ++a)
+            if (sizes_.activities[a].channels != 0) place_activity(a);
         machine_.observation().records_at(directory);
     }
 
@@ -107,51 +110,25 @@ private:
     [[nodiscard]] T* at(std::size_t place) const noexcept {
         return reinterpret_cast<T*>(begin_ + place);
     }
-
     [[nodiscard]] std::uint64_t offset_of(const std::uint32_t& word) const noexcept {
         return static_cast<std::uint64_t>(reinterpret_cast<const std::byte*>(&word) - begin_);
     }
 
-    void add(const ReportRow& row, End end) {
-        const Facet& facet = facet_at(machine_.machine().table, end);
-        const auto bytes = static_cast<std::uint32_t>(facet.type->size);
-        const std::uint32_t every = row.on_change ? 0 : static_cast<std::uint32_t>(row.every);
-        auto* channel = new (at<Recorded>(places_.recorded_at) + channels_) Recorded;
-        new (at<recorded::Channel>(places_.channels_at) + channels_)
-            recorded::Channel{.component = static_cast<std::uint32_t>(end.component),
-                              .facet = static_cast<std::uint32_t>(end.facet),
-                              .bytes = bytes,
-                              .tape = tapes_,
-                              .every = every,
-                              .band = row.band,
-                              .next_at = offset_of(channel->head.sequence)};
-        if (facet.port != nullptr) {
-            const PortPlaces port = facet.port->places(machine_.facet(end), false);
-            channel->value = static_cast<const std::byte*>(port.value);
-            channel->writes = port.writes;
-        } else {
-            channel->value = static_cast<const std::byte*>(machine_.facet(end));
-        }
-        channel->bytes = bytes;
-        channel->every = every;
-        channel->kind = facet.type->kind;
-        channel->band = row.band;
-        channel->head.channel = static_cast<std::uint32_t>(channels_);
-        channel->head.words = static_cast<std::uint32_t>(recorded::words_of(bytes));
-        if (row.on_change) {
-            channel->last = at<std::uint64_t>(places_.last_at) + last_words_;
-            std::fill_n(channel->last, channel->head.words, 0);
-            last_words_ += channel->head.words;
-        }
-        ++channels_;
-    }
-
-    void end_tape(std::size_t activity, std::size_t first) {
+    void place_activity(std::size_t activity) {
         const OfActivity& of = sizes_.activities[activity];
         const std::size_t place = places_.tape_at[tapes_];
+        const std::size_t first = channels_, first_event = emissions_;
+        // The events before the values of the same cycle: so a window is open when these come.
+        for (std::size_t t = 0; t < sizes_.triggers; ++t)
+            if ((of.triggers >> t & 1) != 0) add_event(t);
+        for (const ReportRow& row : rows_)
+            for_each_end(row, table_, [&](End end) {
+                if (machine_.machine().index.activity[end.component] == activity) add(row, end, first);
+            });
         auto* recorder = new (at<Recorder>(places_.recorders_at) + tapes_) Recorder;
         recorder->record = &record;
         recorder->tape = new (at<recorded::ValueTape>(place)) recorded::ValueTape{tape_words(of), of.words};
+        recorder->events = {at<Emissions>(places_.emissions_at) + first_event, emissions_ - first_event};
         recorder->channels = {at<Recorded>(places_.recorded_at) + first, channels_ - first};
         new (at<recorded::Tape>(places_.tapes_at) + tapes_)
             recorded::Tape{.at = place, .activity = static_cast<std::uint32_t>(activity)};
@@ -159,23 +136,88 @@ private:
         ++tapes_;
     }
 
+    void add_event(std::size_t number) {
+        auto* emissions = new (at<Emissions>(places_.emissions_at) + emissions_++) Emissions;
+        emissions->counter = at<std::atomic<std::uint64_t>>(places_.counters_at) + number;
+        End event;
+        static_cast<void>(resolve(table_, trigger_of(rows_, number), FacetKind::event, event)); // was checked
+        const auto* value = reinterpret_cast<const std::byte*>(&emissions->seen);
+        add(event, {.value = value, .writes = &emissions->seen, .bytes = sizeof emissions->seen}).is_event =
+            1;
+    }
+
+    void add(const ReportRow& row, End end, std::size_t first) {
+        const Facet& facet = facet_at(table_, end);
+        Recorded channel{.bytes = static_cast<std::uint32_t>(facet.type->size),
+                         .every = row.on_change ? 0 : static_cast<std::uint32_t>(row.every),
+                         .kind = facet.type->kind,
+                         .band = row.band};
+        if (facet.port != nullptr) {
+            const PortPlaces port = facet.port->places(machine_.facet(end), false);
+            channel.value = static_cast<const std::byte*>(port.value);
+            channel.writes = port.writes;
+        } else {
+            channel.value = static_cast<const std::byte*>(machine_.facet(end));
+        }
+        recorded::Channel& told = add(end, channel);
+        if (row.trigger.empty()) return;
+        const std::uint64_t triggers =
+            sizes_.activities[machine_.machine().index.activity[end.component]].triggers;
+        const std::uint64_t below = (std::uint64_t{1} << trigger_number(rows_, row.trigger)) - 1;
+        told.trigger =
+            static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::popcount(triggers & below));
+        told.before_ns = row.before.count();
+        told.after_ns = row.after.count();
+    }
+
+    recorded::Channel& add(End end, const Recorded& channel) {
+        auto* placed = new (at<Recorded>(places_.recorded_at) + channels_) Recorded{channel};
+        placed->head.channel = static_cast<std::uint32_t>(channels_);
+        placed->head.words = static_cast<std::uint32_t>(recorded::words_of(channel.bytes));
+        if (channel.every == 0) {
+            placed->last = at<std::uint64_t>(places_.last_at) + last_words_;
+            std::fill_n(placed->last, placed->head.words, 0);
+            last_words_ += placed->head.words;
+        }
+        return *new (at<recorded::Channel>(places_.channels_at) + channels_++)
+            recorded::Channel{.component = static_cast<std::uint32_t>(end.component),
+                              .facet = static_cast<std::uint32_t>(end.facet),
+                              .bytes = channel.bytes,
+                              .tape = tapes_,
+                              .every = channel.every,
+                              .band = channel.band,
+                              .next_at = offset_of(placed->head.sequence)};
+    }
+
+    std::span<const ReportRow> rows_;
     MachineInstance& machine_;
-    const Sizes& sizes_;
+    const MachineView& table_;
+    Sizes sizes_;
     Places places_;
     std::byte* begin_;
     std::size_t channels_ = 0;
+    std::size_t emissions_ = 0;
     std::uint32_t tapes_ = 0;
     std::size_t last_words_ = 0;
 };
 
+/// Where the places begin: on a line pair.
+std::byte* first_of(std::span<std::byte> memory) noexcept {
+    constexpr std::size_t alignment = recorded::ValueTape::alignment;
+    const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+    return memory.data() + (alignment - address % alignment) % alignment;
+}
+
 } // namespace
 
 void connect(std::span<const ReportRow> rows, MachineInstance& machine, std::span<std::byte> memory) {
-    constexpr std::size_t alignment = recorded::ValueTape::alignment;
-    const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
-    std::byte* begin = memory.data() + (alignment - address % alignment) % alignment;
-    const Sizes sizes = sizes_of(rows, machine.machine().table);
-    Placer{machine, sizes, begin}.place(rows);
+    Placer{rows, machine, first_of(memory)}.place();
+}
+
+std::atomic<std::uint64_t>* counter(std::span<std::byte> memory, std::size_t number) noexcept {
+    // The counters follow the directory, whatever the other sizes are.
+    return reinterpret_cast<std::atomic<std::uint64_t>*>(first_of(memory) + places_of({}).counters_at) +
+           number;
 }
 
 } // namespace tappet::reporting_detail

@@ -8,6 +8,7 @@
 #include "kernel/services/reporting/layout.hpp"
 
 #include <array>
+#include <atomic>
 #include <span>
 #include <string_view>
 
@@ -28,14 +29,22 @@ struct Recorded {
     std::uint64_t* last = nullptr; ///< on change: the words recorded last
 };
 
+/// What an engine has seen of an event that is emitted in whatever activity.
+struct Emissions {
+    const std::atomic<std::uint64_t>* counter = nullptr;
+    std::uint64_t seen = 0; ///< the value of its channel
+};
+
 /// Of one activity.
 struct Recorder : CycleRecorder {
     recorded::ValueTape* tape = nullptr;
+    std::span<Emissions> events{};
     std::span<Recorded> channels{};
 };
 
 /// Where what lies in the section's memory, from its first line pair on.
 struct Places {
+    std::size_t counters_at = 0, emissions_at = 0;
     std::size_t channels_at = 0, tapes_at = 0, recorders_at = 0, recorded_at = 0, last_at = 0;
     std::array<std::size_t, max_activities> tape_at{}; ///< in the order of the activities that have one
     std::size_t bytes = 0;
@@ -49,6 +58,8 @@ constexpr Places places_of(const Sizes& sizes) noexcept {
         at += (bytes + 7) / 8 * 8;
         return here;
     };
+    places.counters_at = take(sizes.triggers * sizeof(std::atomic<std::uint64_t>));
+    places.emissions_at = take(sizes.emissions * sizeof(Emissions));
     places.channels_at = take(sizes.channels * sizeof(recorded::Channel));
     places.tapes_at = take(sizes.tapes * sizeof(recorded::Tape));
     places.recorders_at = take(sizes.tapes * sizeof(Recorder));
@@ -67,6 +78,7 @@ constexpr Places places_of(const Sizes& sizes) noexcept {
 static_assert(alignof(Recorder) <= 8 && alignof(Recorded) <= 8 && sizeof(Recorded) % 8 == 0);
 
 void connect(std::span<const ReportRow> rows, MachineInstance& machine, std::span<std::byte> memory);
+std::atomic<std::uint64_t>* counter(std::span<std::byte> memory, std::size_t number) noexcept;
 
 } // namespace reporting_detail
 
@@ -83,6 +95,13 @@ struct Reporting final : ExtraSection {
         // It begins on a line pair, wherever its memory does.
         return reporting_detail::places_of(reporting_detail::sizes_of(rows, m)).bytes +
                recorded::ValueTape::alignment;
+    }
+    [[nodiscard]] constexpr std::string_view counts(std::size_t number) const override {
+        return reporting_detail::trigger_of(rows, number);
+    }
+    [[nodiscard]] std::atomic<std::uint64_t>* counter(std::span<std::byte> memory,
+                                                      std::size_t number) const noexcept override {
+        return reporting_detail::counter(memory, number);
     }
     void connect(MachineInstance& machine, std::size_t, std::span<std::byte> memory) const override {
         reporting_detail::connect(rows, machine, memory);

@@ -29,6 +29,7 @@ std::int64_t now_of(clockid_t clock) {
 }
 
 std::string rule_of(const RecordedChannel& channel) {
+    if (channel.of.is_event != 0) return "each emission, in the cycle that saw it";
     if (channel.of.every > 1) return "every " + std::to_string(channel.of.every) + " steps";
     if (channel.of.every == 1) return "every step";
     if (channel.of.band == 0) return "on change";
@@ -37,18 +38,24 @@ std::string rule_of(const RecordedChannel& channel) {
     return "on change by more than " + (band.ends_with('.') ? band.substr(0, band.size() - 1) : band);
 }
 
+std::string window_of(const RecordReader& reader, const recorded::Channel& channel) {
+    if (channel.trigger == recorded::none) return {};
+    return ", from " + duration_text(channel.before_ns) + " before " +
+           reader.channels()[channel.trigger].name + " to " + duration_text(channel.after_ns) + " after it";
+}
+
 Result<void> list(Work& work, const RecordReader& reader) {
     const MapReader& map = work.session.map();
     for (const RecordedChannel& each : reader.channels()) {
         const map::Facet& facet = map.facets()[each.facet];
         const std::string_view unit = map.text(facet.unit);
+        const std::string rule = rule_of(each) + window_of(reader, each.of);
         if (work.line.json)
             work.out << "{\"channel\": " << in_quotes(each.name)
                      << ", \"type\": " << in_quotes(type_name(map, facet.type))
-                     << ", \"unit\": " << in_quotes(unit) << ", \"rule\": " << in_quotes(rule_of(each))
-                     << "}\n";
+                     << ", \"unit\": " << in_quotes(unit) << ", \"rule\": " << in_quotes(rule) << "}\n";
         else
-            work.out << each.name << "  " << rule_of(each) << (unit.empty() ? "" : "  ") << unit << "\n";
+            work.out << each.name << "  " << rule << (unit.empty() ? "" : "  ") << unit << "\n";
     }
     return {};
 }

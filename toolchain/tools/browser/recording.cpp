@@ -15,6 +15,13 @@ std::string of_object(const std::string& properties) {
     return R"({"type": "object", "properties": {)" + properties + "}}";
 }
 
+/// What is older goes; of what is recorded on change the last one stays, since it stood until then.
+void forget_until(std::deque<RecordedSample>& samples, std::int64_t at_ns, bool stands) {
+    const std::size_t kept = stands ? 1 : 0;
+    while (samples.size() > kept && samples[kept].at_ns < at_ns + static_cast<std::int64_t>(kept))
+        samples.pop_front();
+}
+
 } // namespace
 
 std::string json_schema(const MapReader& map, std::uint32_t index) {
@@ -49,7 +56,7 @@ std::string json_schema(const MapReader& map, std::uint32_t index) {
 }
 
 Recording::Recording(const MapReader& map, const std::vector<RecordedChannel>& channels, std::int64_t zero_ns)
-    : map_{&map}, channels_{&channels}, zero_ns_{zero_ns} {
+    : map_{&map}, channels_{&channels}, zero_ns_{zero_ns}, windows_(channels.size()) {
     mcap::put_begin(bytes_, "tappet-browse");
     const map::Header& header = map.header();
     mcap::put_metadata(bytes_, "machine",
@@ -73,11 +80,20 @@ std::uint16_t Recording::schema_of(const std::string& name, const std::string& j
 void Recording::describe(std::uint32_t channel) {
     const RecordedChannel& each = (*channels_)[channel];
     const map::Facet& facet = map_->facets()[each.facet];
-    const std::uint16_t schema =
-        schema_of(type_name(*map_, facet.type), of_object("\"value\": " + json_schema(*map_, facet.type)));
+    const std::uint16_t schema = each.of.is_event != 0
+                                     ? schema_of("emissions", of_object(R"("value": {"type": "integer"})"))
+                                     : schema_of(type_name(*map_, facet.type),
+                                                 of_object("\"value\": " + json_schema(*map_, facet.type)));
     mcap::Pairs about{{"unit", std::string{map_->text(facet.unit)}},
                       {"meaning", std::string{map_->text(facet.doc)}}};
-    if (each.of.every != 0)
+    if (each.of.trigger != recorded::none) {
+        about.emplace_back("trigger", (*channels_)[each.of.trigger].name);
+        about.emplace_back("before", duration_text(each.of.before_ns));
+        about.emplace_back("after", duration_text(each.of.after_ns));
+    }
+    if (each.of.is_event != 0)
+        about.emplace_back("each", "emission");
+    else if (each.of.every != 0)
         about.emplace_back("every", std::to_string(each.of.every));
     else
         about.emplace_back("on_change", std::to_string(each.of.band));
@@ -87,8 +103,32 @@ void Recording::describe(std::uint32_t channel) {
 void Recording::add(std::span<const RecordedSample> samples) {
     for (const RecordedSample& each : samples) {
         if (each.lost != 0) tell_lost(each);
-        write(each);
+        const recorded::Channel& channel = (*channels_)[each.channel].of;
+        if (channel.is_event != 0) open_windows(each);
+        if (channel.trigger == recorded::none || each.at_ns <= windows_[each.channel].open_until)
+            write(each);
+        else
+            keep(each);
     }
+}
+
+void Recording::open_windows(const RecordedSample& event) {
+    for (std::uint32_t c = 0; c < channels_->size(); ++c) {
+        const recorded::Channel& channel = (*channels_)[c].of;
+        if (channel.trigger != event.channel) continue;
+        Window& window = windows_[c];
+        window.open_until = event.at_ns + channel.after_ns;
+        forget_until(window.before, event.at_ns - channel.before_ns, channel.every == 0);
+        for (const RecordedSample& each : window.before) write(each);
+        window.before.clear();
+    }
+}
+
+void Recording::keep(const RecordedSample& sample) {
+    const recorded::Channel& channel = (*channels_)[sample.channel].of;
+    std::deque<RecordedSample>& before = windows_[sample.channel].before;
+    before.push_back(sample);
+    forget_until(before, sample.at_ns - channel.before_ns, channel.every == 0);
 }
 
 void Recording::end() { mcap::put_end(bytes_); }
@@ -103,8 +143,11 @@ void Recording::tell_lost(const RecordedSample& sample) {
 
 void Recording::write(const RecordedSample& sample) {
     const std::uint32_t type = map_->facets()[(*channels_)[sample.channel].facet].type;
-    const std::string data =
-        "{\"value\": " + to_text(*map_, type, std::as_bytes(std::span{sample.words}), Style::plain) + "}";
+    const std::string value =
+        (*channels_)[sample.channel].of.is_event != 0
+            ? std::to_string(sample.words[0])
+            : to_text(*map_, type, std::as_bytes(std::span{sample.words}), Style::plain);
+    const std::string data = "{\"value\": " + value + "}";
     mcap::put_message(bytes_, {id_of(sample.channel), sample.sequence,
                                static_cast<std::uint64_t>(sample.at_ns + zero_ns_), data});
     ++samples_;

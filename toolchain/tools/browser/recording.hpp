@@ -4,12 +4,17 @@
 #include "toolchain/tools/browser/mcap.hpp"
 #include "toolchain/tools/browser/records.hpp"
 
+#include <deque>
+#include <limits>
+#include <utility>
+
 namespace tappet::browser {
 
 /// The topic of what was missed: {"channel": NAME, "samples": N}.
 inline constexpr std::string_view lost_topic = "lost";
 
-/// Of one file. A sample becomes a message {"value": VALUE}, whose JSON schema stands before it.
+/// Of one file. A sample becomes a message {"value": VALUE}, whose JSON schema stands before it; of a channel
+/// with a window only those around its event, of which the ones from before stand behind it.
 class Recording {
 public:
     /// `zero_ns`: what to add to the machine's clock for the time since 1970.
@@ -26,6 +31,13 @@ public:
     [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
 private:
+    struct Window {
+        std::deque<RecordedSample> before{}; ///< not written, and of the time before an event that may come
+        std::int64_t open_until = std::numeric_limits<std::int64_t>::min();
+    };
+
+    void open_windows(const RecordedSample& event);
+    void keep(const RecordedSample& sample);
     void describe(std::uint32_t channel);
     [[nodiscard]] std::uint16_t schema_of(const std::string& name, const std::string& json_schema);
     [[nodiscard]] std::uint16_t id_of(std::uint32_t channel) const {
@@ -37,6 +49,7 @@ private:
     const MapReader* map_;
     const std::vector<RecordedChannel>* channels_;
     std::int64_t zero_ns_;
+    std::vector<Window> windows_{}; ///< of each channel
     std::map<std::string, std::uint16_t> schemas_{};
     std::string bytes_{};
     std::uint64_t samples_ = 0;

@@ -71,8 +71,13 @@ std::string RecordReader::add_channel(const recorded::Channel& of) {
     if (of.facet >= component.facet_count) return "a channel is of no facet";
     const std::uint32_t facet = component.first_facet + of.facet;
     const std::uint32_t type = map_->facets()[facet].type;
-    if (type == map::none || map_->types()[type].size != of.bytes)
+    const bool is_event = map_->text(map_->facets()[facet].kind) == "event";
+    if (is_event != (of.is_event != 0) ||
+        (is_event ? of.bytes != sizeof(std::uint64_t)
+                  : type == map::none || map_->types()[type].size != of.bytes))
         return "a channel's values are of another size";
+    if (of.trigger != recorded::none && of.trigger >= channels_.size())
+        return "a channel's window is around none"; // those of events stand before it
     if (at<std::uint32_t>(of.next_at) == nullptr) return "a channel is numbered outside";
     channels_.push_back({map_->full_name(facet), facet, of});
     return {};
@@ -95,7 +100,7 @@ std::vector<RecordedSample> RecordReader::begin() {
         });
         if (!is_whole) continue; // it runs all the time, and will be recorded soon
         next_[c] = sample.sequence;
-        if (of.every != 0 || sample.sequence == 0) continue;
+        if (of.every != 0 || of.is_event != 0 || sample.sequence == 0) continue;
         --sample.sequence;
         samples.push_back(std::move(sample));
     }

@@ -155,6 +155,26 @@ TEST(Reporting, overwrites_the_oldest_and_the_numbers_tell) {
     EXPECT_EQ(positions.back().sequence + 1, (rig.axis->steps + 1) / 2);
 }
 
+constexpr auto around = machine_with(
+    reporting(report("axis.position", before(20ms), after(10ms), trigger("axis.missed")), report("axis.mode"),
+              report("press.strokes", after(30ms), trigger("axis.missed"))));
+
+TEST(Reporting, counts_the_events_of_windows_in_each_activity_that_has_one) {
+    Rig<around> rig;
+    rig.axis->misses_at = 60;
+    ASSERT_TRUE(rig.start() && rig.run(100ms));
+    const auto channels = samples_of(rig.instance);
+    ASSERT_EQ(channels.size(), 5u) << "the event once for motion, once for slow";
+    const auto& in_motion = channels[0];
+    ASSERT_EQ(in_motion.size(), 1u) << "nothing before the first emission";
+    EXPECT_EQ(in_motion[0].value<std::uint64_t>(), 1u);
+    EXPECT_EQ(in_motion[0].at, channels[1].at(59).at) << "in the cycle that emitted it";
+    ASSERT_EQ(channels[3].size(), 1u);
+    EXPECT_GE(channels[3][0].at, in_motion[0].at);
+    EXPECT_LE(channels[3][0].at, in_motion[0].at + 5ms) << "in the next cycle that can see it";
+    EXPECT_EQ(channels[1].size(), static_cast<std::size_t>(rig.axis->steps)) << "the tape has all";
+}
+
 TEST(Reporting, leaves_what_the_machine_does_as_it_is) {
     static constexpr auto silent = machine_with();
     Rig<each_step> with;

@@ -192,6 +192,46 @@ TEST_F(Recorded, no_damage_of_a_file_leads_outside_of_it) {
     EXPECT_GT(refused, 100);
 }
 
+constexpr auto windowed = machine_with(reporting(
+    report("axis.position", every(2), before(20ms), after(10ms), trigger("axis.missed")),
+    report("axis.mode", on_change(), before(15ms), trigger("axis.missed")), report("press.strokes")));
+
+TEST(Window, keeps_what_was_recorded_around_its_event_and_nothing_else) {
+    Rig<windowed> rig;
+    const auto map = MapReader::open(rig.instance.observation().shared_memory());
+    ASSERT_TRUE(map.has_value());
+    auto reader = RecordReader::open(*map);
+    ASSERT_TRUE(reader.has_value()) << reader.error();
+    Recording recording{*map, reader->channels(), 0};
+    ASSERT_TRUE(rig.start());
+    for (const std::int64_t miss : {101, 107, 201}) {
+        rig.axis->misses_at = miss;
+        for (; rig.axis->steps < miss; recording.add(reader->follow())) ASSERT_TRUE(rig.run(3ms));
+    }
+    ASSERT_TRUE(rig.run(100ms));
+    recording.add(reader->follow());
+    recording.end();
+    const std::string file = recording.take();
+    const auto contents = mcap::read(file);
+    ASSERT_TRUE(contents.has_value());
+    const auto read = by_topic(*contents);
+    EXPECT_EQ(read.at("axis.missed").size(), 3u);
+    EXPECT_EQ(read.at("axis.missed").back().value, 3);
+    std::vector<int> steps;
+    for (const Read& each : read.at("axis.position")) steps.push_back(int(each.value.get<double>() * 4));
+    std::vector<int> wanted;
+    for (int step = 81; step <= 117; step += 2) wanted.push_back(step); // two windows that meet
+    for (int step = 181; step <= 211; step += 2) wanted.push_back(step);
+    EXPECT_EQ(steps, wanted);
+    const auto& mode = read.at("axis.mode");
+    ASSERT_EQ(mode.size(), 6u);
+    EXPECT_EQ(mode[0].value, "resting") << "it stood when the window began";
+    EXPECT_LT(mode[0].time, read.at("axis.missed")[0].time - 15'000'000);
+    EXPECT_EQ(mode[1].value, "moving");
+    EXPECT_EQ(read.at("press.strokes").back().value, read.at("press.strokes").size()) << "it has no window";
+    EXPECT_EQ(recording.lost(), 0u);
+}
+
 /// A copy of the machine's memory, to be damaged.
 class Copied {
 public:
