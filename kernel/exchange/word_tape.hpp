@@ -59,7 +59,27 @@ protected:
     }
     ~WordTape() = default;
 
+    /// The writer's place in a record, which many words in a row find in registers.
+    class Pen {
+    public:
+        void put(std::uint64_t word) noexcept TAPPET_REALTIME {
+            first_[at_++ & mask_].store(word, std::memory_order_release); // tape.word
+        }
+        [[nodiscard]] std::uint64_t at() const noexcept TAPPET_REALTIME { return at_; }
+
+    private:
+        friend class WordTape;
+        Pen(std::atomic<std::uint64_t>* first, std::uint64_t mask, std::uint64_t at) noexcept TAPPET_REALTIME
+            : first_{first},
+              mask_{mask},
+              at_{at} {}
+        std::atomic<std::uint64_t>* first_;
+        std::uint64_t mask_;
+        std::uint64_t at_;
+    };
+
     // The writer's.
+    [[nodiscard]] Pen pen() noexcept TAPPET_REALTIME { return {first(), capacity_ - 1, position_}; }
     [[nodiscard]] std::uint64_t position() const noexcept TAPPET_REALTIME { return position_; }
     void put(std::uint64_t at, std::uint64_t word) noexcept TAPPET_REALTIME {
         first()[at & (capacity_ - 1)].store(word, std::memory_order_release); // tape.word

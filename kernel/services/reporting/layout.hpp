@@ -100,15 +100,15 @@ public:
     /// At the beginning of bytes_for(words).
     ValueTape(std::size_t words, std::size_t most_words) noexcept : WordTape{words, most_words} {}
 
-    /// The engine's, in this order. Real-time.
-    void begin() noexcept TAPPET_REALTIME { next_ = position(); }
-    void add(std::uint64_t word) noexcept TAPPET_REALTIME { put(next_++, word); }
+    /// The engine's: begin(), a put() for each word, end(). Real-time.
+    using WordTape::Pen;
+    [[nodiscard]] Pen begin() noexcept TAPPET_REALTIME { return pen(); }
     /// Of a cycle without a sample nothing is kept.
-    void end(std::int64_t at_ns) noexcept TAPPET_REALTIME {
-        if (next_ == position()) return;
-        add(static_cast<std::uint64_t>(at_ns));
-        add(next_ + 1 - position());
-        publish(next_);
+    void end(Pen pen, std::int64_t at_ns) noexcept TAPPET_REALTIME {
+        if (pen.at() == position()) return;
+        pen.put(static_cast<std::uint64_t>(at_ns));
+        pen.put(pen.at() + 1 - position());
+        publish(pen.at());
     }
 
     /// The moment that ends where `after` says: head(), or the `at` of the moment after it. False: there is
@@ -120,9 +120,6 @@ public:
         return words > Moment::words_beside_samples && words <= after && words <= most_words() &&
                holds(moment.at);
     }
-
-private:
-    std::uint64_t next_ = 0; ///< after what the cycle has recorded so far
 };
 static_assert(sizeof(ValueTape) == sizeof(WordTape), "its words lie after it");
 

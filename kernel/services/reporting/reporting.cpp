@@ -38,47 +38,73 @@ double number_of(std::uint64_t word, ValueKind kind, std::uint32_t bytes) noexce
     }
 }
 
-/// Otherwise than it was recorded last: a number by more than its band, and what is no number is no number's
-/// neighbour. The first value always is.
-bool has_changed(const Recorded& channel) noexcept TAPPET_REALTIME {
-    if (channel.head.sequence == 0) return true;
-    bool differs = false;
-    for (std::uint32_t i = 0; i < channel.head.words; ++i)
-        differs |= word_at(channel.value + 8 * i, channel.bytes - 8 * i) != channel.last[i];
-    if (!differs || channel.band == 0.0) return differs;
-    const double now = number_of(word_at(channel.value, channel.bytes), channel.kind, channel.bytes);
+std::uint64_t word_of(const Recorded& channel, std::uint32_t i) noexcept TAPPET_REALTIME {
+    return word_at(channel.value + 8 * i, channel.bytes - 8 * i);
+}
+
+/// Of a number: by more than its band. What is no number is no number's neighbour.
+[[gnu::noinline]] bool is_beyond_band(const Recorded& channel, std::uint64_t word) noexcept TAPPET_REALTIME {
+    const double now = number_of(word, channel.kind, channel.bytes);
     const double then = number_of(channel.last[0], channel.kind, channel.bytes);
     return !(std::abs(now - then) <= channel.band);
 }
 
-bool is_due(Recorded& channel, bool stepped) noexcept TAPPET_REALTIME {
-    if (channel.every != 0) {
-        if (!stepped || --channel.left != 0) return false;
-        channel.left = channel.every;
+/// Whether a value of one word is otherwise than it was recorded last; if so, it is last from now on.
+bool is_new(Recorded& channel, std::uint64_t word) noexcept TAPPET_REALTIME {
+    if (channel.sequence != 0) { // the first one always is
+        if (word == channel.last[0]) return false;
+        if (channel.band != 0.0 && !is_beyond_band(channel, word)) return false;
     }
-    if (channel.writes != nullptr && *channel.writes == 0) return false;
-    return channel.every != 0 || has_changed(channel);
+    channel.last[0] = word;
+    return true;
+}
+
+using Pen = recorded::ValueTape::Pen;
+
+/// Of a value that is not a whole word: apart from those that are, since most are.
+[[gnu::noinline]] Pen record_bytes(Recorded& channel, Pen pen) noexcept TAPPET_REALTIME {
+    const std::uint32_t words = recorded::SampleHead::of(channel.head).words;
+    if (channel.every == 0 && words == 1) {
+        if (!is_new(channel, word_of(channel, 0))) return pen;
+    } else if (channel.every == 0) {
+        bool differs = channel.sequence == 0;
+        for (std::uint32_t i = 0; i < words; ++i) {
+            const std::uint64_t word = word_of(channel, i);
+            differs |= word != channel.last[i];
+            channel.last[i] = word;
+        }
+        if (!differs) return pen;
+    }
+    pen.put(channel.head | channel.sequence++);
+    for (std::uint32_t i = 0; i < words; ++i) pen.put(word_of(channel, i));
+    return pen;
 }
 
 void record(CycleRecorder& self, const Cycle& cycle, bool stepped) noexcept TAPPET_REALTIME {
     auto& recorder = static_cast<Recorder&>(self);
-    recorded::ValueTape& tape = *recorder.tape;
-    tape.begin();
     for (Emissions& each : recorder.events)
-        each.seen =
-            each.counter->load(std::memory_order_relaxed); // no step: the next cycle sees it, or this one
+        each.seen = each.counter->load(std::memory_order_relaxed); // no step: the next cycle sees it, or this
+    Pen pen = recorder.tape->begin();
     for (Recorded& channel : recorder.channels) {
-        if (!is_due(channel, stepped)) continue;
-        tape.add(channel.head.word());
-        ++channel.head.sequence;
-        for (std::uint32_t i = 0; i < channel.head.words; ++i) {
-            const std::uint64_t word = word_at(channel.value + 8 * i, channel.bytes - 8 * i);
-            tape.add(word);
-            if (channel.last != nullptr) channel.last[i] = word;
+        if (channel.every != 0) {
+            if (!stepped || --channel.left != 0) continue;
+            channel.left = channel.every;
         }
+        if (*channel.writes == 0) continue;
+        if (channel.bytes != sizeof(std::uint64_t)) {
+            pen = record_bytes(channel, pen);
+            continue;
+        }
+        std::uint64_t word = 0;
+        std::memcpy(&word, channel.value, sizeof word);
+        if (channel.every == 0 && !is_new(channel, word)) continue;
+        pen.put(channel.head | channel.sequence++);
+        pen.put(word);
     }
-    tape.end(to_ns(cycle.now));
+    recorder.tape->end(pen, to_ns(cycle.now));
 }
+
+constexpr std::uint64_t always_written = 1;
 
 /// Fills the places of one section, channel after channel.
 class Placer {
@@ -148,16 +174,17 @@ private:
 
     void add(const ReportRow& row, End end, std::size_t first) {
         const Facet& facet = facet_at(table_, end);
-        Recorded channel{.bytes = static_cast<std::uint32_t>(facet.type->size),
-                         .every = row.on_change ? 0 : static_cast<std::uint32_t>(row.every),
-                         .kind = facet.type->kind,
-                         .band = row.band};
+        Recorded channel{.every = row.on_change ? 0 : static_cast<std::uint32_t>(row.every),
+                         .bytes = static_cast<std::uint32_t>(facet.type->size),
+                         .band = row.band,
+                         .kind = facet.type->kind};
         if (facet.port != nullptr) {
             const PortPlaces port = facet.port->places(machine_.facet(end), false);
             channel.value = static_cast<const std::byte*>(port.value);
             channel.writes = port.writes;
         } else {
             channel.value = static_cast<const std::byte*>(machine_.facet(end));
+            channel.writes = &always_written;
         }
         recorded::Channel& told = add(end, channel);
         if (row.trigger.empty()) return;
@@ -172,12 +199,14 @@ private:
 
     recorded::Channel& add(End end, const Recorded& channel) {
         auto* placed = new (at<Recorded>(places_.recorded_at) + channels_) Recorded{channel};
-        placed->head.channel = static_cast<std::uint32_t>(channels_);
-        placed->head.words = static_cast<std::uint32_t>(recorded::words_of(channel.bytes));
+        const std::size_t words = recorded::words_of(channel.bytes);
+        placed->head =
+            recorded::SampleHead{static_cast<std::uint32_t>(channels_), static_cast<std::uint32_t>(words), 0}
+                .word();
         if (channel.every == 0) {
             placed->last = at<std::uint64_t>(places_.last_at) + last_words_;
-            std::fill_n(placed->last, placed->head.words, 0);
-            last_words_ += placed->head.words;
+            std::fill_n(placed->last, words, 0);
+            last_words_ += words;
         }
         return *new (at<recorded::Channel>(places_.channels_at) + channels_++)
             recorded::Channel{.component = static_cast<std::uint32_t>(end.component),
@@ -186,7 +215,7 @@ private:
                               .tape = tapes_,
                               .every = channel.every,
                               .band = channel.band,
-                              .next_at = offset_of(placed->head.sequence)};
+                              .next_at = offset_of(placed->sequence)};
     }
 
     std::span<const ReportRow> rows_;

@@ -16,18 +16,20 @@ namespace tappet {
 
 namespace reporting_detail {
 
-/// What an engine keeps of a channel.
+/// What an engine keeps of a channel: a line.
 struct Recorded {
     const std::byte* value = nullptr;
-    const std::uint64_t* writes = nullptr; ///< of an output: before the first there is no value
+    const std::uint64_t* writes = nullptr; ///< 0 there: it has no value yet
+    std::uint64_t head = 0;                ///< of the sample 0
+    std::uint64_t* last = nullptr;         ///< on change: the words recorded last
+    std::uint32_t every = 0;               ///< 0: on change
+    std::uint32_t left = 1;                ///< steps until it is recorded again
+    std::uint32_t sequence = 0;            ///< of the next sample
     std::uint32_t bytes = 0;
-    std::uint32_t every = 0; ///< 0: on change
-    std::uint32_t left = 1;  ///< steps until it is recorded again
+    double band = 0.0; ///< of a number
     ValueKind kind = ValueKind::opaque;
-    recorded::SampleHead head{};   ///< of the next sample
-    double band = 0.0;             ///< of a number
-    std::uint64_t* last = nullptr; ///< on change: the words recorded last
 };
+static_assert(sizeof(Recorded) == 64);
 
 /// What an engine has seen of an event that is emitted in whatever activity.
 struct Emissions {

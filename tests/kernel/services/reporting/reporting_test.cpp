@@ -201,8 +201,7 @@ std::unique_ptr<recorded::ValueTape, Free> make_tape(std::size_t words, std::siz
 
 TEST(ValueTape, keeps_no_cycle_without_a_sample) {
     const auto tape = make_tape(256, 8);
-    tape->begin();
-    tape->end(1);
+    tape->end(tape->begin(), 1);
     EXPECT_EQ(tape->head(), 0u);
     recorded::Moment moment;
     EXPECT_FALSE(tape->moment_before(tape->head(), moment));
@@ -215,9 +214,9 @@ TEST(ValueTape, gives_no_reader_a_moment_that_is_torn) {
     std::atomic<bool> done{false};
     std::thread engine{[&] {
         for (std::uint64_t n = 1; n <= moments; ++n) {
-            tape->begin();
-            for (std::uint64_t i = 0; i <= n % 6; ++i) tape->add(n);
-            tape->end(static_cast<std::int64_t>(n));
+            auto pen = tape->begin();
+            for (std::uint64_t i = 0; i <= n % 6; ++i) pen.put(n);
+            tape->end(pen, static_cast<std::int64_t>(n));
         }
         done = true;
     }};

@@ -1,0 +1,135 @@
+// Counts instructions under callgrind: of a cycle that writes a hundred ports, recorded and not.
+//     recording_counts          started by the test: starts valgrind on itself, once for each form
+//     recording_counts FORM     runs that form's cycles, of which the last 100 are measured
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/services/reporting/reporting.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <string_view>
+
+using namespace tappet;
+
+extern "C" {
+[[gnu::noinline]] void measured_cycle(Engine& engine) { engine.run(false); }
+}
+
+namespace {
+
+constexpr int unmeasured = 100, measured = 100;
+
+/// Ten of the hundred ports. Each has another value in each cycle, or the same.
+struct Bank {
+    static inline bool moves = true;
+    double value = 0.0;
+    Output<double> a, b, c, d, e, f, g, h, i, j;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (moves) value += 1.0;
+        for (Output<double>* each : {&a, &b, &c, &d, &e, &f, &g, &h, &i, &j}) each->write(value);
+    }
+    static constexpr auto interface() {
+        return facets(output<&Bank::a>("a", "", "counts"), output<&Bank::b>("b", "", "counts"),
+                      output<&Bank::c>("c", "", "counts"), output<&Bank::d>("d", "", "counts"),
+                      output<&Bank::e>("e", "", "counts"), output<&Bank::f>("f", "", "counts"),
+                      output<&Bank::g>("g", "", "counts"), output<&Bank::h>("h", "", "counts"),
+                      output<&Bank::i>("i", "", "counts"), output<&Bank::j>("j", "", "counts"));
+    }
+};
+
+struct Window {
+    static constexpr bool sees_machine = true;
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return facets(); }
+};
+
+constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+
+template <class... Extra>
+constexpr auto machine_with(const Extra&... extra) {
+    return machine("banks",
+                   components(component<Bank>("0"), component<Bank>("1"), component<Bank>("2"),
+                              component<Bank>("3"), component<Bank>("4"), component<Bank>("5"),
+                              component<Bank>("6"), component<Bank>("7"), component<Bank>("8"),
+                              component<Bank>("9"), component<Window>("window")),
+                   activities(activity("motion", every(1ms), budget(100us),
+                                       runs("0", "1", "2", "3", "4", "5", "6", "7", "8", "9")),
+                              activity("background", every(20ms), not_real_time, runs("window"))),
+                   connections(), reactions(), behaviours(), extra...);
+}
+template <class Option>
+constexpr auto recorded_by(Option option) {
+    return machine_with(reporting(report("0.*", option), report("1.*", option), report("2.*", option),
+                                  report("3.*", option), report("4.*", option), report("5.*", option),
+                                  report("6.*", option), report("7.*", option), report("8.*", option),
+                                  report("9.*", option)));
+}
+
+constexpr auto silent = machine_with();
+constexpr auto one_port = machine_with(reporting(report("0.a")));
+constexpr auto each_step = recorded_by(every(1));
+constexpr auto each_tenth = recorded_by(every(10));
+constexpr auto changes = recorded_by(on_change());
+
+template <const auto& table>
+int drive() {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    if (!instance.configure({})) return 1;
+    Engine& engine = instance.engines()[0];
+    if (!engine.initialise().empty()) return 1;
+    engine.start(clock.now());
+    for (int cycle = 0; cycle < unmeasured + measured; ++cycle) {
+        clock.advance_to(engine.next_wake());
+        cycle < unmeasured ? engine.run(false) : measured_cycle(engine);
+    }
+    return engine.statistics().cycles == unmeasured + measured ? 0 : 1;
+}
+
+int drive_form(std::string_view form) {
+    Bank::moves = form != "on_change_still";
+    if (form == "without") return drive<silent>();
+    if (form == "one_port") return drive<one_port>();
+    if (form == "each_step") return drive<each_step>();
+    if (form == "each_tenth") return drive<each_tenth>();
+    if (form == "on_change" || form == "on_change_still") return drive<changes>();
+    return 2;
+}
+
+/// Instructions of a measured cycle; 0: it did not come so far.
+double count(const std::string& self, const std::string& form) {
+    const std::string out = self + "." + form;
+    const std::string command =
+        "valgrind --tool=callgrind --toggle-collect='measured_*' --callgrind-out-file='" + out + "' '" +
+        self + "' " + form + " >/dev/null 2>&1";
+    if (std::system(command.c_str()) != 0) return 0;
+    std::ifstream file{out};
+    for (std::string line; std::getline(file, line);)
+        for (const std::string_view word : {"totals: ", "summary: "})
+            if (line.starts_with(word))
+                return static_cast<double>(std::atol(line.c_str() + word.size())) / measured;
+    return 0;
+}
+
+} // namespace
+
+int main(int words, char** word) {
+    if (words == 2) return drive_form(word[1]);
+    /// Room for each port over the copy itself: is it due, its number and its value, each with their places.
+    constexpr double most_a_port = 40;
+    const double without = count(word[0], "without");
+    bool good = without > 0;
+    std::printf("%-16s %7.1f instructions a cycle of 100 ports\n", "without", without);
+    for (const char* form : {"one_port", "each_step", "each_tenth", "on_change", "on_change_still"}) {
+        const double with = count(word[0], form);
+        const double a_port = (with - without) / (std::string_view{form} == "one_port" ? 1 : 100);
+        std::printf("%-16s %7.1f, %5.1f a recorded port\n", form, with, a_port);
+        good &= with > 0 && (std::string_view{form} == "one_port" || a_port <= most_a_port);
+    }
+    if (!good) std::cerr << "recording takes more than " << most_a_port << " instructions a port\n";
+    return good ? 0 : 1;
+}
