@@ -12,6 +12,7 @@
 #include "kernel/exchange/mailbox.hpp"
 #include "kernel/exchange/ring.hpp"
 #include "kernel/os/waiter.hpp"
+#include "kernel/services/reporting/layout.hpp"
 
 #include <array>
 
@@ -93,6 +94,16 @@ void tape_mark(CycleTape& tape, std::uint32_t function, std::int64_t end) noexce
 void tape_end(CycleTape& tape, std::int64_t begin, std::int64_t end) noexcept { tape.end(begin, begin, end); }
 bool tape_read(const CycleTape& tape, std::uint64_t after, TapeCycle& cycle) noexcept {
     return tape.cycle_before(after, cycle);
+}
+
+void values_record(recorded::ValueTape& tape, std::span<const std::uint64_t> words,
+                   std::int64_t at) noexcept {
+    auto pen = tape.begin();
+    for (const std::uint64_t word : words) pen.put(word);
+    tape.end(pen, at);
+}
+bool values_read(const recorded::ValueTape& tape, std::uint64_t after, recorded::Moment& moment) noexcept {
+    return tape.moment_before(after, moment);
 }
 
 std::uint32_t life_ask(LifeRequests& requests) noexcept { return requests.ask(LifeChange::stop).number; }

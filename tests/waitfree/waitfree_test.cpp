@@ -67,6 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
         Claim{"latest_put", plain},               Claim{"latest_take", plain},
         Claim{"waiter_wake", waking},             Claim{"waiter_take", plain},
         Claim{"tape_mark", plain},                Claim{"tape_end", plain},              Claim{"tape_read", plain},
+        Claim{"values_record", plain},            Claim{"values_read", plain},
         Claim{"output_write", calling},           Claim{"input_read", plain},
         Claim{"buffer_push", calling},            Claim{"buffer_pop", plain},
         Claim{"event_emit", calling},             Claim{"event_post", calling},

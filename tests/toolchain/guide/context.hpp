@@ -22,6 +22,7 @@
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/reporting/reporting.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
 #include "toolchain/machine/host.hpp"
 

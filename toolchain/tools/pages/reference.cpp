@@ -94,6 +94,7 @@ constexpr std::string_view tables[][2] = {
     {"kernel/machine/table/behaviours.hpp", "behaviours(...)"},
     {"kernel/limits/limits.hpp", "limits(...)"},
     {"kernel/control/rows.hpp", "control(...)"},
+    {"kernel/services/reporting/rows.hpp", "reporting(...)"},
     {"kernel/machine/table/board.hpp", "a board"},
     {"kernel/machine/table/binding.hpp", "binding(...)"},
     {"drivers/gpio/line_map.hpp", "gpio::line_map(...)"},
