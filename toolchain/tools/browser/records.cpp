@@ -83,26 +83,30 @@ std::string RecordReader::add_channel(const recorded::Channel& of) {
     return {};
 }
 
+std::optional<RecordedSample> RecordReader::standing(std::uint32_t channel) const {
+    const recorded::Channel& of = channels_[channel].of;
+    const std::uint32_t activity = map_->components()[of.component].activity;
+    RecordedSample sample{.channel = channel,
+                          .words = std::vector<std::uint64_t>(recorded::words_of(of.bytes))};
+    const bool is_whole = map_->view().consistent(activity, attempts, [&] {
+        sample.sequence = *at<std::uint32_t>(of.next_at);
+        sample.at_ns = map_->view().word<std::int64_t>(map_->activities()[activity].now_at);
+        static_cast<void>( // the map was checked: it lies inside
+            map_->view().copy(map_->facets()[channels_[channel].facet].value_at,
+                              std::as_writable_bytes(std::span{sample.words}).first(of.bytes)));
+    });
+    return is_whole ? std::optional{std::move(sample)} : std::nullopt;
+}
+
 std::vector<RecordedSample> RecordReader::begin() {
     std::vector<RecordedSample> samples;
     for (std::uint32_t c = 0; c < channels_.size(); ++c) {
-        const recorded::Channel& of = channels_[c].of;
-        const std::uint32_t activity = map_->components()[of.component].activity;
-        if (activity >= map_->activities().size()) continue;
-        RecordedSample sample{.channel = c,
-                              .words = std::vector<std::uint64_t>(recorded::words_of(of.bytes))};
-        const bool is_whole = map_->view().consistent(activity, attempts, [&] {
-            sample.sequence = *at<std::uint32_t>(of.next_at);
-            sample.at_ns = map_->view().word<std::int64_t>(map_->activities()[activity].now_at);
-            static_cast<void>( // the map was checked: it lies inside
-                map_->view().copy(map_->facets()[channels_[c].facet].value_at,
-                                  std::as_writable_bytes(std::span{sample.words}).first(of.bytes)));
-        });
-        if (!is_whole) continue; // it runs all the time, and will be recorded soon
-        next_[c] = sample.sequence;
-        if (of.every != 0 || of.is_event != 0 || sample.sequence == 0) continue;
-        --sample.sequence;
-        samples.push_back(std::move(sample));
+        auto sample = standing(c);
+        if (!sample) continue; // it will be recorded soon
+        next_[c] = sample->sequence;
+        if (channels_[c].of.every != 0 || channels_[c].of.is_event != 0 || sample->sequence == 0) continue;
+        --sample->sequence;
+        samples.push_back(std::move(*sample));
     }
     std::ranges::stable_sort(samples, {}, &RecordedSample::at_ns);
     return samples;
@@ -110,23 +114,41 @@ std::vector<RecordedSample> RecordReader::begin() {
 
 std::vector<RecordedSample> RecordReader::follow() {
     std::vector<RecordedSample> samples;
-    for (Followed& each : tapes_) follow(each, samples);
+    for (std::uint32_t t = 0; t < tapes_.size(); ++t)
+        if (!follow(tapes_[t], samples)) catch_up(t, samples);
     std::ranges::stable_sort(samples, {}, &RecordedSample::at_ns);
     return samples;
 }
 
-void RecordReader::follow(Followed& followed, std::vector<RecordedSample>& into) {
+void RecordReader::catch_up(std::uint32_t tape, std::vector<RecordedSample>& into) {
+    for (std::uint32_t c = 0; c < channels_.size(); ++c) {
+        const recorded::Channel& of = channels_[c].of;
+        if (of.tape != tape || of.every != 0 || of.is_event != 0) continue;
+        auto sample = standing(c);
+        const std::uint32_t told = next_[c].value_or(0);
+        if (!sample || static_cast<std::int32_t>(sample->sequence - told) <= 0) continue;
+        sample->lost = next_[c] ? sample->sequence - 1 - told : 0;
+        next_[c] = sample->sequence--;
+        into.push_back(std::move(*sample));
+    }
+}
+
+bool RecordReader::follow(Followed& followed, std::vector<RecordedSample>& into) {
     const std::uint64_t head = followed.tape->head();
+    bool is_whole = true;
     std::vector<std::pair<recorded::Moment, std::vector<std::uint64_t>>> moments; // the last one first
     recorded::Moment moment;
     for (std::uint64_t after = head; after > followed.position; after = moment.at) {
-        if (!followed.tape->moment_before(after, moment)) break;
+        is_whole = followed.tape->moment_before(after, moment);
+        if (!is_whole) break;
         std::vector<std::uint64_t> words(moment.sample_words());
-        if (!followed.tape->copy(moment.at, words)) break;
+        is_whole = followed.tape->copy(moment.at, words);
+        if (!is_whole) break;
         moments.emplace_back(moment, std::move(words));
     }
     for (auto each = moments.rbegin(); each != moments.rend(); ++each) take(each->first, each->second, into);
     followed.position = head;
+    return is_whole;
 }
 
 void RecordReader::take(const recorded::Moment& moment, std::span<const std::uint64_t> words,

@@ -45,7 +45,13 @@ private:
     [[nodiscard]] std::string check();
     [[nodiscard]] std::string add_channel(const recorded::Channel& channel);
     template <class Record> [[nodiscard]] const Record* at(std::uint64_t offset) const;
-    void follow(Followed& followed, std::vector<RecordedSample>& into);
+    /// What stands in the channel, with the number of its next sample; nothing: its activity runs all the
+    /// time.
+    [[nodiscard]] std::optional<RecordedSample> standing(std::uint32_t channel) const;
+    /// False: some of it was overwritten.
+    [[nodiscard]] bool follow(Followed& followed, std::vector<RecordedSample>& into);
+    /// Of what is recorded on change nothing more may come: what stands, where it is not what was told last.
+    void catch_up(std::uint32_t tape, std::vector<RecordedSample>& into);
     void take(const recorded::Moment& moment, std::span<const std::uint64_t> words,
               std::vector<RecordedSample>& into);
 

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -137,6 +138,32 @@ TEST_F(Recorded, what_was_overwritten_before_it_was_read_is_counted_and_told_in_
                 told_of_it += each.value.at("samples").get<std::uint64_t>();
         EXPECT_EQ(told_of_it, missing) << topic;
     }
+}
+
+TEST(Overwritten, of_what_changes_seldom_the_value_that_stands_is_told_as_soon_as_the_loss_is_seen) {
+    static constexpr auto table =
+        machine_with(reporting(report("axis.position"), report("axis.pull", on_change())));
+    Rig<table> rig;
+    const auto map = MapReader::open(rig.instance.observation().shared_memory());
+    ASSERT_TRUE(map.has_value());
+    auto reader = RecordReader::open(*map);
+    ASSERT_TRUE(reader.has_value()) << reader.error();
+    ASSERT_TRUE(rig.start() && rig.run(10ms));
+    static_cast<void>(reader->follow());
+    for (const double pull : {2.0, 3.0, 4.0}) { // and never again
+        rig.axis->pulls = pull;
+        ASSERT_TRUE(rig.run(5ms));
+    }
+    ASSERT_TRUE(rig.run(10s));
+    std::vector<RecordedSample> pulls;
+    for (RecordedSample& each : reader->follow())
+        if (each.channel == 1) pulls.push_back(std::move(each));
+    ASSERT_EQ(pulls.size(), 1u);
+    EXPECT_EQ(std::bit_cast<double>(pulls[0].words[0]), 4.0);
+    EXPECT_EQ(pulls[0].sequence, 3u);
+    EXPECT_EQ(pulls[0].lost, 2u);
+    ASSERT_TRUE(rig.run(10s));
+    for (const RecordedSample& each : reader->follow()) EXPECT_NE(each.channel, 1u) << "it was told";
 }
 
 TEST_F(Recorded, a_file_that_begins_late_has_the_values_that_stand_and_counts_from_there) {
