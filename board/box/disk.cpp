@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 
 #include <fcntl.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
 #include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,7 +67,11 @@ std::expected<std::string, std::string> find_partition(const std::string& name) 
 
 namespace {
 
-/// Of a partition of blocks of 1 KiB, as the image's writer makes it: where the second copy of its head is.
+/// As the image's writer makes the data partition.
+constexpr std::size_t block_bytes = 1024;
+constexpr std::size_t number_bytes = sizeof(std::uint64_t);
+
+/// Where the second copy of its head is.
 const std::vector<std::string> second_head{"-b", "8193", "-B", "1024"};
 
 struct Checked {
@@ -94,19 +101,72 @@ Checked check(const std::string& device, const std::vector<std::string>& more) {
 
 } // namespace
 
-std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder) {
-    constexpr int mended = 1; // above: what a human must decide
-    Checked checked = check(device, {});
-    // A power cut may tear the head, of which the sum is then wrong.
-    if (checked.code > mended) checked = check(device, second_head);
-    if (checked.code > mended)
-        return std::unexpected(device + " is damaged, and settings are not guessed: e2fsck says \"" +
-                               checked.said + "\"; mend it by e2fsck on another machine");
+std::string numbered_blocks(std::string_view file_system) {
+    std::string blocks;
+    for (std::uint64_t number = 0; number * block_bytes < file_system.size(); ++number) {
+        const std::string_view block = file_system.substr(number * block_bytes, block_bytes);
+        if (block.find_first_not_of('\0') == std::string_view::npos) continue;
+        blocks.append(reinterpret_cast<const char*>(&number), number_bytes);
+        blocks.append(block);
+    }
+    return blocks;
+}
+
+namespace {
+
+/// Its head last: a power cut in between leaves none that could be taken for whole.
+init::Done make_anew(const std::string& device) {
+    const std::string blocks = init::read_text(empty_data_file);
+    if (blocks.empty()) return std::unexpected("the image has no empty one; write the image anew");
+    const int disk = ::open(device.c_str(), O_RDWR | O_EXCL | O_CLOEXEC);
+    std::array<std::uint64_t, 2> all{}; // from, and how many bytes
+    bool done =
+        disk >= 0 && ::ioctl(disk, BLKGETSIZE64, &all[1]) == 0 && ::ioctl(disk, BLKZEROOUT, all.data()) == 0;
+    for (std::size_t end = blocks.size(); done && end != 0;) {
+        end -= number_bytes + block_bytes;
+        std::uint64_t number = 0;
+        std::memcpy(&number, blocks.data() + end, number_bytes);
+        done = (end != 0 || ::fsync(disk) == 0) &&
+               ::pwrite(disk, blocks.data() + end + number_bytes, block_bytes,
+                        static_cast<off_t>(number * block_bytes)) == block_bytes;
+    }
+    done = done && ::fsync(disk) == 0;
+    const int error = errno;
+    if (disk >= 0) ::close(disk);
+    errno = error;
+    return done ? init::Done{} : init::failed("write " + device);
+}
+
+bool mount_it(const std::string& device, const std::string& folder) {
     init::make_folder(folder);
-    if (::mount(device.c_str(), folder.c_str(), "ext4", MS_NOSUID | MS_NODEV | MS_NOEXEC | MS_NOATIME,
-                "commit=1,errors=remount-ro") != 0)
-        return init::failed("mount " + device + " at " + folder);
-    return checked.code == mended ? checked.said : "";
+    return ::mount(device.c_str(), folder.c_str(), "ext4", MS_NOSUID | MS_NODEV | MS_NOEXEC | MS_NOATIME,
+                   "commit=1,errors=remount-ro") == 0;
+}
+
+} // namespace
+
+std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder) {
+    constexpr int mended = 1;     // above: what only a guess would mend
+    constexpr int not_begun = 16; // from here on it has judged nothing
+    Checked checked = check(device, {});
+    bool is_mounted = checked.code <= mended && mount_it(device, folder);
+    // A power cut may tear the head, of which the sum is then wrong; and of one that calls itself clean it
+    // looks at nothing else.
+    for (const auto& more : {second_head, std::vector<std::string>{"-f"}}) {
+        if (is_mounted || checked.code >= not_begun) break;
+        checked = check(device, more);
+        is_mounted = checked.code <= mended && mount_it(device, folder);
+    }
+    if (is_mounted)
+        return checked.code == mended ? "the data partition is mended: " + checked.said : std::string{};
+    if (checked.code <= mended) return init::failed("mount " + device + " at " + folder);
+    if (checked.code >= not_begun) return std::unexpected("e2fsck does not run: " + checked.said);
+    if (const auto made = make_anew(device); !made)
+        return std::unexpected(device + " is damaged, and takes no new file system: " + made.error());
+    if (!mount_it(device, folder)) return init::failed("mount " + device + " at " + folder);
+    return "the data partition was beyond mending, and is made anew: SETTINGS AND LEARNED VALUES ARE GONE; "
+           "e2fsck said \"" +
+           checked.said + "\"";
 }
 
 init::Done write_through(const std::string& path, int how, std::string_view bytes) {

@@ -19,9 +19,15 @@ inline constexpr const char* slot_partitions[] = {"tappet-a", "tappet-b"};
 [[nodiscard]] std::expected<std::string, std::string> find_partition(const std::string& name);
 
 /// Read and written, every write followed to the disk within a second. Checked before by the image's
-/// /bin/e2fsck: what that mended without a guess, else nothing. The error: only a human can mend it.
+/// /bin/e2fsck. What that mended without a guess, or that it could not and the file system was made anew,
+/// as a sentence, else nothing. The error: the disk takes none.
 [[nodiscard]] std::expected<std::string, std::string> mount_data(const std::string& device,
                                                                  const std::string& folder);
+
+/// In the image: the data partition as its disk's writer made it, without a file.
+inline constexpr const char* empty_data_file = "/etc/tappet/data";
+/// A file system's blocks that hold something, each behind its number.
+[[nodiscard]] std::string numbered_blocks(std::string_view file_system);
 
 /// To the disk itself before it returns. `how`: of open(), beside writing.
 [[nodiscard]] init::Done write_through(const std::string& path, int how, std::string_view bytes);

@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <utility>
 
 #include <fcntl.h>
@@ -53,6 +54,7 @@ constexpr const char* data_folder = "/var/lib/tappet";
 const std::string layout_file = std::string{data_folder} + "/layout";
 const std::string log_file = std::string{data_folder} + "/box.log";
 constexpr std::size_t told_of_log = 4000;
+constexpr std::uintmax_t least_free_bytes = 256 * 1024;
 
 class Init {
 public:
@@ -132,8 +134,12 @@ private:
         if (!device) return std::unexpected(device.error());
         const auto mounted = mount_data(*device, data_folder);
         if (!mounted) return std::unexpected(mounted.error());
-        if (!mounted->empty()) voice_.say("the data partition is mended: " + *mounted);
+        if (!mounted->empty()) voice_.say(*mounted);
         data_device_ = *device;
+        std::error_code error;
+        if (std::filesystem::space(data_folder, error).free < least_free_bytes)
+            voice_.say("the data partition is full: no setting can be saved and no black box be kept; "
+                       "tappet box BOX factory-reset empties it");
         may_start_ = true;
         if (const auto kept = voice_.keep_in(log_file); !kept) voice_.say(kept.error());
         init::make_folder(properties_folder(facts_.one("layout")));

@@ -120,11 +120,12 @@ private:
         return init::to_exit_code(status) <= 1 ? init::Done{} : std::unexpected(init::read_text(path));
     }
 
+    /// All but what was said.
     static init::Done forget_settings(const std::string& folder) {
         std::error_code error;
         for (const auto& each : std::filesystem::directory_iterator{folder, error})
-            if (each.path().filename().native().starts_with("properties-") ||
-                each.path().filename() == "layout" || each.path().extension() == ".cpf")
+            if (const std::string name = each.path().filename();
+                name != "lost+found" && !name.starts_with("box.log"))
                 std::filesystem::remove_all(each.path(), error);
         return error ? init::Done{std::unexpected(error.message())} : init::Done{};
     }

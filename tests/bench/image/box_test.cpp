@@ -1,5 +1,6 @@
 // What is flashed onto a box, on an emulated one with UEFI: it boots and works, a new version stays once it
 // has proven itself, and one that does not is gone at the next boot, whatever it did instead.
+#include "tests/bench/image/data_partition.hpp"
 #include "tests/bench/image/emulated_box.hpp"
 #include "tests/toolchain/program.hpp"
 #include "toolchain/tools/image/slots.hpp"
@@ -243,6 +244,46 @@ TEST(Box, boots_the_other_slot_when_the_loaders_file_of_one_is_torn) {
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("Starting C:SLOTB:tappet.efi"));
     EXPECT_THAT(said, HasSubstr("Tappet, carpet-loom on board bench"));
+}
+
+TEST(Box, boots_with_whatever_became_of_its_data_partition) {
+    EmulatedBox box{image("lonely") / "disk.img"};
+    const DataPartition data{box.disk(), box / "data"};
+    const std::string there = "box " + box.address() + " ", keys = " --key " + image("keys").string();
+    { // its head and its table of groups, of which it has copies
+        data.write("/kept", "whole");
+        data.damage(0, 3 * 1024);
+        box.switch_on();
+        const std::string said = box.await("armed on board");
+        SCOPED_TRACE(said);
+        EXPECT_THAT(said, HasSubstr("the data partition is mended"));
+        EXPECT_THAT(said, Not(HasSubstr("is made anew")));
+        box.switch_off();
+        EXPECT_EQ(data.read("/kept"), "whole");
+    }
+    { // all of it
+        data.damage(0, image::partitions()[3].bytes());
+        box.switch_on();
+        const std::string said = box.await("armed on board");
+        SCOPED_TRACE(said);
+        EXPECT_THAT(said, HasSubstr("the data partition was beyond mending, and is made anew: SETTINGS"));
+        EXPECT_THAT(said, Not(HasSubstr("is full")));
+        box.switch_off();
+        EXPECT_THAT(data.read("/box.log"), HasSubstr("and is made anew"));
+    }
+    { // full to the last block
+        data.fill();
+        box.switch_on();
+        const std::string said = box.await("armed on board");
+        SCOPED_TRACE(said);
+        EXPECT_THAT(said, HasSubstr("the data partition is full"));
+        box.await("after init began");
+        EXPECT_THAT(asked(there + "factory-reset" + keys), HasSubstr("press the power button"));
+        box.press_power_button();
+        box.await("begins anew");
+        box.forget();
+        EXPECT_THAT(box.await("armed on board"), Not(HasSubstr("is full")));
+    }
 }
 
 TEST(Box, has_an_image_that_is_the_same_when_it_is_written_again) {

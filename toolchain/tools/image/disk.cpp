@@ -83,6 +83,14 @@ std::uint64_t disk_bytes() {
            1024 * 1024; // the table's second copy stands there
 }
 
+void write_data(const fs::path& file) {
+    write_file(file, "");
+    fs::resize_file(file, partitions()[3].bytes());
+    run_tool({"mke2fs", "-q", "-F", "-t", "ext4", "-L", "tappet-data", "-U", guid(9), "-b", "1024", "-E",
+              "hash_seed=" + guid(9) + ",root_owner=0:0,lazy_itable_init=0,lazy_journal_init=0,nodiscard",
+              file.string()});
+}
+
 void write_disk(const fs::path& disk, const DiskParts& parts, const fs::path& work) {
     const std::vector<Partition>& rows = partitions();
     if (const std::uint64_t needed = fs::file_size(parts.kernel) + 1024 * 1024; needed > rows[1].bytes())
@@ -112,18 +120,13 @@ void write_disk(const fs::path& disk, const DiskParts& parts, const fs::path& wo
     for (std::uint32_t slot = 1; slot <= 2; ++slot)
         write_slot(work / (rows[slot].name + ".img"), rows[slot], parts,
                    {kernel_of(rows[slot]), 3 - slot, parts.watchdog_s, init::SlotState::good}, slot, work);
-    const fs::path data = work / "data.img";
-    write_file(data, "");
-    fs::resize_file(data, rows[3].bytes());
-    run_tool({"mke2fs", "-q", "-F", "-t", "ext4", "-L", "tappet-data", "-U", guid(9), "-E",
-              "hash_seed=" + guid(9) + ",root_owner=0:0,lazy_itable_init=0,lazy_journal_init=0,nodiscard",
-              data.string()});
+    write_data(work / "data.img");
 
     std::fstream file{disk, std::ios::binary | std::ios::in | std::ios::out};
     copy_into(file, work / "loader.img", rows[0]);
     copy_into(file, work / "tappet-a.img", rows[1]);
     copy_into(file, work / "tappet-b.img", rows[2]);
-    copy_into(file, data, rows[3]);
+    copy_into(file, work / "data.img", rows[3]);
     if (!file.flush()) throw Fault("cannot write " + disk.string() + "; check the space");
 }
 

@@ -39,6 +39,8 @@ struct DiskParts {
     std::uint16_t watchdog_s = 0;
 };
 
+/// The file system of the data partition, without a file.
+void write_data(const std::filesystem::path& file);
 /// Writes the whole disk; of its slots the first is the newer. The same in makes the same out, bit by bit.
 void write_disk(const std::filesystem::path& disk, const DiskParts& parts, const std::filesystem::path& work);
 

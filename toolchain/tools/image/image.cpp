@@ -2,6 +2,7 @@
 // Root file system, unified kernel image, disk.
 #include "toolchain/tools/image/image.hpp"
 
+#include "board/box/disk.hpp"
 #include "board/box/facts.hpp"
 #include "board/box/update.hpp"
 #include "toolchain/tools/bench/folders.hpp"
@@ -137,6 +138,8 @@ Written write_image(const Request& request) {
     root.add("/sbin/e2fsck.static", "/bin/e2fsck");
     root.add_text("/etc/tappet/box", lines);
     root.add_text("/etc/tappet/modules", modules.table);
+    write_data(work / "data");
+    root.add_text(box::empty_data_file, box::numbered_blocks(read_file(work / "data")));
     for (const auto& [name, file] : modules.files) root.add(file, "/modules/" + name + ".ko");
     for (const char* folder : {"/proc", "/sys", "/tmp", "/run"}) root.add_folder(folder);
     root.finish();
