@@ -1,5 +1,6 @@
 // What is flashed onto a box, on an emulated one with UEFI: it boots and works, a new version stays once it
 // has proven itself, and one that does not is gone at the next boot, whatever it did instead.
+#include "board/box/update.hpp"
 #include "tests/bench/image/data_partition.hpp"
 #include "tests/bench/image/emulated_box.hpp"
 #include "tests/toolchain/program.hpp"
@@ -17,6 +18,7 @@ namespace tappet::bench {
 namespace {
 
 using init::SlotState;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
@@ -284,6 +286,51 @@ TEST(Box, boots_with_whatever_became_of_its_data_partition) {
         box.forget();
         EXPECT_THAT(box.await("armed on board"), Not(HasSubstr("is full")));
     }
+}
+
+std::string folder_of_properties(const char* name) {
+    return "/properties-" + box::manifest_of(image::read_file(image(name) / "manifest")).layout;
+}
+
+std::string property(const char* name, int value) {
+    return std::string{"<simple name=\""} + name + "\" type=\"long\"><value>" + std::to_string(value) +
+           "</value></simple>\n";
+}
+
+/// Once its button is pressed, until it stands or has started again.
+std::string after_the_button(EmulatedBox& box, const char* wanted) {
+    box.forget();
+    box.press_power_button();
+    return box.await(wanted);
+}
+
+TEST(Box, keeps_the_settings_of_each_layout_of_properties) {
+    EmulatedBox box{image("milling_older") / "disk.img"};
+    const DataPartition data{box.disk(), box / "data"};
+    const std::string older = folder_of_properties("milling_older"),
+                      newer = folder_of_properties("milling_newer");
+    ASSERT_NE(older, newer);
+    data.make_folder(older);
+    data.write(older + "/mill.cpf",
+               "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE properties SYSTEM \"cpf.dtd\">\n"
+               "<properties>\n" +
+                   property("depth", 7) + property("flutes", 4) + "</properties>\n");
+    const std::string keys = " --key " + image("keys").string();
+    box.switch_on();
+    box.await("after init began");
+    EXPECT_THAT(asked("update " + box.address() + " " + (image("milling_newer") / "update.tap").string()),
+                HasSubstr("its properties are others"));
+    const std::string updated = after_the_button(box, "has proven itself and stays");
+    SCOPED_TRACE(updated);
+    EXPECT_THAT(updated, HasSubstr("\"flutes\"")) << "left out, and said";
+    EXPECT_THAT(asked("box " + box.address() + " roll-back" + keys), HasSubstr("press the power button"));
+    const std::string back = after_the_button(box, "has proven itself and stays");
+    SCOPED_TRACE(back);
+    EXPECT_THAT(back, HasSubstr("\"coolant\""));
+    after_the_button(box, "power off");
+    box.switch_off();
+    EXPECT_THAT(data.read(newer + "/mill.cpf"), AllOf(HasSubstr("<value>7<"), HasSubstr("coolant")));
+    EXPECT_THAT(data.read(older + "/mill.cpf"), AllOf(HasSubstr("<value>7<"), HasSubstr("<value>4<")));
 }
 
 TEST(Box, has_an_image_that_is_the_same_when_it_is_written_again) {
