@@ -168,6 +168,26 @@ TEST(Box, obeys_orders_that_are_signed_when_its_power_button_is_pressed) {
     EXPECT_THAT(said, HasSubstr("the version of the other slot goes on trial"));
 }
 
+TEST(Box, is_measured_when_its_power_button_is_pressed) {
+    EmulatedBox box{image("lonely") / "disk.img"};
+    box.switch_on();
+    box.await("after init began");
+    const std::string there = "box " + box.address();
+    EXPECT_THAT(asked(there + " measure --key " + image("keys").string()),
+                HasSubstr("measure; press the power button"));
+    box.press_power_button();
+    box.await("it is measured; tappet box shows the figures");
+    box.forget();
+    box.await("after init began");
+    const std::string status = asked(there);
+    SCOPED_TRACE(status);
+    EXPECT_THAT(status, HasSubstr("gaps of the hardware: "));
+    EXPECT_THAT(status, HasSubstr("processor 0: woke at most "));
+    EXPECT_THAT(status, HasSubstr("beside its worst response of "));
+    EXPECT_THAT(status, HasSubstr("hold the table's claims"))
+        << "it can, or it cannot: here time is emulated";
+}
+
 TEST(Box, with_secure_boot_boots_nothing_but_what_its_owner_signed) {
     const fs::path keys = image("keys");
     { // a new version with a changed byte, then one that somebody else signed
