@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <linux/fs.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/mount.h>
 #include <sys/wait.h>
@@ -80,7 +81,8 @@ struct Checked {
 };
 
 /// Mends what needs no guess. Nobody else has children yet.
-Checked check(const std::string& device, const std::vector<std::string>& more) {
+Checked check(const std::string& device, const std::vector<std::string>& more,
+              const std::function<void()>& meanwhile) {
     std::vector<std::string> words{"/bin/e2fsck", "-p"};
     words.insert(words.end(), more.begin(), more.end());
     words.push_back(device);
@@ -90,8 +92,13 @@ Checked check(const std::string& device, const std::vector<std::string>& more) {
     ::close(ends[1]);
     Checked checked;
     char piece[1024];
-    for (ssize_t count = 0; (count = ::read(ends[0], piece, sizeof piece)) > 0;)
-        checked.said.append(piece, static_cast<std::size_t>(count));
+    for (ssize_t count = 1; count > 0;) {
+        pollfd file{ends[0], POLLIN, 0};
+        meanwhile();
+        if (::poll(&file, 1, 100) == 0) continue;
+        count = ::read(ends[0], piece, sizeof piece);
+        checked.said.append(piece, static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    }
     ::close(ends[0]);
     int status = 0;
     if (checker && ::waitpid(*checker, &status, 0) == *checker) checked.code = init::to_exit_code(status);
@@ -115,13 +122,17 @@ std::string numbered_blocks(std::string_view file_system) {
 namespace {
 
 /// Its head last: a power cut in between leaves none that could be taken for whole.
-init::Done make_anew(const std::string& device) {
+init::Done make_anew(const std::string& device, const std::function<void()>& meanwhile) {
     const std::string blocks = init::read_text(empty_data_file);
     if (blocks.empty()) return std::unexpected("the image has no empty one; write the image anew");
     const int disk = ::open(device.c_str(), O_RDWR | O_EXCL | O_CLOEXEC);
-    std::array<std::uint64_t, 2> all{}; // from, and how many bytes
-    bool done =
-        disk >= 0 && ::ioctl(disk, BLKGETSIZE64, &all[1]) == 0 && ::ioctl(disk, BLKZEROOUT, all.data()) == 0;
+    std::uint64_t bytes = 0;
+    bool done = disk >= 0 && ::ioctl(disk, BLKGETSIZE64, &bytes) == 0;
+    for (std::array<std::uint64_t, 2> part{0, 0}; done && part[0] < bytes; part[0] += part[1]) {
+        part[1] = std::min<std::uint64_t>(4 * 1024 * 1024, bytes - part[0]); // from, and how many
+        done = ::ioctl(disk, BLKZEROOUT, part.data()) == 0;
+        meanwhile();
+    }
     for (std::size_t end = blocks.size(); done && end != 0;) {
         end -= number_bytes + block_bytes;
         std::uint64_t number = 0;
@@ -145,23 +156,24 @@ bool mount_it(const std::string& device, const std::string& folder) {
 
 } // namespace
 
-std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder) {
+std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder,
+                                                   const std::function<void()>& meanwhile) {
     constexpr int mended = 1;     // above: what only a guess would mend
     constexpr int not_begun = 16; // from here on it has judged nothing
-    Checked checked = check(device, {});
+    Checked checked = check(device, {}, meanwhile);
     bool is_mounted = checked.code <= mended && mount_it(device, folder);
     // A power cut may tear the head, of which the sum is then wrong; and of one that calls itself clean it
     // looks at nothing else.
     for (const auto& more : {second_head, std::vector<std::string>{"-f"}}) {
         if (is_mounted || checked.code >= not_begun) break;
-        checked = check(device, more);
+        checked = check(device, more, meanwhile);
         is_mounted = checked.code <= mended && mount_it(device, folder);
     }
     if (is_mounted)
         return checked.code == mended ? "the data partition is mended: " + checked.said : std::string{};
     if (checked.code <= mended) return init::failed("mount " + device + " at " + folder);
     if (checked.code >= not_begun) return std::unexpected("e2fsck does not run: " + checked.said);
-    if (const auto made = make_anew(device); !made)
+    if (const auto made = make_anew(device, meanwhile); !made)
         return std::unexpected(device + " is damaged, and takes no new file system: " + made.error());
     if (!mount_it(device, folder)) return init::failed("mount " + device + " at " + folder);
     return "the data partition was beyond mending, and is made anew: SETTINGS AND LEARNED VALUES ARE GONE; "

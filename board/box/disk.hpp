@@ -7,6 +7,7 @@
 
 #include <array>
 #include <expected>
+#include <functional>
 #include <string>
 
 namespace tappet::box {
@@ -20,9 +21,10 @@ inline constexpr const char* slot_partitions[] = {"tappet-a", "tappet-b"};
 
 /// Read and written, every write followed to the disk within a second. Checked before by the image's
 /// /bin/e2fsck. What that mended without a guess, or that it could not and the file system was made anew,
-/// as a sentence, else nothing. The error: the disk takes none.
-[[nodiscard]] std::expected<std::string, std::string> mount_data(const std::string& device,
-                                                                 const std::string& folder);
+/// as a sentence, else nothing. The error: the disk takes none. A slow disk takes its time: `meanwhile` is
+/// called several times a second.
+[[nodiscard]] std::expected<std::string, std::string>
+mount_data(const std::string& device, const std::string& folder, const std::function<void()>& meanwhile);
 
 /// In the image: the data partition as its disk's writer made it, without a file.
 inline constexpr const char* empty_data_file = "/etc/tappet/data";

@@ -87,26 +87,28 @@ std::vector<Need> needs_of(const Facts& facts) {
     for (const Words& each : facts.all("serial"))
         needs.push_back(awaited("serial port " + each[0], "check the board's devices",
                                 [path = each[0]] { return exists(path); }));
+    return needs;
+}
+
+std::vector<Need> networks_of(const Facts& facts) {
+    std::vector<Need> needs;
     for (const Words& each : facts.all("network")) needs.push_back(network(each[0], each[1]));
     return needs;
 }
 
-void bring_up(std::vector<Need>& needs, Modules& modules, const Voice& voice,
-              std::chrono::milliseconds patience) {
-    const double until_s = uptime_s() + std::chrono::duration<double>(patience).count();
-    for (std::chrono::milliseconds pause{10};; pause = std::min(2 * pause, std::chrono::milliseconds{250})) {
-        if (const auto came = modules.load_what_fits(); !came) voice.say(came.error());
-        for (Need& need : needs) {
-            if (need.is_up || !need.is_there()) continue;
-            const auto done = need.bring_up();
-            need.is_up = true;
-            voice.say(done ? need.what + " is up"
-                           : need.what + " is refused: " + done.error() + "; " + need.cure);
-        }
-        if (std::ranges::all_of(needs, &Need::is_up)) return;
-        if (uptime_s() >= until_s) break;
-        init::pause_for(pause);
+bool bring_up(std::vector<Need>& needs, Modules& modules, Modules::Which which, const Voice& voice) {
+    if (const auto came = modules.load_what_fits(which); !came) voice.say(came.error());
+    for (Need& need : needs) {
+        if (need.is_up || !need.is_there()) continue;
+        const auto done = need.bring_up();
+        need.is_up = true;
+        voice.say(done ? need.what + " is up"
+                       : need.what + " is refused: " + done.error() + "; " + need.cure);
     }
+    return std::ranges::all_of(needs, &Need::is_up);
+}
+
+void tell_missing(const std::vector<Need>& needs, const Voice& voice) {
     for (const Need& need : needs)
         if (!need.is_up) voice.say(need.what + " is missing; " + need.cure);
 }

@@ -20,14 +20,16 @@ struct Need {
     bool is_up = false;
 };
 
-/// What the facts name: CAN, GPIO, serial and Ethernet ports. On an emulated box ("world bench") CAN
-/// interfaces and GPIO chips are made instead of awaited.
+/// What the facts name and a machine needs to arm: CAN, GPIO and serial ports. On an emulated box ("world
+/// bench") CAN interfaces and GPIO chips are made instead of awaited.
 [[nodiscard]] std::vector<Need> needs_of(const Facts& facts);
+/// Ethernet ports: who is at their other end comes and goes.
+[[nodiscard]] std::vector<Need> networks_of(const Facts& facts);
 
-/// Loads modules and brings up what is there, until nothing is missing or the patience is over. Then one
-/// sentence is said for each thing that is missing.
-void bring_up(std::vector<Need>& needs, Modules& modules, const Voice& voice,
-              std::chrono::milliseconds patience);
+/// Loads modules and brings up what is there. Whether nothing is missing now.
+bool bring_up(std::vector<Need>& needs, Modules& modules, Modules::Which which, const Voice& voice);
+/// One sentence for each thing that is missing.
+void tell_missing(const std::vector<Need>& needs, const Voice& voice);
 
 /// The governor of every processor that has one: no change of frequency.
 void set_governor(const Voice& voice);

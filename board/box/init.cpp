@@ -4,6 +4,7 @@
 // one.
 
 #include "board/box/disk.hpp"
+#include "board/box/ears.hpp"
 #include "board/box/hardware.hpp"
 #include "board/box/renewal.hpp"
 #include "board/box/service.hpp"
@@ -22,14 +23,9 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <linux/input.h>
-#include <poll.h>
 #include <sys/mount.h>
 #include <sys/reboot.h>
-#include <sys/signalfd.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,7 +34,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds patience{5000}; // for hardware that comes late
+constexpr double patience_s = 5.0; // for hardware that comes late
 constexpr int no_firmware = -1;
 constexpr int wrong_set_up = 2;          // Ending::wrong_set_up: nothing was touched
 constexpr double stop_patience_s = 15.0; // for the firmware's orderly end
@@ -47,7 +43,6 @@ constexpr double renewal_patience_s = 300.0;
 constexpr int starts_anew = 1;
 constexpr std::size_t longest_last_words = 240;
 constexpr double tell_trial_s = 5.0; // for who stands there to read why
-constexpr std::string_view notify_name{"\0tappet-init", 12};
 
 /// Where the data partition is mounted: settings, learned values, black boxes, what was said.
 constexpr const char* data_folder = "/var/lib/tappet";
@@ -60,10 +55,12 @@ class Init {
 public:
     [[noreturn]] void live() {
         begin();
-        bring_up_box();
-        start_service();
+        bring_up_to_arm();
         start_plant();
-        if (may_start_) start_firmware();
+        if (may_start_)
+            start_firmware();
+        else
+            bring_up_rest();
         for (;;) look();
     }
 
@@ -80,32 +77,19 @@ private:
         voice_.say(is_locked_down_ ? "Secure Boot is on: nothing but signed code runs"
                                    : "Secure Boot is off: who has the disk can change what runs");
         ::setenv("PATH", "/bin", 1);
-        ::setenv("NOTIFY_SOCKET", "@tappet-init", 1);
         ::reboot(RB_DISABLE_CAD); // Ctrl-Alt-Del comes as SIGINT, and ends in order
-        sigset_t all;
-        ::sigfillset(&all);
-        ::sigprocmask(SIG_SETMASK, &all, nullptr);
-        signals_ = ::signalfd(-1, &all, SFD_NONBLOCK | SFD_CLOEXEC);
-        notices_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        std::memcpy(address.sun_path, notify_name.data(), notify_name.size());
-        const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + notify_name.size());
-        int ends[2] = {-1, -1};
-        if (notices_ < 0 || ::bind(notices_, reinterpret_cast<sockaddr*>(&address), length) != 0 ||
-            ::pipe2(ends, O_CLOEXEC) != 0)
-            voice_.say(std::string{"nothing of the firmware will be heard: "} + std::strerror(errno));
-        heard_ = ends[0];
-        spoken_ = ends[1];
-        ::fcntl(heard_, F_SETFL, O_NONBLOCK);
+        if (const auto opened = ears_.open(); !opened) voice_.say(opened.error());
+        modules_.take_signatures_off(!is_locked_down_);
     }
 
-    void bring_up_box() {
+    /// No more than that: the rest comes when the machine has armed.
+    void bring_up_to_arm() {
         stage("file systems and consoles");
         if (const auto up = init::set_link("lo", true); !up) voice_.say(up.error());
         std::vector<Need> needs = needs_of(facts_);
         if (facts_.one("world") == "bench") // what the others are made of comes first
-            if (const auto came = modules_.load_what_fits(); !came) voice_.say(came.error());
+            if (const auto came = modules_.load_what_fits(Modules::Which::to_arm); !came)
+                voice_.say(came.error());
         if (const std::string path = facts_.one("watchdog"); !path.empty())
             needs.push_back({"watchdog " + path, "check that the board's modules name its driver",
                              [path] { return ::access(path.c_str(), F_OK) == 0; },
@@ -114,25 +98,56 @@ private:
                          "check its disk, or flash the box anew, which loses its settings",
                          [] { return find_partition(data_partition).has_value(); },
                          [this] { return take_data_partition(); }});
-        box::bring_up(needs, modules_, voice_, patience);
-        stage(std::to_string(modules_.loaded()) + " kernel modules and the board's devices");
+        const double until_s = uptime_s() + patience_s;
+        for (milliseconds pause{10};
+             !bring_up(needs, modules_, Modules::Which::to_arm, voice_) && uptime_s() < until_s;
+             pause = std::min(2 * pause, milliseconds{250}))
+            init::pause_for(pause);
+        tell_missing(needs, voice_);
         set_governor(voice_);
+        stage(std::to_string(modules_.loaded()) + " kernel modules and the board's devices");
+        if (!may_start_)
+            voice_.say("the firmware is not started: without the data partition it has no settings");
+    }
+
+    /// Once; what is late is looked for again, see await_networks().
+    void bring_up_rest() {
+        if (std::exchange(has_all_, true)) return;
+        const double before_s = uptime_s();
+        networks_ = networks_of(facts_);
+        await_networks_until_s_ = uptime_s() + patience_s;
+        await_networks();
         if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
         if (slots_.on_trial()) voice_.say("revision " + std::to_string(slots_.revision()) + " is on trial");
         const auto [running, other] = slots_.in_order();
         if (other->state.state == init::SlotState::failed)
             voice_.say("what lies in the other slot failed its trial; what it said last stands in " +
                        log_file);
-        open_power_buttons();
-        stage("slots and buttons");
-        if (!may_start_)
-            voice_.say("the firmware is not started: without the data partition it has no settings");
+        ears_.open_power_buttons();
+        nonce_ = new_nonce(); // it waits until the kernel has gathered enough by chance
+        start_service();
+        voice_.say("networks, slots, buttons and service, for which no machine waits: " +
+                   text_of_seconds(uptime_s() - before_s));
+    }
+
+    void await_networks() {
+        if (await_networks_until_s_ == 0.0) return;
+        const bool is_over = uptime_s() >= await_networks_until_s_;
+        if (!bring_up(networks_, modules_, Modules::Which::all, voice_) && !is_over) return;
+        tell_missing(networks_, voice_);
+        await_networks_until_s_ = 0.0;
+    }
+
+    bool on_trial() {
+        bring_up_rest();
+        return slots_.on_trial();
     }
 
     init::Done take_data_partition() {
         const auto device = find_partition(data_partition);
         if (!device) return std::unexpected(device.error());
-        const auto mounted = mount_data(*device, data_folder);
+        const auto mounted =
+            mount_data(*device, data_folder, [this] { watchdog_.kick(os::Clock::monotonic()); });
         if (!mounted) return std::unexpected(mounted.error());
         if (!mounted->empty()) voice_.say(*mounted);
         data_device_ = *device;
@@ -154,7 +169,7 @@ private:
     /// The layout that was in use last, and proven. A trial that fails has changed nothing of it.
     void note_layout() {
         const std::string layout = facts_.one("layout");
-        if (slots_.on_trial() || init::read_line(layout_file) == layout) return;
+        if (on_trial() || init::read_line(layout_file) == layout) return;
         if (const auto kept = write_through(layout_file + ".new", O_CREAT | O_TRUNC, layout + "\n"); !kept)
             voice_.say(kept.error());
         else
@@ -170,13 +185,13 @@ private:
                     "size=50%,mode=0700,uid=65534,gid=65534");
         }
         tell_status();
-        service_ =
-            init::start({"/init", "service", nonce_}, spoken_, "write the image anew").value_or(no_firmware);
+        service_ = init::start({"/init", "service", nonce_}, ears_.mouth(), "write the image anew")
+                       .value_or(no_firmware);
     }
 
     /// For who asks over the network.
     void tell_status() const {
-        if (facts_.one("service").empty()) return;
+        if (facts_.one("service").empty() || !has_all_) return;
         const auto [running, other] = slots_.in_order();
         std::string text = "machine " + facts_.one("machine") + ", board " + facts_.one("board") + ", " +
                            (is_locked_down_ ? "Secure Boot" : "no Secure Boot") + "\n";
@@ -215,15 +230,6 @@ private:
         return {};
     }
 
-    void open_power_buttons() {
-        for (const std::string& name : init::names_in("/dev/input"))
-            if (name.starts_with("event"))
-                if (const int device =
-                        ::open(("/dev/input/" + name).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-                    device >= 0)
-                    buttons_.push_back(device);
-    }
-
     void start_firmware() {
         watchdog_.hand_over();
         start_s_ = uptime_s();
@@ -234,7 +240,7 @@ private:
                                        "--black-box", data_folder};
         if (!last.empty() && last != layout)
             words.insert(words.end(), {"--take-over", properties_folder(last)});
-        const auto started = init::start(words, spoken_, "write the image anew");
+        const auto started = init::start(words, ears_.mouth(), "write the image anew");
         firmware_ = started.value_or(no_firmware);
         if (!started) voice_.say(started.error());
         tell_status();
@@ -244,9 +250,8 @@ private:
     void start_plant() {
         const auto given = facts_.all("plant");
         if (given.empty()) return;
-        plant_ = init::start(given.front(), spoken_, "give the image its plant").value_or(no_firmware);
-        for (auto waited = milliseconds{0}; !plant_is_ready_ && waited < patience;
-             waited += milliseconds{5}) {
+        plant_ = init::start(given.front(), ears_.mouth(), "give the image its plant").value_or(no_firmware);
+        for (const double until_s = uptime_s() + patience_s; !plant_is_ready_ && uptime_s() < until_s;) {
             init::pause_for(milliseconds{5});
             take_notices();
         }
@@ -254,37 +259,35 @@ private:
     }
 
     void look() {
-        std::vector<pollfd> files{{signals_, POLLIN, 0}, {notices_, POLLIN, 0}, {heard_, POLLIN, 0}};
-        for (const int button : buttons_) files.push_back({button, POLLIN, 0});
-        ::poll(files.data(), files.size(), 250);
+        ears_.wait(milliseconds{250});
         watchdog_.kick(os::Clock::monotonic());
         pass_on();
         take_notices();
-        take_buttons();
+        if (ears_.power_button_was_pressed()) end_in_order("the power button", false);
         take_signals();
+        if (has_all_)
+            await_networks();
+        else if (uptime_s() > start_s_ + patience_s) // it has neither armed nor ended
+            bring_up_rest();
         if (again_at_s_ != 0.0 && uptime_s() >= again_at_s_) {
             again_at_s_ = 0.0;
-            if (slots_.on_trial()) restart();
+            if (on_trial()) restart();
             start_firmware();
         }
     }
 
     void pass_on() {
-        std::array<char, 4096> text{};
-        for (ssize_t count = 0; (count = ::read(heard_, text.data(), text.size())) > 0;) {
-            const std::string_view piece{text.data(), static_cast<std::size_t>(count)};
+        ears_.take_prints([this](std::string_view piece) {
             voice_.pass_on(piece);
             for (const char character : piece) {
                 if (character != '\n' && line_.size() < longest_last_words) line_ += character;
                 if (character == '\n' && !line_.empty()) last_words_ = std::exchange(line_, {});
             }
-        }
+        });
     }
 
     void take_notices() {
-        std::array<char, 256> text{};
-        for (ssize_t count = 0; (count = ::recv(notices_, text.data(), text.size(), 0)) > 0;) {
-            const std::string_view notice{text.data(), static_cast<std::size_t>(count)};
+        ears_.take_notices([this](std::string_view notice) {
             if (notice == "X_TAPPET_PLANT=ready") {
                 plant_is_ready_ = true;
             } else if (notice == "READY=1") {
@@ -294,17 +297,18 @@ private:
                            " of it in the firmware; memory left: " + memory_left());
                 raise_interrupts(facts_, voice_);
                 is_armed_ = true;
+                bring_up_rest();
                 note_layout();
                 tell_status();
             } else if (notice == "X_TAPPET_OUTPUTS=safe") {
                 outputs_are_safe_ = true;
-            } else if (notice.starts_with("X_TAPPET_LATE=") && slots_.on_trial() && !is_ending_) {
+            } else if (notice.starts_with("X_TAPPET_LATE=") && on_trial() && !is_ending_) {
                 voice_.say(
                     "activity \"" + std::string{notice.substr(notice.find('=') + 1)} +
                     "\" missed its deadline on trial: the machine is stopped, and the box goes back to "
                     "the other slot");
                 restart();
-            } else if (notice == "X_TAPPET_PROVEN=1" && slots_.on_trial()) {
+            } else if (notice == "X_TAPPET_PROVEN=1" && on_trial()) {
                 const double before = uptime_s();
                 const auto ended = slots_.end_trial(init::SlotState::good);
                 voice_.say(ended ? "revision " + std::to_string(slots_.revision()) +
@@ -314,7 +318,7 @@ private:
                 note_layout();
                 tell_status();
             }
-        }
+        });
     }
 
     static std::string memory_left() {
@@ -324,21 +328,11 @@ private:
         return std::to_string(std::atol(text.c_str() + at + 13) / 1024) + " MB";
     }
 
-    void take_buttons() {
-        for (const int button : buttons_) {
-            input_event event{};
-            while (::read(button, &event, sizeof event) == static_cast<ssize_t>(sizeof event))
-                if (event.type == EV_KEY && event.code == KEY_POWER && event.value == 1)
-                    end_in_order("the power button", false);
-        }
-    }
-
     void take_signals() {
-        signalfd_siginfo signal{};
-        while (::read(signals_, &signal, sizeof signal) == static_cast<ssize_t>(sizeof signal)) {
-            if (signal.ssi_signo == SIGINT) end_in_order("Ctrl-Alt-Del", true);
-            if (signal.ssi_signo == SIGTERM) end_in_order("a signal", false);
-        }
+        ears_.take_signals([this](int signal) {
+            if (signal == SIGINT) end_in_order("Ctrl-Alt-Del", true);
+            if (signal == SIGTERM) end_in_order("a signal", false);
+        });
         init::reap([this](pid_t pid, int code) {
             if (pid == plant_) {
                 pass_on();
@@ -369,7 +363,7 @@ private:
         }
         if (code == 0) {
             voice_.say("it was asked to end; the power may go");
-        } else if (slots_.on_trial()) {
+        } else if (on_trial()) {
             voice_.say("it was on trial: the box goes back to the other slot");
             again_at_s_ = uptime_s() + tell_trial_s;
         } else if (may_start_again()) {
@@ -414,10 +408,11 @@ private:
 
     /// A trial goes on at the next boot: who switched off has not judged it.
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
+        bring_up_rest();
         voice_.say(by + " ends it");
         stop_everything();
         again |= !again && renew_under_watchdog();
-        if (slots_.on_trial())
+        if (on_trial())
             if (const auto kept = slots_.end_trial(init::SlotState::installed); !kept)
                 voice_.say(kept.error());
         voice_.say(again ? "restart" : "power off");
@@ -460,7 +455,10 @@ private:
     Voice voice_{};
     Slots slots_{};
     os::Watchdog watchdog_{};
-    const std::string nonce_ = new_nonce();
+    std::string nonce_{};
+    std::vector<Need> networks_{};
+    double await_networks_until_s_ = 0.0; // 0: no longer
+    bool has_all_ = false;
     bool may_start_ = false; // settings are never guessed: not without the data partition
     bool may_start_service_ = true;
     bool is_armed_ = false;
@@ -472,17 +470,13 @@ private:
     std::string line_{}; // of what firmware and plant say, as far as it came
     std::string last_words_{};
     std::string last_ending_{};
-    std::vector<int> buttons_{};
     std::deque<double> restarts_s_{};
     pid_t firmware_ = no_firmware;
     pid_t plant_ = no_firmware;
     pid_t service_ = no_firmware;
     double start_s_ = 0.0;
     double again_at_s_ = 0.0; // 0: nothing is started or restarted
-    int signals_ = -1;
-    int notices_ = -1;
-    int heard_ = -1;  // what firmware and plant say
-    int spoken_ = -1; // to them
+    Ears ears_{};
 };
 
 } // namespace

@@ -2,8 +2,6 @@
 // Matches devices with modules, and loads them.
 #include "board/box/modules.hpp"
 
-#include "board/init/devices.hpp"
-
 #include <algorithm>
 
 #include <dirent.h>
@@ -44,8 +42,9 @@ Modules::Modules(std::string_view table) {
     const Facts facts{table};
     for (const Words& line : facts.lines()) {
         if (line.size() < 2) continue;
-        if (line[0] == "module") {
+        if (line[0].ends_with("module")) {
             Module& module = modules_.emplace_back();
+            module.is_later = line[0].starts_with("later");
             module.name = line[1];
             for (std::size_t i = 2; i < line.size(); ++i) module.parameters += (i > 2 ? " " : "") + line[i];
         } else if (!modules_.empty()) {
@@ -68,16 +67,17 @@ init::Done Modules::load(Module& module) {
     for (const std::string& needed : module.needs)
         if (Module* const other = find(needed); other != nullptr)
             if (auto done = load(*other); !done) return done;
-    auto done = init::load_module("/modules/" + module.name + ".ko", module.parameters);
+    auto done = init::load_module("/modules/" + module.name + ".ko", module.parameters, signature_);
     module.is_loaded = done.has_value();
     return done;
 }
 
-std::expected<int, std::string> Modules::load_what_fits() {
+std::expected<int, std::string> Modules::load_what_fits(Which which) {
     const int before = loaded();
     const std::vector<std::string> devices = device_aliases();
     std::string refused;
     for (Module& module : modules_) {
+        if (module.is_later && which == Which::to_arm) continue;
         const bool fits = std::ranges::any_of(module.aliases, [&](const std::string& pattern) {
             if (pattern == "always") return true;
             return std::ranges::any_of(devices, [&](const std::string& device) {

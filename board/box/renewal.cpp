@@ -50,7 +50,7 @@ private:
     std::optional<std::string> await_stick() {
         const double begun_s = uptime_s();
         for (;;) {
-            static_cast<void>(modules_.load_what_fits()); // of a stick that came later
+            static_cast<void>(modules_.load_what_fits(Modules::Which::all)); // of a stick that came later
             if (auto disk = find_update()) return disk;
             const double waited_s = uptime_s() - begun_s;
             if (waited_s >= says_what_it_is_s && !(has_usb_storage() && waited_s < stick_patience_s))
@@ -99,7 +99,8 @@ private:
     init::Done on_data(init::Done (*act)(const std::string& folder)) {
         if (data_.empty()) return std::unexpected("there is no data partition");
         const std::string folder = "/run/data";
-        if (const auto mounted = mount_data(data_, folder); !mounted) return std::unexpected(mounted.error());
+        if (const auto mounted = mount_data(data_, folder, [] {}); !mounted)
+            return std::unexpected(mounted.error());
         const auto done = act(folder);
         ::sync();
         if (::umount(folder.c_str()) != 0) return init::failed("unmount " + data_);

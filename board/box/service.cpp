@@ -205,6 +205,8 @@ void serve_network(const ServiceFacts& facts) {
     ::sched_setscheduler(0, SCHED_IDLE, &idle);
     const int listener = listen_at(facts.port);
     give_up_rights();
+    std::printf("service: it listens at port %u\n", facts.port);
+    std::fflush(stdout);
     for (;;) {
         const int socket = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
         if (socket < 0) continue;

@@ -91,17 +91,32 @@ private:
 
 } // namespace
 
-Done load_module(const std::string& path, const std::string& parameters) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool loaded =
-        descriptor >= 0 &&
-        (::syscall(SYS_finit_module, descriptor, parameters.c_str(), 0) == 0 || errno == EEXIST);
-    const int error = errno;
-    if (descriptor >= 0) {
+// Behind the module stand the signature, a row of which the last four bytes are the signature's length, and a
+// mark.
+std::string_view without_signature(std::string_view module) {
+    constexpr std::string_view mark = "~Module signature appended~\n";
+    constexpr std::size_t row_bytes = 12, length_bytes = 4;
+    if (!module.ends_with(mark) || module.size() < row_bytes + mark.size()) return module;
+    const std::string_view rest = module.substr(0, module.size() - mark.size());
+    std::size_t length = 0;
+    for (const char byte : rest.substr(rest.size() - length_bytes))
+        length = 256 * length + static_cast<unsigned char>(byte);
+    return length > rest.size() - row_bytes ? module : rest.substr(0, rest.size() - row_bytes - length);
+}
+
+Done load_module(const std::string& path, const std::string& parameters, Signature signature) {
+    long done = -1;
+    if (signature == Signature::off) {
+        const std::string file = read_text(path);
+        const std::string_view module = without_signature(file);
+        done = ::syscall(SYS_init_module, module.data(), module.size(), parameters.c_str());
+    } else if (const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC); descriptor >= 0) {
+        done = ::syscall(SYS_finit_module, descriptor, parameters.c_str(), 0);
+        const int error = errno;
         ::close(descriptor);
+        errno = error;
     }
-    errno = error;
-    return loaded ? Done{} : failed("load module " + path);
+    return done == 0 || errno == EEXIST ? Done{} : failed("load module " + path);
 }
 
 // A module fails as long as one that it needs is missing. Which needs which changes from kernel to kernel, so

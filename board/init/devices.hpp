@@ -7,12 +7,19 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tappet::init {
 
+/// Of a kernel that is locked down a module's signature must be right; any other judges it too, and takes its
+/// time, and then loads what has none. Where nobody has judged the kernel itself, that proves nothing.
+enum class Signature : std::uint8_t { on, off };
 /// One module's file, with its parameters; well when it is loaded already.
-[[nodiscard]] Done load_module(const std::string& path, const std::string& parameters = {});
+[[nodiscard]] Done load_module(const std::string& path, const std::string& parameters = {},
+                               Signature signature = Signature::on);
+/// As it was before its maker signed it; one that has no signature stays as it is.
+[[nodiscard]] std::string_view without_signature(std::string_view module);
 /// All of them, in whatever order they need each other.
 [[nodiscard]] Done load_modules(std::vector<std::string> paths);
 

@@ -55,6 +55,7 @@ void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void*
     say("kernel ", board.kernel_command_line);
     for (const std::string_view each : board.image.consoles) say("console ", each);
     for (const std::string_view each : board.image.modules) say("module ", each);
+    for (const std::string_view each : board.image.later_modules) say("later-module ", each);
     for (const BoundDevice& bound : machine.binding->devices)
         if (const BoardDevice* device = checks::find_named(board.devices, bound.at); device != nullptr) {
             const std::size_t value =

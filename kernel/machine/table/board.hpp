@@ -64,6 +64,7 @@ struct BoardImage {
     /// Kernel modules, with their parameters after a blank. One that drives devices is loaded when one of
     /// them is there, any other always; what they need comes with them.
     Bounded<std::string_view, 48> modules{};
+    Bounded<std::string_view, 48> later_modules{}; ///< as those, but loaded when the machine has armed
     Bounded<std::string_view, 4>
         consoles{};                      ///< where kernel, init and firmware speak: "tty0", "ttyS0,115200"
     Bounded<BoardNetwork, 4> networks{}; ///< Ethernet interfaces that the box brings up

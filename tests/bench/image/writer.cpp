@@ -50,12 +50,12 @@ private:
     init::Done write_all() {
         box::Modules modules{init::read_text("/etc/tappet/modules")};
         for (int i = 0; i < 100 && !box::find_partition(box::data_partition); ++i) {
-            static_cast<void>(modules.load_what_fits());
+            static_cast<void>(modules.load_what_fits(box::Modules::Which::all));
             init::pause_for(std::chrono::milliseconds{50});
         }
         const auto partition = box::find_partition(box::data_partition);
         if (!partition) return std::unexpected(partition.error());
-        const auto mounted = box::mount_data(*partition, data);
+        const auto mounted = box::mount_data(*partition, data, [] {});
         if (!mounted) return std::unexpected(mounted.error());
         voice_.say("mounted: " + *mounted);
         disk_ = ::open(partition->substr(0, partition->find_last_not_of("0123456789") + 1).c_str(),

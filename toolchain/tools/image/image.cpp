@@ -123,11 +123,15 @@ Written write_image(const Request& request) {
         lines += "key " + public_key(request.next_keys.empty() ? request.keys : request.next_keys) + "\n";
     if (!request.plant.empty()) lines += "plant /bin/plant " + request.plant_words + "\n";
 
-    std::vector<std::string> rows;
-    for (const box::Words& row : facts.all("module")) rows.push_back(joined(row));
+    const auto rows = [&](const char* word) {
+        std::vector<std::string> all;
+        for (const box::Words& row : facts.all(word)) all.push_back(joined(row));
+        return all;
+    };
     const std::string release = first_line(read_file(request.kernel / "release"));
     const std::string bill = bill_of(request, facts, release);
-    const KernelModules modules = choose_modules(rows, request.kernel / "lib/modules" / release);
+    const KernelModules modules =
+        choose_modules(rows("module"), rows("later-module"), request.kernel / "lib/modules" / release);
 
     const bench::WorkFolder work("tappet-image");
     fs::create_directories(request.folder);

@@ -104,35 +104,38 @@ private:
 
 } // namespace
 
-KernelModules choose_modules(const std::vector<std::string>& rows, const fs::path& tree) {
+KernelModules choose_modules(const std::vector<std::string>& rows, const std::vector<std::string>& later,
+                             const fs::path& tree) {
     const Tables tables{tree};
     KernelModules chosen;
     std::vector<std::string> others;
-    const auto add = [&](const std::string& name, const std::string& parameters) {
+    const auto add = [&](const std::string& name, const std::string& parameters, const char* when) {
         std::vector<std::string> before;
         tables.order(name, before);
-        chosen.table += "module " + name + parameters + "\n";
+        chosen.table += when + name + parameters + "\n";
         for (const std::string& each : before) chosen.table += "needs " + each + "\n";
         others.insert(others.end(), before.begin(), before.end());
         chosen.files[name] = tables.find(name)->file;
     };
-    for (const std::string& row : rows) {
+    const auto take = [&](const std::string& row, const char* when) {
         const std::size_t blank = std::min(row.find(' '), row.size());
         const std::string name = plain(row.substr(0, blank));
-        if (tables.is_built_in(name)) continue;
+        if (tables.is_built_in(name)) return;
         const Known* const module = tables.find(name);
         if (module == nullptr)
             throw Fault(
                 "the kernel " + tree.filename().string() + " has no module \"" + row.substr(0, blank) +
                 "\"; correct the board's kernel_modules(..), or add its folder to box_modules in ci/setup");
-        add(name, row.substr(blank));
+        add(name, row.substr(blank), when);
         for (const std::string& pattern : module->devices) chosen.table += "alias " + pattern + "\n";
         if (module->devices.empty()) chosen.table += "alias always\n";
-    }
+    };
+    for (const std::string& row : rows) take(row, "module ");
+    for (const std::string& row : later) take(row, "later-module ");
     const std::set<std::string> unnamed{others.begin(), others.end()};
     for (const std::string& name : unnamed)
         if (!chosen.files.contains(name))
-            add(name, {}); // else it has a row of its own, perhaps with parameters
+            add(name, {}, "module "); // else it has a row of its own, perhaps with parameters
     return chosen;
 }
 

@@ -14,8 +14,10 @@ struct KernelModules {
     std::map<std::string, std::filesystem::path> files{}; ///< by name
 };
 
-/// `rows` are the board's: a name, and parameters after it. `tree` is <kernel>/lib/modules/<release>, with
+/// `rows` are the board's: a name, and parameters after it; `later` are those that come when the machine has
+/// armed. `tree` is <kernel>/lib/modules/<release>, with
 /// depmod's tables. What the kernel has built in is left out. A fault: a name that the kernel does not have.
-KernelModules choose_modules(const std::vector<std::string>& rows, const std::filesystem::path& tree);
+KernelModules choose_modules(const std::vector<std::string>& rows, const std::vector<std::string>& later,
+                             const std::filesystem::path& tree);
 
 } // namespace tappet::image

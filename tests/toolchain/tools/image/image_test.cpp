@@ -59,7 +59,7 @@ struct Modules : Folder {
         write_file(folder / "modules.builtin", "kernel/drivers/serial.ko\n");
     }
     [[nodiscard]] std::string table(const std::vector<std::string>& rows) const {
-        return choose_modules(rows, folder).table;
+        return choose_modules(rows, {}, folder).table;
     }
 };
 
@@ -77,11 +77,17 @@ TEST_F(Modules, that_drive_no_device_are_always_loaded) {
     EXPECT_THAT(table({"can-dev"}), HasSubstr("module can_dev\nalias always\n"));
 }
 
+TEST_F(Modules, that_may_come_later_bring_with_them_what_others_need_before) {
+    const std::string text = choose_modules({"can-dev"}, {"peak_pci"}, folder).table;
+    EXPECT_THAT(text, HasSubstr("module can_dev\nalias always\nlater-module peak_pci\nneeds can_dev\n"));
+    EXPECT_THAT(text, HasSubstr("\nmodule sja1000\n"));
+}
+
 TEST_F(Modules, bring_what_the_kernel_would_ask_modprobe_for_in_the_form_that_every_processor_runs) {
     const std::string text = table({"ext4"});
     EXPECT_THAT(text, HasSubstr("module ext4\nneeds crc32c_plain\nneeds jbd2\nalias always\n"));
     EXPECT_THAT(text, Not(HasSubstr("crc32c_fast")));
-    EXPECT_EQ(choose_modules({"ext4"}, folder).files.size(), 3u);
+    EXPECT_EQ(choose_modules({"ext4"}, {}, folder).files.size(), 3u);
 }
 
 TEST_F(Modules, that_the_kernel_has_built_in_take_no_place) { EXPECT_EQ(table({"serial"}), ""); }
