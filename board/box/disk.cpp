@@ -95,7 +95,7 @@ Checked check(const std::string& device, const std::vector<std::string>& more,
     for (ssize_t count = 1; count > 0;) {
         pollfd file{ends[0], POLLIN, 0};
         meanwhile();
-        if (::poll(&file, 1, 100) == 0) continue;
+        if (::poll(&file, 1, 10) == 0) continue;
         count = ::read(ends[0], piece, sizeof piece);
         checked.said.append(piece, static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     }

@@ -44,7 +44,7 @@ constexpr const char* is_complete = "service: it listens";
 TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
     EmulatedBox box{image("loom") / "disk.img"};
     ASSERT_EQ(image::install(box.disk(), image("loom") / "tappet.efi"), 3u);
-    box.switch_on({"-no-reboot"});
+    box.switch_on({"-no-reboot", "-m", "160"}); // MB, of which its UEFI takes most
     const std::string said = box.await_end();
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("revision 3 is on trial"));

@@ -12,6 +12,7 @@
 #include "toolchain/tools/image/keys.hpp"
 #include "toolchain/tools/image/sbom.hpp"
 #include "toolchain/tools/image/tool.hpp"
+#include "toolchain/tools/image/unified_kernel.hpp"
 
 #include <cstdlib>
 
@@ -161,6 +162,9 @@ Written write_image(const Request& request) {
     run_tool({"bg_gen_unified_kernel", std::string{boot_guard} + "kernel-stubx64.efi",
               (request.kernel / "vmlinuz").string(), written.kernel.string(), "--cmdline",
               written.command_line, "--initrd", written.root.string()});
+    std::string unified = read_file(written.kernel);
+    draw_together(unified);
+    write_file(written.kernel, unified);
     write_file(folder.loader(), read_file(std::string{boot_guard} + "efibootguardx64.efi"));
     const box::Manifest manifest{facts.one("machine"), facts.one("board"), facts.one("layout"),
                                  request.version, request.least};

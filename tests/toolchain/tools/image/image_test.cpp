@@ -8,11 +8,13 @@
 #include "toolchain/tools/image/sbom.hpp"
 #include "toolchain/tools/image/slots.hpp"
 #include "toolchain/tools/image/tool.hpp"
+#include "toolchain/tools/image/unified_kernel.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 
 namespace tappet::image {
 namespace {
@@ -163,6 +165,51 @@ TEST_F(Disk, tells_of_each_slot_what_lies_in_it) {
             {"mcopy", "-n", "-i", at, "::" + std::string{box::header_file}, (folder / "header").string()});
         EXPECT_EQ(box::manifest_of(read_file(folder / "header")).version, 7u);
     }
+}
+
+struct UnifiedKernel : Folder {
+    const std::string stub = "/usr/lib/x86_64-linux-gnu/efibootguard/kernel-stubx64.efi";
+    const std::string kernel = read_file(stub); // any program of the firmware's will do
+    std::string bytes;
+    UnifiedKernel() {
+        write_file(folder / "root", std::string(50'000, 'r'));
+        run_tool({"bg_gen_unified_kernel", stub, stub, (folder / "unified").string(), "--cmdline", "quiet",
+                  "--initrd", (folder / "root").string()});
+        bytes = read_file(folder / "unified");
+    }
+    /// As the table of sections says: its number, name, size, two addresses and place in the file.
+    [[nodiscard]] std::string section(const std::string& name) const {
+        write_file(folder / "unified", bytes);
+        std::istringstream table{run_tool({"objdump", "-h", (folder / "unified").string()})};
+        std::string word, size, address, place;
+        while (table >> word && word != name) {
+        }
+        table >> size >> address >> address >> place;
+        return bytes.substr(std::stoul(place, nullptr, 16), std::stoul(size, nullptr, 16));
+    }
+    [[nodiscard]] unsigned long loaded_bytes() const {
+        write_file(folder / "unified", bytes);
+        const std::string said = run_tool({"objdump", "-p", (folder / "unified").string()});
+        return std::stoul(said.substr(said.find("SizeOfImage") + 11), nullptr, 16);
+    }
+};
+
+TEST_F(UnifiedKernel, takes_no_more_memory_than_its_parts) {
+    EXPECT_GT(loaded_bytes(), 100'000'000u) << "else there is nothing to do";
+    draw_together(bytes);
+    EXPECT_LT(loaded_bytes(), 500'000u);
+    EXPECT_TRUE(section(".kernel").starts_with(kernel));
+    EXPECT_TRUE(section(".initrd").starts_with(std::string(50'000, 'r')));
+}
+
+TEST_F(UnifiedKernel, that_is_none_is_refused) {
+    const std::string whole = bytes;
+    for (const std::size_t left : {0u, 60u, 300u}) {
+        bytes = whole.substr(0, left);
+        EXPECT_THAT(fault_of([&] { draw_together(bytes); }), HasSubstr("the unified kernel image is "));
+    }
+    bytes = std::string(4096, 'x');
+    EXPECT_THAT(fault_of([&] { draw_together(bytes); }), HasSubstr("the unified kernel image is "));
 }
 
 struct Keys : Folder {
