@@ -4,6 +4,7 @@
 #include "tests/bench/image/data_partition.hpp"
 #include "tests/bench/image/emulated_box.hpp"
 #include "tests/toolchain/program.hpp"
+#include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/image/slots.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
@@ -60,6 +61,19 @@ TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
     EXPECT_THAT(said, HasSubstr("power off"));
     EXPECT_EQ(slot(box, 2).state, SlotState::good);
     EXPECT_EQ(slot(box, 2).revision, 3u);
+}
+
+/// What ci/test has time for.
+TEST(Box, arms_and_works_when_its_kernel_begins) {
+    EmulatedBox box{image("loom") / "disk.img"};
+    box.switch_on_at_kernel(cache_folder() / "kernel/box/vmlinuz", image("loom") / "root.cpio.zst",
+                            "console=ttyS0 quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 "
+                            "cryptomgr.notests rdinit=/init");
+    const std::string said = box.await(" picks=1");
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("data partition at /var/lib/tappet is up"));
+    EXPECT_THAT(said, HasSubstr("armed on board \"bench\", 0 warnings"));
+    EXPECT_THAT(said, HasSubstr(" picks=1")) << "it weaves: 1, or 10 to 19";
 }
 
 TEST(Box, says_what_is_missing_and_goes_back_when_the_new_version_refuses_to_work) {

@@ -57,19 +57,17 @@ public:
     }
 
     /// From power on. `more`: further words for the emulator.
-    void switch_on(const std::vector<std::string>& more = {}) {
-        std::vector<std::string> words{
-            // One processor whose time follows its instructions, so that a busy host misses no deadline for
-            // it. A wait for the host's disk leaps to the guest's next timer, at worst the watchdog's: hence
-            // no flushing, and no bounds.
-            "-icount", "shift=1,sleep=off", "-drive",
-            "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd", "-drive",
-            "if=pflash,format=raw,file=" + (folder_ / "vars").string(), "-device", "nvme,drive=disk,serial=1",
-            "-netdev", "user,id=net,hostfwd=tcp:127.0.0.1:" + std::to_string(port_) + "-:4848",
-            // Without the card's own program, which would boot from the network when nothing else may.
-            "-device", "e1000e,netdev=net,romfile="};
-        words.insert(words.end(), more.begin(), more.end());
-        start(words);
+    void switch_on(std::vector<std::string> more = {}) {
+        more.insert(more.end(),
+                    {"-drive", "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd",
+                     "-drive", "if=pflash,format=raw,file=" + (folder_ / "vars").string()});
+        start_counting(more);
+    }
+
+    /// The same without UEFI and loader, which take most of the host's time.
+    void switch_on_at_kernel(const std::filesystem::path& kernel, const std::filesystem::path& root,
+                             const std::string& command_line) {
+        start_counting({"-kernel", kernel.string(), "-initrd", root.string(), "-append", command_line});
     }
 
     /// Another kernel and its root, without the loader, and in the host's time; the disk is at a SATA port,
@@ -156,6 +154,19 @@ private:
             throw std::runtime_error("no port is left");
         ::close(socket);
         return ntohs(address.sin_port);
+    }
+
+    void start_counting(const std::vector<std::string>& more) {
+        std::vector<std::string> words{
+            // One processor whose time follows its instructions, so that a busy host misses no deadline for
+            // it. A wait for the host's disk leaps to the guest's next timer, at worst the watchdog's: hence
+            // no flushing, and no bounds.
+            "-icount", "shift=1,sleep=off", "-device", "nvme,drive=disk,serial=1", "-netdev",
+            "user,id=net,hostfwd=tcp:127.0.0.1:" + std::to_string(port_) + "-:4848",
+            // Without the card's own program, which would boot from the network when nothing else may.
+            "-device", "e1000e,netdev=net,romfile="};
+        words.insert(words.end(), more.begin(), more.end());
+        start(words);
     }
 
     void start(const std::vector<std::string>& more) {
