@@ -66,7 +66,8 @@ struct PortOperations {
     void (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
-    Flow (*read)(void* port, bool is_input, std::byte* into) noexcept TAPPET_REALTIME;
+    /// `looks`: what is fresh there stays fresh.
+    Flow (*read)(void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME;
     void (*write)(void* output, const std::byte* value) noexcept TAPPET_REALTIME;
 };
 
@@ -253,13 +254,13 @@ struct PortAccess {
                 is_input ? static_cast<Input<T>*>(port)->release() : static_cast<Output<T>*>(port)->release();
             },
         .read =
-            [](void* port, bool is_input, std::byte* into) noexcept TAPPET_REALTIME {
+            [](void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME {
                 if (!is_input) {
                     std::memcpy(into, std::addressof(static_cast<const Output<T>*>(port)->last()), sizeof(T));
                     return Flow::old;
                 }
                 auto& in = *static_cast<Input<T>*>(port);
-                const Flow flow = in.refresh();
+                const Flow flow = looks ? in.flow() : in.refresh();
                 std::memcpy(into, std::addressof(in.value_of(flow)), sizeof(T));
                 return flow;
             },

@@ -26,6 +26,7 @@ struct MethodOperations {
     /// From packed arguments, for callers that know no C++ type. In the caller's thread; real-time.
     void (*call_packed)(void* component, const std::byte* arguments, std::byte* result) noexcept
         TAPPET_REALTIME = nullptr;
+    bool is_const = false; ///< it only looks at its component
 };
 
 /// What start-up does with the caller's side.
@@ -110,7 +111,7 @@ private:
 
 namespace detail {
 
-template <auto Method, bool blocks, class Component, class R, class... A>
+template <auto Method, bool blocks, bool is_const, class Component, class R, class... A>
 struct MethodOf {
     static constexpr bool is_method =
         (!Parameter<A>::is_result && ...) && (std::is_void_v<R> || std::is_trivially_copyable_v<R>);
@@ -145,27 +146,27 @@ struct MethodOf {
         else
             return sizeof(R);
     }
-    static constexpr MethodOperations operations{&function, type_id<Returned>, Pack::bytes, bytes_of_result(),
-                                                 &call_packed};
+    static constexpr MethodOperations operations{&function,         type_id<Returned>, Pack::bytes,
+                                                 bytes_of_result(), &call_packed,      is_const};
 };
 
 } // namespace detail
 
 template <auto Method, class Component, class R, class... A>
 struct MethodFunction<Method, R (Component::*)(A...) noexcept TAPPET_REALTIME>
-    : detail::MethodOf<Method, false, Component, R, A...> {};
+    : detail::MethodOf<Method, false, false, Component, R, A...> {};
 template <auto Method, class Component, class R, class... A>
 struct MethodFunction<Method, R (Component::*)(A...) const noexcept TAPPET_REALTIME>
-    : detail::MethodOf<Method, false, Component, R, A...> {};
+    : detail::MethodOf<Method, false, true, Component, R, A...> {};
 
 /// Of one that may_block: `Method` is a `R (Component::*)(A...) noexcept`.
 template <auto Method, class = decltype(Method)>
 struct BlockingMethod : MethodFunction<nullptr> {};
 template <auto Method, class Component, class R, class... A>
 struct BlockingMethod<Method, R (Component::*)(A...) noexcept>
-    : detail::MethodOf<Method, true, Component, R, A...> {};
+    : detail::MethodOf<Method, true, false, Component, R, A...> {};
 template <auto Method, class Component, class R, class... A>
 struct BlockingMethod<Method, R (Component::*)(A...) const noexcept>
-    : detail::MethodOf<Method, true, Component, R, A...> {};
+    : detail::MethodOf<Method, true, true, Component, R, A...> {};
 
 } // namespace tappet

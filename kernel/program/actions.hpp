@@ -34,6 +34,12 @@ constexpr FacetAction find_read(const Facet& facet) noexcept {
                                                                   : &primitive::read_property,
                                 facet, facet.type);
 }
+/// The same for whoever is not the component: an input's fresh value stays fresh for that.
+constexpr FacetAction find_look(const Facet& facet) noexcept {
+    FacetAction action = find_read(facet);
+    if (facet.kind == FacetKind::input) action.instruction.run = &primitive::look_at_input;
+    return action;
+}
 /// A property, an output or a buffered output is given the value `a`. One that is out of its range, not
 /// consented to, or finds no room fails the action.
 constexpr FacetAction find_write(const Facet& facet) noexcept {

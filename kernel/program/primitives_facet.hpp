@@ -15,12 +15,18 @@ inline const ProgramLink& link_of(const ProgramContext& context, const Instructi
 
 inline ActionResult read_input(ProgramContext& context, const Instruction& in, std::byte* to,
                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
-    static_cast<void>(in.facet->port->read(link_of(context, in).place, true, to));
+    static_cast<void>(in.facet->port->read(link_of(context, in).place, true, false, to));
+    return ActionResult::done;
+}
+/// What the component finds there: for it a fresh value stays fresh.
+inline ActionResult look_at_input(ProgramContext& context, const Instruction& in, std::byte* to,
+                                  const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
+    static_cast<void>(in.facet->port->read(link_of(context, in).place, true, true, to));
     return ActionResult::done;
 }
 inline ActionResult read_output(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
-    static_cast<void>(in.facet->port->read(link_of(context, in).place, false, to));
+    static_cast<void>(in.facet->port->read(link_of(context, in).place, false, false, to));
     return ActionResult::done;
 }
 inline ActionResult write_output(ProgramContext& context, const Instruction& in, std::byte*,

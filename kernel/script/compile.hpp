@@ -22,4 +22,14 @@ constexpr ScriptOutcome compile_into(std::string_view text, std::string_view nam
     return outcome;
 }
 
+/// The same of one line that a user typed: statements, or an expression, whose value is the unit's only
+/// program's result. An expression changes nothing. `name`: of the line in messages.
+constexpr ScriptOutcome compile_line_into(std::string_view text, std::string_view name, const Reach& reach,
+                                          const ScriptRoom& room) {
+    ScriptOutcome outcome;
+    script_detail::Compiler compiler{text, name, reach, room, outcome};
+    compiler.compile_line();
+    return outcome;
+}
+
 } // namespace tappet

@@ -28,8 +28,74 @@ public:
         finish();
         note_sizes();
     }
+    /// Statements, or one expression, whose value is the result.
+    constexpr void compile_line() {
+        is_line_ = true;
+        advance();
+        if (reach_.components.empty()) fail(token_, {"there is no component that the line could name"});
+        if (is(Sign::end)) fail(token_, {"the line is empty; write an expression or a statement"});
+        if (begins_statement(token_.sign))
+            make_program(token_, file_, true, nullptr);
+        else
+            make_expression();
+        finish();
+        note_sizes();
+    }
 
 private:
+    static constexpr bool begins_statement(Sign sign) noexcept {
+        switch (sign) {
+        case Sign::open_brace:
+        case Sign::semicolon:
+        case Sign::k_do:
+        case Sign::k_set:
+        case Sign::k_var:
+        case Sign::k_const:
+        case Sign::k_if:
+        case Sign::k_while:
+        case Sign::k_for:
+        case Sign::k_try:
+        case Sign::k_wait:
+        case Sign::k_yield:
+        case Sign::k_return:
+        case Sign::k_break:
+        case Sign::k_continue: return true;
+        default: return false;
+        }
+    }
+    constexpr void make_expression() {
+        looks_only_ = true;
+        begin_type();
+        BehaviourType type;
+        type.name = keep({file_});
+        const ProgramIndex program = begin_program({file_});
+        begin_action();
+        const Token at = token_;
+        const Operand value = reckoned(at, parse_expression());
+        static_cast<void>(take(Sign::semicolon));
+        if (ok() && !is(Sign::end))
+            fail(token_, {"found \"", quoted(token_.text),
+                          "\" after the expression; a line is one expression, or statements that begin with "
+                          "do, set, var, if, wait ..."});
+        if (!ok()) return;
+        DataOffset result = no_data;
+        static_cast<void>(add_variable(value.type->size, result));
+        store(at, value, value.type, result, "");
+        add(variables_, VariableRow{keep({"value"}), value.type, result, VariableKind::result}, "variables");
+        pending_ = add_arc(end_action(at));
+        static_cast<void>(end_program(program, no_chain));
+        end_type(type);
+        add_program_instance(false);
+    }
+    constexpr void add_program_instance(bool on_command) {
+        if (!ok()) return;
+        BehaviourInstance instance;
+        instance.name = types_.room[types_.used - 1].name;
+        instance.type = static_cast<TypeIndex>(types_.used - 1);
+        instance.on_command = on_command;
+        instance.image = types_.room[instance.type].tables.image;
+        add(instances_, instance, "instances");
+    }
     /// "program name { ... }": one instance of its own type; "program [type] name(type parameter, ...)
     /// { ... }" waits for its task's command and, with a type, answers it.
     constexpr void parse_named_program() {
@@ -88,14 +154,8 @@ private:
         symbols_used_ = symbols;
         if (ok() && program == no_program) return fail(at, {"the program has no statement"});
         end_type(type);
-        if (!ok()) return;
-        BehaviourInstance instance;
-        instance.name = types_.room[types_.used - 1].name;
-        instance.type = static_cast<TypeIndex>(types_.used - 1);
-        instance.on_command = on_command;
-        instance.image = types_.room[instance.type].tables.image;
-        check_instance_name(at, instance.name);
-        add(instances_, instance, "instances");
+        if (ok()) check_instance_name(at, types_.room[types_.used - 1].name);
+        add_program_instance(on_command);
     }
     constexpr void check_instance_name(const Token& at, std::string_view name) {
         for (std::size_t i = 0; i < instances_.used; ++i)
@@ -205,7 +265,9 @@ private:
                                  " places and its slot has room for ", digits(reach_.timers),
                                  "; wait at fewer or give its row more timers(...)"});
         if (room_.reach.size() < reach_.components.size()) return fail_room("components");
-        std::copy_n(reach_.components.data(), reach_.components.size(), room_.reach.data());
+        // They may stand there already.
+        if (room_.reach.data() != reach_.components.data())
+            std::copy_n(reach_.components.data(), reach_.components.size(), room_.reach.data());
         ScriptUnit& unit = outcome_.unit;
         unit.name = keep({file_});
         unit.types = room_.types.first(types_.used);

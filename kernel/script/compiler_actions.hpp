@@ -47,8 +47,7 @@ constexpr Statements::FacetPlace Statements::parse_facet_place(const Token& name
         fail(facet_name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind),
                           ", which is not to be assigned; outputs, properties and variables are"});
     else if (facet.kind != FacetKind::property && place.component != 0)
-        fail(facet_name, {"\"", quoted(facet.name), "\" is an output of \"",
-                          reach_.components[place.component].name, "\", which alone writes it"});
+        fail_foreign(facet_name, place.component, facet, "writes it");
     else
         check_near(facet_name, place.component, to_text(facet.kind));
     return place;
@@ -158,8 +157,7 @@ constexpr void Statements::parse_action(const Token& at, const Token& name, std:
         if (facet.kind == FacetKind::operation)
             check_call(name, component, facet);
         else if (component != 0)
-            return fail(name, {"\"", quoted(facet.name), "\" is an event of \"",
-                               reach_.components[component].name, "\", which alone emits it"});
+            return fail_foreign(name, component, facet, "emits it");
         const DataOffset packed = facet.type->size != 0 ? scratch(facet.type->size) : no_data;
         parse_arguments(facet.type->elements, packed);
         act(facet.kind == FacetKind::event ? emit_event(facet) : call_operation(facet), component, number,
@@ -170,9 +168,7 @@ constexpr void Statements::parse_action(const Token& at, const Token& name, std:
     case FacetKind::buffer_output:
     case FacetKind::output: {
         const bool is_buffer = facet.kind == FacetKind::buffer_output;
-        if (component != 0)
-            return fail(name, {"\"", quoted(facet.name), "\" is an output of \"",
-                               reach_.components[component].name, "\", which alone writes it"});
+        if (component != 0) return fail_foreign(name, component, facet, "writes it");
         need(Sign::dot, is_buffer ? "\".push(value)\"" : "\".write(value)\"");
         const Token part = need_word("push or write");
         if (ok() && part.text != (is_buffer ? "push" : "write"))

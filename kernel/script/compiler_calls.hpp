@@ -153,6 +153,10 @@ constexpr Operand Expressions::read_facet(const Token& name, std::uint16_t compo
     switch (facet.kind) {
     case FacetKind::method: {
         check_call(name, component, facet);
+        if (ok() && looks_only_ && !facet.method->is_const)
+            fail(name, {"\"", quoted(facet.name), "\" may change \"", reach_.components[component].name,
+                        "\", and an expression changes nothing; write \"do\" before it, or make the method "
+                        "const"});
         const FacetAction action = call_method(facet);
         if (ok() && action.type == nullptr)
             fail(name, {"\"", quoted(facet.name), "\" returns nothing; write \"do\" and no value"});
@@ -186,7 +190,7 @@ constexpr Operand Expressions::read_facet(const Token& name, std::uint16_t compo
                 go_to(before);
             }
         }
-        return read_by(find_read(facet), component, number);
+        return read_by(is_line_ ? find_look(facet) : find_read(facet), component, number);
     }
     case FacetKind::buffer_input: {
         check_near(name, component, "a buffer");
@@ -195,12 +199,14 @@ constexpr Operand Expressions::read_facet(const Token& name, std::uint16_t compo
         if (part.text == "empty") return read_by(buffer_empty(facet), component, number);
         if (part.text != "pop")
             fail(part, {"a buffered input has empty and pop(), not \"", quoted(part.text), "\""});
+        if (is_line_) fail_foreign(part, component, facet, "reads it");
         need(Sign::open_round, "\"(\"");
         need(Sign::close_round, "\")\"");
         return read_by(pop_buffer(facet), component, number);
     }
     case FacetKind::buffer_output: {
         check_near(name, component, "a buffer");
+        if (is_line_) fail_foreign(name, component, facet, "writes it");
         need(Sign::dot, "\".push(value)\" of the buffer");
         const Token part = need_word("push");
         if (ok() && part.text != "push")

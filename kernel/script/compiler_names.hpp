@@ -182,6 +182,11 @@ protected:
             fail(at, {what, " of \"", reach_.components[component].name,
                       "\", which runs in another activity; send it a command, or connect an input"});
     }
+    constexpr void fail_foreign(const Token& at, std::uint16_t component, const Facet& facet,
+                                std::string_view does) {
+        fail(at, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind), " of \"",
+                  reach_.components[component].name, "\", which alone ", does});
+    }
     /// The scope keeps apart the commands of programs that may be at work at the same time.
     constexpr std::uint16_t link(std::uint16_t component, std::uint16_t facet, bool needs_slot) {
         const std::uint16_t scope = needs_slot ? command_scope_ : std::uint16_t{0};
@@ -289,6 +294,9 @@ protected:
             rows = digit(6), columns = digit(8);
         return rows != 0 && columns != 0;
     }
+
+    bool is_line_ = false;    ///< of a user at a browser: what it reads stays as it is for the components
+    bool looks_only_ = false; ///< an expression of such a line: it changes nothing
 
     std::array<Symbol, 160> symbols_{};
     std::size_t symbols_used_ = 0;

@@ -10,4 +10,9 @@ ScriptOutcome compile_loaded(std::string_view text, std::string_view name, const
     return compile_into(text, name, reach, room);
 }
 
+ScriptOutcome compile_line(std::string_view text, std::string_view name, const Reach& reach,
+                           const ScriptRoom& room) {
+    return compile_line_into(text, name, reach, room);
+}
+
 } // namespace tappet

@@ -9,5 +9,8 @@ namespace tappet {
 /// on script_stack_bytes of stack.
 ScriptOutcome compile_loaded(std::string_view text, std::string_view name, const Reach& reach,
                              const ScriptRoom& room);
+/// compile_line_into(), likewise.
+ScriptOutcome compile_line(std::string_view text, std::string_view name, const Reach& reach,
+                           const ScriptRoom& room);
 
 } // namespace tappet

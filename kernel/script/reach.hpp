@@ -19,6 +19,9 @@ struct Reachable {
     bool same_activity = false;
 };
 
+/// A line that somebody types may name components of a machine of so many.
+inline constexpr std::size_t max_line_components = 128;
+
 /// Number 0 is the component itself. Spans outlive the compilation.
 struct Reach {
     std::span<const Reachable> components{};
