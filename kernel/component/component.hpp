@@ -14,8 +14,9 @@
 
 namespace tappet {
 
-struct Controlled; ///< kernel/machine/instance/controlled.hpp
-struct ScriptUnit; ///< kernel/script/unit.hpp
+struct Controlled;    ///< kernel/machine/instance/controlled.hpp
+struct ScriptUnit;    ///< kernel/script/unit.hpp
+struct LineFunctions; ///< kernel/machine/instance/line_functions.hpp
 
 // clang-format off
 /// A component is a plain struct. What it has of the following is used, in this order of its life; a member
@@ -49,8 +50,9 @@ struct ComponentType {
     bool behaviour_required = false;
     bool sees_machine = false;   ///< it is given the machine: a service that shows, stores or changes it
     bool records_cycles = false; ///< it is given the tapes of all activities
-    bool watches_life = false;   ///< its row names an activity or an output with watches(...)
-    bool slot_required = false;  ///< room for a behaviour that is loaded later
+    const LineFunctions* lines = nullptr;  ///< it sees the machine, and executes lines of the script language
+    bool watches_life = false;             ///< its row names an activity or an output with watches(...)
+    bool slot_required = false;            ///< room for a behaviour that is loaded later
     Controls controls = Controls::nothing; ///< its row names another component with controls(...)
     const ScriptUnit* script = nullptr;    ///< of the behaviour that it controls; null: whatever there is
     std::string_view instance{};           ///< in that script
@@ -89,6 +91,7 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
     if constexpr (requires { T::shares_device; }) type.shares_device = T::shares_device;
     if constexpr (requires { T::sees_machine; }) type.sees_machine = T::sees_machine;
+    if constexpr (requires { T::line_functions; }) type.lines = &T::line_functions;
     if constexpr (requires { T::records_cycles; }) type.records_cycles = T::records_cycles;
     if constexpr (requires { T::watches_life; }) type.watches_life = T::watches_life;
     if constexpr (requires { T::slot_required; }) type.slot_required = T::slot_required;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "kernel/machine/check/events.hpp"
+#include "kernel/machine/check/operations.hpp"
 #include "kernel/machine/table/unit_rows.hpp"
-#include "kernel/script/room.hpp"
 #include "kernel/statechart/check.hpp"
 
 namespace tappet::checks {
@@ -37,9 +37,6 @@ constexpr Sentence resolve_trigger(const MachineView& m, const BehaviourRow& row
     return {};
 }
 
-/// Of the activity that compiles what is loaded: what the compiler takes, and what called it.
-inline constexpr std::size_t slot_stack_bytes = script_stack_bytes + 64 * 1024;
-
 constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const Slot& slot = row.slot;
     if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
@@ -71,10 +68,10 @@ constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, con
     for (std::size_t c = 0; c < m.components.size(); ++c) {
         if (!m.components[c].type->sees_machine || r.activity[c] == nowhere) continue;
         const ActivityRow& activity = m.activities[r.activity[c]];
-        if (activity.stack < slot_stack_bytes)
+        if (activity.stack < compiling_stack_bytes)
             return of_behaviour(row, ": scripts are compiled in activity \"", activity.name,
-                                "\", whose stack of ", activity.stack, " bytes is under ", slot_stack_bytes,
-                                "; enlarge its stack(...)");
+                                "\", whose stack of ", activity.stack, " bytes is under ",
+                                compiling_stack_bytes, "; enlarge its stack(...)");
     }
     if (slot.angle.empty()) return {};
     if (Sentence fault = resolve(m, r.by_name, slot.angle, FacetKind::output, found); !fault.empty())

@@ -22,6 +22,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, const Binding
         if (Sentence fault = checks::check_components(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_activities(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_observers(m, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_interpreter(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_connections(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_watches(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::order_components(m, r); !fault.empty()) return fault;

@@ -3,8 +3,38 @@
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
+#include "kernel/script/room.hpp"
 
 namespace tappet::checks {
+
+/// Of the activity that compiles what is loaded: what the compiler takes, and what called it.
+inline constexpr std::size_t compiling_stack_bytes = script_stack_bytes + 64 * 1024;
+
+/// A component that executes lines of the script language: it compiles them, and has a mailbox of its own
+/// into each engine.
+constexpr Sentence check_interpreter(const MachineView& m, const TableIndexView& r) {
+    std::size_t first = nowhere;
+    for (std::size_t c = 0; c < m.components.size(); ++c) {
+        const ComponentRow& row = m.components[c];
+        if (row.type->lines == nullptr) continue;
+        if (first != nowhere)
+            return of_component(row.name, " executes lines as \"", m.components[first].name,
+                                "\" does already; remove one of them");
+        first = c;
+        const ActivityRow& activity = m.activities[r.activity[c]];
+        if (activity.stack < compiling_stack_bytes)
+            return of_component(row.name, " compiles lines in activity \"", activity.name,
+                                "\", whose stack of ", activity.stack, " bytes is under ",
+                                compiling_stack_bytes, "; enlarge its stack(...)");
+        if (m.components.size() > max_line_components)
+            return of_component(row.name, " executes lines that name at most ", max_line_components,
+                                " components, and the machine has ", m.components.size(), "; leave it out");
+        if (m.activities.size() == max_activities)
+            return of_component(row.name, " needs a mailbox into each engine, and ", max_activities,
+                                " activities have all of them; merge two activities");
+    }
+    return {};
+}
 
 /// The components that see the machine share one mailbox into each engine, which has one sending thread; and
 /// what they do for somebody outside must not delay a deadline.

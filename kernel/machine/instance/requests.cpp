@@ -1,6 +1,8 @@
 // What reaches a running engine from a component that sees the machine.
 #include "kernel/machine/instance/requests.hpp"
 
+#include "kernel/machine/plan/operations.hpp"
+
 namespace tappet {
 
 bool MachineRequests::post(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME {
@@ -57,6 +59,14 @@ CommandSlot::Route MachineRequests::command_route(End to, std::size_t sender) no
         machine_.plan.command_mail[sender * machine_.table.activities.size() + receiver].sender_index;
     route.sending_activity = static_cast<std::uint32_t>(sender);
     route.wake_sender = placed_.waker_of(sender);
+    return route;
+}
+
+CommandSlot::Route MachineRequests::line_route(End to) noexcept {
+    CommandSlot::Route route = route_to(to);
+    route.sender =
+        line_mail(machine_.plan.command_requests[machine_.index.activity[to.component]]).sender_index;
+    route.planned = false;
     return route;
 }
 

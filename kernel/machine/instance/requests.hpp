@@ -36,6 +36,10 @@ public:
     /// `sender`; for start-up and for loading.
     [[nodiscard]] CommandSlot::Route command_route(End to, std::size_t sender) noexcept;
 
+    /// Where a command slot of a line that somebody typed is sent to, whichever activity the line runs in;
+    /// for the component that executes lines.
+    [[nodiscard]] CommandSlot::Route line_route(End to) noexcept;
+
 private:
     [[nodiscard]] CommandSlot::Route route_to(End to) noexcept;
 

@@ -9,6 +9,16 @@ namespace tappet {
 /// So many requests of the components that see the machine wait at one engine, and so many of their commands.
 inline constexpr std::uint32_t requests_waiting = 16;
 
+/// So many commands of lines that people typed may be on their way.
+inline constexpr std::uint32_t line_commands = 8;
+
+/// Their mailbox at a receiver: it stands after that of the requests. Whichever activity a line runs in posts
+/// there: one line is at work at a time, and the next begins after it.
+constexpr MailPlan line_mail(const MailPlan& requests) noexcept {
+    return {requests.storage_at + CommandMailbox::bytes_for(requests.capacity), line_commands,
+            requests.sender_index + 1};
+}
+
 /// The activity that sends the command of a uses row.
 constexpr std::size_t sender_of(const MachineView& m, const TableIndexView& r, std::size_t row) noexcept {
     const std::string_view sent_by = m.reactions[row].sent_by;
@@ -28,6 +38,7 @@ template <class Plan, class Layout>
 constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan& p, Layout& layout) {
     const std::size_t n = m.activities.size();
     const bool seen = find_observer(m) != nowhere;
+    const bool has_lines = find_interpreter(m) != nowhere;
     for (std::size_t row = 0; row < m.reactions.size(); ++row) {
         if (!is_command_row(m, r, row)) continue;
         const std::size_t receiver = r.activity[r.reactions[row].to.component];
@@ -66,6 +77,10 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
             p.command_requests[receiver].capacity = requests_waiting;
             place(p.command_requests[receiver]);
             activity.followed_count += requests_waiting;
+        }
+        if (has_lines) {
+            ++activity.command_sender_count;
+            layout.take(CommandMailbox::bytes_for(line_commands), CommandMailbox::alignment);
         }
         activity.command_mailboxes_at = layout.template take<CommandMailbox>(activity.command_sender_count);
         activity.followed_at = layout.template take<CommandSlot*>(activity.followed_count);

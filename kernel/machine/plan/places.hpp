@@ -188,6 +188,13 @@ constexpr std::size_t find_observer(const MachineView& m) noexcept {
     return nowhere;
 }
 
+/// The component that executes lines of the script language, or nowhere.
+constexpr std::size_t find_interpreter(const MachineView& m) noexcept {
+    for (std::size_t c = 0; c < m.components.size(); ++c)
+        if (m.components[c].type->lines != nullptr) return c;
+    return nowhere;
+}
+
 /// Whether the row feeds an input that a component needs before it starts.
 constexpr bool is_needed_input(const MachineView& m, const ConnectionRow& row, const Link& link) noexcept {
     return !row.buffered && facet_at(m, link.to).required;

@@ -135,6 +135,8 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     case Verb::load: return load(client, request);
     case Verb::unload: return unload(client, request, BehaviourSlot::Change::unload);
     case Verb::roll_back: return unload(client, request, BehaviourSlot::Change::roll_back);
+    case Verb::execute: return execute(client, request);
+    case Verb::break_off: return break_off(client, request);
     }
     return {Refusal::unsupported,
             Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};

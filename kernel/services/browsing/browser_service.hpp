@@ -172,6 +172,12 @@ private:
     Sentence find_state(std::string_view name, browsing::WhyOrder& order);
     bool look_at_why(Pending& place);
 
+    // Lines of the script language; requests_line.cpp
+    Verdict execute(Client& client, const Request& request);
+    Verdict break_off(Client& client, const Request& request);
+    bool look_at_line(Pending& place);
+    Sentence find_line_functions(browsing::FollowedLine& found) noexcept;
+
     // Properties to their files; requests_save.cpp
     Verdict save(Client& client, const Request& request);
     bool look_at_saving(Pending& place);

@@ -3,12 +3,13 @@
 // it may still happen.
 #pragma once
 
+#include "kernel/machine/instance/line_functions.hpp"
 #include "kernel/services/browsing/behaviour_order.hpp"
 #include "kernel/services/browsing/why_order.hpp"
 #include "kernel/services/configuration/property_saving.hpp"
+#include "kernel/services/engine_call.hpp"
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <variant>
 
@@ -23,47 +24,6 @@ struct Asker {
     std::uint64_t client = 0; ///< serial
     std::uint32_t number = 0; ///< of the request
     Time since{};
-};
-
-/// A message to an engine that is run once, or withdrawn before. Until is_over() whoever posted it leaves
-/// what it works on alone. Wait-free for both: one exchange decides whether it runs or was withdrawn.
-class EngineCall {
-public:
-    /// False: that engine has no room for it.
-    [[nodiscard]] bool post(MachineInstance& machine, std::size_t activity, const Message& call) noexcept {
-        call_ = call;
-        state_.store(State::posted, std::memory_order_relaxed);
-        Message message = call;
-        message.run = &run;
-        message.object = this;
-        const bool posted = machine.requests().post(activity, message);
-        if (!posted) state_.store(State::over, std::memory_order_relaxed);
-        return posted;
-    }
-    [[nodiscard]] bool is_over() const noexcept {
-        return state_.load(std::memory_order_acquire) == State::over;
-    }
-    /// True: it has not run and will do nothing. False: it runs, has run, or was never posted.
-    [[nodiscard]] bool withdraw() noexcept {
-        const State before = state_.exchange(State::withdrawn, std::memory_order_acq_rel);
-        if (before == State::posted) return true;
-        // It was too late: what the engine wrote, or is about to write, is put back.
-        if (before == State::over) state_.store(State::over, std::memory_order_release);
-        return false;
-    }
-
-private:
-    enum class State : std::uint8_t { posted, running, withdrawn, over };
-
-    static void run(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
-        auto& call = *static_cast<EngineCall*>(self);
-        if (call.state_.exchange(State::running, std::memory_order_acq_rel) == State::posted)
-            call.call_.run(call.call_.object, arguments);
-        call.state_.store(State::over, std::memory_order_release);
-    }
-
-    Message call_{};
-    std::atomic<State> state_{State::over};
 };
 
 /// A port that is forced or released, an operation or a method that is called.
@@ -95,6 +55,12 @@ struct FollowedLife {
     LifeChange change{};
 };
 
+/// A line of the script language, at work in the component that executes it.
+struct FollowedLine {
+    const LineFunctions* functions = nullptr;
+    void* interpreter = nullptr;
+};
+
 struct Pending {
     Asker asker{};
     /// True: it is over, and its client was answered. Null: the place is free.
@@ -102,7 +68,7 @@ struct Pending {
     bool is_told = false; ///< its client heard that nobody answers, or nobody waits for an answer
     EngineCall call{};    ///< of what one engine does
     std::variant<std::monostate, FacetCall, BehaviourOrder, PropertyTransaction, FollowedCommand,
-                 FollowedLife, PropertySaving, WhyOrder>
+                 FollowedLife, FollowedLine, PropertySaving, WhyOrder>
         work{};
 };
 

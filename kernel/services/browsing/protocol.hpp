@@ -30,6 +30,12 @@
 ///         "done";
 ///     {"id": N, "event": "shaft.beat_up", "time_ns": T, "arguments": [..], "lost": n}
 ///         n: emissions of this subscription that were lost so far.
+/// A line of the script language is an expression, which any role may ask for, or statements, each with the
+/// role that it takes to send, call or set what they name. It ends in one packet:
+///     {"id": N, "line": "done", "time_ns": T, "final": true, "value": .. of an expression, "variables":
+///     {"x": .. of statements}}
+///     {"id": N, "line": "failed", "time_ns": T, "final": true, "error": "where and why"}
+/// It is broken off when its client leaves.
 /// A script comes in pieces, `script SLOT 0 "..."` and so on at the number of bytes that the last reply said;
 /// `load` compiles it, answers its first error with file, line and column, and lets it take over at once, at
 /// an event of the slot's reach or when the slot's angle is passed. `behaviours SLOT` tells what became of
@@ -75,7 +81,9 @@ enum class Verb : std::uint8_t {
     script,
     load,
     unload,
-    roll_back
+    roll_back,
+    execute,
+    break_off
 };
 
 struct VerbRow {
@@ -119,6 +127,8 @@ inline constexpr auto verbs = std::to_array<VerbRow>({
     {Verb::load,        "load",        Role::engineer,         "load SLOT FILE [now|EVENT|DEGREES]", 2, 3, ""},
     {Verb::unload,      "unload",      Role::engineer,         "unload SLOT",                      1, 1, ""},
     {Verb::roll_back,   "roll_back",   Role::engineer,         "roll_back SLOT",                   1, 1, ""},
+    {Verb::execute,     "execute",     Role::observer,         "execute \"LINE\"",                 1, 1, R"("state": "sent"; a packet with its end follows)"},
+    {Verb::break_off,   "break_off",   Role::machine_operator, "break_off",                        0, 0, ""},
 });
 // clang-format on
 

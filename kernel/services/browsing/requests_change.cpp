@@ -71,8 +71,7 @@ Sentence find_port(const MachineView& table, std::string_view name, End& end) no
 BrowserService::Verdict BrowserService::check_alive(std::size_t component) noexcept {
     const AcceptedMachine& machine = machine_->machine();
     const std::size_t activity = machine.index.activity[component];
-    for (const EnginePart& each : machine_->engines()[activity].plan().parts)
-        if (each.state.load(std::memory_order_acquire) != ComponentState::stopped) return {};
+    if (is_alive(*machine_, activity)) return {};
     return {Refusal::not_now, Sentence{"activity \"", machine.table.activities[activity].name,
                                        "\" is stopped, and nothing of it can be changed; start it first"}};
 }

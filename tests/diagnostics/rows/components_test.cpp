@@ -73,6 +73,10 @@ struct Observer {
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 
+struct Interpreter : Observer {
+    static constexpr LineFunctions line_functions{};
+};
+
 struct Reader {
     void loop(LoopControl&) {}
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
@@ -160,6 +164,41 @@ constexpr Fault observer_faults[] = {
      },
      R"(loom: component "store" sees the machine from activity "attic", but "browser" does so from activity "hall"; run both in one activity)"},
 };
+constexpr Fault interpreter_faults[] = {
+    {"interpreter_on_a_small_stack",
+     [](Table& m) {
+         m.add(component<Interpreter>("interpreter"));
+         m.put(activity("hall", every(250ms), not_real_time, runs("climate", "interpreter")));
+     },
+     R"(loom: component "interpreter" compiles lines in activity "hall", whose stack of 65536 bytes is under 229376; enlarge its stack(...))"},
+    {"interpreter_twice",
+     [](Table& m) {
+         m.add(component<Interpreter>("interpreter"));
+         m.add(component<Interpreter>("console"));
+         m.put(activity("hall", every(250ms), not_real_time, stack(256 * 1024),
+                        runs("climate", "interpreter", "console")));
+     },
+     R"(loom: component "console" executes lines as "interpreter" does already; remove one of them)"},
+    {"interpreter_of_too_many",
+     [](Table& m) {
+         m.add(component<Interpreter>("interpreter"));
+         m.put(activity("hall", every(250ms), not_real_time, stack(256 * 1024),
+                        runs("climate", "interpreter")));
+         static std::array<std::string, max_line_components> names;
+         ActivityRow one = activity("one", every(250ms), not_real_time), other = one;
+         other.name = "other";
+         for (std::size_t i = 0; i < names.size(); ++i) {
+             names[i] = "silent" + std::to_string(i);
+             m.add(component<Silent>(names[i].c_str()));
+             static_cast<void>((i % 2 == 0 ? one : other).runs.push(names[i]));
+         }
+         m.add(one);
+         m.add(other);
+     },
+     R"(loom: component "interpreter" executes lines that name at most 128 components, and the machine has 135; leave it out)"},
+};
+INSTANTIATE_TEST_SUITE_P(interpreters, Refusal,
+                         testing::ValuesIn(planted_into(small_loom, interpreter_faults)), name_of);
 INSTANTIATE_TEST_SUITE_P(observers, Refusal, testing::ValuesIn(planted_into(small_loom, observer_faults)),
                          name_of);
 

@@ -42,8 +42,9 @@ TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
     for (const browsing::VerbRow& row : browsing::verbs) {
         const bool looks = row.name == "hello" || row.name == "map" || row.name == "get" ||
                            row.name == "forced" || row.name == "subscribe" || row.name == "unsubscribe" ||
-                           row.name == "behaviours" || row.name == "counters" || row.name == "why";
-        const bool acts = row.name == "call" || row.name == "send";
+                           row.name == "behaviours" || row.name == "counters" || row.name == "why" ||
+                           row.name == "execute"; // statements need more
+        const bool acts = row.name == "call" || row.name == "send" || row.name == "break_off";
         EXPECT_EQ(row.role, looks  ? Role::observer
                             : acts ? Role::machine_operator
                                    : Role::engineer)

@@ -6,8 +6,6 @@
 namespace tappet::press {
 namespace {
 
-using browsing::EngineCall;
-
 constexpr std::size_t motion = 0;
 constexpr std::string_view left_safe =
     "its component is stopped, and what it left behind is safe; start it first";

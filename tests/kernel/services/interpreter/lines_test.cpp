@@ -1,0 +1,185 @@
+// A line of the script language in a running machine (thesis 3.3, 3.4.6): an expression is answered and
+// changes nothing, statements do what their asker's role allows, commands are followed to their ends.
+#include "tests/kernel/services/interpreter/line_rig.hpp"
+
+namespace tappet::press {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+testing::Matcher<std::string> is_value(std::string_view value) {
+    return AllOf(HasSubstr(R"({"id": 7, "line": "done")"),
+                 HasSubstr(R"("final": true, "value": )" + std::string{value} + "}"));
+}
+testing::Matcher<std::string> is_done() { return HasSubstr(R"("line": "done")"); }
+testing::Matcher<std::string> has_failed(std::string_view why) {
+    return AllOf(HasSubstr(R"("line": "failed")"), HasSubstr(why));
+}
+
+TEST_F(Lines, an_expression_is_answered_with_its_value) {
+    EXPECT_THAT(execute("1 + 2"), is_value("3"));
+    EXPECT_THAT(execute("gauge.force * 2 + 1"), is_value("26"));
+    EXPECT_THAT(execute("gauge.height;"), is_value("50"));
+    EXPECT_THAT(execute("gauge.target > 9.5 && gauge.all_homed()"), is_value("true"));
+    EXPECT_THAT(execute("gauge.half(gauge.steps)"), is_value("3.5"));
+    EXPECT_THAT(execute("2 * 20 ms"), is_value("\"40ms\""));
+    EXPECT_THAT(execute("\"a \\\"text\\\"\""), is_value(R"("a \"text\"")"));
+    EXPECT_THAT(execute("vector3(1, 2, 3) * 2.0"), is_value("[2, 4, 6]"));
+    EXPECT_THAT(execute("table.height"), is_value("50")) << "of another activity than the last line";
+    EXPECT_THAT(execute("1 / (gauge.steps - 7)"), has_failed("line:1:1: its value could not be reckoned"));
+}
+
+TEST_F(Lines, an_expression_takes_no_fresh_value_from_its_component) {
+    const std::int64_t before = gauge().fresh;
+    run(200ms);
+    const std::int64_t undisturbed = gauge().fresh - before;
+    const std::int64_t again = gauge().fresh;
+    const Time end = clock.now() + 200ms;
+    while (clock.now() < end) EXPECT_THAT(execute("gauge.height"), is_value("50"));
+    EXPECT_GE(gauge().fresh - again, undisturbed);
+}
+
+TEST_F(Lines, an_expression_changes_nothing) {
+    EXPECT_THAT(
+        execute("gauge.zero()"),
+        HasSubstr(
+            R"(line:1:7: \"zero\" may change \"gauge\", and an expression changes nothing; write \"do\" before it, or make the method const)"));
+    EXPECT_EQ(gauge().zeroed, 0);
+    EXPECT_THAT(execute("do gauge.zero()"), is_done());
+    EXPECT_THAT(execute("var int n = gauge.zero()"), HasSubstr(R"("variables": {"n": 2})"));
+}
+
+TEST_F(Lines, a_command_is_followed_to_its_end_and_its_result_told) {
+    EXPECT_THAT(ask(request("var int stroke; do ram.move_to(20, stroke)")),
+                HasSubstr(R"("ok": true, "state": "sent")"));
+    EXPECT_EQ(talker->receive(), "") << "it is on its way";
+    EXPECT_THAT(next(*talker), AllOf(is_done(), HasSubstr(R"("variables": {"stroke": 1})")));
+    EXPECT_EQ(ram().place.last(), 20);
+    EXPECT_THAT(
+        execute("var int n; do ram.move_to(-1, n)"),
+        has_failed(R"(line:1:12: \"ram.move_to\" was rejected: its component says no, or does not run)"));
+    EXPECT_THAT(execute("var int n; do ram.move_to(50, n) timeout 1ms"),
+                has_failed(R"(line:1:12: \"ram.move_to\" had not ended in time)"));
+}
+
+TEST_F(Lines, a_command_goes_to_another_activity_than_the_values_that_it_is_given) {
+    EXPECT_THAT(execute("var int n; do ram.move_to(table.height / 2, n)"), is_done());
+    EXPECT_EQ(ram().place.last(), 25);
+    EXPECT_THAT(execute("var int n; if table.height > 49 then do ram.move_to(gauge.force, n)"),
+                HasSubstr("which runs in another activity; send it a command, or connect an input"))
+        << "values of two activities are not of one moment";
+}
+
+TEST_F(Lines, statements_wait_and_are_stepped_until_they_end) {
+    EXPECT_THAT(execute("var int n = 0; while n < 3 { set n = n + 1; yield; }"),
+                HasSubstr(R"("variables": {"n": 3})"));
+    EXPECT_THAT(execute("wait 30ms"), is_done());
+    EXPECT_THAT(execute("wait gauge.force > 1000 timeout 20ms"),
+                has_failed("line:1:1: what it waited for did not come in time"));
+    EXPECT_THAT(execute("try do gauge.lock(false); catch do gauge.zero()"), is_done());
+    EXPECT_EQ(gauge().zeroed, 1);
+    EXPECT_THAT(execute("do gauge.lock(false)"), has_failed(R"(\"gauge.lock\" says no)"));
+}
+
+TEST_F(Lines, a_property_is_set_as_its_component_consents) {
+    EXPECT_THAT(execute("set gauge.target = 35.0"), is_done());
+    EXPECT_EQ(gauge().target.get(), 35);
+    EXPECT_THAT(execute("set gauge.target = 99"), has_failed("is over its greatest value 50"));
+    EXPECT_THAT(execute("set ram.speed = 19.5"),
+                has_failed(R"(the component of \"ram.speed\" does not consent)"));
+    EXPECT_EQ(gauge().target.get(), 35);
+}
+
+TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
+    EXPECT_THAT(ask("1 break_off"), HasSubstr("no line is at work; there is nothing to break off"));
+    EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
+    Talker other{path()};
+    EXPECT_THAT(ask(other, "3 execute 1+1"),
+                AllOf(HasSubstr("not_now"), HasSubstr("another line is at work")));
+    EXPECT_THAT(ask(other, "4 break_off"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(next(*talker), has_failed("it was broken off"));
+    EXPECT_THAT(execute("1"), is_value("1"));
+}
+
+TEST_F(Lines, one_whose_client_leaves_is_broken_off) {
+    auto guest = std::make_unique<Talker>(path());
+    EXPECT_THAT(ask(*guest, request("while true { do gauge.zero(); yield; }")), HasSubstr("sent"));
+    guest->close();
+    run(100ms);
+    const std::int64_t zeroed = gauge().zeroed;
+    EXPECT_GT(zeroed, 0);
+    run(200ms);
+    EXPECT_EQ(gauge().zeroed, zeroed);
+    EXPECT_THAT(execute("gauge.all_homed()"), is_value("true"));
+}
+
+TEST_F(Lines, one_takes_no_longer_than_lines_may) {
+    interpreter().longest.set(1s);
+    EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
+    EXPECT_THAT(next(*talker, 2s), has_failed("it took longer than a line may"));
+}
+
+TEST_F(Lines, a_command_that_was_left_goes_on_and_the_next_line_has_room_beside_it) {
+    ram().speed.set(0.1);
+    for (const double to : {49.0, 48.0}) {
+        EXPECT_THAT(ask(request("var int n; do ram.move_to(" + std::to_string(to) + ", n)")),
+                    HasSubstr("sent"));
+        EXPECT_THAT(ask("8 break_off"), HasSubstr("\"ok\": true"));
+        EXPECT_THAT(next(*talker), has_failed("it was broken off"));
+    }
+    EXPECT_THAT(execute("1"), HasSubstr("commands of earlier lines are still on their way"));
+    run(1s);
+    EXPECT_THAT(execute("ram.place"), is_value("48")) << "the first never ends: it is told to go elsewhere";
+}
+
+TEST_F(Lines, what_stands_is_not_asked) {
+    EXPECT_THAT(ask("1 stop gauge"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(execute("gauge.all_homed()"),
+                HasSubstr(R"(component \"gauge\" does not run; start it first)"));
+    EXPECT_THAT(execute("gauge.target"), is_value("10")) << "it may be looked at";
+    EXPECT_THAT(ask("2 stop activity:motion"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(execute("gauge.target"), HasSubstr(R"(activity \"motion\" is stopped)"));
+    EXPECT_THAT(ask("3 start activity:motion"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(execute("gauge.target"), is_value("10"));
+}
+
+TEST_F(Lines, what_is_stopped_in_the_middle_of_a_line_ends_it) {
+    EXPECT_THAT(ask(request("wait gauge.force > 1000")), HasSubstr("sent"));
+    EXPECT_THAT(ask("1 stop activity:motion"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(next(*talker, 4s),
+                has_failed(R"(its engine did not come to it: look at activity \"motion\")"));
+    EXPECT_THAT(ask("2 start activity:motion"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
+    EXPECT_THAT(ask("1 stop interpreter"), Not(HasSubstr("\"ok\": true"))) << "it serves the browser itself";
+    EXPECT_THAT(ask("9 break_off"), HasSubstr("\"ok\": true"));
+}
+
+TEST_F(Lines, a_peer_sends_one_as_a_command) {
+    panel().wanted = panel().line.assign("gauge.force * 2 + 1");
+    run(100ms);
+    ASSERT_EQ(panel().execute.state(), CommandState::done);
+    EXPECT_EQ(panel().execute.result<0>().view(), "26");
+    panel().wanted = panel().line.assign("gauge.fource");
+    run(100ms);
+    EXPECT_EQ(panel().execute.state(), CommandState::rejected);
+    EXPECT_EQ(interpreter().said.last().view(),
+              R"(line:1:7: "gauge" has no "fource"; did you mean "force"?)");
+    panel().wanted = panel().line.assign("do gauge.lock(false)");
+    run(100ms);
+    EXPECT_EQ(panel().execute.state(), CommandState::failed);
+    EXPECT_THAT(execute("1 + 1"), is_value("2")) << "the next is a browser's";
+    EXPECT_EQ(interpreter().executed.last(), 3);
+    EXPECT_EQ(interpreter().refused.last(), 1);
+}
+
+TEST_F(Press, a_machine_without_an_interpreter_executes_no_lines) {
+    Talker talker{path()};
+    EXPECT_THAT(ask(talker, "1 execute 1+1"),
+                HasSubstr("this machine executes no lines; add component<CommandInterpreter> to its table"));
+    EXPECT_THAT(ask(talker, "2 break_off"), HasSubstr("unsupported"));
+}
+
+} // namespace
+} // namespace tappet::press
