@@ -24,6 +24,7 @@ constexpr auto table = std::to_array<Command>({
     {"set",     "set PROPERTY VALUE [PROPERTY VALUE...]",  "properties of one component, all at once or none (engineer)", Takes::property, 2, any, run_set},
     {"call",    "call METHOD [ARGUMENT...]",               "a method or an operation, answered at once (operator)", Takes::callable, 1, any, run_call},
     {"send",    "send COMMAND [ARGUMENT...] [--follow]",   "a command; --follow: told until it has come to its end (operator)", Takes::command, 1, any, run_send},
+    {"execute", "execute LINE... [--stop]",                "a line of the script language: an expression, whose value is told, or statements such as do, set, wait, until they end (operator); --stop: ends the one at work", Takes::anything, 0, any, run_execute},
     {"force",   "force PORT VALUE",                        "a port has this value whatever is written to it (engineer)", Takes::port, 2, 2, run_force},
     {"release", "release PORT",                            "ends what force began (engineer)", Takes::port, 1, 1, run_force},
     {"save",    "save [COMPONENT]",                        "writes properties to their files (engineer)", Takes::component, 0, 1, run_plain_request},

@@ -77,6 +77,7 @@ Result<void> run_events(Work& work);
 Result<void> run_set(Work& work);
 Result<void> run_call(Work& work);
 Result<void> run_send(Work& work);
+Result<void> run_execute(Work& work);
 Result<void> run_force(Work& work);
 Result<void> run_plain_request(Work& work);
 Result<void> run_behaviour(Work& work);

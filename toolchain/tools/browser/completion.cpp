@@ -10,7 +10,8 @@ namespace {
 /// Every second word of set is a value; of call, send and force only the first is a name.
 bool is_name(const Command& command, std::size_t argument) {
     if (command.name == "set") return argument % 2 == 0;
-    if (command.takes == Takes::value || command.takes == Takes::event) return true;
+    if (command.takes == Takes::value || command.takes == Takes::event || command.name == "execute")
+        return true;
     return argument == 0;
 }
 

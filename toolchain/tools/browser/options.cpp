@@ -10,9 +10,9 @@ namespace tappet::browser {
 
 namespace {
 
-constexpr std::array<std::string_view, 11> names{"--json",      "--follow", "--help",   "--count",
+constexpr std::array<std::string_view, 12> names{"--json",      "--follow", "--help",   "--count",
                                                  "--every",     "--at",     "--socket", "--timeout",
-                                                 "--directory", "--for",    "--to"};
+                                                 "--directory", "--for",    "--to",     "--stop"};
 
 bool is_number(std::string_view text) {
     const std::string_view rest = text.substr(
@@ -58,9 +58,12 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
             options_end = true;
             continue;
         }
-        if (word == "--json" || word == "--follow" || word == "--help") {
+        if (word == "--json" || word == "--follow" || word == "--help" || word == "--stop") {
             line.given.push_back(word);
-            (word == "--json" ? line.json : word == "--follow" ? line.follow : line.help) = true;
+            (word == "--json"     ? line.json
+             : word == "--follow" ? line.follow
+             : word == "--stop"   ? line.stop
+                                  : line.help) = true;
             continue;
         }
         line.given.push_back(word);

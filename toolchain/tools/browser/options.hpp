@@ -16,6 +16,7 @@ struct Line {
     std::vector<std::string> words{}; ///< the command, if any, and its arguments
     bool json = false;                ///< one JSON object a line
     bool follow = false;              ///< send: until the command has come to its end
+    bool stop = false;                ///< execute: ends the line that is at work
     bool help = false;
     std::vector<std::string> given{};     ///< options, as they were written
     std::string at{};                     ///< behaviour load: an event or an angle; empty: at once
