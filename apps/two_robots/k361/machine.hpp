@@ -13,6 +13,7 @@
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/reporting/reporting.hpp"
 
 namespace two_robots::k361 {
 
@@ -107,7 +108,9 @@ inline constexpr auto table = machine("k361",
             chain("path_pid", "path",      "pid"), // to compare
             chain("tool",     "cartesian", "forward")),
         loop("joints by feed-forward", gain("forward.kp"), transport(14ms)), // wires and drives
-        loop("joints by PID", gain("pid.kp"), transport(14ms))));
+        loop("joints by PID", gain("pid.kp"), transport(14ms))),
+    reporting( // what tappet-browse report writes to files
+        report("joints.positions", every(5)), report("drives.sent", every(5)), report("body.model", every(10)), report("replay.set_point", every(10)), report("mode.chain", on_change())));
 // clang-format on
 
 } // namespace two_robots::k361
