@@ -54,7 +54,7 @@ struct Homing {
         if (one.phase != Phase::idle) return CommandProgress::executing;
         return one.is_homed ? CommandProgress::done : CommandProgress::failed;
     }
-    bool all_homed() noexcept TAPPET_REALTIME { return homed.last(); }
+    bool all_homed() const noexcept TAPPET_REALTIME { return homed.last(); }
     /// Nobody knows any more where the joints are, or what they are at is broken off.
     void forget() noexcept TAPPET_REALTIME { axes_ = {}; }
 

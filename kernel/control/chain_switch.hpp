@@ -29,7 +29,7 @@ public:
 
     bool run(const ScriptText& name) noexcept TAPPET_REALTIME;
     CommandProgress has_run(const ScriptText& name) noexcept TAPPET_REALTIME;
-    bool is_running(const ScriptText& name) noexcept TAPPET_REALTIME;
+    bool is_running(const ScriptText& name) const noexcept TAPPET_REALTIME;
 
     /// At start-up, by the section. It outlives the component.
     void place(control_detail::Turns& turns) noexcept { turns_ = &turns; }

@@ -293,7 +293,7 @@ CommandProgress ChainSwitch::has_run(const ScriptText& name) noexcept TAPPET_REA
     return wanted_ == next ? CommandProgress::executing : CommandProgress::failed;
 }
 
-bool ChainSwitch::is_running(const ScriptText& name) noexcept TAPPET_REALTIME {
+bool ChainSwitch::is_running(const ScriptText& name) const noexcept TAPPET_REALTIME {
     return turns_->running.load(std::memory_order_acquire) == turns_->find(name.view());
 }
 

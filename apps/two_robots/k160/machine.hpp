@@ -11,6 +11,7 @@
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/interpreter/command_interpreter.hpp"
 
 namespace two_robots::k160 {
 
@@ -40,14 +41,14 @@ inline constexpr auto table = machine("k160",
         component<JointEffector>("drives", set<volts_per_rate>("volts_per_rate")),
         component<Robot>("robot"),
         component<can::Restarter>("restarter", device("robot-can")),
-        component<BrowserService>("browser")),
+        component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities( // threads; their priorities follow from the deadlines
         activity("can",  on_device("can"), at_most(8, 2ms), runs("can"), deadline(400us), budget(30us)),
         activity("loop", every(servo_period, phase(1ms)),                deadline(1500us), budget(200us),
             runs("mode", "kinematics", "joints", "homing", "idle", "standing", "turning", "path", "breath", "pid", "forward", "drives", "robot")),
         activity("io",        on_device("io"), at_most(8, 2ms), runs("io"), deadline(1ms), budget(30us)),
         activity("restarter", every(100ms), not_real_time, runs("restarter")),
-        activity("browser",   every(20ms),  not_real_time, runs("browser"), stack(224 * 1024))),
+        activity("browser",   every(20ms),  not_real_time, runs("browser", "interpreter"), stack(224 * 1024))),
     connections( // data flow
         data("can.encoders_a.joint_1", "joints.counts_1", stale_after(20ms), hold), data("can.encoders_a.joint_2", "joints.counts_2", stale_after(20ms), hold),
         data("can.encoders_b.joint_3", "joints.counts_3", stale_after(20ms), hold), data("can.encoders_b.joint_4", "joints.counts_4", stale_after(20ms), hold),

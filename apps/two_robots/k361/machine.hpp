@@ -13,6 +13,7 @@
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
+#include "kernel/services/interpreter/command_interpreter.hpp"
 #include "kernel/services/reporting/reporting.hpp"
 
 namespace two_robots::k361 {
@@ -43,7 +44,7 @@ inline constexpr auto table = machine("k361",
         component<Replay>("replay", set("tool_length", 0.40)),
         component<Superposition>("superposition", set("tool_length", 0.40)),
         component<can::Restarter>("restarter", device("robot-can")),
-        component<BrowserService>("browser")),
+        component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities( // threads; their priorities follow from the deadlines
         activity("can",  on_device("can"), at_most(8, 2ms), runs("can"), deadline(400us), budget(30us)),
         activity("tool", every(servo_period),                            deadline(900us), budget(200us),
@@ -52,7 +53,7 @@ inline constexpr auto table = machine("k361",
             runs("mode", "kinematics", "joints", "idle", "standing", "turning", "twisting", "path", "cartesian", "pid", "forward", "drives", "robot")),
         activity("io",        on_device("io"), at_most(8, 2ms), runs("io"), deadline(1ms), budget(30us)),
         activity("restarter", every(100ms), not_real_time, runs("restarter")),
-        activity("browser",   every(20ms),  not_real_time, runs("browser"), stack(224 * 1024))),
+        activity("browser",   every(20ms),  not_real_time, runs("browser", "interpreter"), stack(224 * 1024))),
     connections( // data flow
         data("can.encoders_a.joint_1", "joints.counts_1", stale_after(20ms), hold), data("can.encoders_a.joint_2", "joints.counts_2", stale_after(20ms), hold),
         data("can.encoders_b.joint_3", "joints.counts_3", stale_after(20ms), hold), data("can.encoders_b.joint_4", "joints.counts_4", stale_after(20ms), hold),

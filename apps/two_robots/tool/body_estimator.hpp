@@ -72,7 +72,7 @@ struct BodyEstimator {
         good.write(false);
         is_seen_.store(false, std::memory_order_relaxed);
     }
-    bool is_seen() noexcept TAPPET_REALTIME { return is_seen_.load(std::memory_order_relaxed); }
+    bool is_seen() const noexcept TAPPET_REALTIME { return is_seen_.load(std::memory_order_relaxed); }
 
     // clang-format off
     static constexpr auto interface() {

@@ -1,4 +1,5 @@
 // Components: their rows, the functions of their life, and the devices that the board has for them.
+#include "kernel/machine/instance/line_functions.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 #include "tests/diagnostics/small_machine.hpp"
 

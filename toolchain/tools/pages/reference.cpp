@@ -15,6 +15,7 @@
 #include "kernel/services/box/box.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
+#include "kernel/services/interpreter/command_interpreter.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
 #include "kernel/services/tasks/component_life.hpp"
@@ -84,6 +85,8 @@ const Described components[] = {
     {"kernel/services/scope/thread_scope.hpp", "ThreadScope", "ThreadScope", component_type<ThreadScope>},
     {"kernel/services/browsing/browser_service.hpp", "BrowserService", "BrowserService",
      component_type<BrowserService>},
+    {"kernel/services/interpreter/command_interpreter.hpp", "CommandInterpreter", "CommandInterpreter",
+     component_type<CommandInterpreter>},
 };
 
 constexpr std::string_view tables[][2] = {

@@ -1,75 +1,14 @@
-// The press with an interpreter: who types lines, a panel that sends one, and what they may touch.
+// The press with an interpreter under virtual time, and somebody who types lines.
 #pragma once
 
-#include "kernel/services/interpreter/command_interpreter.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
+#include "tests/kernel/services/interpreter/line_machine.hpp"
 
 #include <gmock/gmock.h>
 
 #include <memory>
 
 namespace tappet::press {
-
-/// Everything that a line may meet.
-struct Gauge {
-    Input<double> height;
-    Output<double> force;
-    BufferInput<std::int64_t> parts;
-    BufferOutput<std::int64_t> marks;
-    Event<> full;
-    Property<double> target{10};
-    Property<std::int16_t> steps{7};
-    std::int64_t fresh = 0;
-    std::int64_t zeroed = 0;
-    bool homed = true;
-
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
-        double value = 0;
-        fresh += height.read(value) == Flow::fresh ? 1 : 0;
-        force.write(value / 4);
-    }
-    [[nodiscard]] bool all_homed() const noexcept TAPPET_REALTIME { return homed; }
-    [[nodiscard]] double half(double of) const noexcept TAPPET_REALTIME { return of / 2; }
-    std::int64_t zero() noexcept TAPPET_REALTIME { return ++zeroed; }
-    bool lock(bool well) noexcept TAPPET_REALTIME { return well; }
-
-    static constexpr auto interface() {
-        return facets(
-            input<&Gauge::height>("height", "mm", "of the table"),
-            output<&Gauge::force>("force", "kN", "on it"),
-            input<&Gauge::parts>("parts", "", "that come", optional),
-            output<&Gauge::marks>("marks", "", "on parts"), event<&Gauge::full>("full", "too much"),
-            property<&Gauge::target>("target", "kN", "wanted", range(0, 50)),
-            property<&Gauge::steps>("steps", "", "16 bits"),
-            method<&Gauge::all_homed>("all_homed", "every axis is"),
-            method<&Gauge::half>("half", "of a number"), method<&Gauge::zero>("zero", "counts"),
-            method<&Gauge::lock>("lock", "says what it is told", for_people(Role::machine_operator)));
-    }
-};
-
-/// Sends a line as a command.
-struct Panel {
-    CommandCall<CommandInterpreter::Line, CommandInterpreter::Line&> execute;
-    CommandInterpreter::Line line{};
-    bool wanted = false;
-
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
-        if (wanted && execute.send(line)) wanted = false;
-    }
-    static constexpr auto interface() { return facets(sends<&Panel::execute>("execute", "what was typed")); }
-};
-
-// clang-format off
-inline constexpr auto line_table = machine("press",
-    components(component<Ram>("ram"), component<Table>("table"), component<Gauge>("gauge"), component<Panel>("panel"),
-               component<BrowserService>("browser", set("log", false)), component<CommandInterpreter>("interpreter")),
-    activities(
-        activity("motion",  every(1ms), budget(50us), runs("ram", "gauge")),
-        activity("slow",    every(10ms), budget(50us), runs("table", "panel")),
-        activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser", "interpreter"))),
-    connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.height", "gauge.height")),
-    reactions(uses("panel.execute", "interpreter.execute")), behaviours());
-// clang-format on
 
 class Lines : public testing::Test {
 protected:

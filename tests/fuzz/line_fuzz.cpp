@@ -1,0 +1,66 @@
+// Any bytes as lines that somebody types: an observer's change nothing, whatever they are; an engineer's are
+// refused with a sentence or come to an end, and leave a machine that goes on.
+#include "tests/kernel/services/interpreter/line_machine.hpp"
+
+#include "kernel/machine/firmware.hpp"
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <unistd.h>
+
+namespace {
+
+using namespace tappet;
+
+void demand(bool holds) {
+    if (!holds) std::abort();
+}
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<press::line_table, press::board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    void run(Duration time) { demand(world.run_until(clock.now() + time)); }
+    /// Whether it was begun.
+    bool execute(std::string_view line, Role role) {
+        auto& interpreter = *instance.find<CommandInterpreter>("interpreter");
+        const LineFunctions& functions = CommandInterpreter::line_functions;
+        LineRefusal refusal{};
+        const Sentence fault = functions.begin(&interpreter, line, role, refusal);
+        demand(fault.empty() == (refusal == LineRefusal::none));
+        if (!fault.empty()) return false;
+        for (int i = 0; i < 10 && functions.end(&interpreter) == nullptr; ++i) run(20ms);
+        if (const LineEnd* const end = functions.end(&interpreter); end != nullptr)
+            demand(end->why.empty() == (end->state == CommandState::done));
+        functions.let_go(&interpreter);
+        run(20ms); // what was posted is served
+        return true;
+    }
+};
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const std::string directory = "/tmp/tappet-line-fuzz-" + std::to_string(getpid());
+    static std::optional<Rig> rig;
+    rig.emplace();
+    rig->instance.browse_in(directory);
+    demand(rig->instance.configure({}).has_value());
+    rig->world.start();
+    rig->run(50ms);
+    const std::string_view line{reinterpret_cast<const char*>(data), size};
+    const auto& gauge = *rig->instance.find<press::Gauge>("gauge");
+    const auto& ram = *rig->instance.find<press::Ram>("ram");
+    static_cast<void>(rig->execute(line, Role::observer));
+    demand(gauge.zeroed == 0 && gauge.target.get() == 10 && gauge.steps.get() == 7);
+    demand(ram.let_goes == 0 && ram.target == 0 && ram.strokes == 0 && ram.speed.get() == 1);
+    static_cast<void>(rig->execute(line, Role::engineer));
+    demand(ram.speed.get() * ram.force.get() <= 100 && gauge.target.get() >= 0 && gauge.target.get() <= 50);
+    demand(rig->execute("gauge.force * 2", Role::observer));
+    rig->instance.find<BrowserService>("browser")->finalise();
+    return 0;
+}
