@@ -327,6 +327,18 @@ init::Done Slots::install(std::string_view kernel, std::string_view header) {
     return put_on_trial(*free, in_order()[0]->state.watchdog_s);
 }
 
+init::Done Slots::give_up_running() {
+    Slot& slot = slots_[static_cast<std::size_t>(in_order()[0] - slots_.data())];
+    slot.state.state = init::SlotState::failed;
+    slot.state.revision = 0; // as the loader leaves one that failed: it looks at the revision alone
+    return write_state(slot.device, slot.state);
+}
+
+bool is_harmed(const Slots::Slot& slot) {
+    const MountedSlot mounted{slot.device, MS_RDONLY};
+    return mounted.is_there() && !is_of(slot.header, init::read_text(MountedSlot::file(kernel_file)));
+}
+
 init::Done Slots::roll_back() {
     const auto free = free_slot();
     if (!free) return std::unexpected(free.error());

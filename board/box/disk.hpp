@@ -59,6 +59,8 @@ public:
         init::BootState state{}; ///< of revision 0, failed, when it cannot be read
         std::string header{};    ///< of what lies in it; empty: it was written without
     };
+    /// It boots no more, and takes the next version. From here on the other one counts as the one that runs.
+    [[nodiscard]] init::Done give_up_running();
     /// That runs, then the other.
     [[nodiscard]] std::array<const Slot*, 2> in_order() const;
 
@@ -71,5 +73,8 @@ private:
     std::size_t trial_ = none;
     std::uint32_t revision_ = 0;
 };
+
+/// Whether its kernel is another than its header says. One whose header says nothing is not.
+[[nodiscard]] bool is_harmed(const Slots::Slot& slot);
 
 } // namespace tappet::box

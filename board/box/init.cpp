@@ -8,6 +8,7 @@
 #include "board/box/hardware.hpp"
 #include "board/box/renewal.hpp"
 #include "board/box/service.hpp"
+#include "board/box/slot_check.hpp"
 #include "board/init/devices.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/watchdog.hpp"
@@ -126,6 +127,7 @@ private:
         ears_.open_power_buttons();
         nonce_ = new_nonce(); // it waits until the kernel has gathered enough by chance
         start_service();
+        if (!slots_.on_trial()) slot_check_.begin(slots_);
         voice_.say("networks, slots, buttons and service, for which no machine waits: " +
                    text_of_seconds(uptime_s() - before_s));
     }
@@ -340,6 +342,7 @@ private:
                 end_in_order("the end of its plant", false);
             }
             if (pid == firmware_) firmware_ended(code);
+            if (const std::string said = slot_check_.end(pid, code, slots_); !said.empty()) voice_.say(said);
             if (pid == service_) {
                 may_start_service_ = code != 1; // it has said why
                 start_service();
@@ -454,6 +457,7 @@ private:
     Modules modules_{init::read_text("/etc/tappet/modules")};
     Voice voice_{};
     Slots slots_{};
+    SlotCheck slot_check_{};
     os::Watchdog watchdog_{};
     std::string nonce_{};
     std::vector<Need> networks_{};

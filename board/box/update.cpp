@@ -30,6 +30,15 @@ std::uint64_t number(const Facts& facts, std::string_view word) {
     return std::strtoull(facts.one(word).c_str(), nullptr, 10);
 }
 
+/// BLAKE2b.
+std::string sum_of(std::string_view kernel) {
+    std::array<unsigned char, crypto_generichash_BYTES> sum{};
+    crypto_generichash(sum.data(), sum.size(), bytes_of(kernel), kernel.size(), nullptr, 0);
+    std::array<char, 2 * crypto_generichash_BYTES + 1> digits{};
+    sodium_bin2hex(digits.data(), digits.size(), sum.data(), sum.size());
+    return digits.data();
+}
+
 Facts lines_of(std::string_view header) {
     header = header.substr(mark.size(), signed_bytes - mark.size());
     return Facts{header.substr(0, header.find('\0'))};
@@ -70,7 +79,7 @@ std::string header_of(const Update& update, const SecretKey* key) {
     std::string header{mark};
     header += "machine " + of.machine + "\nboard " + of.board + "\nlayout " + of.layout + "\nimage " +
               std::to_string(of.version) + "\nleast " + std::to_string(of.least) + "\nkernel " +
-              std::to_string(update.kernel.size()) + "\n";
+              std::to_string(update.kernel.size()) + "\nsum " + sum_of(update.kernel) + "\n";
     header.resize(signed_bytes, '\0');
     std::array<unsigned char, crypto_sign_BYTES> signature{};
     if (key != nullptr) {
@@ -87,6 +96,12 @@ Manifest manifest_of(std::string_view header) {
     return {facts.one("machine"), facts.one("board"), facts.one("layout"),
             static_cast<std::uint32_t>(number(facts, "image")),
             static_cast<std::uint32_t>(number(facts, "least"))};
+}
+
+bool is_of(std::string_view header, std::string_view kernel) {
+    if (claimed_bytes(header) == 0) return true;
+    const std::string sum = lines_of(header).one("sum");
+    return sum.empty() || sum == sum_of(kernel);
 }
 
 std::string encode(const Update& update, const SecretKey& key) {

@@ -50,6 +50,9 @@ inline constexpr std::string_view header_file = "MANIFEST";
 /// What a header says, judged by nobody; empty of what is none.
 [[nodiscard]] Manifest manifest_of(std::string_view header);
 
+/// Whether the header's sum is this kernel's; true of a header without one.
+[[nodiscard]] bool is_of(std::string_view header, std::string_view kernel);
+
 [[nodiscard]] std::string encode(const Update& update, const SecretKey& key);
 /// The error: who made it does not have the key, or it was changed on its way.
 [[nodiscard]] std::expected<Update, std::string> decode(std::string_view bytes, const PublicKey& key);

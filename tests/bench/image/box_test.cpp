@@ -371,6 +371,30 @@ TEST(Box, keeps_the_settings_of_each_layout_of_properties) {
     EXPECT_THAT(data.read(older + "/mill.cpf"), AllOf(HasSubstr("<value>7<"), HasSubstr("<value>4<")));
 }
 
+/// In a part of its header that nothing reads: it boots, and works.
+TEST(Box, gives_up_a_slot_of_which_a_byte_changed_on_the_disk) {
+    EmulatedBox box{image("lonely") / "disk.img"};
+    {
+        std::fstream disk{box.disk(), std::ios::binary | std::ios::in | std::ios::out};
+        const auto& first = image::partitions()[1];
+        std::string slot(first.bytes(), '\0');
+        disk.seekg(static_cast<std::streamoff>(first.first_sector * image::sector_bytes));
+        disk.read(slot.data(), static_cast<std::streamsize>(slot.size()));
+        const std::size_t at = slot.find(image::read_file(image("lonely") / "tappet.efi").substr(0, 512));
+        ASSERT_NE(at, std::string::npos);
+        disk.seekp(static_cast<std::streamoff>(first.first_sector * image::sector_bytes + at + 0x20));
+        disk.write("X", 1);
+    }
+    box.switch_on();
+    const std::string said = box.await("from the next start on the other slot is used");
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("Starting C:SLOTA"));
+    EXPECT_THAT(said, HasSubstr("the kernel in the slot that runs is not what was written there"));
+    box.switch_off();
+    box.switch_on();
+    EXPECT_THAT(box.await("armed on board"), HasSubstr("Starting C:SLOTB"));
+}
+
 TEST(Box, has_an_image_that_is_the_same_when_it_is_written_again) {
     const EmulatedBox elsewhere{image("loom") / "disk.img"};
     const fs::path again = elsewhere / "again";

@@ -60,6 +60,9 @@ TEST_F(Updates, are_taken_by_the_box_they_are_for_when_they_are_newer) {
 TEST_F(Updates, without_a_signature_tell_what_they_are_and_are_refused) {
     const std::string header = header_of(update, nullptr);
     EXPECT_EQ(manifest_of(header).version, 7u);
+    EXPECT_TRUE(is_of(header, update.kernel));
+    EXPECT_FALSE(is_of(header, update.kernel + "x"));
+    EXPECT_TRUE(is_of("", update.kernel)) << "it says nothing";
     EXPECT_FALSE(decode(header + update.kernel, keys.open));
     EXPECT_EQ(manifest_of("anything").version, 0u);
 }
