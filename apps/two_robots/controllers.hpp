@@ -72,7 +72,7 @@ struct JointPid : JointController {
         const Joints before = wanted.last();
         for (int i = 0; i < 6; ++i) // what the Effector cut off is not summed
             if (sent.get()[i] == before[i]) sum_[i] += ki.get() * error[i] * to_seconds(cycle.period);
-        sum_ = sum_.cwiseMax(-most_sum).cwiseMin(most_sum);
+        sum_ = within(sum_, most_sum);
         put(kp.get() * error + sum_, cycle);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { wanted.write(Joints::Zero()); }

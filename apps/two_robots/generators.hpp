@@ -70,8 +70,8 @@ struct Turning : JointGenerator {
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double most_change = acceleration.get() * to_seconds(cycle.period);
-        rate_ += (wanted_ - rate_).cwiseMax(-most_change).cwiseMin(most_change); // each joint for itself
-        put(positions.get(), rate_); // a counter may be set meanwhile: no place is kept
+        rate_ += within(wanted_ - rate_, most_change); // each joint for itself
+        put(positions.get(), rate_);                   // a counter may be set meanwhile: no place is kept
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
     void turn(int axis, double rad_per_s) noexcept TAPPET_REALTIME {
@@ -111,8 +111,7 @@ struct JointPath : JointGenerator {
         put(next.position, next.velocity);
         rest_ = next.position;
         if (to_seconds(cycle.now - began_) < path_.duration_s()) return;
-        const Joints missing = positions.get() - rest_;
-        is_under_way_ = missing.cwiseAbs().maxCoeff() > close;
+        is_under_way_ = largest(positions.get() - rest_) > close;
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         is_under_way_ = false;
@@ -128,9 +127,7 @@ struct JointPath : JointGenerator {
     CommandProgress arrived() noexcept TAPPET_REALTIME {
         return is_under_way_ ? CommandProgress::executing : CommandProgress::done;
     }
-    bool is_ready() noexcept TAPPET_REALTIME {
-        return (positions.get() - ready.get()).cwiseAbs().maxCoeff() < 5.0 * close;
-    }
+    bool is_ready() noexcept TAPPET_REALTIME { return largest(positions.get() - ready.get()) < 5.0 * close; }
     // clang-format off
     static constexpr auto interface() {
         return joint_facets<JointPath>(

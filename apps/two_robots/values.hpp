@@ -5,7 +5,9 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace two_robots {
 
@@ -17,6 +19,19 @@ struct Flange;
 
 /// rad, rad/s or V, one for each joint.
 using Joints = motion::Joints<6>;
+/// Each of them within `most` either way; and the largest, whatever its sign. Real-time, which Eigen's own
+/// are not to the compiler.
+inline Joints within(const Joints& joints, double most) noexcept TAPPET_REALTIME {
+    Joints bounded;
+    for (int i = 0; i < 6; ++i) bounded[i] = std::min(std::max(joints[i], -most), most);
+    return bounded;
+}
+inline double largest(const Joints& joints) noexcept TAPPET_REALTIME {
+    double most = 0.0;
+    for (int i = 0; i < 6; ++i) most = std::max(most, std::abs(joints[i]));
+    return most;
+}
+
 using FlangeFrame = motion::Frame<Base, Flange>;
 using FlangeTwist = motion::Twist<Flange, Base, Flange, Base>;
 using FlangeJacobian = motion::Jacobian<Flange, Base, Flange, Base, 6>;
