@@ -9,15 +9,14 @@
 
 namespace tappet {
 
-/// In the activity of the browser's service, which is not_real_time and has the stack of a compiler. A line
-/// is one expression, which changes nothing and whose value is the answer, or statements: these may wait, and
-/// commands that they send are followed to their ends. Between two steps of that engine it is stepped as
-/// often as this activity runs. One line at a time; it may name ports, properties and methods of components
-/// of one activity, and commands of all.
-///     component<CommandInterpreter>("interpreter") ... activity("browser", every(20ms), not_real_time,
-///     stack(256 * 1024), runs("browser", "interpreter"))
-/// A peer sends it `execute("do homing.start()", answer)`: rejected when it is no good line, of which `said`
-/// tells why.
+/// In the activity of the browser's service, which is not_real_time, with `stack(224 * 1024)` for the
+/// compiler. A line is one expression, which changes nothing and whose value is the answer, or statements:
+/// these may wait, and commands that they send are followed to their ends. It may name ports, properties and
+/// methods of components of one activity, whose engine steps it between two cycles as often as the
+/// interpreter's own runs, and commands of all. One line at a time.
+///     component<CommandInterpreter>("interpreter")
+/// A peer sends it `execute` with a line and where its value goes: rejected when it is no good line, of which
+/// `said` tells why.
 class CommandInterpreter {
 public:
     static constexpr bool sees_machine = true;

@@ -197,6 +197,22 @@ constexpr Fault interpreter_faults[] = {
          m.add(other);
      },
      R"(loom: component "interpreter" executes lines that name at most 128 components, and the machine has 135; leave it out)"},
+    {"interpreter_beside_all_activities",
+     [](Table& m) {
+         m.add(component<Interpreter>("interpreter"));
+         m.put(activity("hall", every(250ms), not_real_time, stack(256 * 1024),
+                        runs("climate", "interpreter")));
+         static std::array<std::string, max_activities> names;
+         for (std::size_t i = m.activities.size(); i < names.size(); ++i) {
+             names[i] = "silent" + std::to_string(i);
+             m.add(component<Silent>(names[i].c_str()));
+             ActivityRow row = activity("", every(250ms), not_real_time);
+             row.name = names[i];
+             static_cast<void>(row.runs.push(names[i]));
+             m.add(row);
+         }
+     },
+     R"(loom: component "interpreter" needs a mailbox into each engine, and 63 activities have all of them; merge two activities)"},
 };
 INSTANTIATE_TEST_SUITE_P(interpreters, Refusal,
                          testing::ValuesIn(planted_into(small_loom, interpreter_faults)), name_of);

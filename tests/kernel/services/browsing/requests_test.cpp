@@ -124,7 +124,7 @@ TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had
     EXPECT_EQ(ram().place.last(), 0.0);
     EXPECT_EQ(ram().limit_at_stop, 50.0) << "the table, which stops first, ended its force too";
     double seen = -1;
-    PortAccess::data<double>.read(&ram().limit, true, reinterpret_cast<std::byte*>(&seen));
+    PortAccess::data<double>.read(&ram().limit, true, true, reinterpret_cast<std::byte*>(&seen));
     EXPECT_EQ(seen, 50.0);
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }

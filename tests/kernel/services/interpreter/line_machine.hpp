@@ -15,15 +15,10 @@ struct Gauge {
     Event<> full;
     Property<double> target{10};
     Property<std::int16_t> steps{7};
-    std::int64_t fresh = 0;
     std::int64_t zeroed = 0;
     bool homed = true;
 
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
-        double value = 0;
-        fresh += height.read(value) == Flow::fresh ? 1 : 0;
-        force.write(value / 4);
-    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME { force.write(height.get() / 4); }
     [[nodiscard]] bool all_homed() const noexcept TAPPET_REALTIME { return homed; }
     [[nodiscard]] double half(double of) const noexcept TAPPET_REALTIME { return of / 2; }
     std::int64_t zero() noexcept TAPPET_REALTIME { return ++zeroed; }

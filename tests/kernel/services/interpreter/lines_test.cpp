@@ -31,14 +31,14 @@ TEST_F(Lines, an_expression_is_answered_with_its_value) {
     EXPECT_THAT(execute("1 / (gauge.steps - 7)"), has_failed("line:1:1: its value could not be reckoned"));
 }
 
-TEST_F(Lines, an_expression_takes_no_fresh_value_from_its_component) {
-    const std::int64_t before = gauge().fresh;
-    run(200ms);
-    const std::int64_t undisturbed = gauge().fresh - before;
-    const std::int64_t again = gauge().fresh;
-    const Time end = clock.now() + 200ms;
-    while (clock.now() < end) EXPECT_THAT(execute("gauge.height"), is_value("50"));
-    EXPECT_GE(gauge().fresh - again, undisturbed);
+TEST_F(Lines, what_a_line_reads_stays_fresh_for_its_component) {
+    EXPECT_THAT(ask("1 stop gauge"), HasSubstr("\"ok\": true"));
+    run(20ms);
+    EXPECT_THAT(ask("2 stop table"), HasSubstr("\"ok\": true")) << "no fresher value comes";
+    EXPECT_THAT(execute("gauge.height.fresh"), is_value("true"));
+    EXPECT_THAT(execute("gauge.height"), is_value("50"));
+    EXPECT_THAT(execute("var double height = gauge.height"), HasSubstr(R"({"height": 50})"));
+    EXPECT_THAT(execute("gauge.height.fresh"), is_value("true"));
 }
 
 TEST_F(Lines, an_expression_changes_nothing) {
