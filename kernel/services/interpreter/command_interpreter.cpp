@@ -140,7 +140,8 @@ Sentence CommandInterpreter::prepare(std::string_view text, Role role, Bank& ban
                         "\" is stopped, and nothing of it can be asked; start it first"};
     if (Sentence fault = check_running(outcome.unit); !fault.empty()) return fault;
     refusal = LineRefusal::wrong;
-    if (Sentence fault = bank.unit.place(outcome.unit, {}, {}, bank.memory, {}, *machine_, bank.home);
+    if (Sentence fault = bank.unit.place(outcome.unit, {}, {.statements = statements_between_steps},
+                                         bank.memory, {}, *machine_, bank.home);
         !fault.empty())
         return Sentence{line_name, ":1:1: it takes more values than a line has room for; write a shorter "
                                    "one, or load a script into a slot"};

@@ -21,6 +21,8 @@ class CommandInterpreter {
 public:
     static constexpr bool sees_machine = true;
     static constexpr std::size_t max_characters = 480;
+    /// Of a line its engine executes so many between two steps: it belongs to other work.
+    static constexpr std::uint32_t statements_between_steps = 64;
     /// An engine that does not come to a line for so long hangs, or stands.
     static constexpr Duration patience = 2s;
     using Line = Text<120>;

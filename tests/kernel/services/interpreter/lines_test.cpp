@@ -75,6 +75,9 @@ TEST_F(Lines, a_command_goes_to_another_activity_than_the_values_that_it_is_give
 TEST_F(Lines, statements_wait_and_are_stepped_until_they_end) {
     EXPECT_THAT(execute("var int n = 0; while n < 3 { set n = n + 1; yield; }"),
                 HasSubstr(R"("variables": {"n": 3})"));
+    EXPECT_THAT(execute("var int sum = 0; for (var int i = 0; i < 100; i = i + 1) set sum = sum + i;"),
+                HasSubstr(R"("variables": {"sum": 4950, )"))
+        << "some at a time: its engine has other work";
     EXPECT_THAT(execute("wait 30ms"), is_done());
     EXPECT_THAT(execute("wait gauge.force > 1000 timeout 20ms"),
                 has_failed("line:1:1: what it waited for did not come in time"));
