@@ -36,7 +36,8 @@ constexpr bool unquote(std::string_view word, const Put& put) {
     const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
     if (quoted) word = word.substr(1, word.size() - 2);
     for (std::size_t i = 0; i < word.size(); ++i) {
-        if (quoted && word[i] == '\\' && ++i == word.size()) return false;
+        if (quoted && word[i] == '\\') ++i;
+        if (i == word.size()) return false;
         put(word[i]);
     }
     return true;

@@ -176,7 +176,8 @@ private:
     Verdict execute(Client& client, const Request& request);
     Verdict break_off(Client& client, const Request& request);
     bool look_at_line(Pending& place);
-    Sentence find_line_functions(browsing::FollowedLine& found) noexcept;
+    [[nodiscard]] browsing::FollowedLine find_interpreter_of_lines() noexcept;
+    static Verdict no_interpreter() noexcept;
 
     // Properties to their files; requests_save.cpp
     Verdict save(Client& client, const Request& request);

@@ -11,19 +11,21 @@ namespace tappet {
 using browsing::FacetCall;
 using browsing::FollowedLine;
 
-Sentence BrowserService::find_line_functions(FollowedLine& found) noexcept {
+FollowedLine BrowserService::find_interpreter_of_lines() noexcept {
     const std::size_t c = find_interpreter(machine_->machine().table);
-    if (c == nowhere)
-        return Sentence{
-            "this machine executes no lines; add component<CommandInterpreter> to its table, or load "
-            "a script into a slot"};
-    found = {machine_->machine().table.components[c].type->lines, machine_->component(c)};
-    return {};
+    if (c == nowhere) return {};
+    return {machine_->machine().table.components[c].type->lines, machine_->component(c)};
+}
+
+BrowserService::Verdict BrowserService::no_interpreter() noexcept {
+    return {Refusal::unsupported,
+            Sentence{"this machine executes no lines; add component<CommandInterpreter> to "
+                     "its table, or load a script into a slot"}};
 }
 
 BrowserService::Verdict BrowserService::execute(Client& client, const Request& request) {
-    FollowedLine line;
-    if (const Sentence none = find_line_functions(line); !none.empty()) return {Refusal::unsupported, none};
+    const FollowedLine line = find_interpreter_of_lines();
+    if (line.functions == nullptr) return no_interpreter();
     if (for_nobody_.data() != nullptr)
         return {Refusal::unsupported, Sentence{"a machine that runs no more executes nothing; read it"}};
     Pending* place = free_place();
@@ -79,8 +81,8 @@ bool BrowserService::look_at_line(Pending& place) {
 }
 
 BrowserService::Verdict BrowserService::break_off(Client& client, const Request& request) {
-    FollowedLine line;
-    if (const Sentence none = find_line_functions(line); !none.empty()) return {Refusal::unsupported, none};
+    const FollowedLine line = find_interpreter_of_lines();
+    if (line.functions == nullptr) return no_interpreter();
     if (!line.functions->break_off(line.interpreter))
         return {Refusal::not_now, Sentence{"no line is at work; there is nothing to break off"}};
     Reply reply{request.number, true};

@@ -5,6 +5,8 @@
 #include "kernel/script/load.hpp"
 #include "kernel/script/token.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
 using interpreter::Bank;
@@ -77,25 +79,21 @@ void CommandInterpreter::reach_from(std::size_t home) noexcept {
 }
 
 Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker, LineRefusal& refusal) {
-    Bank* free = nullptr;
-    for (Bank& each : banks_)
-        if (each.is_free()) free = &each;
-    Sentence fault;
-    refusal = LineRefusal::not_now;
-    if (machine_->life().state_of(own_) != ComponentState::running)
-        fault = Sentence{"the component that executes lines does not run; start it first"};
-    else if (asker_ != Asker::none)
-        fault = Sentence{"another line is at work; wait for its end, or break it off"};
-    else if (free == nullptr)
-        fault =
-            Sentence{"commands of earlier lines are still on their way; wait until they have ended, or stop "
-                     "their components"};
-    else
-        fault = prepare(text, role, *free, refusal);
-    if (!fault.empty()) {
+    const auto refuse = [this](const Sentence& fault) {
         refused.write(refused.last() + 1);
         return fault;
-    }
+    };
+    refusal = LineRefusal::not_now;
+    if (machine_->life().state_of(own_) != ComponentState::running)
+        return refuse(Sentence{"the component that executes lines does not run; start it first"});
+    if (asker_ != Asker::none)
+        return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
+    Bank* const free = std::ranges::find_if(banks_, &Bank::is_free);
+    if (free == banks_.end())
+        return refuse(
+            Sentence{"commands of earlier lines are still on their way; wait until they have ended, "
+                     "or stop their components"});
+    if (const Sentence fault = prepare(text, role, *free, refusal); !fault.empty()) return refuse(fault);
     refusal = LineRefusal::none;
     bank_ = free;
     asker_ = asker;
@@ -103,7 +101,7 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
     since_ = machine_->clock().now();
     end_ = {.state = CommandState::executing};
     executed.write(executed.last() + 1);
-    post();
+    post(*free);
     return {};
 }
 
@@ -198,14 +196,14 @@ void CommandInterpreter::run(void* self, const std::byte*) noexcept TAPPET_REALT
 }
 
 // One that finds no room is posted in the next cycle.
-void CommandInterpreter::post() noexcept {
+void CommandInterpreter::post(Bank& bank) noexcept {
     const AcceptedMachine& machine = machine_->machine();
     Message message;
     message.run = &run;
-    message.object = bank_;
-    message.id = machine.plan.part_of[bank_->home];
+    message.object = &bank;
+    message.id = machine.plan.part_of[bank.home];
     posted_ = machine_->clock().now();
-    static_cast<void>(bank_->call.post(*machine_, machine.index.activity[bank_->home], message));
+    static_cast<void>(bank.call.post(*machine_, machine.index.activity[bank.home], message));
 }
 
 void CommandInterpreter::work(const Cycle& cycle) {
@@ -227,7 +225,7 @@ void CommandInterpreter::work(const Cycle& cycle) {
     if (bank_->program().has_ended()) return finish_good();
     if (bank_->program().status() == ProgramStatus::error)
         return finish(CommandState::failed, interpreter::describe_fault(*bank_, reach_));
-    post();
+    post(*bank_);
 }
 
 void CommandInterpreter::finish_good() {

@@ -63,7 +63,7 @@ private:
     [[nodiscard]] bool is_at_work() const noexcept TAPPET_REALTIME {
         return asker_ != Asker::none && in_flight(end_.state);
     }
-    void post() noexcept;
+    void post(interpreter::Bank& bank) noexcept;
     void finish(CommandState state, const Sentence& why) noexcept TAPPET_REALTIME;
     void finish_good();
     void reach_from(std::size_t home) noexcept;
