@@ -1,0 +1,85 @@
+// Lines in a machine of threads: they run in one activity after the other, all of which send to the same
+// engine through the same mailbox; some are broken off on their way.
+#include "kernel/machine/worlds/real_world.hpp"
+#include "tests/kernel/services/interpreter/line_machine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace tappet::press {
+namespace {
+
+/// Types one line after the other, and breaks every third off after so many looks.
+struct Typist {
+    static constexpr bool sees_machine = true;
+    static constexpr std::size_t wanted = 200;
+    static constexpr std::string_view lines[] = {
+        "gauge.force + gauge.target", "var int n; do ram.move_to(gauge.target + 1, n) timeout 100ms",
+        "var int n; do ram.move_to(table.height / 2, n) timeout 100ms",
+        "set gauge.target = 20; do gauge.zero(); yield", "table.height * 2"};
+    std::atomic<std::size_t> ended{0}, done{0};
+
+    Sentence configure(Setup& setup) {
+        machine_ = setup.machine;
+        return {};
+    }
+    void work(const Cycle&) {
+        auto& interpreter = *machine_->find<CommandInterpreter>("interpreter");
+        const LineFunctions& functions = CommandInterpreter::line_functions;
+        if (is_at_work_) {
+            const LineEnd* const end = functions.end(&interpreter);
+            if (end == nullptr && (typed_ % 3 != 0 || looks_++ < typed_ % 4)) return;
+            if (end != nullptr && end->state == CommandState::done) ++done;
+            functions.let_go(&interpreter);
+            ++ended;
+        }
+        LineRefusal refusal{};
+        is_at_work_ =
+            functions.begin(&interpreter, lines[typed_ % std::size(lines)], Role::engineer, refusal).empty();
+        if (is_at_work_) ++typed_;
+        looks_ = 0;
+    }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+
+private:
+    MachineInstance* machine_ = nullptr;
+    bool is_at_work_ = false;
+    std::size_t typed_ = 0, looks_ = 0;
+};
+
+// clang-format off
+constexpr auto threads = machine("press",
+    components(component<Ram>("ram"), component<Table>("table"), component<Gauge>("gauge"),
+               component<CommandInterpreter>("interpreter"), component<Typist>("typist")),
+    activities(
+        activity("motion", every(1ms), not_real_time, runs("ram", "gauge")),
+        activity("slow",   every(1ms), not_real_time, runs("table")),
+        activity("hall",   every(1ms), not_real_time, stack(256 * 1024), runs("interpreter", "typist"))),
+    connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.height", "gauge.height")),
+    reactions(), behaviours());
+constexpr Board any{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,
+    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
+// clang-format on
+
+TEST(LinesInThreads, end_one_after_the_other_wherever_they_run) {
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{Firmware<threads, any>::machine(), clock};
+    RealWorld world{instance};
+    os::ArmingReport report{std::span{any.only_warned.begin(), any.only_warned.end()}};
+    const int nowhere_to_print = open("/dev/null", O_WRONLY);
+    ASSERT_TRUE(instance.configure({}));
+    const auto armed = world.arm(report, nowhere_to_print);
+    ASSERT_TRUE(armed && world.start(*armed));
+    close(nowhere_to_print);
+    const Typist& typist = *instance.find<Typist>("typist");
+    while (typist.ended < Typist::wanted) ASSERT_TRUE(world.supervise(20ms));
+    EXPECT_EQ(world.stop(), 0);
+    EXPECT_GT(typist.done, 0u);
+    EXPECT_GT(instance.find<Gauge>("gauge")->zeroed, 0);
+    EXPECT_GT(instance.find<Ram>("ram")->strokes, 0);
+}
+
+} // namespace
+} // namespace tappet::press
