@@ -36,7 +36,7 @@ const std::vector<Size> sizes{
     {"apps/bearing_press",    763},
     {"apps/cut_to_length",    321},
     {"apps/car_tracking",     1897},
-    {"apps/two_robots",       2771},
+    {"apps/two_robots",       2756},
     {"toolchain/machine",     4287},
     {"toolchain/tools",       12344},
     {"tests/kernel",         29372},
