@@ -1,12 +1,11 @@
 // Sent at once, to whoever listens; nobody does before the machine is there.
 #include "drivers/udp/sender.hpp"
 
+#include "drivers/udp/address.hpp"
+
 #include <cerrno>
 #include <cstring>
-#include <string>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -17,15 +16,12 @@ Sender::~Sender() {
 }
 
 std::expected<void, Sentence> Sender::open(std::string_view address, std::uint16_t port) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port);
-    const std::string numbers{address == "0.0.0.0" ? "127.0.0.1" : address};
-    if (::inet_pton(AF_INET, numbers.c_str(), &to.sin_addr) != 1)
+    sockaddr_in to;
+    const std::string_view numbers = address == "0.0.0.0" ? "127.0.0.1" : address;
+    if (!read_address(numbers, port, to))
         return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 127.0.0.1"});
     socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (socket_ < 0 ||
-        ::connect(socket_, static_cast<const sockaddr*>(static_cast<const void*>(&to)), sizeof to) != 0)
+    if (socket_ < 0 || ::connect(socket_, as_socket_address(to), sizeof to) != 0)
         return std::unexpected(Sentence{"no way to ", numbers, ": ", std::string_view{std::strerror(errno)},
                                         "; is the loopback interface up?"});
     return {};

@@ -1,12 +1,11 @@
 // A socket that is asked and never waits.
 #include "drivers/udp/socket.hpp"
 
+#include "drivers/udp/address.hpp"
+
 #include <cerrno>
 #include <cstring>
-#include <string>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -17,14 +16,11 @@ Socket::~Socket() {
 }
 
 std::expected<void, Sentence> Socket::open(std::string_view address, std::uint16_t port) {
-    sockaddr_in at{};
-    at.sin_family = AF_INET;
-    at.sin_port = htons(port);
-    if (::inet_pton(AF_INET, std::string{address}.c_str(), &at.sin_addr) != 1)
+    sockaddr_in at;
+    if (!read_address(address, port, at))
         return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 192.168.7.1"});
     socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (socket_ < 0 ||
-        ::bind(socket_, static_cast<const sockaddr*>(static_cast<const void*>(&at)), sizeof at) != 0)
+    if (socket_ < 0 || ::bind(socket_, as_socket_address(at), sizeof at) != 0)
         return std::unexpected(Sentence{std::string_view{std::strerror(errno)},
                                         "; it must be an address of this box, and its port be free"});
     return {};

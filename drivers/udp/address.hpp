@@ -1,0 +1,28 @@
+// An IPv4 address and a port as the system wants them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+namespace tappet::udp {
+
+/// False: it is none.
+inline bool read_address(std::string_view numbers, std::uint16_t port, sockaddr_in& into) noexcept {
+    std::array<char, INET_ADDRSTRLEN> text{}; // ended by a nought
+    if (numbers.size() >= text.size()) return false;
+    std::ranges::copy(numbers, text.begin());
+    into = {};
+    into.sin_family = AF_INET;
+    into.sin_port = htons(port);
+    return ::inet_pton(AF_INET, text.data(), &into.sin_addr) == 1;
+}
+inline const sockaddr* as_socket_address(const sockaddr_in& address) noexcept {
+    return static_cast<const sockaddr*>(static_cast<const void*>(&address));
+}
+
+} // namespace tappet::udp
