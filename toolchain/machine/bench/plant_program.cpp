@@ -3,12 +3,12 @@
 
 #include "drivers/can/signal_map.hpp"
 #include "drivers/hardware/devices.hpp"
+#include "drivers/udp/sender.hpp"
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/check/board.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
 #include "toolchain/machine/bench/can_end.hpp"
-#include "drivers/udp/sender.hpp"
 #include "toolchain/machine/bench/line_end.hpp"
 #include "toolchain/machine/bench/server_end.hpp"
 
