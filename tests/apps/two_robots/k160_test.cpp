@@ -126,7 +126,7 @@ TEST_P(K160, never_turns_faster_or_further_than_it_may) {
             << "it went as far as it may, joint " << i + 1;
 }
 
-INSTANTIATE_TEST_SUITE_P(seeds, K160, testing::Range<std::uint64_t>(1, 13));
+INSTANTIATE_TEST_SUITE_P(seeds, K160, testing::Range<std::uint64_t>(1, 1 + SEEDS));
 
 } // namespace
 } // namespace two_robots::k160

@@ -169,7 +169,7 @@ TEST_P(Operation, is_handed_over_between_joints_and_frames_without_a_jump) {
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
 }
 
-INSTANTIATE_TEST_SUITE_P(seeds, Operation, testing::Range<std::uint64_t>(1, 7));
+INSTANTIATE_TEST_SUITE_P(seeds, Operation, testing::Range<std::uint64_t>(1, 1 + SEEDS));
 
 std::uint64_t digest_of_a_run(std::uint64_t seed) {
     Plant plant{seed};
