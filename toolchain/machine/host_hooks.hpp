@@ -3,8 +3,15 @@
 
 #include "drivers/plant/plant.hpp"
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/statechart/execution.hpp"
 
 namespace tappet {
+
+/// Of the state machine that drives the component, the outermost one; empty: none.
+[[nodiscard]] inline std::string_view state_of(const MachineInstance& machine, std::string_view component) {
+    const StateMachineExecution* states = machine.state_machine_of(component);
+    return states == nullptr || states->path().empty() ? std::string_view{} : states->path()[0];
+}
 
 /// It looks into machine and plant, which has to wait meanwhile: under virtual time. Not real-time.
 struct HostHooks {

@@ -24,6 +24,17 @@ struct MachineTest : testing::Test {
     }
     void TearDown() override { run.stop(); }
 
+    template <class Component>
+    Component& of(std::string_view component) {
+        return *run.instance().template find<Component>(component);
+    }
+    [[nodiscard]] std::string_view state_of(std::string_view component) {
+        return tappet::state_of(run.instance(), component);
+    }
+    bool comes_to(std::string_view component, std::string_view state, tappet::Duration within) {
+        return run.run_until([&] { return state_of(component) == state; }, within);
+    }
+
     Plant plant;
     tappet::VirtualRun run;
 };

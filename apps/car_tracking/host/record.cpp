@@ -2,16 +2,11 @@
 #include "apps/car_tracking/host/record.hpp"
 
 #include "apps/car_tracking/image_recognition.hpp"
-#include "kernel/statechart/execution.hpp"
+#include "toolchain/machine/host_hooks.hpp"
 
 #include <bit>
 
 namespace tappet::car_tracking {
-
-std::string_view state_of(const MachineInstance& machine) {
-    const auto path = machine.state_machine_of("tracking")->path();
-    return path.empty() ? std::string_view{} : path[0];
-}
 
 void Record::look(MachineInstance& machine, const Scene& scene, Time time) {
     const Truth truth = scene.truth();
@@ -20,7 +15,7 @@ void Record::look(MachineInstance& machine, const Scene& scene, Time time) {
         now.looks_x = floor->x();
         now.looks_y = floor->y();
     }
-    now.state = state_of(machine);
+    now.state = state_of(machine, "tracking");
     moments_.push_back(now);
 
     auto& recognition = *machine.find<ImageRecognition>("recognition");

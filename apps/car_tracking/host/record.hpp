@@ -31,9 +31,6 @@ struct Look {
     [[nodiscard]] double error_m() const { return std::hypot(x - car_x, y - car_y); }
 };
 
-/// Of the tracking component, its outermost one; empty: none.
-[[nodiscard]] std::string_view state_of(const MachineInstance& machine);
-
 class Record {
 public:
     void look(MachineInstance& machine, const Scene& scene, Time now);

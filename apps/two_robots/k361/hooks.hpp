@@ -8,14 +8,9 @@
 
 namespace two_robots::k361 {
 
-inline std::string_view state_of(MachineInstance& machine) {
-    const auto path = machine.state_machine_of("robot")->path();
-    return path.empty() ? std::string_view{} : path[0];
-}
-
 inline void look(MachineInstance& machine, tappet::Plant& plant, Time) {
     auto& cell = static_cast<Plant&>(plant);
-    cell.note(state_of(machine), state_of(cell.body_robot().instance()));
+    cell.note(state_of(machine, "robot"), state_of(cell.body_robot().instance(), "robot"));
 }
 
 inline Sentence draw_picture(const tappet::Plant& plant) {

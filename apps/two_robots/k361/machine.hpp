@@ -42,7 +42,7 @@ inline constexpr auto table = machine("k361",
         component<LedCamera>("camera", device("camera-link"), set("latency", 61ms)),
         component<BodyEstimator>("body"),
         component<Replay>("replay", set("tool_length", 0.40)),
-        component<Superposition>("superposition", set("tool_length", 0.40)),
+        component<Superposition>("superposition"),
         component<can::Restarter>("restarter", device("robot-can")),
         component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities( // threads; their priorities follow from the deadlines

@@ -16,6 +16,7 @@ namespace two_robots {
 struct LedCamera {
     static constexpr std::string_view device_kind = "udp";
     static constexpr udp::Longest device_map{led_packet::most};
+    static_assert(led_packet::most <= udp::most_bytes, "the twin has no room for it");
 
     Output<Leds> leds;
     Output<std::int64_t> received, lost, late, invalid;

@@ -54,7 +54,7 @@ struct Replay {
         if (begins_) began_ = cycle.now;
         begins_ = false;
         if (leg_ == Leg::none)
-            set_point.write({tip_now(), {}});
+            set_point.write({tool_length.get(), tip_now(), {}});
         else if (leg_ == Leg::path)
             follow_path(to_seconds(cycle.period));
         else
@@ -151,7 +151,7 @@ private:
     }
     void follow_line(Time now) noexcept TAPPET_REALTIME {
         const auto next = line_.at(profile_.at(now - began_));
-        set_point.write({next.frame, next.velocity});
+        set_point.write({tool_length.get(), next.frame, next.velocity});
         if (to_seconds(now - began_) < profile_.duration_s()) return;
         if (leg_ == Leg::out) {
             is_withdrawn_ = true;
@@ -178,7 +178,7 @@ private:
         auto twist = motion::difference(now, on_path(at_s_ + moment_s));
         twist.linear *= pace_ / moment_s;
         twist.angular *= pace_ / moment_s;
-        set_point.write({now, twist});
+        set_point.write({tool_length.get(), now, twist});
     }
 
     static constexpr double jerk = 5.0;       // 1/s: of the acceleration

@@ -11,13 +11,12 @@ struct Superposition {
     Input<TipSetPoint> set_point;
     Input<BodyModel> model;
     Output<FlangeCommand> command;
-    Property<double> tool_length{0.40};
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (!model.good() || !set_point.good()) return;
         const BodyModel body = model.get();
         const TipSetPoint tip = set_point.get();
-        const FlangeTip tool = tip_of_tool(tool_length.get());
+        const FlangeTip tool = tip_of_tool(tip.tool_length);
         FlangeCommand next;
         next.frame = body.frame * tip.frame * inverse(tool);
         const Eigen::Matrix3d& turned = body.frame.rotation;
@@ -36,9 +35,7 @@ struct Superposition {
     static constexpr auto interface() {
         return facets(input<&Superposition::set_point>("set_point", "", "of the tip in the body's frame"),
                       input<&Superposition::model>("model", "", "where the body is"),
-                      output<&Superposition::command>("command", "", "of the flange, and its twist"),
-                      property<&Superposition::tool_length>("tool_length", "m", "from flange to tip",
-                                                            range(0.05, 1.0)));
+                      output<&Superposition::command>("command", "", "of the flange, and its twist"));
     }
 };
 

@@ -20,6 +20,7 @@ struct BodyModel {
 };
 
 struct TipSetPoint {
+    double tool_length = 0.0; ///< from flange to tip, m
     BodyTip frame{};
     motion::Twist<Tip, Body, Tip, Body> twist{};
 };
@@ -37,6 +38,7 @@ template <>
 inline constexpr bool copied_as_bytes<two_robots::TipSetPoint> = true;
 template <>
 inline constexpr auto fields_of<two_robots::TipSetPoint> =
-    fields(field<&two_robots::TipSetPoint::frame>("frame"), field<&two_robots::TipSetPoint::twist>("twist"));
+    fields(field<&two_robots::TipSetPoint::tool_length>("tool_length", "m"),
+           field<&two_robots::TipSetPoint::frame>("frame"), field<&two_robots::TipSetPoint::twist>("twist"));
 
 } // namespace tappet

@@ -9,15 +9,12 @@ namespace {
 
 struct BearingPress : MachineTest, testing::WithParamInterface<std::uint64_t> {
     BearingPress() : MachineTest{GetParam()} {}
-    [[nodiscard]] std::string_view state() {
-        const auto path = run.instance().state_machine_of("axis")->path();
-        return path.empty() ? std::string_view{} : path[0];
-    }
+    [[nodiscard]] std::string_view state() { return state_of("axis"); }
     [[nodiscard]] std::string_view chain() {
         return run.instance().find<ChainSwitch>("mode")->chain.last().view();
     }
     bool comes_to(std::string_view wanted, Duration within = 10s) {
-        return run.run_until([&] { return state() == wanted; }, within);
+        return MachineTest::comes_to("axis", wanted, within);
     }
     bool stands() {
         return run.run_until([this] { return std::abs(plant.speed()) < 1e-4; }, 1s);

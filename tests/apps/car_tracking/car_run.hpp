@@ -27,7 +27,7 @@ public:
     }
     [[nodiscard]] const std::vector<Moment>& moments() const { return plant_.record.moments(); }
     [[nodiscard]] const std::vector<Look>& looks() const { return plant_.record.looks(); }
-    [[nodiscard]] std::string_view state() { return state_of(instance()); }
+    [[nodiscard]] std::string_view state() { return state_of(instance(), "tracking"); }
     [[nodiscard]] Scene& scene() { return plant_.scene; }
     [[nodiscard]] MachineInstance& instance() { return run_.instance(); }
     /// Of everything that happened, in machine and room.

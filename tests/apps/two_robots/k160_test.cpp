@@ -7,16 +7,9 @@ namespace {
 
 struct K160 : MachineTest, testing::WithParamInterface<std::uint64_t> {
     K160() : MachineTest{GetParam()} {}
-    template <class Component>
-    Component& of(std::string_view name) {
-        return *run.instance().find<Component>(name);
-    }
-    [[nodiscard]] std::string_view state() {
-        const auto path = run.instance().state_machine_of("robot")->path();
-        return path.empty() ? std::string_view{} : path[0];
-    }
+    [[nodiscard]] std::string_view state() { return state_of("robot"); }
     bool comes_to(std::string_view wanted, Duration within = 60s) {
-        return run.run_until([&] { return state() == wanted; }, within);
+        return MachineTest::comes_to("robot", wanted, within);
     }
     void runs(std::string_view chain) {
         run.run_for(50ms); // its state has been entered

@@ -9,16 +9,9 @@ namespace {
 
 struct Operation : MachineTest, testing::WithParamInterface<std::uint64_t> {
     Operation() : MachineTest{GetParam()} {}
-    template <class Component>
-    Component& of(std::string_view name) {
-        return *run.instance().find<Component>(name);
-    }
-    [[nodiscard]] std::string_view state() {
-        const auto path = run.instance().state_machine_of("robot")->path();
-        return path.empty() ? std::string_view{} : path[0];
-    }
+    [[nodiscard]] std::string_view state() { return state_of("robot"); }
     bool comes_to(std::string_view wanted, Duration within = 120s) {
-        return run.run_until([&] { return state() == wanted; }, within);
+        return MachineTest::comes_to("robot", wanted, within);
     }
     /// Of the tip from the path that was recorded, across and along the shaft, m.
     [[nodiscard]] double beside_path() const {

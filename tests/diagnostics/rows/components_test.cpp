@@ -31,6 +31,10 @@ struct Restarter {
     static constexpr bool shares_device = true;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
+struct Camera {
+    static constexpr std::string_view device_kind = "udp";
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
 struct Recorder {
     static constexpr bool records_cycles = true;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
@@ -305,6 +309,13 @@ constexpr Fault board_faults[] = {
                              wired("panel", "io", line("red", 4), line("green", 5)));
      },
      R"(loom: component "climate": binding to board "old box", wired("hall"): the board has no device "192.168.7.2"; write a server's address as 192.168.7.2:502, or add a serial port to the board's devices)"},
+    {"datagram_address",
+     [](Table& m) {
+         m.add(component<Camera>("camera", device("camera-link")));
+         m.put(activity("hall", every(250ms), not_real_time, runs("climate", "camera")));
+         static_cast<void>(m.binding.devices.push(wired("camera-link", "5005")));
+     },
+     R"(loom: component "camera": binding to board "old box", wired("camera-link"): the board has no device "5005"; write the box's address and the port as 192.168.7.1:5005, or 0.0.0.0:5005)"},
     {"device_bound_for_nobody",
      [](Table& m) { static_cast<void>(m.binding.devices.push(wired("spare", "serial1"))); },
      R"(loom: binding to board "old box", wired("spare"): no component of the machine drives it; correct the name or remove the row)"},
