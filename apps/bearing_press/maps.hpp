@@ -11,10 +11,10 @@ using namespace tappet;
 
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(
-    can::receive(can::standard(0x181), "axis", can::bytes(8),
+    can::receive(can::standard(0x181), "axis", can::bytes(8), can::every(1ms),
         can::signal("statusword", 0, 16),
         can::signal("position", 16, 32)), // micrometres
-    can::receive(can::standard(0x182), "cell", can::bytes(4),
+    can::receive(can::standard(0x182), "cell", can::bytes(4), can::every(1ms),
         can::signal("force", 0, 32).as_signed().times(0.01).in("N")),
     can::transmit(can::standard(0x201), "command", can::bytes(6), can::every(1ms), // cyclic synchronous velocity
         can::signal("controlword", 0, 16).safe(0),

@@ -47,7 +47,7 @@ inline constexpr auto table = machine("carpet-loom",
         component<ThreadScope>("scope"),                     // the worst cycles of the last hour: tappet-browse scope
         component<BrowserService>("browser")),               // who looks in from outside: see tappet-browse
     activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
-        activity("can",     on_device("can"), at_most(10, 1ms), runs("can"),           deadline(500us), budget(30us)),
+        activity("can",     on_device("can"), at_most(9, 1ms), runs("can"),           deadline(500us), budget(30us)),
         activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(16us)),
         activity("utility", every(100ms),     runs("utility"), not_real_time),
         activity("shaft",   on_work(),        at_most(8, 1ms), runs("shaft", "weft"),  deadline(620us), budget(20us)),

@@ -13,36 +13,40 @@ namespace wires = loom::wires;
 
 namespace detail {
 
+constexpr can::Rate cyclic(std::int64_t period_us) {
+    return can::every(std::chrono::microseconds{period_us});
+}
+
 constexpr auto heartbeat(std::string_view name, std::uint8_t node) {
     return can::receive(can::standard(wires::cob::heartbeat + node), name, can::bytes(1),
-                        can::signal("state", 0, 8));
+                        cyclic(wires::heartbeat_period_us), can::signal("state", 0, 8));
 }
 
 } // namespace detail
 
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(
-    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6),
+    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6), detail::cyclic(wires::drive_status_period_us),
         can::signal("statusword", 0, 16),
         can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6),
+    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6), detail::cyclic(wires::drive_status_period_us),
         can::signal("statusword", 0, 16),
         can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm")),
-    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4),
+    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4), detail::cyclic(wires::encoder_period_us),
         can::signal("position", 0, 16),
         can::signal("sample", 16, 16)),
-    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3),
+    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3), detail::cyclic(wires::load_cell_period_us),
         can::signal("tension", 0, 16).as_signed().times(0.1).in("N"),
         can::signal("status", 16, 8)),
-    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3),
+    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3), detail::cyclic(wires::feeder_status_period_us),
         can::signal("status", 0, 8),
         can::signal("windings", 8, 16)),
-    can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5),
+    can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5), can::on_demand(10ms),
         can::signal("pick_taken", 0, 32),
         can::signal("level", 32, 8)),
     detail::heartbeat("heartbeat_1", 1), detail::heartbeat("heartbeat_2", 2), detail::heartbeat("heartbeat_3", 3),
     detail::heartbeat("heartbeat_4", 4), detail::heartbeat("heartbeat_5", 5), detail::heartbeat("heartbeat_6", 6),
-    can::transmit(can::standard(wires::cob::nmt), "nmt", can::bytes(2), can::on_demand,
+    can::transmit(can::standard(wires::cob::nmt), "nmt", can::bytes(2), can::on_demand(10ms),
         can::signal("command", 0, 8).safe(wires::nmt_command::pre_operational),
         can::signal("node", 8, 8).safe(0)), // all
     can::transmit(can::standard(wires::cob::main_drive_command), "main_drive_command", can::bytes(6), can::every(2ms),

@@ -7,9 +7,7 @@
 
 namespace tappet::loom::wires {
 
-// --- CANopen, 500 kbit/s, 11-bit identifiers, little-endian (CiA 301)
-
-inline constexpr std::uint32_t can_bit_rate = 500'000;
+// --- CANopen, 1 Mbit/s, 11-bit identifiers, little-endian (CiA 301)
 
 namespace node {
 inline constexpr std::uint8_t main_drive = 1;    // CiA 402, velocity

@@ -15,8 +15,8 @@ inline constexpr Duration knife_dead_time = 15ms; // from its line's edge to the
 
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(
-    can::receive(can::standard(0x181), "wheel", can::bytes(2), can::signal("position", 0, wheel_bits)),
-    can::receive(can::standard(0x182), "feed", can::bytes(2), can::signal("statusword", 0, 16)),
+    can::receive(can::standard(0x181), "wheel", can::bytes(2), can::every(1ms), can::signal("position", 0, wheel_bits)),
+    can::receive(can::standard(0x182), "feed", can::bytes(2), can::every(10ms), can::signal("statusword", 0, 16)),
     can::transmit(can::standard(0x202), "feed_command", can::bytes(4), can::every(5ms),
         can::signal("controlword", 0, 16).safe(0),
         can::signal("speed", 16, 16).times(0.001).in("m/s").safe(0)));

@@ -13,9 +13,9 @@ inline constexpr Duration servo_period = 2ms; // 500 Hz
 
 // clang-format off
 inline constexpr auto robot_signals = can::signal_map(
-    can::receive(can::standard(0x181), "encoders_a", can::bytes(8), can::signal("joint_1", 0, 32), can::signal("joint_2", 32, 32)),
-    can::receive(can::standard(0x182), "encoders_b", can::bytes(8), can::signal("joint_3", 0, 32), can::signal("joint_4", 32, 32)),
-    can::receive(can::standard(0x183), "encoders_c", can::bytes(8), can::signal("joint_5", 0, 32), can::signal("joint_6", 32, 32)),
+    can::receive(can::standard(0x181), "encoders_a", can::bytes(8), can::every(servo_period), can::signal("joint_1", 0, 32), can::signal("joint_2", 32, 32)),
+    can::receive(can::standard(0x182), "encoders_b", can::bytes(8), can::every(servo_period), can::signal("joint_3", 0, 32), can::signal("joint_4", 32, 32)),
+    can::receive(can::standard(0x183), "encoders_c", can::bytes(8), can::every(servo_period), can::signal("joint_5", 0, 32), can::signal("joint_6", 32, 32)),
     can::transmit(can::standard(0x201), "drives_a", can::bytes(6), can::every(servo_period),
         can::signal("joint_1", 0, 16).as_signed().times(0.0003125).in("V").safe(0),
         can::signal("joint_2", 16, 16).as_signed().times(0.0003125).in("V").safe(0),

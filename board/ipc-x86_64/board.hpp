@@ -17,8 +17,8 @@ inline constexpr Board ipc_x86_64{
     // Processors 2 and 3 are isolated (see the command line): a machine runs on 2, what its binding says on 3
     // or, with the interrupts, on 0 and 1.
     .default_processor = 2,
-    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(500'000)),
-                             board_device("can1", "can", "can1", bit_rate(500'000)),
+    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000)),
+                             board_device("can1", "can", "can1", bit_rate(1'000'000)),
                              // By the chip's label, as gpiodetect shows it: numbers follow the order in which
                              // drivers load.
                              board_device("io", "gpio", "INTC1020:00", lines(32)),

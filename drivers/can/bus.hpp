@@ -1,9 +1,11 @@
 // A CAN bus as a component: its ports and events come from a constexpr signal map.
 #pragma once
 
+#include "drivers/can/bus_traffic.hpp"
 #include "drivers/can/device.hpp"
 #include "drivers/can/facet_names.hpp"
 #include "drivers/can/signal_store.hpp"
+#include "drivers/can/transmit_queue.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 
@@ -30,8 +32,16 @@ template <const auto& map> struct Bus {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
+    static_assert(map.transmitted_count <= TransmitQueue::capacity,
+                  "what is sent at one time fits the queue");
     static constexpr std::string_view device_kind = "can";
     static constexpr Identifiers device_map{map.receives(), map.transmits(), map.safe_frames()};
+    static constexpr DeviceTraffic device_traffic{
+        frame_count,
+        [](const DeviceUse& use, std::span<TrafficRow> rows) { return bus_traffic(map, use, rows); },
+        [](const void* bus, std::string_view frame) {
+            return static_cast<const Bus*>(bus)->longest_response(frame);
+        }};
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
     static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through
@@ -50,6 +60,7 @@ template <const auto& map> struct Bus {
     Output<std::int64_t> frames_lost{};
     Output<std::int64_t> frames_received{};
     Output<std::int64_t> wrong_lengths{};
+    Output<std::int64_t> sent_too_often{};
     Event<> bus_fault{};
     Event<> bus_recovered{};
     Timer next_send{};
@@ -69,11 +80,13 @@ template <const auto& map> struct Bus {
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
+            // One grid for all: their response times are proven by that.
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
         if (was_stopped_) forget_stopped_time();
         lost_ = taken_ = 0;
+        too_often_ = 0;
         status_ = status_now();
         write_state();
         arm(cycle.now);
@@ -116,6 +129,11 @@ template <const auto& map> struct Bus {
 
     [[nodiscard]] const DecodeCounters& decoding() const noexcept { return store_.count; }
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
+    /// Of a frame that is sent: from the making of its contents until it was confirmed.
+    [[nodiscard]] Duration longest_response(std::string_view frame) const noexcept {
+        const std::size_t f = map.frame(frame);
+        return f == no_such ? Duration::zero() : device_->longest_response(map.frames[f].identifier);
+    }
 
     static constexpr auto interface() {
         std::array<Facet, signal_count + frame_count + fixed_facets> list{};
@@ -141,6 +159,9 @@ template <const auto& map> struct Bus {
                 output<&Bus::frames_received>("frames_received", "", "since its start; written on change"),
                 output<&Bus::wrong_lengths>("wrong_lengths", "",
                                             "frames of another length than the map's; written on change"),
+                output<&Bus::sent_too_often>(
+                    "sent_too_often", "",
+                    "frames on demand that followed sooner than the map says; written on change"),
                 tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                 tappet::event<&Bus::bus_recovered>("bus_recovered", "the bus works again, with empty queues"),
                 operation<&Bus::purge>("purge", "drops what waits to be sent"),
@@ -152,7 +173,7 @@ template <const auto& map> struct Bus {
     }
 
 private:
-    static constexpr std::size_t fixed_facets = 10;
+    static constexpr std::size_t fixed_facets = 11;
     // At stop and at start: some milliseconds. Four frames at 125 kbit/s take 5 ms; the kernel's buffer holds
     // fewer frames.
     static constexpr int max_passes = 4096;
@@ -252,6 +273,7 @@ private:
         frames_lost.write(static_cast<std::int64_t>(status_.lost));
         frames_received.write(static_cast<std::int64_t>(status_.taken));
         wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
+        sent_too_often.write(too_often_);
     }
 
     void tell_state(Time now) noexcept TAPPET_REALTIME {
@@ -329,6 +351,8 @@ private:
             demanded_[f] |= found.fresh;
             if (!demanded_[f] || !found.usable || !found.agreed) continue;
             demanded_[f] = false;
+            if (now < may_follow_[f]) sent_too_often.write(++too_often_);
+            may_follow_[f] = now + map.frames[f].apart;
             if (keep_inputs(f)) static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
         }
     }
@@ -378,6 +402,7 @@ private:
     std::array<std::int64_t, signal_count> integers_{};
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
+    std::array<Time, frame_count> may_follow_{}; // on demand
     std::array<bool, frame_count> demanded_{};   // written since it was last sent
     std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;
@@ -385,6 +410,7 @@ private:
     std::uint64_t lost_ = 0;
     std::uint64_t taken_ = 0;
     std::uint64_t pressed_ = 0;
+    std::int64_t too_often_ = 0;
     Status status_{};
     bool was_faulted_ = false;
     bool was_stopped_ = false;

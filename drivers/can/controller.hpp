@@ -18,6 +18,7 @@ public:
         recovery.reset(settings.restarts_allowed);
         state_ = state;
         count = {};
+        longest_ = {};
     }
     Send accept(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
         if (faulted(state_)) return refuse(Send::refused_fault);
@@ -41,7 +42,16 @@ public:
         return faulted(state_) ? nullptr : transmitter_.next(now, count);
     }
     void handed_over(Time now) noexcept TAPPET_REALTIME { transmitter_.handed_over(now); }
-    void confirmed(Time now) noexcept TAPPET_REALTIME { transmitter_.confirmed(now, count); }
+    void confirmed(Time now) noexcept TAPPET_REALTIME {
+        const Transmitter::Flight sent = transmitter_.confirmed(now, count);
+        const std::size_t which = index_of(sent.identifier);
+        if (sent.made != Time{} && which < longest_.size())
+            longest_[which] = std::max(longest_[which], now - sent.made);
+    }
+    [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME {
+        const std::size_t which = index_of(of);
+        return which < longest_.size() ? longest_[which] : Duration::zero();
+    }
 
     void report(const BusError& error) noexcept TAPPET_REALTIME {
         ++count.error_frames;
@@ -64,9 +74,7 @@ public:
 
     /// Whether the frame's identifier is one of those that this device sends.
     [[nodiscard]] bool ours(const Frame& frame) const noexcept TAPPET_REALTIME {
-        for (const Identifier& one : transmit_)
-            if (one.id == frame.id && one.extended == frame.extended) return true;
-        return false;
+        return index_of({frame.id, frame.extended}) < transmit_.size();
     }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME {
@@ -81,8 +89,15 @@ private:
         ++count.refused;
         return why;
     }
+    /// Behind the last: it is none of ours.
+    [[nodiscard]] std::size_t index_of(Identifier of) const noexcept TAPPET_REALTIME {
+        std::size_t at = 0;
+        while (at < transmit_.size() && transmit_[at] != of) ++at;
+        return at;
+    }
     Transmitter transmitter_{};
     std::span<const Identifier> transmit_{};
+    std::array<Duration, TransmitQueue::capacity> longest_{}; // of transmit_, from making to confirmation
     State state_ = State::active;
 };
 

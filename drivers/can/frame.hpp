@@ -75,6 +75,9 @@ constexpr std::uint32_t arbitration(const Frame& frame) noexcept {
     return ((frame.id >> 18) << 21) | (3u << 19) | ((frame.id & 0x3FFFFu) << 1) | (frame.remote ? 1u : 0u);
 }
 
+/// Flag, its echo, delimiter and gap: what an error takes besides the frame that it spoilt.
+inline constexpr std::uint32_t error_frame_bits = 31;
+
 /// The most bits a frame takes on the wire, worst stuffing and interframe space included (Davis et al.,
 /// 2007).
 constexpr std::uint32_t worst_bits(const Frame& frame) noexcept {

@@ -5,6 +5,7 @@
 #include "drivers/can/signal.hpp"
 #include "kernel/base/text.hpp"
 
+#include <concepts>
 #include <cstddef>
 #include <span>
 
@@ -18,7 +19,9 @@ struct FrameRow {
     std::string_view name{};
     Direction direction = Direction::receive;
     std::uint8_t length = 0;
-    Duration every{};      ///< transmit: the period; 0: sent on demand, and all of them in order
+    Duration every{};      ///< the period; 0: sent on demand, and all of them in order
+    Duration apart{};      ///< the least time between two; 0: the row does not say it
+    Duration jitter{};     ///< receive: by how much its node may be late
     std::size_t first = 0; ///< its signals in the map's array
     std::size_t signals = 0;
     bool silence_is_safe = false; ///< transmit: it is not sent when the machine's process is no more
@@ -47,29 +50,40 @@ struct Bytes {
 };
 /// Length of the frame, 8 at most.
 constexpr Bytes bytes(std::uint8_t count) noexcept { return {count}; }
-struct Every {
-    Duration period{};
+/// How often a frame comes, which the bus's response times are computed from.
+struct Rate {
+    Duration every{}, apart{}, jitter{};
 };
-/// Sent with this period.
-constexpr Every every(Duration period) noexcept { return {period}; }
-/// Sent when one of its values was written, and all of them in order.
-inline constexpr Every on_demand{};
+/// With this period. Of a received one, how much later than that its node may send it.
+constexpr Rate every(Duration period, Duration jitter = {}) noexcept { return {period, period, jitter}; }
+/// When one of its values was written, and all of them in order; of a received one, when its node has
+/// something to tell. Two of them are believed to be so far apart; of what is sent a breach is counted.
+constexpr Rate on_demand(Duration apart) noexcept { return {{}, apart, {}}; }
 
-/// receive(standard(0x181), "main_drive", bytes(6), signal("statusword", 0, 16), ...)
+/// receive(standard(0x181), "main_drive", bytes(6), every(2ms), signal("statusword", 0, 16), ...)
 /// How old a value may grow is said by the connection's row that reads it.
 template <class... Signals>
+constexpr auto receive(Identifier id, std::string_view name, Bytes length, Rate rate,
+                       const Signals&... signals) noexcept {
+    return FrameWithSignals<sizeof...(Signals)>{{id, name, Direction::receive, length.count, rate.every,
+                                                 rate.apart, rate.jitter, 0, sizeof...(Signals)},
+                                                {signals...}};
+}
+/// Without its rate, which the map's check asks for.
+template <class... Signals>
+    requires(std::same_as<Signals, Signal> && ...)
 constexpr auto receive(Identifier id, std::string_view name, Bytes length,
                        const Signals&... signals) noexcept {
-    return FrameWithSignals<sizeof...(Signals)>{
-        {id, name, Direction::receive, length.count, {}, 0, sizeof...(Signals)}, {signals...}};
+    return receive(id, name, length, Rate{}, signals...);
 }
 /// transmit(standard(0x201), "main_drive_command", bytes(6), every(1ms), signal("controlword", 0,
 /// 16).safe(2), ...)
 template <class... Signals>
-constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Every period,
+constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Rate rate,
                         const Signals&... signals) noexcept {
-    return FrameWithSignals<sizeof...(Signals)>{
-        {id, name, Direction::transmit, length.count, period.period, 0, sizeof...(Signals)}, {signals...}};
+    return FrameWithSignals<sizeof...(Signals)>{{id, name, Direction::transmit, length.count, rate.every,
+                                                 rate.apart, rate.jitter, 0, sizeof...(Signals)},
+                                                {signals...}};
 }
 
 inline constexpr std::size_t no_such = ~std::size_t{0};
@@ -167,6 +181,19 @@ constexpr Sentence safe_fault(const FrameRow& frame, const Signal& s) noexcept {
     return {};
 }
 
+constexpr Sentence rate_fault(const FrameRow& frame) noexcept {
+    const Sentence who{"frame \"", frame.name, "\""};
+    if (frame.apart <= Duration::zero())
+        return Sentence{who, " does not say how often it comes: write can::every(10ms) behind its length, or "
+                             "can::on_demand(10ms) with the least time between two"};
+    if (frame.jitter < Duration::zero() ||
+        (frame.jitter > Duration::zero() && frame.direction == Direction::transmit))
+        return Sentence{who, frame.jitter < Duration::zero()
+                                 ? " has a jitter below 0: write how late its node may be"
+                                 : " is sent and says a jitter, which follows from its activity: remove it"};
+    return {};
+}
+
 template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const SignalMap<F, S>& map) noexcept {
     for (std::size_t f = 0; f < F; ++f) {
         const FrameRow& row = map.frames[f];
@@ -208,6 +235,7 @@ template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const Signa
                 owner[place] = s;
             }
         }
+        if (const Sentence fault = rate_fault(row); !fault.empty()) return fault;
     }
     return {};
 }

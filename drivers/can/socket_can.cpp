@@ -154,7 +154,7 @@ Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
     if (fd_ < 0) return {};
     // A confirmation, an impostor's or a malformed frame is no answer, so reading goes on; as many as can be
     // in flight suffice, and the bound keeps a flood from holding the caller.
-    for (std::uint32_t i = 0; i <= Transmitter::most_in_flight; ++i) {
+    for (std::uint32_t i = 0; i <= most_in_flight; ++i) {
         Raw raw;
         TAPPET_ESCAPE("the driver's own read, which does not block", raw.read_from(fd_));
         if (raw.bytes < 0) {
@@ -217,7 +217,7 @@ void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
 }
 
 void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {
-    for (std::uint32_t i = 0; i < Transmitter::most_in_flight && fd_ >= 0; ++i) {
+    for (std::uint32_t i = 0; i < most_in_flight && fd_ >= 0; ++i) {
         const Frame* frame = controller_.next(now);
         if (frame == nullptr) return;
         const can_frame raw = wire::encode(*frame);

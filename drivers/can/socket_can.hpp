@@ -33,6 +33,9 @@ public:
     }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return controller_.state(); }
     [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return controller_.count; }
+    [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME override {
+        return controller_.longest_response(of);
+    }
     void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
     Restart restart() noexcept override;
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return fd_; }

@@ -8,13 +8,21 @@
 
 namespace tappet::can {
 
+inline constexpr std::uint32_t most_in_flight = 8; // the kernel's own queue refuses the eleventh
+
+/// The fewest that keep the bus busy until the next one is handed over, which takes `hand_over`; more would
+/// only hold up what is more urgent. `shortest`: of this machine's frames, on the wire.
+constexpr std::uint32_t frames_in_flight(Duration hand_over, Duration shortest) noexcept {
+    std::uint32_t fewest = 2;
+    while (fewest < most_in_flight && hand_over > (fewest - 1) * shortest) ++fewest;
+    return fewest;
+}
+
 /// Frames wait here, not in the kernel: what the kernel or the controller holds cannot be taken back, so at
 /// most `in_flight` of them are handed over before one is confirmed (a frame on the wire that somebody
 /// acknowledged).
 class Transmitter {
 public:
-    static constexpr std::uint32_t most_in_flight = 8; // the kernel's own queue refuses the eleventh
-
     constexpr void configure(const Settings& settings) noexcept {
         in_flight_limit_ = std::clamp(settings.in_flight, 1u, most_in_flight);
         max_age_ = settings.max_age;
@@ -41,15 +49,24 @@ public:
     constexpr void handed_over(Time now) noexcept TAPPET_REALTIME {
         const Frame* frame = queue_.front();
         if (frame == nullptr) return;
-        if (in_flight_.push({frame->stamp, now})) queue_.pop();
+        if (in_flight_.push({frame->stamp, now, {frame->id, frame->extended}})) queue_.pop();
     }
-    /// At `now` the controller confirmed the oldest frame in flight.
-    constexpr void confirmed(Time now, Counters& count) noexcept TAPPET_REALTIME {
-        if (in_flight_.empty() || now <= restarted_at_) return; // of a frame before the restart
+    /// A frame that was handed over.
+    struct Flight {
+        Time made{};
+        Time handed_over{};
+        Identifier identifier{};
+        bool operator==(const Flight&) const = default;
+    };
+    /// At `now` the controller confirmed the oldest frame in flight, which this is; made at Time{}: none.
+    constexpr Flight confirmed(Time now, Counters& count) noexcept TAPPET_REALTIME {
+        if (in_flight_.empty() || now <= restarted_at_) return {}; // of a frame before the restart
+        const Flight sent = in_flight_[0];
         ++count.sent;
-        if (now - in_flight_[0].made > max_age_) ++count.sent_late;
+        if (now - sent.made > max_age_) ++count.sent_late;
         for (std::size_t i = 1; i < in_flight_.size(); ++i) in_flight_[i - 1] = in_flight_[i];
         --in_flight_.used;
+        return sent;
     }
     [[nodiscard]] constexpr bool unacknowledged(Time now) const noexcept TAPPET_REALTIME {
         return !in_flight_.empty() && now - in_flight_[0].handed_over > confirm_within_;
@@ -71,14 +88,9 @@ public:
     }
 
 private:
-    struct Flight {
-        Time made{};
-        Time handed_over{};
-        bool operator==(const Flight&) const = default;
-    };
     TransmitQueue queue_{};
     Bounded<Flight, most_in_flight> in_flight_{};
-    std::uint32_t in_flight_limit_ = 4;
+    std::uint32_t in_flight_limit_ = Settings{}.in_flight;
     Duration max_age_ = 20ms;
     Duration confirm_within_ = 50ms;
     Time restarted_at_ = Time::min();

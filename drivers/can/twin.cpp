@@ -81,7 +81,7 @@ void Twin::service(Time now) noexcept TAPPET_REALTIME {
 }
 
 void Twin::hand_over(Time now) noexcept TAPPET_REALTIME {
-    for (std::uint32_t i = 0; i < Transmitter::most_in_flight; ++i) {
+    for (std::uint32_t i = 0; i < most_in_flight; ++i) {
         const Frame* frame = controller_.next(now);
         if (frame == nullptr) return;
         if (!outbox_.push({*frame, now, generation_.load(std::memory_order_acquire)})) {

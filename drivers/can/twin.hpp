@@ -16,7 +16,7 @@ class Twin final : public Device {
 public:
     static constexpr std::size_t inbox = 256; // of the size of Linux's default socket buffer: 278 frames
     static constexpr std::size_t outbox = 16;
-    static_assert(outbox >= Transmitter::most_in_flight, "what may be in flight fits");
+    static_assert(outbox >= most_in_flight, "what may be in flight fits");
 
     /// Not real-time, before the bus runs. `interface` is a name for messages only.
     std::expected<void, Sentence> open(const Settings& settings) noexcept;
@@ -30,6 +30,9 @@ public:
     }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return controller_.state(); }
     [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return controller_.count; }
+    [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME override {
+        return controller_.longest_response(of);
+    }
     void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
     Restart restart() noexcept override;
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }

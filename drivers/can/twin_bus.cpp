@@ -11,8 +11,12 @@ void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     for (std::size_t i = 0; acknowledged_ && i < 4 * most_ends * Twin::outbox; ++i) {
         const auto winner = arbitrate(now);
         if (!winner) break;
-        const Time finish = winner->start + wire_time(winner->frame);
+        const Time finish = winner->start + wire_time(worst_bits(winner->frame));
         if (finish > now) break;
+        if (strikes(faults.spoil, winner->frame)) {
+            free_at_ = finish + wire_time(error_frame_bits);
+            continue;
+        }
         release_delayed(finish);
         transmit(*winner, finish);
     }
@@ -105,9 +109,9 @@ bool TwinBus::strikes(Chance& chance, const Frame& frame) noexcept TAPPET_REALTI
     return true;
 }
 
-Duration TwinBus::wire_time(const Frame& frame) const noexcept TAPPET_REALTIME {
+Duration TwinBus::wire_time(std::uint32_t bits) const noexcept TAPPET_REALTIME {
     if (bit_rate_ == 0) return 0ns;
-    return Duration{std::int64_t{worst_bits(frame)} * 1'000'000'000 / bit_rate_};
+    return Duration{std::int64_t{bits} * 1'000'000'000 / bit_rate_};
 }
 
 void TwinBus::tell(Twin& end, const BusError& error, Time now) noexcept TAPPET_REALTIME {

@@ -16,6 +16,7 @@ struct Chance {
 };
 
 struct BusFaults {
+    Chance spoil{};          ///< an error on the wire: behind an error frame it is sent again
     Chance lose{};           ///< acknowledged by another node, but it never reaches ours
     Chance duplicate{};      ///< delivered twice: a sender that missed the last bit repeats
     Chance corrupt_length{}; ///< arrives one byte short, or one byte long when empty
@@ -34,7 +35,7 @@ public:
     /// When the next frame is through the wire; never: none waits, or none takes time.
     [[nodiscard]] Time next() noexcept TAPPET_REALTIME {
         const auto winner = bit_rate_ == 0 || !acknowledged_ ? std::nullopt : arbitrate(never - 1ns);
-        return winner ? winner->start + wire_time(winner->frame) : never;
+        return winner ? winner->start + wire_time(worst_bits(winner->frame)) : never;
     }
 
     static constexpr std::size_t most_ends = 8;
@@ -85,7 +86,7 @@ private:
     void hand_out(const Frame& frame, const Twin* from) noexcept TAPPET_REALTIME;
     void release_delayed(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool strikes(Chance& chance, const Frame& frame) noexcept TAPPET_REALTIME;
-    [[nodiscard]] Duration wire_time(const Frame& frame) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Duration wire_time(std::uint32_t bits) const noexcept TAPPET_REALTIME;
     void tell(Twin& end, const BusError& error, Time now) noexcept TAPPET_REALTIME;
 
     Random random_;

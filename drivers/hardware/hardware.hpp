@@ -5,7 +5,7 @@
 #include "drivers/can/signal_map.hpp"
 #include "drivers/hardware/devices.hpp"
 #include "drivers/hardware/open.hpp"
-#include "kernel/machine/check/board.hpp"
+#include "kernel/machine/check/traffic.hpp"
 
 #include <array>
 
@@ -23,10 +23,15 @@ public:
             return std::unexpected(Sentence{"board \"", machine.board->name,
                                             "\" is simulated and has no real device; build the firmware for "
                                             "another board"});
-        for (const ComponentRow& row : machine.table.components) {
+        const auto worst =
+            checks::worst_responses_ns(machine.table, *machine.board, *machine.binding, machine.index);
+        for (std::size_t c = 0; c < machine.table.components.size(); ++c) {
+            const ComponentRow& row = machine.table.components[c];
             if (row.type->device_map == nullptr) continue;
             const BoundDevice* bound = checks::find_named(machine.binding->devices, row.device); // as checked
-            const BoundTo to{row, *bound, checks::find_named(machine.board->devices, bound->at)};
+            const BoundTo to{row, *bound, checks::find_named(machine.board->devices, bound->at),
+                             checks::use_of_device(machine.table, *machine.board, *machine.binding,
+                                                   machine.index, worst, c)};
             if (auto opened = open(to); !opened)
                 return std::unexpected(Sentence{"board \"", machine.board->name, "\", device \"", row.device,
                                                 "\" at \"", to.address(), "\": ", opened.error()});

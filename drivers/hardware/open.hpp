@@ -26,6 +26,7 @@ struct BoundTo {
     const ComponentRow& row;
     const BoundDevice& bound;
     const BoardDevice* device;
+    DeviceUse use{}; ///< without a name: nothing is proven of it
     [[nodiscard]] std::string_view address() const noexcept {
         return device != nullptr ? device->address : bound.at;
     }

@@ -1,5 +1,6 @@
 // A CAN interface, opened for the identifiers of its driver's signal map.
 #include "drivers/can/signal_map.hpp"
+#include "drivers/can/transmitter.hpp"
 #include "drivers/hardware/open.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/sleep.hpp"
@@ -13,6 +14,14 @@ std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to
     settings.bit_rate = to.device->bit_rate.bits_per_second;
     settings.receive = map.receive;
     settings.transmit = map.transmit;
+    std::array<TrafficRow, most_traffic_rows> rows{};
+    Duration shortest_sent = Duration::max();
+    if (!to.use.device.empty())
+        static_cast<void>(to.row.type->device_traffic.analyse(to.use, rows)); // accepted
+    for (const TrafficRow& row : rows)
+        if (row.sent) shortest_sent = std::min(shortest_sent, row.wire_time);
+    if (shortest_sent != Duration::max())
+        settings.in_flight = can::frames_in_flight(to.use.response, shortest_sent);
     return bus.open(settings);
 }
 

@@ -4,6 +4,7 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/component/device_traffic.hpp"
 #include "kernel/component/interface.hpp"
 #include "kernel/component/life_functions.hpp"
 #include "kernel/component/operation_interface.hpp"
@@ -45,8 +46,9 @@ struct ComponentType {
     /// What is wrong with what stands on that device; the table's check says it.
     std::string_view device_fault{};
     const void* device_map =
-        nullptr;                ///< what stands on that device, as a start-up that knows the kind reads it
-    bool shares_device = false; ///< it may stand beside the device's driver; what it calls is safe there
+        nullptr; ///< what stands on that device, as a start-up that knows the kind reads it
+    DeviceTraffic device_traffic{}; ///< whether that device can carry it
+    bool shares_device = false;     ///< it may stand beside the device's driver; what it calls is safe there
     bool behaviour_required = false;
     bool sees_machine = false;   ///< it is given the machine: a service that shows, stores or changes it
     bool records_cycles = false; ///< it is given the tapes of all activities
@@ -89,6 +91,7 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::device_kind; }) type.device_kind = T::device_kind;
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
+    if constexpr (requires { T::device_traffic; }) type.device_traffic = T::device_traffic;
     if constexpr (requires { T::shares_device; }) type.shares_device = T::shares_device;
     if constexpr (requires { T::sees_machine; }) type.sees_machine = T::sees_machine;
     if constexpr (requires { T::line_functions; }) type.lines = &T::line_functions;

@@ -111,17 +111,14 @@ private:
 /// As the compiler accepted them.
 struct Claims {
     std::array<int, max_activities> processors{};
-    std::array<Duration, max_activities> worst_response{};
+    std::array<std::int64_t, max_activities> worst_response_ns{};
 
     void take(const AcceptedMachine& machine) {
         const MachineView& table = machine.table;
         for (std::size_t a = 0; a < table.activities.size(); ++a)
             processors[a] = checks::processor_of(*machine.board, *machine.binding, table.activities[a].name);
-        const auto on_grid = checks::find_on_grid(table, machine.index.activity);
-        for (std::size_t a = 0; a < table.activities.size(); ++a)
-            if (table.activities[a].real_time)
-                worst_response[a] = Duration{
-                    checks::worst_response(table, machine.index.rank, processors, on_grid, a).worst_ns};
+        worst_response_ns =
+            checks::worst_responses_ns(table, *machine.board, *machine.binding, machine.index);
     }
 };
 
@@ -193,12 +190,12 @@ int measure_box(const AcceptedMachine& machine, Duration time) {
     for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
         const ActivityRow& row = machine.table.activities[a];
         if (!row.real_time) continue;
-        const Duration room = row.deadline() - claims.worst_response[a];
+        const Duration room = row.deadline() - Duration{claims.worst_response_ns[a]};
         const Duration latest = probes[static_cast<std::size_t>(claims.processors[a])].latest;
         const bool fits = latest <= room;
         holds = holds && fits;
         say(Sentence{"activity ", row.name, ": may begin ", in_us(room),
-                     " late beside its worst response of ", in_us(claims.worst_response[a]),
+                     " late beside its worst response of ", in_us(Duration{claims.worst_response_ns[a]}),
                      fits ? ": holds" : ": DOES NOT HOLD"});
     }
     say(Sentence{holds ? "the box can hold the table's claims"

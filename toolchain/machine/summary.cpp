@@ -1,12 +1,15 @@
 // Writes the summary: counters, activities, budgets, stops and counters, as the machine has them at the end.
 #include "toolchain/machine/summary.hpp"
 
+#include "kernel/machine/check/traffic.hpp"
 #include "kernel/machine/slots/behaviour_slot.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/memory.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/json.hpp"
+
+#include <array>
 
 namespace tappet {
 
@@ -101,6 +104,36 @@ void write_times(JsonText& json, const MachineInstance& instance, const Link& li
     json.close(']').close('}');
 }
 
+/// Of each device whose driver proves response times: what was proven, and the longest that was seen.
+template <class Tell>
+void each_sent(MachineInstance& instance, Tell tell) {
+    const AcceptedMachine& machine = instance.machine();
+    const MachineView& table = machine.table;
+    const auto worst = checks::worst_responses_ns(table, *machine.board, *machine.binding, machine.index);
+    for (std::size_t c = 0; c < table.components.size(); ++c) {
+        const ComponentRow& row = table.components[c];
+        const DeviceUse use =
+            checks::use_of_device(table, *machine.board, *machine.binding, machine.index, worst, c);
+        if (use.device.empty()) continue;
+        std::array<TrafficRow, most_traffic_rows> rows{};
+        static_cast<void>(row.type->device_traffic.analyse(use, rows)); // accepted
+        for (const TrafficRow& each : std::span{rows}.first(row.type->device_traffic.rows))
+            if (each.sent)
+                tell(row.name, each, row.type->device_traffic.longest_seen(instance.component(c), each.name));
+    }
+}
+
+void write_traffic(JsonText& json, MachineInstance& instance) {
+    json.key("sent").open('[');
+    each_sent(instance, [&](std::string_view component, const TrafficRow& row, Duration longest) {
+        json.open('{').field("frame", Sentence{component, ".", row.name}.view());
+        json.field("proven_us", static_cast<double>(row.worst.count()) * 1e-3)
+            .field("longest_us", static_cast<double>(longest.count()) * 1e-3)
+            .close('}');
+    });
+    json.close(']');
+}
+
 /// From the edge or the frame to the output it caused, row by row.
 void write_reactions(JsonText& json, const MachineInstance& instance) {
     const AcceptedMachine& machine = instance.machine();
@@ -136,6 +169,7 @@ std::size_t write_summary(MachineInstance& instance, const RunFacts& facts, std:
         .field("can_malformed", facts.wires.can_malformed)
         .field("gpio_edges_lost", facts.wires.gpio_edges_lost);
     write_counters(json, instance);
+    write_traffic(json, instance);
     write_slots(json, instance);
     json.key("held_back").open('{'); // by the rows of limits
     for (std::size_t section = 0; section < instance.machine().table.extras->size(); ++section)
@@ -161,11 +195,20 @@ std::size_t write_summary(MachineInstance& instance, const RunFacts& facts, std:
     return json.size();
 }
 
-void tell_overruns(const MachineInstance& instance, std::string_view speaker) {
+void tell_overruns(MachineInstance& instance, std::string_view speaker) {
     for (std::size_t a = 0; a < instance.engines().size(); ++a)
         for (const Sentence& told :
              {instance.observation().describe_budget(a), instance.observation().describe_end(a)})
             if (!told.empty()) os::print(Sentence{speaker, ": ", told, "\n"}.view());
+    each_sent(instance, [&](std::string_view component, const TrafficRow& row, Duration longest) {
+        if (longest > row.worst)
+            os::print(Sentence{speaker, ": frame \"", component, ".", row.name, "\" took ",
+                               longest.count() / 1000, " us to its confirmation, the analysis says ",
+                               row.worst.count() / 1000,
+                               " us at most: its map or the board says too little of the bus, or the box is "
+                               "slower than the table claims\n"}
+                          .view());
+    });
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
         if (seen.misses == 0) continue;

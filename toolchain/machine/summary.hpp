@@ -28,7 +28,7 @@ struct RunFacts {
                                         std::span<char> buffer);
 
 /// What a run should be told of at its end, line by line: budgets that were exceeded, behaviours that did not
-/// come to their end, deadlines that were missed and by whom.
-void tell_overruns(const MachineInstance& instance, std::string_view speaker);
+/// come to their end, frames that took longer than was proven, deadlines that were missed and by whom.
+void tell_overruns(MachineInstance& instance, std::string_view speaker);
 
 } // namespace tappet

@@ -31,14 +31,10 @@ bool is_driver(const ComponentRow& row) {
 } // namespace
 
 std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
-    std::vector<int> processors;
-    for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
-    const auto on_grid = checks::find_on_grid(machine.table, machine.index.activity);
-    std::vector<Duration> responses(processors.size());
-    for (std::size_t a = 0; a < responses.size(); ++a)
-        if (machine.table.activities[a].real_time)
-            responses[a] = Duration{
-                checks::worst_response(machine.table, machine.index.rank, processors, on_grid, a).worst_ns};
+    const auto worst =
+        checks::worst_responses_ns(machine.table, *machine.board, *machine.binding, machine.index);
+    std::vector<Duration> responses;
+    for (std::size_t a = 0; a < machine.table.activities.size(); ++a) responses.emplace_back(worst[a]);
     return responses;
 }
 

@@ -1,7 +1,7 @@
 // Writes the picture as SVG: lines, circles and characters only, so that any browser shows it.
 #include "apps/car_tracking/host/picture.hpp"
 
-#include "toolchain/machine/svg.hpp"
+#include "toolchain/svg.hpp"
 
 #include <algorithm>
 

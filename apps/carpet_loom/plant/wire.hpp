@@ -14,9 +14,9 @@ namespace tappet::loom {
 // clang-format off
 /// What the drives send that the loom's machine does not listen to (CiA 301).
 inline constexpr auto emergencies = can::signal_map(
-    can::receive(can::standard(wires::cob::emergency + wires::node::main_drive), "main_drive", can::bytes(8),
+    can::receive(can::standard(wires::cob::emergency + wires::node::main_drive), "main_drive", can::bytes(8), can::on_demand(10ms),
         can::signal("code", 0, 16), can::signal("register", 16, 8)),
-    can::receive(can::standard(wires::cob::emergency + wires::node::let_off_drive), "let_off", can::bytes(8),
+    can::receive(can::standard(wires::cob::emergency + wires::node::let_off_drive), "let_off", can::bytes(8), can::on_demand(10ms),
         can::signal("code", 0, 16), can::signal("register", 16, 8)));
 // clang-format on
 

@@ -2,7 +2,7 @@
 #include "apps/two_robots/host/picture.hpp"
 
 #include "kernel/base/text.hpp"
-#include "toolchain/machine/svg.hpp"
+#include "toolchain/svg.hpp"
 
 #include <algorithm>
 #include <vector>

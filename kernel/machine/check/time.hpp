@@ -75,6 +75,21 @@ constexpr Response worst_response(const MachineView& m, std::span<const std::siz
     return response_time_on_grid(std::span{tasks}.first(count), count - 1);
 }
 
+/// Of all activities of an accepted table; nought: it is not real-time.
+constexpr std::array<std::int64_t, max_activities> worst_responses_ns(const MachineView& m,
+                                                                      const Board& board,
+                                                                      const Binding& binding,
+                                                                      const TableIndexView& r) {
+    std::array<std::int64_t, max_activities> worst{};
+    std::array<int, max_activities> processors{};
+    for (std::size_t a = 0; a < m.activities.size(); ++a)
+        processors[a] = processor_of(board, binding, m.activities[a].name);
+    const auto on_grid = find_on_grid(m, r.activity);
+    for (std::size_t a = 0; a < m.activities.size(); ++a)
+        if (m.activities[a].real_time) worst[a] = worst_response(m, r.rank, processors, on_grid, a).worst_ns;
+    return worst;
+}
+
 /// Fills the worst response times.
 constexpr Sentence check_schedulability(const MachineView& m, const Board& board, const Binding& binding,
                                         TableIndexView r) {

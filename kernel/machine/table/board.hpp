@@ -15,6 +15,14 @@ namespace tappet {
 /// What a CAN bus of the box is wired and terminated for, in bit/s.
 struct BitRate {
     std::uint32_t bits_per_second = 0;
+    std::uint32_t in_data_phase = 0; ///< of CAN FD frames that switch; 0: classical CAN only
+};
+
+/// What is to be expected of a CAN bus at its worst: so many errors at once, and one more after each of these
+/// times. Each costs an error frame and the frame that it spoilt.
+struct BusErrors {
+    unsigned at_once = 1;
+    Duration every = 100ms;
 };
 
 /// How many lines a GPIO chip has for wires.
@@ -28,6 +36,7 @@ struct BoardDevice {
     std::string_view address{}; ///< where Linux has it: "can0", "/dev/gpiochip0", "/dev/ttyS1"
     unsigned lines = 0;         ///< of a "gpio" device, which must say it
     BitRate bit_rate{};         ///< of a "can" device, which must say it
+    BusErrors errors{};         ///< of a "can" device
 };
 
 /// Whoever is this user, or in this group, has this role at least.
@@ -108,6 +117,7 @@ namespace detail {
 
 constexpr void add(BoardDevice& device, LineCount count) { device.lines = count.lines; }
 constexpr void add(BoardDevice& device, BitRate rate) { device.bit_rate = rate; }
+constexpr void add(BoardDevice& device, BusErrors errors) { device.errors = errors; }
 
 } // namespace detail
 
@@ -126,8 +136,12 @@ constexpr BoardDevice board_device(std::string_view name, std::string_view kind,
 
 /// How many lines a GPIO chip has for wires.
 constexpr LineCount lines(unsigned count) noexcept { return {count}; }
-/// What the bus is wired and terminated for, in bit/s.
-constexpr BitRate bit_rate(std::uint32_t bits_per_second) noexcept { return {bits_per_second}; }
+/// What the bus is wired and terminated for, in bit/s; the second of CAN FD's data phase.
+constexpr BitRate bit_rate(std::uint32_t bits_per_second, std::uint32_t in_data_phase = 0) noexcept {
+    return {bits_per_second, in_data_phase};
+}
+/// How many errors on the wire the response times of its frames allow for; without this row one in 100 ms.
+constexpr BusErrors bus_errors(unsigned at_once, Duration every) noexcept { return {at_once, every}; }
 
 namespace detail {
 

@@ -6,7 +6,7 @@
 using namespace tappet;
 
 constexpr auto signals =
-    can::signal_map(can::receive(can::standard(0x181), "drive", can::bytes(2), can::signal("speed", 0, 16)),
+    can::signal_map(can::receive(can::standard(0x181), "drive", can::bytes(2), can::every(10ms), can::signal("speed", 0, 16)),
                     can::transmit(can::standard(0x201), "command", can::bytes(2), can::every(10ms),
                                   can::signal("speed", 0, 16).safe(0)));
 

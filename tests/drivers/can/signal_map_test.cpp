@@ -121,13 +121,13 @@ TEST(Signals, round_to_the_nearest) {
     EXPECT_EQ(to_raw(s, 2.4).bits, 2u);
 }
 
-constexpr auto map = signal_map(receive(standard(0x181), "drive", bytes(6), signal("statusword", 0, 16),
-                                        signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-                                receive(extended(0x18FF0102), "climate", bytes(2),
-                                        signal("temperature", 7, 16).big_endian().times(0.01).plus(-40)),
-                                transmit(standard(0x201), "command", bytes(6), every(1ms),
-                                         signal("controlword", 0, 16).safe(6),
-                                         signal("target", 16, 32).as_signed().times(0.1).safe(-12.3)));
+constexpr auto map = signal_map(
+    receive(standard(0x181), "drive", bytes(6), every(1ms), signal("statusword", 0, 16),
+            signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+    receive(extended(0x18FF0102), "climate", bytes(2), every(1ms),
+            signal("temperature", 7, 16).big_endian().times(0.01).plus(-40)),
+    transmit(standard(0x201), "command", bytes(6), every(1ms), signal("controlword", 0, 16).safe(6),
+             signal("target", 16, 32).as_signed().times(0.1).safe(-12.3)));
 static_assert(map.fault.empty());
 static_assert(map.receives().size() == 2 && map.receives()[1] == extended(0x18FF0102));
 static_assert(map.transmits().size() == 1 && map.transmits()[0] == standard(0x201));
@@ -146,7 +146,7 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
 
 TEST(SignalMap, sends_cyclic_safe_frames_first_and_leaves_out_what_is_safe_by_silence) {
     static constexpr auto all = signal_map(
-        transmit(standard(0x000), "nmt", bytes(2), on_demand, signal("command", 0, 8).safe(128),
+        transmit(standard(0x000), "nmt", bytes(2), on_demand(10ms), signal("command", 0, 8).safe(128),
                  signal("node", 8, 8).safe(0)),
         transmit(standard(0x201), "command", bytes(2), every(1ms), signal("controlword", 0, 16).safe(2)),
         transmit(standard(0x301), "dobby", bytes(1), every(1ms), signal("pattern", 0, 8)).safe_by_silence());
@@ -166,7 +166,7 @@ TEST(SignalMap, refuses_what_is_sent_and_says_no_safe_value) {
               "signal \"f.speed\" has a safe value, but its frame is safe by silence: keep one of the two");
     EXPECT_EQ(fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(70000))),
               "signal \"f.speed\" cannot hold its safe value: it is outside of the signal's range");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), signal("speed", 0, 16).safe(0))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(0))),
               "signal \"f.speed\" is received and has a safe value: only what is sent has one");
 }
 
@@ -247,35 +247,37 @@ TEST(SignalStore, survives_random_frames) {
 }
 
 TEST(SignalMap, refuses_overlapping_signals) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 16), signal("b", 15, 8))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 16), signal("b", 15, 8))),
               "signal \"f.b\" overlaps \"a\" at bit 15: move one of them");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 7, 16).big_endian(), signal("b", 8, 8))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 7, 16).big_endian(),
+                            signal("b", 8, 8))),
               "signal \"f.b\" overlaps \"a\" at bit 8: move one of them");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 7, 16).big_endian(), signal("b", 16, 8))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 7, 16).big_endian(),
+                            signal("b", 16, 8))),
               "");
 }
 
 TEST(SignalMap, refuses_signals_outside_their_frame) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), signal("a", 8, 9))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), every(1ms), signal("a", 8, 9))),
               "signal \"f.a\" reaches outside its frame of 2 bytes: it starts at bit 8 (its lowest) and goes "
               "up 9 bits; move it or "
               "lengthen the frame");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(2), signal("a", 15, 9).big_endian())), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 60000, 9))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 65))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 0))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(9), signal("a", 0, 8))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(2), every(1ms), signal("a", 15, 9).big_endian())), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 60000, 9))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 65))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 0))), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(9), every(1ms), signal("a", 0, 8))), "");
 }
 
 TEST(SignalMap, refuses_doubled_names_and_identifiers) {
     const auto row = [](std::uint32_t id, std::string_view name) {
-        return receive(standard(id), name, bytes(8), signal("a", 0, 8));
+        return receive(standard(id), name, bytes(8), every(1ms), signal("a", 0, 8));
     };
     EXPECT_EQ(fault(row(1, "f"), row(2, "f")), "frame \"f\" is there twice: rename one of them");
     EXPECT_EQ(fault(row(1, "f"), row(1, "g")), "frame \"g\" has the identifier of \"f\": give it its own");
-    EXPECT_EQ(fault(row(1, "f"), receive(extended(1), "g", bytes(0))), "")
+    EXPECT_EQ(fault(row(1, "f"), receive(extended(1), "g", bytes(0), every(1ms))), "")
         << "another format, another identifier";
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 8), signal("a", 8, 8))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 8), signal("a", 8, 8))),
               "frame \"f\" has two signals \"a\": rename one of them");
     EXPECT_EQ(
         fault(row(0x800, "f")),
@@ -284,9 +286,9 @@ TEST(SignalMap, refuses_doubled_names_and_identifiers) {
 }
 
 TEST(SignalMap, refuses_a_factor_of_zero_and_odd_floats) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 8).times(0))),
+    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 8).times(0))),
               "signal \"f.a\" has the factor 0: every value would be the offset; give it another");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), signal("a", 0, 16).as_float())), "");
+    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 16).as_float())), "");
 }
 
 } // namespace

@@ -70,6 +70,28 @@ TEST_F(CanBus, sends_the_same_demand_again_when_it_is_written_again) {
     EXPECT_EQ(heard_of(0x000).size(), 2u);
 }
 
+TEST_F(CanBus, counts_demands_that_follow_sooner_than_its_map_says) {
+    demand(1, 1);
+    run_until(20ms);
+    demand(1, 2);
+    run_until(40ms);
+    EXPECT_EQ(bus->sent_too_often.last(), 0);
+    demand(1, 3);
+    demand(1, 4); // in the next cycle of its writer
+    run_until(60ms);
+    EXPECT_EQ(heard_of(0x000).size(), 4u) << "it goes out all the same";
+    EXPECT_EQ(bus->sent_too_often.last(), 1);
+}
+
+TEST_F(CanBus, keeps_the_longest_response_of_what_it_sent) {
+    run_until(40ms);
+    EXPECT_EQ(bus->longest_response("drive_command"), Duration{}) << "the wire of this machine takes no time";
+    wire.set_bit_rate(125'000);
+    run_until(80ms);
+    EXPECT_GE(bus->longest_response("drive_command"), 115 * 8us) << "6 bytes, 115 bits";
+    EXPECT_EQ(bus->longest_response("nmt"), Duration{}) << "nobody demanded it";
+}
+
 TEST_F(CanBus, sends_no_command_with_the_node_of_the_one_before) {
     run_until(10ms);
     demand(1, 3);

@@ -15,17 +15,19 @@
 
 namespace tappet::test {
 
-inline constexpr auto signals = can::signal_map(
-    can::receive(can::standard(0x181), "drive", can::bytes(6), can::signal("statusword", 0, 16),
-                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-    can::transmit(can::standard(0x201), "drive_command", can::bytes(6), can::every(2ms),
-                  can::signal("controlword", 0, 16).safe(2),
-                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)),
-    can::transmit(can::standard(0x000), "nmt", can::bytes(2), can::on_demand, can::signal("command", 0, 8),
-                  can::signal("node", 8, 8))
-        .safe_by_silence(),
-    can::transmit(can::standard(0x080), "sync", can::bytes(1), can::on_demand, can::signal("count", 0, 8))
-        .safe_by_silence());
+inline constexpr auto signals =
+    can::signal_map(can::receive(can::standard(0x181), "drive", can::bytes(6), can::every(2ms),
+                                 can::signal("statusword", 0, 16),
+                                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+                    can::transmit(can::standard(0x201), "drive_command", can::bytes(6), can::every(2ms),
+                                  can::signal("controlword", 0, 16).safe(2),
+                                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)),
+                    can::transmit(can::standard(0x000), "nmt", can::bytes(2), can::on_demand(10ms),
+                                  can::signal("command", 0, 8), can::signal("node", 8, 8))
+                        .safe_by_silence(),
+                    can::transmit(can::standard(0x080), "sync", can::bytes(1), can::on_demand(10ms),
+                                  can::signal("count", 0, 8))
+                        .safe_by_silence());
 
 /// Does in each cycle what the test has set.
 struct Master {

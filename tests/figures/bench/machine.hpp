@@ -46,8 +46,8 @@ struct Follower {
 
 // clang-format off
 inline constexpr auto signals = can::signal_map(
-    can::receive(can::standard(wire::request), "request", can::bytes(8), can::signal("number", 0, 32)),
-    can::transmit(can::standard(wire::answer), "answer", can::bytes(8), can::on_demand, can::signal("number", 0, 32)).safe_by_silence());
+    can::receive(can::standard(wire::request), "request", can::bytes(8), can::on_demand(1ms), can::signal("number", 0, 32)),
+    can::transmit(can::standard(wire::answer), "answer", can::bytes(8), can::on_demand(1ms), can::signal("number", 0, 32)).safe_by_silence());
 inline constexpr auto lines = gpio::line_map(gpio::sensor("in"), gpio::actuator("out", gpio::safe(false)));
 
 inline constexpr auto table = machine("answering",

@@ -9,11 +9,13 @@ namespace tappet::chart {
 
 inline constexpr std::array chart_options{
     Option{"--to", "DIR", "where the files go (default: here; of tappet chart: build/charts)"},
+    Option{"--bit-rate", "N", "of the buses that are drawn, bit/s (default: 1000000)", true, 1, 1'000'000},
     Option{"--help", "", "this text"}};
 
 /// Its words; none: svg.
 inline constexpr std::array chart_words{
     Option{"svg", "", "the table, each state machine and each program, drawn by the tools dot and plantuml"},
+    Option{"bus", "", "what each bus carries, with its proven response times"},
     Option{"dot", "", "the table as text for dot"},
     Option{"plantuml", "", "a UML state chart of each state machine and each program, as text for plantuml"},
     Option{"scxml", "", "each state machine"},

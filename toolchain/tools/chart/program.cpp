@@ -2,6 +2,7 @@
 // and the verification of the models.
 #include "toolchain/tools/chart/program.hpp"
 
+#include "toolchain/tools/chart/bus.hpp"
 #include "toolchain/tools/chart/options.hpp"
 #include "toolchain/tools/chart/plantuml.hpp"
 #include "toolchain/tools/chart/promela.hpp"
@@ -60,13 +61,16 @@ bool verify(const std::string& name, const std::string& model) {
 
 class Program {
 public:
-    Program(const AcceptedMachine& machine, std::span<const ModelRow> model, std::string_view to)
+    Program(const AcceptedMachine& machine, std::span<const ModelRow> model, std::string_view to,
+            std::uint32_t bit_rate)
         : machine_{machine},
+          bit_rate_{bit_rate},
           all_{charts_of(machine.table), machine.table, model},
           stem_{std::string{to} + "/" + identifier(machine.table.name)} {}
 
     bool make(std::string_view what) {
         if (what == "svg") return draw_all();
+        if (what == "bus") return draw_buses();
         if (what == "dot") return write(stem_ + ".dot", to_dot(machine_));
         if (what == "plantuml") return !write_pictures().empty() || all_.charts.empty();
         bool good = true;
@@ -92,6 +96,17 @@ private:
         if (all_.charts.empty()) return drawn;
         const Paths pictures = write_pictures();
         return !pictures.empty() && draw("plantuml", " -tsvg", pictures) && drawn;
+    }
+
+    bool draw_buses() {
+        bool good = true;
+        for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
+            const ComponentRow& row = machine_.table.components[c];
+            if (row.type->device_traffic.rows == 0) continue;
+            good =
+                write(stem_ + "." + identifier(row.name) + ".svg", draw_bus(machine_, c, bit_rate_)) && good;
+        }
+        return good;
     }
 
     /// Empty: one could not be written, or there is none.
@@ -121,6 +136,7 @@ private:
     }
 
     const AcceptedMachine& machine_;
+    std::uint32_t bit_rate_;
     Composition all_;
     std::string stem_;
 };
@@ -143,7 +159,7 @@ int run_chart(const AcceptedMachine& machine, std::span<const ModelRow> model, i
     const std::string to{line->text("--to", ".")};
     std::error_code error;
     fs::create_directories(to, error);
-    Program program{machine, model, to};
+    Program program{machine, model, to, static_cast<std::uint32_t>(line->number("--bit-rate", 1'000'000))};
     bool good = true;
     for (const std::string_view what : line->words) good = program.make(what) && good;
     return good ? 0 : 1;

@@ -34,7 +34,7 @@ namespace {
 
 // Each kind of row once, so that each kind of facet is shown.
 constexpr auto frames = can::signal_map(
-    can::receive(can::standard(1), "in_frame", can::bytes(8), can::signal("count", 0, 16),
+    can::receive(can::standard(1), "in_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                  can::signal("measure", 16, 16).times(0.1).in("mm")),
     can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                   can::signal("measure", 16, 16).times(0.1).in("mm"))

@@ -41,17 +41,6 @@ static_assert(response_time(three, 2) == worst(9));
 constexpr std::array past_its_period{task(26, 70), task(62, 100)};
 static_assert(response_time(past_its_period, 1) == worst(118), "the first job, 114, is not the worst");
 
-constexpr CanMessageTiming seven_bytes(std::int64_t period_ns, std::int64_t deadline_ns) {
-    return {false, 7, period_ns, deadline_ns, 0};
-}
-constexpr std::array three_frames{seven_bytes(5 * ms / 2, 5 * ms / 2), seven_bytes(7 * ms / 2, 13 * ms / 4),
-                                  seven_bytes(7 * ms / 2, 13 * ms / 4)};
-static_assert(can_frame_time_ns(three_frames[0], 125'000) == 1 * ms);
-static_assert(can_response_time(three_frames, 0, 125'000) == worst(2 * ms));
-static_assert(can_response_time(three_frames, 1, 125'000) == worst(3 * ms));
-static_assert(can_response_time(three_frames, 2, 125'000) == worst(7 * ms / 2),
-              "its second instance is the worst, which the analysis of 1994 did not look at");
-
 TEST(ResponseTime, is_within_a_deadline_up_to_the_nanosecond) {
     const Response response = response_time(rate_monotonic, 2);
     EXPECT_TRUE(response.within(20));
@@ -214,58 +203,6 @@ TEST(ResponseTime, agrees_with_a_simulation_of_random_task_sets) {
         }
     }
     EXPECT_GT(late, 10) << "sets whose response exceeds the period must have been among them";
-}
-
-TEST(CanResponseTime, misses_the_deadline_of_the_worked_example) {
-    EXPECT_TRUE(can_response_time(three_frames, 1, 125'000).within(three_frames[1].deadline_ns));
-    EXPECT_FALSE(can_response_time(three_frames, 2, 125'000).within(three_frames[2].deadline_ns));
-}
-
-TEST(CanFrame, takes_its_longest_time_on_the_wire) {
-    EXPECT_EQ(can_frame_time_ns({false, 0, ms, ms, 0}, 1'000'000), 55'000);
-    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, 1'000'000), 135'000);
-    EXPECT_EQ(can_frame_time_ns({true, 0, ms, ms, 0}, 1'000'000), 80'000);
-    EXPECT_EQ(can_frame_time_ns({true, 8, ms, ms, 0}, 1'000'000), 160'000);
-    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, 500'000), 270'000);
-}
-
-TEST(CanFrame, is_rounded_up_at_a_bit_rate_that_does_not_divide_a_second) {
-    EXPECT_EQ(can_frame_time_ns({false, 0, ms, ms, 0}, 300'000), 183'334);
-}
-
-TEST(CanFrame, does_not_exist_with_more_than_eight_bytes_or_without_a_bit_rate) {
-    EXPECT_EQ(can_frame_time_ns({false, 9, ms, ms, 0}, 500'000), -1);
-    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, 0), -1);
-    EXPECT_EQ(can_frame_time_ns({false, 8, ms, ms, 0}, -500'000), -1);
-}
-
-TEST(CanResponseTime, of_the_highest_waits_for_the_longest_frame_below) {
-    const std::array frames{CanMessageTiming{false, 0, ms, ms, 0}, CanMessageTiming{false, 1, ms, ms, 0},
-                            CanMessageTiming{true, 8, ms, ms, 0}, CanMessageTiming{false, 8, ms, ms, 0}};
-    EXPECT_EQ(can_response_time(frames, 0, 1'000'000), worst(160'000 + 55'000));
-}
-
-TEST(CanResponseTime, of_the_lowest_is_blocked_by_nothing_but_counts_its_jitter) {
-    std::array frames{CanMessageTiming{false, 8, ms, ms, 0}, CanMessageTiming{false, 8, ms, ms, 0}};
-    EXPECT_EQ(can_response_time(frames, 1, 1'000'000), worst(270'000));
-    frames[1].jitter_ns = 40'000;
-    EXPECT_EQ(can_response_time(frames, 1, 1'000'000), worst(310'000));
-}
-
-TEST(CanResponseTime, is_unbounded_on_an_overloaded_bus) {
-    const CanMessageTiming frame{false, 8, ms / 4, ms, 0};
-    EXPECT_TRUE(can_response_time(std::array{frame}, 0, 1'000'000).bounded);
-    EXPECT_FALSE(can_response_time(std::array{frame, frame}, 1, 1'000'000).bounded);
-}
-
-TEST(CanResponseTime, refuses_timings_without_sense) {
-    EXPECT_FALSE(can_response_time({}, 0, 500'000).bounded);
-    EXPECT_FALSE(can_response_time(three_frames, 3, 500'000).bounded);
-    EXPECT_FALSE(can_response_time(three_frames, 0, 0).bounded);
-    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 9, ms, ms, 0}}, 0, 500'000).bounded);
-    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 8, 0, ms, 0}}, 0, 500'000).bounded);
-    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 8, ms, ms, -1}}, 0, 500'000).bounded);
-    EXPECT_FALSE(can_response_time(std::array{CanMessageTiming{false, 8, huge, ms, huge}}, 0, 1).bounded);
 }
 
 } // namespace

@@ -1,0 +1,279 @@
+// Does every frame come through in time? Response times of the frames on one bus, in whole nanoseconds, so
+// that the compiler can answer: Davis, Burns, Bril and Lukkien 2007, with errors, and for the frames of this
+// machine with the queue that they really wait in.
+#pragma once
+
+#include "drivers/can/frame.hpp"
+#include "kernel/base/response.hpp"
+#include "kernel/component/device_traffic.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+
+namespace tappet::can {
+
+/// Of all frames of one identifier.
+struct FrameTiming {
+    std::int64_t wire_ns = 0;     ///< the longest on the wire
+    std::int64_t period_ns = 0;   ///< the least time between two
+    std::int64_t jitter_ns = 0;   ///< the longest from its release to its node's queue
+    std::int64_t deadline_ns = 0; ///< from its release
+    bool own = false;             ///< it goes through this machine's queue
+    bool on_grid = false;         ///< and all such frames are released at multiples of their periods
+};
+
+/// The bus, and how this machine sends on it: by identifier out of a queue of its own, `in_flight` frames of
+/// which the controller holds in the order in which it got them and gives none back.
+struct BusTiming {
+    std::int64_t bit_ns = 0;
+    std::int64_t in_flight = 1;
+    std::int64_t hand_over_ns = 0; ///< from the end of a frame until the next one is handed over
+    std::int64_t errors = 0;       ///< so many at once, at the worst moment,
+    std::int64_t errors_every_ns = analysis_max_ns; ///< and one more after each of these times
+};
+
+/// What a worst case consists of.
+enum class Part : std::uint8_t { jitter, own_time, blocking, in_flight, handing_over, others, errors };
+
+struct FrameResponse {
+    Response response{};
+    Part largest = Part::own_time;
+    std::size_t of = 0; ///< the frame that makes it, where the part is `others` or `blocking`
+    std::int64_t largest_ns = 0;
+};
+
+/// Of one bus. Frames stand in the order in which they win it: by identifier, a base frame before an extended
+/// one with the same first 11 bits.
+///
+/// A frame of another node is held up by one of lower priority that has just begun, and by all of higher
+/// priority; its node is believed to send the most urgent of its own first. A frame of this machine's waits
+/// as well for up to `in_flight` less urgent ones that the controller holds already, and while these wait to
+/// win the bus, every frame of others passes that is more urgent than the least urgent of ours (after Davis,
+/// Kollmann, Pollex and Slomka 2011, on FIFO queues; here only what is in flight is one). Of two on the grid
+/// the less urgent one is not among those when it is through before the other can be released. To everybody
+/// else the time behind those is one more jitter of this frame.
+class BusAnalysis {
+public:
+    /// A bus with more identifiers is not analysed.
+    static constexpr std::size_t most_frames = most_traffic_rows;
+
+    constexpr BusAnalysis(std::span<const FrameTiming> by_priority_highest_first,
+                          const BusTiming& bus) noexcept
+        : frames_{by_priority_highest_first}, bus_{bus} {
+        for (std::size_t i = 0; i < frames_.size(); ++i)
+            if (frames_[i].own) last_own_ = i;
+        for (const FrameTiming& frame : frames_) {
+            sensible_ &= frame.period_ns > 0 && frame.period_ns <= analysis_max_ns && frame.wire_ns > 0 &&
+                         frame.wire_ns <= analysis_max_ns && Span{frame.jitter_ns}.exists();
+            if (frame.own) shortest_own_ns_ = std::min(shortest_own_ns_, frame.wire_ns);
+        }
+        sensible_ &= frames_.size() <= most_frames && bus_.bit_ns > 0 && bus_.in_flight >= 1 &&
+                     Span{bus_.hand_over_ns}.exists() && bus_.errors >= 0 && bus_.errors_every_ns > 0;
+        // Begins with none in flight but those on demand, and takes in what is found not to be through in
+        // time, until nothing more is: no frame can be the first one that is late.
+        for (bool again = sensible_; again;) {
+            again = false;
+            for (std::size_t i = 0; i < frames_.size(); ++i)
+                if (frames_[i].own) late_ns_[i] = behind_those_in_flight(i).ns;
+            for (std::size_t i = 0; i < frames_.size(); ++i) {
+                if (!frames_[i].own) continue;
+                const Response found = of_own(i).response;
+                const std::int64_t worst_ns = found.bounded ? found.worst_ns : analysis_max_ns;
+                again |= worst_ns > worst_ns_[i];
+                worst_ns_[i] = std::max(worst_ns_[i], worst_ns);
+            }
+        }
+    }
+
+    /// From the release of a frame to its end on the wire.
+    [[nodiscard]] constexpr FrameResponse of(std::size_t index) const noexcept {
+        if (index >= frames_.size() || !sensible_) return {};
+        return frames_[index].own ? of_own(index) : of_another_node(index);
+    }
+
+private:
+    using Span = analysis::Span;
+
+    [[nodiscard]] constexpr std::int64_t longest_below(std::size_t index, std::size_t& which) const noexcept {
+        std::int64_t longest = 0;
+        for (std::size_t k = index + 1; k < frames_.size(); ++k)
+            if (frames_[k].wire_ns > longest) longest = frames_[k].wire_ns, which = k;
+        return longest;
+    }
+    [[nodiscard]] constexpr std::int64_t longest_below_of_others(std::size_t index,
+                                                                 std::size_t& which) const noexcept {
+        std::int64_t longest = 0;
+        for (std::size_t k = index + 1; k < frames_.size(); ++k)
+            if (!frames_[k].own && frames_[k].wire_ns > longest) longest = frames_[k].wire_ns, which = k;
+        return longest;
+    }
+    /// A less urgent one of ours that was released before the other.
+    [[nodiscard]] constexpr bool is_through_before(std::size_t less_urgent,
+                                                   std::size_t index) const noexcept {
+        const FrameTiming& first = frames_[less_urgent];
+        const FrameTiming& then = frames_[index];
+        return first.on_grid && then.on_grid &&
+               worst_ns_[less_urgent] <= std::gcd(first.period_ns, then.period_ns);
+    }
+    /// How many of ours that are less urgent may be in flight, and how long the longest of them take
+    /// together.
+    struct InFlight {
+        std::int64_t count = 0, ns = 0;
+    };
+    [[nodiscard]] constexpr InFlight in_flight_below(std::size_t index) const noexcept {
+        InFlight found;
+        std::int64_t limit = analysis_max_ns; // the last one taken; of equals none is taken twice
+        std::size_t taken = frames_.size();
+        while (found.count < bus_.in_flight) {
+            std::size_t next = frames_.size();
+            for (std::size_t k = index + 1; k < frames_.size(); ++k) {
+                if (!frames_[k].own || is_through_before(k, index)) continue;
+                const bool left = frames_[k].wire_ns < limit || (frames_[k].wire_ns == limit && k > taken);
+                if (left && (next == frames_.size() || frames_[k].wire_ns > frames_[next].wire_ns)) next = k;
+            }
+            if (next == frames_.size()) break;
+            limit = frames_[next].wire_ns, taken = next;
+            found.ns += limit;
+            ++found.count;
+        }
+        return found;
+    }
+    /// An error frame, and the frame that it spoils, again: of `index` and what is more urgent.
+    [[nodiscard]] constexpr Span spoilt(Span window, std::size_t index) const noexcept {
+        if (bus_.errors == 0) return Span{0};
+        std::int64_t longest = 0;
+        for (std::size_t k = 0; k <= index; ++k) longest = std::max(longest, frames_[k].wire_ns);
+        const std::int64_t count =
+            bus_.errors + std::max<std::int64_t>(0, analysis::arrivals(window, bus_.errors_every_ns) - 1);
+        return count * Span{error_frame_bits * bus_.bit_ns + longest};
+    }
+    /// The wire is lost to whoever is ready up to one bit after this frame would begin.
+    [[nodiscard]] constexpr std::int64_t arrivals(Span window, std::size_t k) const noexcept {
+        const FrameTiming& frame = frames_[k];
+        const Span from = window + Span{frame.jitter_ns} + Span{late_ns_[k]} + Span{bus_.bit_ns};
+        return analysis::arrivals(from, frame.period_ns);
+    }
+    [[nodiscard]] constexpr Span passing(Span window, std::size_t k) const noexcept {
+        return arrivals(window, k) * Span{frames_[k].wire_ns};
+    }
+    /// Until the less urgent ones in flight are through: what of ours waits meanwhile is late for everybody.
+    [[nodiscard]] constexpr Span behind_those_in_flight(std::size_t index) const noexcept {
+        std::int64_t steps = analysis_max_steps;
+        const InFlight before = in_flight_below(index);
+        if (before.count == 0) return Span{0};
+        std::size_t which = 0;
+        const Span first{std::max(longest_below_of_others(last_own_, which), frames_[index].wire_ns) +
+                         before.ns};
+        return analysis::fixed_point(first, steps, [&](Span window) {
+            Span sum = first + spoilt(window, last_own_);
+            for (std::size_t k = 0; k < last_own_; ++k)
+                if (!frames_[k].own) sum = sum + passing(window, k);
+            return sum;
+        });
+    }
+    [[nodiscard]] constexpr FrameResponse of_own(std::size_t index) const noexcept {
+        const FrameTiming& own = frames_[index];
+        std::int64_t steps = analysis_max_steps;
+        const InFlight before = in_flight_below(index);
+        // The one before it of the same identifier may have held up what passes now (push-through).
+        std::size_t blocker = index;
+        const std::int64_t below = longest_below_of_others(last_own_, blocker);
+        const std::int64_t blocking = std::max(below, own.wire_ns);
+        if (below < own.wire_ns) blocker = index;
+        // When all that were in flight are through before more are handed over, somebody less urgent may
+        // begin in between; then as many as may be in flight are handed over together.
+        std::size_t unused = 0;
+        const std::int64_t idle = bus_.hand_over_ns - (bus_.in_flight - 1) * shortest_own_ns_;
+        const std::int64_t gap = idle > 0 ? idle + longest_below_of_others(index, unused) : 0;
+        const auto gaps = [&](Span window) {
+            std::int64_t ahead = before.count;
+            for (std::size_t k = 0; k < index; ++k)
+                if (frames_[k].own) ahead += std::max<std::int64_t>(0, arrivals(window, k));
+            return (ahead + bus_.in_flight - 1) / bus_.in_flight * Span{gap};
+        };
+        FrameResponse found;
+        Span less_urgent{0}; // of others, while ours in flight wait
+        for (std::size_t k = index + 1; before.count > 0 && k < last_own_; ++k)
+            if (!frames_[k].own) {
+                const Span passed = passing(Span{late_ns_[index]}, k);
+                less_urgent = less_urgent + passed;
+                consider(found, Part::others, k, passed);
+            }
+        const Span fixed = Span{blocking} + Span{before.ns} + less_urgent;
+        const Span wait = analysis::fixed_point(fixed, steps, [&](Span window) {
+            Span sum = fixed + gaps(window) + spoilt(window + Span{own.wire_ns}, index);
+            for (std::size_t k = 0; k < index; ++k) sum = sum + passing(window, k);
+            return sum;
+        });
+        if (!wait.exists()) return found;
+        for (std::size_t k = 0; k < index; ++k) consider(found, Part::others, k, passing(wait, k));
+        consider(found, Part::jitter, index, Span{own.jitter_ns});
+        consider(found, Part::own_time, index, Span{own.wire_ns});
+        consider(found, Part::in_flight, index, Span{before.ns});
+        consider(found, Part::handing_over, index, gaps(wait));
+        consider(found, blocker == index ? Part::own_time : Part::blocking, blocker, Span{blocking});
+        consider(found, Part::errors, index, spoilt(wait + Span{own.wire_ns}, index));
+        // Longer than a period: then the one before it waits as well, and nothing is known.
+        const std::int64_t worst_ns = own.jitter_ns + wait.ns + own.wire_ns;
+        if (worst_ns <= own.period_ns) found.response = {true, worst_ns};
+        return found;
+    }
+
+    [[nodiscard]] constexpr FrameResponse of_another_node(std::size_t index) const noexcept {
+        const FrameTiming& own = frames_[index];
+        std::int64_t steps = analysis_max_steps;
+        std::size_t blocker = index;
+        const Span blocking{longest_below(index, blocker)};
+        const Span frame{own.wire_ns};
+        const Span jitter{own.jitter_ns};
+        const auto busy_with = [&](Span window) {
+            Span sum = blocking + spoilt(window, index);
+            for (std::size_t k = 0; k < index; ++k)
+                sum = sum + analysis::arrivals(window + Span{frames_[k].jitter_ns} + Span{late_ns_[k]},
+                                               frames_[k].period_ns) *
+                                Span{frames_[k].wire_ns};
+            return sum + analysis::arrivals(window + jitter, own.period_ns) * frame;
+        };
+        FrameResponse found;
+        const Span busy = analysis::fixed_point(frame, steps, busy_with);
+        if (!busy.exists()) return found;
+        const std::int64_t frames = analysis::arrivals(busy + jitter, own.period_ns);
+        std::int64_t worst_ns = -1;
+        Span worst_wait{};
+        for (std::int64_t nth = 0; nth < frames; ++nth) {
+            const Span before = blocking + nth * frame;
+            const Span wait = analysis::fixed_point(before, steps, [&](Span window) {
+                Span sum = before + spoilt(window + frame, index);
+                for (std::size_t k = 0; k < index; ++k) sum = sum + passing(window, k);
+                return sum;
+            });
+            if (!wait.exists()) return found;
+            if (const std::int64_t ns = jitter.ns + wait.ns - nth * own.period_ns + frame.ns; ns > worst_ns)
+                worst_ns = ns, worst_wait = wait;
+        }
+        for (std::size_t k = 0; k < index; ++k) consider(found, Part::others, k, passing(worst_wait, k));
+        consider(found, Part::jitter, index, jitter);
+        consider(found, Part::own_time, index, frame);
+        consider(found, Part::blocking, blocker, blocking);
+        consider(found, Part::errors, index, spoilt(worst_wait + frame, index));
+        found.response = {true, worst_ns};
+        return found;
+    }
+
+    static constexpr void consider(FrameResponse& found, Part part, std::size_t of, Span ns) noexcept {
+        if (ns.ns <= found.largest_ns) return;
+        found.largest = part, found.of = of, found.largest_ns = ns.ns;
+    }
+
+    std::span<const FrameTiming> frames_;
+    BusTiming bus_;
+    std::size_t last_own_ = 0;
+    std::int64_t shortest_own_ns_ = analysis_max_ns;
+    std::array<std::int64_t, most_frames> worst_ns_{}; // of ours, as far as it is known
+    std::array<std::int64_t, most_frames> late_ns_{};  // of ours, behind the less urgent ones in flight
+    bool sensible_ = true;
+};
+
+} // namespace tappet::can

@@ -1,0 +1,130 @@
+// Whether a bus carries what its map says, at its bit rate and by the queue that its frames wait in: the
+// sentence of the table's check, and the rows of charts and summaries.
+#pragma once
+
+#include "drivers/can/bus_analysis.hpp"
+#include "drivers/can/frame_time.hpp"
+#include "drivers/can/signal_map.hpp"
+#include "drivers/can/transmitter.hpp"
+#include "kernel/component/device_traffic.hpp"
+
+namespace tappet::can {
+
+namespace detail {
+
+constexpr Sentence us(std::int64_t ns) { return Sentence{ns / 1000, " us"}; }
+
+constexpr Sentence largest_part(const FrameResponse& found, std::string_view of, std::uint32_t bit_rate) {
+    const Sentence most{"most of it, ", us(found.largest_ns), ", "};
+    switch (found.largest) {
+    case Part::jitter:
+        return Sentence{most,
+                        "is how late it may come to its queue; shorten the response of the activity that "
+                        "drives the bus, or what its node is said to be late by"};
+    case Part::own_time:
+        return Sentence{most, "is its own time on the wire; lengthen its period, or run the bus faster than ",
+                        bit_rate, " bit/s"};
+    case Part::blocking:
+        return Sentence{most, "is \"", of,
+                        "\", which may just have begun; shorten that, or lengthen the period"};
+    case Part::in_flight:
+        return Sentence{most,
+                        "are less urgent frames of this machine that the controller holds already; shorten "
+                        "those, or lengthen the period"};
+    case Part::handing_over:
+        return Sentence{most,
+                        "is the time until more frames are handed over, when those in flight are through; "
+                        "shorten the response of the activity that drives the bus"};
+    case Part::others:
+        return Sentence{most, "is \"", of,
+                        "\", which wins the bus before it; send that less often, or give this "
+                        "one a lower identifier"};
+    case Part::errors:
+        return Sentence{most,
+                        "are errors on the wire; lengthen the period, or say fewer with bus_errors(...) of "
+                        "the board's device"};
+    }
+    return {};
+}
+
+} // namespace detail
+
+/// Of a map without a fault.
+template <std::size_t F, std::size_t S>
+constexpr Sentence bus_traffic(const SignalMap<F, S>& map, const DeviceUse& use, std::span<TrafficRow> rows) {
+    if (F > BusAnalysis::most_frames)
+        return Sentence{"its map has ", F, " frames, more than ", BusAnalysis::most_frames,
+                        " that the analysis takes; make it two buses"};
+    constexpr Settings sending;
+    std::array<std::size_t, F> by_rank{};
+    std::array<FrameTiming, F> frames{};
+    const auto rank = [&](std::size_t f) {
+        return arbitration(
+            Frame{.id = map.frames[f].identifier.id, .extended = map.frames[f].identifier.extended});
+    };
+    for (std::size_t f = 0; f < F; ++f) by_rank[f] = f;
+    std::ranges::sort(by_rank, {}, rank);
+    std::int64_t load_ppm = 0;
+    for (std::size_t i = 0; i < F; ++i) {
+        const FrameRow& row = map.frames[by_rank[i]];
+        const bool own = row.direction == Direction::transmit;
+        const std::int64_t apart = row.apart.count();
+        frames[i] = {frame_time_ns(Format::classical, row.identifier.extended, row.length,
+                                   {use.bit_rate, use.data_bit_rate}),
+                     apart,
+                     own ? use.response.count() : row.jitter.count(),
+                     own ? std::min(apart, sending.max_age.count()) : apart,
+                     own,
+                     own && row.every > Duration::zero()};
+        load_ppm += frames[i].wire_ns * 1'000'000 / apart;
+    }
+    Duration shortest_sent = Duration::max();
+    for (const FrameTiming& frame : frames)
+        if (frame.own) shortest_sent = std::min(shortest_sent, Duration{frame.wire_ns});
+    const BusAnalysis bus{frames,
+                          {(1'000'000'000 + use.bit_rate - 1) / use.bit_rate,
+                           frames_in_flight(use.response, shortest_sent), use.response.count(), use.errors,
+                           use.errors_every.count()}};
+    Sentence fault;
+    for (std::size_t i = 0; i < F; ++i) {
+        const FrameRow& row = map.frames[by_rank[i]];
+        const FrameResponse found = bus.of(i);
+        if (i < rows.size())
+            rows[i] = {row.name,
+                       frames[i].own,
+                       row.apart,
+                       Duration{frames[i].wire_ns},
+                       Duration{frames[i].deadline_ns},
+                       found.response.bounded ? Duration{found.response.worst_ns} : Duration::max()};
+        if (!fault.empty() || found.response.within(frames[i].deadline_ns)) continue;
+        const std::string_view of = map.frames[by_rank[found.of]].name;
+        if (!found.response.bounded && found.largest_ns > 0)
+            fault = Sentence{"frame \"",
+                             row.name,
+                             "\" may still wait when the next one follows, ",
+                             detail::us(row.apart.count()),
+                             " later; ",
+                             detail::largest_part(found, of, use.bit_rate)};
+        else if (!found.response.bounded)
+            fault = Sentence{"frame \"",
+                             row.name,
+                             "\" may never come through: what is more urgent, and itself, "
+                             "fill the bus, which all frames together load by ",
+                             load_ppm / 10'000,
+                             " % at ",
+                             use.bit_rate,
+                             " bit/s; send less often, or run the bus faster"};
+        else
+            fault = Sentence{"frame \"",
+                             row.name,
+                             "\" may take ",
+                             detail::us(found.response.worst_ns),
+                             " but is due within ",
+                             detail::us(frames[i].deadline_ns),
+                             "; ",
+                             detail::largest_part(found, of, use.bit_rate)};
+    }
+    return fault;
+}
+
+} // namespace tappet::can

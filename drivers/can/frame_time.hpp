@@ -1,0 +1,51 @@
+// How long a frame can take on the wire: worst stuffing, and the gap after it.
+#pragma once
+
+#include <cstdint>
+
+namespace tappet::can {
+
+/// The bits of a bus: in arbitration, and in the data phase of a frame that switches to it.
+struct BitRates {
+    std::int64_t nominal = 0; ///< bit/s
+    std::int64_t data = 0;    ///< bit/s; 0: classical CAN only
+};
+
+enum class Format : std::uint8_t {
+    classical,      ///< ISO 11898-1, up to 8 bytes
+    flexible,       ///< CAN FD in one bit rate, up to 64 bytes
+    flexible_faster ///< CAN FD that switches to the data bit rate
+};
+
+/// What a frame holds of so many bytes: CAN FD knows no other lengths above 8. -1: more than any frame.
+constexpr int padded_length(unsigned bytes) noexcept {
+    for (const int length : {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64})
+        if (bytes <= static_cast<unsigned>(length)) return length;
+    return -1;
+}
+
+/// In nanoseconds, rounded up; -1: there is no such frame on such a bus. Classical: Davis, Burns, Bril and
+/// Lukkien 2007. CAN FD: 32 (55 with a 29-bit identifier) bits of arbitration and, behind the switch,
+/// 33 + 10 p, with 5 more of checksum above 16 bytes and one of stuffing at 48.
+constexpr std::int64_t frame_time_ns(Format format, bool extended, unsigned bytes, BitRates rates) noexcept {
+    const std::int64_t slow = rates.nominal;
+    const std::int64_t fast = format == Format::flexible_faster ? rates.data : slow;
+    if (slow <= 0 || fast <= 0 || padded_length(bytes) < 0) return -1;
+    std::int64_t slow_bits = 0, fast_bits = 0;
+    if (format == Format::classical) {
+        if (bytes > 8) return -1;
+        // Bits open to stuffing, and the 13 that are not: delimiters, acknowledge, end, gap.
+        const std::int64_t stuffed = (extended ? 54 : 34) + 8 * static_cast<std::int64_t>(bytes);
+        slow_bits = stuffed + 13 + (stuffed - 1) / 4;
+    } else {
+        const std::int64_t p = padded_length(bytes);
+        slow_bits = extended ? 55 : 32;
+        fast_bits = 33 + 10 * p + (p > 16 ? 5 : 0) + (p == 48 ? 1 : 0);
+    }
+    const auto time = [](std::int64_t bits, std::int64_t rate) {
+        return (bits * 1'000'000'000 + rate - 1) / rate;
+    };
+    return time(slow_bits, slow) + time(fast_bits, fast);
+}
+
+} // namespace tappet::can

@@ -1,0 +1,41 @@
+// Whether what crosses each device of the board comes through in time, by the drivers' own analyses.
+#pragma once
+
+#include "kernel/machine/check/board.hpp"
+#include "kernel/machine/check/time.hpp"
+
+namespace tappet::checks {
+
+/// How the component drives its device; without a name: that device has no rate, or its driver no deadline.
+/// `worst_ns`: the response of each activity.
+constexpr DeviceUse use_of_device(const MachineView& m, const Board& board, const Binding& binding,
+                                  const TableIndexView& r, std::span<const std::int64_t> worst_ns,
+                                  std::size_t component) {
+    const ComponentRow& row = m.components[component];
+    const std::size_t activity = r.activity[component];
+    if (row.type->device_traffic.rows == 0 || !m.activities[activity].real_time) return {};
+    const BoundDevice* bound = find_named(binding.devices, row.device);
+    const BoardDevice* device = bound == nullptr ? nullptr : find_named(board.devices, bound->at);
+    if (device == nullptr || device->bit_rate.bits_per_second == 0) return {};
+    return {device->name,
+            device->bit_rate.bits_per_second,
+            device->bit_rate.in_data_phase,
+            device->errors.at_once,
+            device->errors.every,
+            Duration{worst_ns[activity]}};
+}
+
+/// Once the worst responses of the activities are known.
+constexpr Sentence check_traffic(const MachineView& m, const Board& board, const Binding& binding,
+                                 const TableIndexView& r) {
+    for (std::size_t c = 0; c < m.components.size(); ++c) {
+        const DeviceUse use = use_of_device(m, board, binding, r, r.worst_response_ns, c);
+        if (use.device.empty()) continue;
+        if (Sentence fault = m.components[c].type->device_traffic.analyse(use, {}); !fault.empty())
+            return of_component(m.components[c].name, ": board \"", board.name, "\", device \"", use.device,
+                                "\": ", fault);
+    }
+    return {};
+}
+
+} // namespace tappet::checks

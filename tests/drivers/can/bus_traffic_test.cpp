@@ -1,0 +1,112 @@
+// What a bus is refused for: the frame, its bound, the largest part of it, and the cure.
+#include "drivers/can/bus_traffic.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::can {
+namespace {
+
+constexpr DeviceUse at(std::uint32_t bit_rate, unsigned errors = 0, Duration response = 0us) {
+    return {"can0", bit_rate, 0, errors, 100ms, response};
+}
+constexpr auto heard(std::uint32_t id, std::string_view name, std::uint8_t length, Duration period,
+                     Duration jitter = {}) {
+    return receive(standard(id), name, bytes(length), every(period, jitter), signal("a", 0, 8));
+}
+constexpr auto sent(std::uint32_t id, std::string_view name, std::uint8_t length, Rate rate) {
+    return transmit(standard(id), name, bytes(length), rate, signal("a", 0, 8).safe(0));
+}
+template <class... Rows> std::string refusal(const DeviceUse& use, const Rows&... rows) {
+    const auto map = signal_map(rows...);
+    EXPECT_EQ(map.fault.view(), "");
+    return std::string{bus_traffic(map, use, {}).view()};
+}
+
+TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
+    constexpr auto map =
+        signal_map(heard(0x300, "slow", 8, 100ms), sent(0x201, "command", 6, every(2ms)),
+                   heard(0x181, "status", 6, 2ms), sent(0x80, "sync", 0, on_demand(10ms)).safe_by_silence());
+    static_assert(!map.fault.empty(), "no signal fits into no byte");
+    constexpr auto good = signal_map(heard(0x300, "slow", 8, 100ms), sent(0x201, "command", 6, every(2ms)),
+                                     heard(0x181, "status", 6, 2ms));
+    std::array<TrafficRow, 3> rows{};
+    EXPECT_EQ(bus_traffic(good, at(500'000), rows).view(), "");
+    EXPECT_EQ(rows[0].name, "status");
+    EXPECT_FALSE(rows[0].sent);
+    EXPECT_EQ(rows[0].worst, 230us + 270us);
+    EXPECT_EQ(rows[1].name, "command");
+    EXPECT_TRUE(rows[1].sent);
+    EXPECT_EQ(rows[1].wire_time, 230us);
+    EXPECT_EQ(rows[1].worst, 270us + 230us + 230us);
+    EXPECT_EQ(rows[2].name, "slow");
+    EXPECT_EQ(rows[2].deadline, 100ms);
+}
+
+TEST(BusTraffic, is_refused_when_the_bus_is_too_slow) {
+    EXPECT_EQ(
+        refusal(at(125'000), heard(0x181, "a", 8, 1ms), heard(0x182, "b", 8, 10ms)),
+        "frame \"a\" may never come through: what is more urgent, and itself, fill the bus, which all frames "
+        "together load by 118 % at 125000 bit/s; send less often, or run the bus faster");
+}
+TEST(BusTraffic, is_refused_for_a_long_frame_that_has_just_begun) {
+    EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 1, 1ms), heard(0x182, "b", 8, 100ms)),
+              "frame \"a\" may take 1600 us but is due within 1000 us; most of it, 1080 us, is \"b\", which "
+              "may just "
+              "have begun; shorten that, or lengthen the period");
+}
+TEST(BusTraffic, is_refused_for_its_own_time) {
+    EXPECT_EQ(refusal(at(125'000, 0, 100us), sent(0x181, "a", 8, every(2ms))),
+              "frame \"a\" may still wait when the next one follows, 2000 us later; most of it, 1080 us, is "
+              "its own "
+              "time on the wire; lengthen its period, or run the bus faster than 125000 bit/s");
+}
+TEST(BusTraffic, is_refused_for_what_wins_before_it) {
+    EXPECT_EQ(refusal(at(500'000), heard(0x100, "busy", 8, 600us), heard(0x200, "b", 8, 800us),
+                      heard(0x300, "c", 8, 100ms)),
+              "frame \"b\" may take 810 us but is due within 800 us; most of it, 270 us, is \"busy\", which "
+              "wins the "
+              "bus before it; send that less often, or give this one a lower identifier");
+}
+TEST(BusTraffic, is_refused_for_a_late_node) {
+    EXPECT_EQ(
+        refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
+        "frame \"late\" may take 2170 us but is due within 2000 us; most of it, 1900 us, is how late it may "
+        "come to its queue; shorten the response of the activity that drives the bus, or what its node is "
+        "said to be late by");
+}
+TEST(BusTraffic, is_refused_for_errors) {
+    EXPECT_EQ(
+        refusal(at(500'000, 3), heard(0x100, "a", 8, 1ms)),
+        "frame \"a\" may take 1266 us but is due within 1000 us; most of it, 996 us, are errors on the wire; "
+        "lengthen the period, or say fewer with bus_errors(...) of the board's device");
+}
+TEST(BusTraffic, is_refused_for_less_urgent_frames_in_flight) {
+    EXPECT_EQ(
+        refusal(at(250'000, 0, 1ms), sent(0x100, "urgent", 1, every(3ms)),
+                sent(0x200, "long", 8, on_demand(100ms)), sent(0x201, "longer", 8, on_demand(100ms)),
+                sent(0x202, "longest", 8, on_demand(100ms)), sent(0x203, "more", 8, on_demand(100ms))),
+        "frame \"urgent\" may still wait when the next one follows, 3000 us later; most of it, 2160 us, are "
+        "less urgent frames of this machine that the controller holds already; shorten those, or lengthen "
+        "the period");
+}
+TEST(BusTraffic, is_refused_when_the_machine_is_too_slow_to_hand_over) {
+    constexpr std::array names{"b", "c", "d", "e", "f", "g", "h", "i", "j"};
+    const std::string refused = [&]<std::size_t... I>(std::index_sequence<I...>) {
+        return refusal(at(1'000'000, 0, 8ms), sent(0x100, "a", 1, on_demand(100ms)),
+                       sent(0x101 + I, names[I], 1, on_demand(100ms))...);
+    }(std::make_index_sequence<names.size()>{});
+    EXPECT_EQ(
+        refused,
+        "frame \"b\" may take 23805 us but is due within 20000 us; most of it, 15090 us, is the time until "
+        "more frames are handed over, when those in flight are through; shorten the response of the activity "
+        "that drives the bus");
+}
+
+TEST(BusTraffic, of_what_is_sent_ends_when_it_would_be_too_old) {
+    const std::string refused = refusal(at(10'000), sent(0x100, "slow", 8, every(100ms)));
+    EXPECT_TRUE(refused.starts_with("frame \"slow\" may take 27000 us but is due within 20000 us"))
+        << refused;
+}
+
+} // namespace
+} // namespace tappet::can
