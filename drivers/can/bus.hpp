@@ -36,12 +36,13 @@ template <const auto& map> struct Bus {
                   "what is sent at one time fits the queue");
     static constexpr std::string_view device_kind = "can";
     static constexpr Identifiers device_map{map.receives(), map.transmits(), map.safe_frames()};
-    static constexpr DeviceTraffic device_traffic{
-        frame_count,
-        [](const DeviceUse& use, std::span<TrafficRow> rows) { return bus_traffic(map, use, rows); },
-        [](const void* bus, std::string_view frame) {
-            return static_cast<const Bus*>(bus)->longest_response(frame);
-        }};
+    static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
+        return bus_traffic(map, use, into);
+    }
+    static Duration longest_seen(const void* bus, std::string_view frame) {
+        return static_cast<const Bus*>(bus)->longest_response(frame);
+    }
+    static constexpr DeviceTraffic device_traffic{frame_count, &analyse_traffic, &longest_seen};
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
     static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through
@@ -94,8 +95,10 @@ template <const auto& map> struct Bus {
     }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        // What was demanded meanwhile waits for no reading.
+        if (send_on_demand(cycle.now)) device_->service(cycle.now);
         take_frames();
-        send_on_demand(cycle.now);
+        static_cast<void>(send_on_demand(cycle.now));
         finish(cycle.now);
     }
 
@@ -103,7 +106,7 @@ template <const auto& map> struct Bus {
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
             if (is_cyclic(f)) send(f, cycle.now);
-        send_on_demand(cycle.now);
+        static_cast<void>(send_on_demand(cycle.now));
         device_->service(cycle.now);
         // They wait for the frames in flight, and nobody serves the device after this.
         Frame ignored;
@@ -344,7 +347,9 @@ private:
         static_cast<void>(device_->send(store_.encode(f, now), Keep::latest));
     }
 
-    void send_on_demand(Time now) noexcept TAPPET_REALTIME {
+    /// False: nothing was demanded.
+    bool send_on_demand(Time now) noexcept TAPPET_REALTIME {
+        bool sent = false;
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
@@ -353,8 +358,11 @@ private:
             demanded_[f] = false;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
-            if (keep_inputs(f)) static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
+            if (!keep_inputs(f)) continue;
+            static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
+            sent = true;
         }
+        return sent;
     }
     /// What waited, what arrived and what was demanded while nobody served the bus.
     void forget_stopped_time() noexcept TAPPET_REALTIME {

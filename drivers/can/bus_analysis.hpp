@@ -202,8 +202,9 @@ private:
                 consider(found, Part::others, k, passed);
             }
         const Span fixed = Span{blocking} + Span{before.ns} + less_urgent;
+        const std::size_t spoils = before.count > 0 ? last_own_ : index; // up to the least urgent one ahead
         const Span wait = analysis::fixed_point(fixed, steps, [&](Span window) {
-            Span sum = fixed + gaps(window) + spoilt(window + Span{own.wire_ns}, index);
+            Span sum = fixed + gaps(window) + spoilt(window + Span{own.wire_ns}, spoils);
             for (std::size_t k = 0; k < index; ++k) sum = sum + passing(window, k);
             return sum;
         });
@@ -214,7 +215,7 @@ private:
         consider(found, Part::in_flight, index, Span{before.ns});
         consider(found, Part::handing_over, index, gaps(wait));
         consider(found, blocker == index ? Part::own_time : Part::blocking, blocker, Span{blocking});
-        consider(found, Part::errors, index, spoilt(wait + Span{own.wire_ns}, index));
+        consider(found, Part::errors, index, spoilt(wait + Span{own.wire_ns}, spoils));
         // Longer than a period: then the one before it waits as well, and nothing is known.
         const std::int64_t worst_ns = own.jitter_ns + wait.ns + own.wire_ns;
         if (worst_ns <= own.period_ns) found.response = {true, worst_ns};

@@ -62,9 +62,9 @@ struct Settings {
     std::string_view interface{};           ///< named by the board
     std::span<const Identifier> receive{};  ///< exactly these are let through
     std::span<const Identifier> transmit{}; ///< exactly these may be sent
-    std::uint32_t in_flight = 4;    ///< frames handed over and not confirmed; see frames_in_flight()
-    Duration max_age = 20ms;        ///< a frame older than this is not sent any more
-    Duration confirm_within = 50ms; ///< an unconfirmed frame older than this is a fault
+    std::uint32_t in_flight = 4;            ///< frames handed over and not confirmed; see frames_in_flight()
+    Duration max_age = 20ms;                ///< a frame older than this is not sent any more
+    Duration confirm_within = 50ms;         ///< an unconfirmed frame older than this is a fault
     std::uint32_t restarts_allowed = 3;
     std::uint32_t bit_rate = 0;         ///< what the controller must be set to, as the board says
     int receive_buffer_bytes = 1 << 20; ///< the default of Linux holds 278 frames
@@ -92,8 +92,8 @@ public:
 
     [[nodiscard]] virtual State state() const noexcept TAPPET_REALTIME = 0;
     [[nodiscard]] virtual Counters counters() const noexcept TAPPET_REALTIME = 0;
-    /// Of what is sent with this identifier: the longest from frame.stamp until it was confirmed. Nought: none
-    /// was, or the device does not look.
+    /// Of what is sent with this identifier: the longest from frame.stamp until it was confirmed. Nought:
+    /// none was, or the device does not look.
     [[nodiscard]] virtual Duration longest_response(Identifier) const noexcept TAPPET_REALTIME { return {}; }
     /// Drops everything that waits to be sent: an emergency stop calls this.
     virtual void purge() noexcept TAPPET_REALTIME = 0;

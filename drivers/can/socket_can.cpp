@@ -1,5 +1,5 @@
-// SocketCAN without blocking: one recvmsg per frame, a bounded number of frames handed over, faults taken as
-// values.
+// SocketCAN without blocking: as many frames as wait in one recvmmsg, a bounded number of frames handed over,
+// faults taken as values.
 #include "drivers/can/socket_can.hpp"
 
 #include "drivers/can/wire.hpp"
@@ -14,6 +14,7 @@
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
+#include <utility>
 
 namespace tappet::can {
 namespace {
@@ -33,30 +34,36 @@ Sentence failure(std::string_view interface, std::string_view what, std::string_
 
 } // namespace
 
+void SocketCan::Batch::read_from(int fd) noexcept {
+    for (std::size_t i = 0; i < size; ++i) {
+        parts[i] = {&frames[i], sizeof frames[i]};
+        messages[i].msg_hdr = {};
+        messages[i].msg_hdr.msg_iov = &parts[i];
+        messages[i].msg_hdr.msg_iovlen = 1;
+        messages[i].msg_hdr.msg_control = told[i].bytes;
+        messages[i].msg_hdr.msg_controllen = sizeof told[i].bytes;
+    }
+    const int read = ::recvmmsg(fd, messages.data(), size, MSG_DONTWAIT | MSG_TRUNC, nullptr);
+    error = read < 0 ? errno : 0;
+    next = 0;
+    filled = read < 0 ? 0 : static_cast<std::size_t>(read);
+    is_last = filled < size;
+}
+
+/// A frame, and what the kernel says of it.
 struct SocketCan::Raw {
-    can_frame frame{};
-    ssize_t bytes = -1;
-    int error = 0;
+    const can_frame& frame;
+    std::size_t bytes = 0;
     int flags = 0;
     bool stamped = false;
     timespec stamp{};
     bool drops_known = false;
     std::uint32_t drops = 0;
 
-    /// Reads one frame and what the kernel says about it.
-    void read_from(int fd) noexcept {
-        alignas(cmsghdr) char control[256];
-        iovec part{&frame, sizeof frame};
-        msghdr message{};
-        message.msg_iov = &part;
-        message.msg_iovlen = 1;
-        message.msg_control = control;
-        message.msg_controllen = sizeof control;
-        bytes = ::recvmsg(fd, &message, MSG_DONTWAIT | MSG_TRUNC);
-        error = bytes < 0 ? errno : 0;
-        flags = message.msg_flags;
-        if (bytes < 0) return;
-        for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+    Raw(const can_frame& read, mmsghdr& message) noexcept TAPPET_REALTIME : frame{read},
+                                                                            bytes{message.msg_len},
+                                                                            flags{message.msg_hdr.msg_flags} {
+        for (cmsghdr* c = CMSG_FIRSTHDR(&message.msg_hdr); c != nullptr; c = following(message.msg_hdr, c)) {
             if (c->cmsg_level != SOL_SOCKET) continue;
             if (c->cmsg_type == SO_RXQ_OVFL) {
                 std::memcpy(&drops, CMSG_DATA(c), sizeof drops);
@@ -66,6 +73,11 @@ struct SocketCan::Raw {
                 stamped = stamp.tv_sec != 0 || stamp.tv_nsec != 0;
             }
         }
+    }
+    static cmsghdr* following(msghdr& of, cmsghdr* c) noexcept TAPPET_REALTIME {
+        cmsghdr* next = nullptr;
+        TAPPET_ESCAPE("computes an address", next = CMSG_NXTHDR(&of, c));
+        return next;
     }
 };
 
@@ -85,6 +97,7 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings, const Li
         return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
     link_ = link;
     drops_seen_ = 0;
+    batch_ = {};
     arrivals_.begin(read(CLOCK_REALTIME), read(CLOCK_MONOTONIC));
     controller_.configure(settings, link.state);
     found_ = Sentence{"CAN interface \"", name, "\" "};
@@ -153,16 +166,23 @@ Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     if (fd_ < 0) return {};
     // A confirmation, an impostor's or a malformed frame is no answer, so reading goes on; as many as can be
-    // in flight suffice, and the bound keeps a flood from holding the caller.
-    for (std::uint32_t i = 0; i <= most_in_flight; ++i) {
-        Raw raw;
-        TAPPET_ESCAPE("the driver's own read, which does not block", raw.read_from(fd_));
-        if (raw.bytes < 0) {
-            const bool gone = raw.error == ENETDOWN || raw.error == ENODEV || raw.error == ENXIO;
+    // in flight suffice, and the bound keeps a flood from holding the caller. Nothing stays in the batch
+    // then: no descriptor would tell of it.
+    for (std::uint32_t i = 0; i <= most_in_flight || !batch_.is_empty(); ++i) {
+        if (batch_.is_empty()) {
+            // The kernel had no more: that is known without asking it again.
+            if (std::exchange(batch_.is_last, false)) return {};
+            TAPPET_ESCAPE("the driver's own read, which does not block", batch_.read_from(fd_));
+            const int error = batch_.error;
+            const bool gone = error == ENETDOWN || error == ENODEV || error == ENXIO;
             if (gone && controller_.recovery.running()) controller_.fault(State::down);
-            return {};
+            if (batch_.is_empty()) {
+                batch_.is_last = false;
+                return {};
+            }
         }
-        const Receive answer = judge(raw, frame);
+        const std::size_t at = batch_.next++;
+        const Receive answer = judge(Raw{batch_.frames[at], batch_.messages[at]}, frame);
         if (answer.what != Received::none || answer.lost != 0) return answer;
     }
     return {};

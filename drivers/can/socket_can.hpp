@@ -5,7 +5,10 @@
 #include "drivers/can/controller.hpp"
 #include "drivers/can/link.hpp"
 
+#include <array>
 #include <expected>
+#include <linux/can.h>
+#include <sys/socket.h>
 
 namespace tappet::can {
 
@@ -42,7 +45,25 @@ public:
     void set_listener(Listener, void*) noexcept override {} // the descriptor says it
 
 private:
-    struct Raw; // what one recvmsg brought
+    /// What one system call brought, in its order; read by receive() one after the other.
+    struct Batch {
+        static constexpr std::size_t size = 8;
+        union Told { // by the kernel, of one frame
+            cmsghdr aligned;
+            char bytes[192];
+        };
+        std::array<can_frame, size> frames{};
+        std::array<iovec, size> parts{};
+        std::array<Told, size> told{};
+        std::array<mmsghdr, size> messages{};
+        std::size_t next = 0, filled = 0;
+        int error = 0;
+        bool is_last = false; ///< nothing waited behind it
+
+        void read_from(int fd) noexcept;
+        [[nodiscard]] bool is_empty() const noexcept TAPPET_REALTIME { return next == filled; }
+    };
+    struct Raw;
     Receive judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME;
     void hand_over(Time now) noexcept TAPPET_REALTIME;
     std::expected<void, Sentence> set_options(const Settings& settings);
@@ -52,6 +73,7 @@ private:
     Sentence found_{};
     std::uint32_t drops_seen_ = 0;
     Arrivals arrivals_{};
+    Batch batch_{};
     Controller controller_{};
 };
 

@@ -166,6 +166,10 @@ constexpr Sentence register_fault(const Row& row, const Register& r) noexcept {
                         " among ",
                         name_of(row.run.table),
                         ": take bit() for coils and discrete inputs, words elsewhere"};
+    if (r.low_word_first && r.width() == 1)
+        return Sentence{who, " is swapped, but has one word; write bytes_swapped(), or take swapped() away"};
+    if (r.low_byte_first && r.kind == Kind::bit)
+        return Sentence{who, " is a bit and has no bytes to swap; take bytes_swapped() away"};
     if (std::uint32_t{r.at} + r.width() > row.run.count)
         return Sentence{who, " reaches outside its row of ", row.run.count,
                         " ", name_of(row.run.table),         ": move it or lengthen the row"};

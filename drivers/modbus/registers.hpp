@@ -30,12 +30,15 @@ enum class Kind : std::uint8_t {
     float_double
 };
 
-/// physical = raw * factor + offset; double words come with the higher word first unless said otherwise.
+/// physical = raw * factor + offset. Double words come with the higher word first, words with the higher byte
+/// first (Modbus application protocol 1.1b3, section 4.2), unless said otherwise, which devices often do: of
+/// the four bytes ABCD swapped() takes CDAB, bytes_swapped() BADC, both DCBA.
 struct Register {
     std::string_view name{};
     std::uint16_t at = 0; ///< counted from the row's address
     Kind kind = Kind::unsigned_word;
     bool low_word_first = false;
+    bool low_byte_first = false;
     double factor = 1;
     double offset = 0;
     std::string_view unit{};
@@ -53,6 +56,11 @@ struct Register {
     constexpr Register swapped() const noexcept {
         Register copy = *this;
         copy.low_word_first = true;
+        return copy;
+    }
+    constexpr Register bytes_swapped() const noexcept {
+        Register copy = *this;
+        copy.low_byte_first = true;
         return copy;
     }
     constexpr Register times(double new_factor) const noexcept {
@@ -101,7 +109,12 @@ constexpr Register float_word(std::string_view name, std::uint16_t at) noexcept 
 /// The words as they stand in the server; a bit is one word of 0 or 1.
 using Words = std::array<std::uint16_t, 2>;
 
+constexpr std::uint16_t in_order(const Register& r, std::uint16_t word) noexcept {
+    return r.low_byte_first ? std::byteswap(word) : word;
+}
+
 constexpr double to_physical(const Register& r, Words words) noexcept {
+    for (std::uint16_t& word : words) word = in_order(r, word);
     const std::uint32_t high = r.low_word_first ? words[1] : words[0];
     const std::uint32_t low = r.low_word_first ? words[0] : words[1];
     const std::uint32_t both = high << 16 | low;
@@ -142,8 +155,8 @@ constexpr Encoded to_words(const Register& r, double physical) noexcept {
         both = std::bit_cast<std::uint32_t>(static_cast<float>(kept));
     else
         both = static_cast<std::uint32_t>(static_cast<std::int64_t>(kept < 0 ? kept - 0.5 : kept + 0.5));
-    const auto low_word = static_cast<std::uint16_t>(both & 0xFFFFu);
-    const auto high_word = static_cast<std::uint16_t>(both >> 16);
+    const auto low_word = in_order(r, static_cast<std::uint16_t>(both & 0xFFFFu));
+    const auto high_word = in_order(r, static_cast<std::uint16_t>(both >> 16));
     if (r.width() == 1) return {.words = {low_word, 0}, .saturated = saturated};
     if (r.low_word_first) return {.words = {low_word, high_word}, .saturated = saturated};
     return {.words = {high_word, low_word}, .saturated = saturated};

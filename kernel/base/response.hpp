@@ -1,5 +1,5 @@
-// Worst cases of time in whole nanoseconds: what an analysis answers, spans that never overflow, and the fixed
-// points by which it finds them. All of it runs in constant expressions.
+// Worst cases of time in whole nanoseconds: what an analysis answers, spans that never overflow, and the
+// fixed points by which it finds them. All of it runs in constant expressions.
 #pragma once
 
 #include <cstddef>

@@ -5,9 +5,9 @@
 
 using namespace tappet;
 
-constexpr auto signals =
-    can::signal_map(can::receive(can::standard(0x181), "drive", can::bytes(2), can::every(10ms), can::signal("speed", 0, 16)),
-                    can::transmit(can::standard(0x201), "command", can::bytes(2), can::every(10ms),
-                                  can::signal("speed", 0, 16).safe(0)));
+constexpr auto signals = can::signal_map(
+    can::receive(can::standard(0x181), "drive", can::bytes(2), can::every(10ms), can::signal("speed", 0, 16)),
+    can::transmit(can::standard(0x201), "command", can::bytes(2), can::every(10ms),
+                  can::signal("speed", 0, 16).safe(0)));
 
 double told_speed(can::FarEnd<signals>& far) { return far.get("command.sped"); }

@@ -35,6 +35,14 @@ struct Camera {
     static constexpr std::string_view device_kind = "udp";
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
+struct SlowBus {
+    static constexpr std::string_view device_kind = "can";
+    static constexpr Sentence analyse(const DeviceUse& use, std::span<TrafficRow>) {
+        return Sentence{"no frame comes through at ", use.bit_rate, " bit/s; run it faster"};
+    }
+    static constexpr DeviceTraffic device_traffic{1, &analyse, nullptr};
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
 struct Recorder {
     static constexpr bool records_cycles = true;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
@@ -368,6 +376,15 @@ constexpr Fault board_faults[] = {
      R"(loom: binding to board "old box": place("hall") stands there twice; remove one)"},
     {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0"); },
      R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): device "can0" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the board's row)"},
+    {"traffic_too_much",
+     [](Table& m) {
+         m.add(component<SlowBus>("slow", device("slow-can")));
+         m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("encoder", "slow")));
+         static_cast<void>(m.board.devices.push(board_device("can1", "can", "can1", bit_rate(10'000))));
+         static_cast<void>(m.binding.devices.push(wired("slow-can", "can1")));
+     },
+     R"(loom: component "slow": board "old box", device "can1": no frame comes through at 10000 bit/s; run it faster)"},
     {"board_gpio_lines", [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0"); },
      R"(loom: component "lamps": binding to board "old box", wired("panel"): device "io" states no number of lines; add lines(32), or how many it has, to the board's row)"},
     {"placement_processor", [](Table& m) { m.binding.placement[0] = place("motion", 2); },

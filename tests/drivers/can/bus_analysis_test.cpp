@@ -148,6 +148,12 @@ TEST(BusAnalysis, of_ours_waits_behind_what_is_in_flight_and_what_passes_that) {
     EXPECT_EQ((BusAnalysis{frames, {.bit_ns = 2 * us}}.of(0).response), worst(540 * us));
 }
 
+TEST(BusAnalysis, of_ours_counts_an_error_that_spoils_what_is_in_flight) {
+    const std::array frames{ours(100 * us, 10 * ms), ours(400 * us, 10 * ms)};
+    const BusAnalysis bus{frames, {.bit_ns = 1 * us, .errors = 1}};
+    EXPECT_EQ(bus.of(0).response, worst(100 * us + 400 * us + 431 * us + 100 * us));
+}
+
 TEST(BusAnalysis, of_ours_on_one_grid_waits_for_no_less_urgent_one_that_is_through) {
     std::vector frames(6, of_others(270 * us, 10 * ms));
     frames.front() = frames.back() = ours(270 * us, 10 * ms);

@@ -413,7 +413,7 @@ TEST_F(CanBus, tries_again_soon_when_the_kernel_had_no_room_for_a_frame) {
     begin(device);
     master->writes_target = false; // no cyclic frame brings it out
     run_until(10ms);
-    device.no_room_for = 3;
+    device.no_room_for = 4; // twice in the cycle in which it is demanded
     demand(1, 1);
     run_until(13ms);
     EXPECT_EQ(device.sent, 0);

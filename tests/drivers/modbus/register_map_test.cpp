@@ -22,11 +22,31 @@ TEST(Registers, read_words_as_their_kind_says) {
     EXPECT_EQ(to_physical(bit("b", 0), {1, 0}), 1.0);
 }
 
+// The four orders in which devices have the bytes of 0x12345678.
+TEST(Registers, take_double_words_in_any_order_of_bytes) {
+    constexpr double value = 0x12345678;
+    const Register d = double_word("d", 0);
+    const struct {
+        Register order;
+        Words words;
+    } cases[] = {{d, {0x1234, 0x5678}},
+                 {d.swapped(), {0x5678, 0x1234}},
+                 {d.bytes_swapped(), {0x3412, 0x7856}},
+                 {d.swapped().bytes_swapped(), {0x7856, 0x3412}}};
+    for (const auto& each : cases) {
+        EXPECT_EQ(to_physical(each.order, each.words), value);
+        EXPECT_EQ(to_words(each.order, value).words, each.words);
+    }
+    EXPECT_EQ(to_physical(word("w", 0).bytes_swapped().as_signed(), {0xFEFF, 0}), -2.0);
+    EXPECT_EQ(to_words(float_word("f", 0).bytes_swapped(), 1.5).words, (Words{0xC03F, 0x0000}));
+}
+
 TEST(Registers, come_back_as_they_went_in) {
     Random random{4};
     for (int i = 0; i < 1000; ++i) {
         const double value = static_cast<double>(random.between(-2147483648ll, 2147483647ll));
-        for (const Register& r : {double_word("d", 0).as_signed(), double_word("d", 0).as_signed().swapped()})
+        const Register d = double_word("d", 0).as_signed();
+        for (const Register& r : {d, d.swapped(), d.bytes_swapped(), d.swapped().bytes_swapped()})
             EXPECT_EQ(to_physical(r, to_words(r, value).words), value);
     }
 }
@@ -106,6 +126,13 @@ TEST(RegisterMap, refuses_to_overwrite_unnamed_registers) {
     EXPECT_EQ(fault(write("r", holding_registers(0, 3), every(1s), stale_after(5s), word("w", 0).safe(0))),
               "row \"r\" writes 3 holding registers and names 1: name all, or what is not named would be "
               "overwritten with 0");
+}
+
+TEST(RegisterMap, refuses_to_swap_what_has_nothing_to_swap) {
+    EXPECT_EQ(fault(row(holding_registers(0, 2), word("w", 1).swapped())),
+              "register \"r.w\" is swapped, but has one word; write bytes_swapped(), or take swapped() away");
+    EXPECT_EQ(fault(row(coils(0, 2), bit("b", 1).bytes_swapped())),
+              "register \"r.b\" is a bit and has no bytes to swap; take bytes_swapped() away");
 }
 
 TEST(RegisterMap, refuses_registers_outside_their_row_or_over_each_other) {

@@ -47,7 +47,7 @@ struct Follower {
 // clang-format off
 inline constexpr auto signals = can::signal_map(
     can::receive(can::standard(wire::request), "request", can::bytes(8), can::on_demand(1ms), can::signal("number", 0, 32)),
-    can::transmit(can::standard(wire::answer), "answer", can::bytes(8), can::on_demand(1ms), can::signal("number", 0, 32)).safe_by_silence());
+    can::transmit(can::standard(wire::answer), "answer", can::bytes(8), can::on_demand(2ms), can::signal("number", 0, 32)).safe_by_silence());
 inline constexpr auto lines = gpio::line_map(gpio::sensor("in"), gpio::actuator("out", gpio::safe(false)));
 
 inline constexpr auto table = machine("answering",
@@ -67,7 +67,7 @@ inline constexpr auto table = machine("answering",
 
 inline constexpr Board board{
     .name = "bench", .world = "bench", .memory_budget_bytes = 4 * 1024 * 1024, .processors = 1, .highest_priority = 80,
-    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(500'000)), board_device("panel", "gpio", "/dev/panel", tappet::lines(32))),
+    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000)), board_device("panel", "gpio", "/dev/panel", tappet::lines(32))),
     .only_warned = warn_only("clock-source", "cpu-governor", "heap-sealed")};
 
 inline constexpr Binding bound = binding(wired("can", "can0"), wired("io", "panel", line("in", wire::in), line("out", wire::out)));
