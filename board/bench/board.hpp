@@ -23,9 +23,9 @@ inline constexpr Board bench{
     .kernel_command_line = "quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests",
     // Of its image, which makes its CAN interfaces and lines itself: nothing of them leaves the guest.
     .image = {.modules = kernel_modules("nvme async_probe", "can-raw", "vcan", "gpio-sim",
-                                        "i6300esb heartbeat=20", "ext4"),
-              .later_modules = kernel_modules("xhci-pci", "usb-storage", "sd_mod", "vfat", "nls_cp437",
-                                              "nls_ascii", "button", "evdev", "e1000e"),
+                                        "i6300esb heartbeat=20", "ext4", "vfat", "nls_cp437", "nls_ascii"),
+              .later_modules =
+                  kernel_modules("xhci-pci", "usb-storage", "sd_mod", "button", "evdev", "e1000e"),
               .consoles = consoles("ttyS0"),
               .networks = networks(ethernet("eth0", "10.0.2.15/24")), // as the emulator's own network has it
               .service_port = 4848},

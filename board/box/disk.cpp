@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Partitions by name, and the loader's file in a slot.
+// Partitions by name; the data partition.
 #include "board/box/disk.hpp"
-
-#include "board/box/update.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -17,38 +15,6 @@
 #include <unistd.h>
 
 namespace tappet::box {
-
-namespace {
-
-constexpr const char* slot_folder = "/run/slot";
-constexpr const char* kernel_file = "tappet.efi";
-constexpr std::size_t sector_bytes = 512;
-
-class MountedSlot {
-public:
-    MountedSlot(const std::string& device, unsigned long flags) {
-        init::make_folder(slot_folder);
-        is_there_ = ::mount(device.c_str(), slot_folder, "vfat", flags | MS_NOSUID | MS_NODEV | MS_NOEXEC,
-                            "codepage=437,iocharset=ascii") == 0;
-    }
-    ~MountedSlot() {
-        const int error = errno;
-        if (is_there_) ::umount(slot_folder);
-        errno = error;
-    }
-    MountedSlot(const MountedSlot&) = delete;
-    MountedSlot& operator=(const MountedSlot&) = delete;
-
-    [[nodiscard]] bool is_there() const { return is_there_; }
-    [[nodiscard]] static std::string file(std::string_view name) {
-        return std::string{slot_folder} + "/" + std::string{name};
-    }
-
-private:
-    bool is_there_ = false;
-};
-
-} // namespace
 
 std::expected<std::string, std::string> find_partition(const std::string& name) {
     std::string found;
@@ -194,157 +160,6 @@ init::Done write_through(const std::string& path, int how, std::string_view byte
     if (file >= 0) ::close(file);
     errno = error;
     return written ? init::Done{} : init::failed("write " + path);
-}
-
-namespace {
-
-std::string state_file() { return MountedSlot::file(init::boot_state_file); }
-
-std::expected<init::BootState, std::string> read_state(const std::string& device, std::string& header) {
-    const MountedSlot slot{device, MS_RDONLY};
-    if (!slot.is_there()) return init::failed("mount " + device);
-    header = init::read_text(MountedSlot::file(header_file));
-    auto state = init::decode(init::read_text(state_file()));
-    if (!state)
-        return std::unexpected(std::string{init::boot_state_file} + " of " + device + " " + state.error());
-    return state;
-}
-
-/// A file system without a file, whatever a power cut left of the one before: clusters of no file would fill
-/// the slot, and a torn table would refuse every version. Its first sector, which says how it is laid out, is
-/// nowhere written.
-init::Done empty_slot(const std::string& device) {
-    const int disk = ::open(device.c_str(), O_RDWR | O_EXCL | O_CLOEXEC);
-    std::array<unsigned char, sector_bytes> head{};
-    bool done = disk >= 0 && ::pread(disk, head.data(), head.size(), 0) == sector_bytes;
-    const auto word = [&](std::size_t at) { return head[at] + 256U * head[at + 1]; };
-    const std::size_t tables = head[16], table_bytes = word(22) * sector_bytes, root_bytes = word(17) * 32;
-    if (done && (word(11) != sector_bytes || tables == 0 || table_bytes == 0)) {
-        ::close(disk);
-        return std::unexpected(device + " has no file system of ours; flash the box anew");
-    }
-    std::string area(tables * table_bytes + root_bytes, '\0');
-    for (std::size_t i = 0; done && i < tables; ++i)
-        area.replace(i * table_bytes, 4, {static_cast<char>(head[21]), '\xff', '\xff', '\xff'});
-    done = done && ::pwrite(disk, area.data(), area.size(), word(14) * sector_bytes) == std::ssize(area) &&
-           ::fsync(disk) == 0;
-    const int error = errno;
-    if (disk >= 0) ::close(disk);
-    errno = error;
-    return done ? init::Done{} : init::failed("empty " + device);
-}
-
-init::Done write_state(const std::string& device, const init::BootState& state) {
-    const MountedSlot slot{device, 0};
-    if (!slot.is_there()) return init::failed("mount " + device);
-    return write_through(state_file(), O_CREAT,
-                         init::encode(state)); // not shortened first: it is of one length
-}
-
-} // namespace
-
-init::Done Slots::look() {
-    init::Done all_well{};
-    for (std::size_t i = 0; i < slots_.size(); ++i) {
-        slots_[i].state.state = init::SlotState::failed;
-        const auto device = find_partition(slot_partitions[i]);
-        const auto state = device ? read_state(*device, slots_[i].header) : std::unexpected(device.error());
-        if (device) slots_[i].device = *device;
-        if (!state) {
-            all_well = std::unexpected(state.error());
-            continue;
-        }
-        slots_[i].state = *state;
-        if (state->state != init::SlotState::testing) continue;
-        trial_ = i;
-        revision_ = state->revision;
-    }
-    return all_well;
-}
-
-init::Done Slots::end_trial(init::SlotState how) {
-    if (!on_trial()) return {};
-    Slot& slot = slots_[trial_];
-    slot.state.state = how;
-    const auto written = write_state(slot.device, slot.state);
-    if (written) trial_ = none;
-    return written;
-}
-
-std::array<const Slots::Slot*, 2> Slots::in_order() const {
-    const auto rank = [&](const Slot& slot) {
-        return slot.state.state == init::SlotState::failed ? 0 : slot.state.revision;
-    };
-    const std::size_t running = on_trial() ? trial_ : rank(slots_[0]) >= rank(slots_[1]) ? 0 : 1;
-    return {&slots_[running], &slots_[1 - running]};
-}
-
-std::expected<std::size_t, std::string> Slots::free_slot() const {
-    if (on_trial())
-        return std::unexpected("revision " + std::to_string(revision_) + " is on trial; that must end first");
-    const auto [running, other] = in_order();
-    if (running->state.state == init::SlotState::failed || other->device.empty())
-        return std::unexpected("the disk has no two slots; flash the box anew");
-    return static_cast<std::size_t>(other - slots_.data());
-}
-
-namespace {
-/// Of the slot's file system, as the loader looks for it.
-std::string label_of(std::size_t slot) { return slot == 0 ? "SLOTA" : "SLOTB"; }
-} // namespace
-
-init::Done Slots::put_on_trial(std::size_t slot, std::uint16_t watchdog_s) {
-    init::BootState next;
-    next.kernel = "C:" + label_of(slot) + ":" + kernel_file;
-    next.revision = std::max(slots_[0].state.revision, slots_[1].state.revision) + 1;
-    next.watchdog_s = watchdog_s;
-    next.state = init::SlotState::installed;
-    return write_state(slots_[slot].device, next);
-}
-
-init::Done Slots::install(std::string_view kernel, std::string_view header) {
-    const auto free = free_slot();
-    if (!free) return std::unexpected(free.error());
-    const std::string& device = slots_[*free].device;
-    std::string label; // UTF-16
-    for (const char character : label_of(*free)) label += {character, '\0'};
-    const std::array<std::pair<std::string_view, std::string_view>, 3> files{
-        {{"EFILABEL", label}, {kernel_file, kernel}, {header_file, header}}};
-    if (auto emptied = empty_slot(device); !emptied) return emptied;
-    {
-        const MountedSlot slot{device, 0};
-        if (!slot.is_there()) return init::failed("mount " + device);
-        for (const auto& [name, bytes] : files)
-            if (auto written = write_through(MountedSlot::file(name), O_CREAT, bytes); !written)
-                return written;
-    }
-    { // mounted anew, it is read from the disk
-        const MountedSlot slot{device, MS_RDONLY};
-        for (const auto& [name, bytes] : files)
-            if (!slot.is_there() || init::read_text(MountedSlot::file(name)) != bytes)
-                return std::unexpected(device + " does not keep what is written to it; change the disk");
-    }
-    return put_on_trial(*free, in_order()[0]->state.watchdog_s);
-}
-
-init::Done Slots::give_up_running() {
-    Slot& slot = slots_[static_cast<std::size_t>(in_order()[0] - slots_.data())];
-    slot.state.state = init::SlotState::failed;
-    slot.state.revision = 0; // as the loader leaves one that failed: it looks at the revision alone
-    return write_state(slot.device, slot.state);
-}
-
-bool is_harmed(const Slots::Slot& slot) {
-    const MountedSlot mounted{slot.device, MS_RDONLY};
-    return mounted.is_there() && !is_of(slot.header, init::read_text(MountedSlot::file(kernel_file)));
-}
-
-init::Done Slots::roll_back() {
-    const auto free = free_slot();
-    if (!free) return std::unexpected(free.error());
-    if (slots_[*free].state.state == init::SlotState::failed)
-        return std::unexpected("the other slot holds a version that failed, or none; bring an update");
-    return put_on_trial(*free, slots_[*free].state.watchdog_s);
 }
 
 } // namespace tappet::box

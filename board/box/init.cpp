@@ -39,6 +39,7 @@ constexpr double patience_s = 5.0; // for hardware that comes late
 constexpr int no_firmware = -1;
 constexpr int wrong_set_up = 2;          // Ending::wrong_set_up: nothing was touched
 constexpr double stop_patience_s = 15.0; // for the firmware's orderly end
+constexpr double gone_patience_s = 2.0;  // for the end of what is killed
 constexpr double again_after_s = 1.0;
 constexpr double renewal_patience_s = 300.0;
 constexpr int starts_anew = 1;
@@ -57,6 +58,7 @@ public:
     [[noreturn]] void live() {
         begin();
         bring_up_to_arm();
+        look_at_slots();
         start_plant();
         if (may_start_)
             start_firmware();
@@ -111,6 +113,27 @@ private:
             voice_.say("the firmware is not started: without the data partition it has no settings");
     }
 
+    /// Which version runs must be known before it touches anything.
+    void look_at_slots() {
+        watchdog_.kick(os::Clock::monotonic());
+        if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
+        const Verdict verdict = judge_fallback(slots_);
+        if (!verdict.said.empty()) voice_.say(verdict.said);
+        if (verdict.starts_anew) restart();
+        if (slots_.on_trial())
+            voice_.say("revision " + std::to_string(slots_.running().state.revision) + " is on trial");
+        if (verdict.said.empty() && slots_.other().state.state == init::SlotState::failed)
+            voice_.say(slots_.other().record.standing == Standing::untried
+                           ? "what lies in the other slot failed its trial; what it said last stands in " +
+                                 log_file
+                           : "what lies in the other slot is " + standing_of(slots_.other()));
+        stage("the slots");
+    }
+
+    void compare_slots() {
+        if (const auto begun = slot_check_.begin(slots_); !begun) voice_.say(begun.error());
+    }
+
     /// Once; what is late is looked for again, see await_networks().
     void bring_up_rest() {
         if (std::exchange(has_all_, true)) return;
@@ -118,17 +141,11 @@ private:
         networks_ = networks_of(facts_);
         await_networks_until_s_ = uptime_s() + patience_s;
         await_networks();
-        if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
-        if (slots_.on_trial()) voice_.say("revision " + std::to_string(slots_.revision()) + " is on trial");
-        const auto [running, other] = slots_.in_order();
-        if (other->state.state == init::SlotState::failed)
-            voice_.say("what lies in the other slot failed its trial; what it said last stands in " +
-                       log_file);
         ears_.open_power_buttons();
         nonce_ = new_nonce(); // it waits until the kernel has gathered enough by chance
         start_service();
-        if (!slots_.on_trial()) slot_check_.begin(slots_);
-        voice_.say("networks, slots, buttons and service, for which no machine waits: " +
+        if (!slots_.on_trial()) compare_slots();
+        voice_.say("networks, buttons and service, for which no machine waits: " +
                    text_of_seconds(uptime_s() - before_s));
     }
 
@@ -138,11 +155,6 @@ private:
         if (!bring_up(networks_, modules_, Modules::Which::all, voice_) && !is_over) return;
         tell_missing(networks_, voice_);
         await_networks_until_s_ = 0.0;
-    }
-
-    bool on_trial() {
-        bring_up_rest();
-        return slots_.on_trial();
     }
 
     init::Done take_data_partition() {
@@ -171,7 +183,7 @@ private:
     /// The layout that was in use last, and proven. A trial that fails has changed nothing of it.
     void note_layout() {
         const std::string layout = facts_.one("layout");
-        if (on_trial() || init::read_line(layout_file) == layout) return;
+        if (slots_.on_trial() || init::read_line(layout_file) == layout) return;
         if (const auto kept = write_through(layout_file + ".new", O_CREAT | O_TRUNC, layout + "\n"); !kept)
             voice_.say(kept.error());
         else
@@ -194,15 +206,13 @@ private:
     /// For who asks over the network.
     void tell_status() const {
         if (facts_.one("service").empty() || !has_all_) return;
-        const auto [running, other] = slots_.in_order();
         std::string text = "machine " + facts_.one("machine") + ", board " + facts_.one("board") + ", " +
                            (is_locked_down_ ? "Secure Boot" : "no Secure Boot") + "\n";
-        for (const Slots::Slot* slot : {running, other}) {
+        for (const Slot* slot : {&slots_.running(), &slots_.other()}) {
             const Manifest manifest = manifest_of(slot->header);
-            text += std::string{slot == running ? "runs" : "other"} + ": version " +
+            text += std::string{slot == &slots_.running() ? "runs" : "other"} + ": version " +
                     (manifest.version == 0 ? "unknown" : std::to_string(manifest.version)) + ", revision " +
-                    std::to_string(slot->state.revision) + ", " +
-                    std::string{init::name_of(slot->state.state)} + "\n";
+                    std::to_string(slot->state.revision) + ", " + standing_of(*slot) + "\n";
         }
         text += std::string{"firmware: "} +
                 (firmware_ == no_firmware ? "does not run"
@@ -273,7 +283,7 @@ private:
             bring_up_rest();
         if (again_at_s_ != 0.0 && uptime_s() >= again_at_s_) {
             again_at_s_ = 0.0;
-            if (on_trial()) restart();
+            if (slots_.on_trial()) restart();
             start_firmware();
         }
     }
@@ -304,19 +314,20 @@ private:
                 tell_status();
             } else if (notice == "X_TAPPET_OUTPUTS=safe") {
                 outputs_are_safe_ = true;
-            } else if (notice.starts_with("X_TAPPET_LATE=") && on_trial() && !is_ending_) {
+            } else if (notice.starts_with("X_TAPPET_LATE=") && slots_.on_trial() && !is_ending_) {
                 voice_.say(
                     "activity \"" + std::string{notice.substr(notice.find('=') + 1)} +
                     "\" missed its deadline on trial: the machine is stopped, and the box goes back to "
                     "the other slot");
                 restart();
-            } else if (notice == "X_TAPPET_PROVEN=1" && on_trial()) {
+            } else if (notice == "X_TAPPET_PROVEN=1" && slots_.on_trial()) {
                 const double before = uptime_s();
-                const auto ended = slots_.end_trial(init::SlotState::good);
-                voice_.say(ended ? "revision " + std::to_string(slots_.revision()) +
+                const auto ended = slots_.end_trial();
+                voice_.say(ended ? "revision " + std::to_string(slots_.running().state.revision) +
                                        " has proven itself and stays, written in " +
                                        text_of_seconds(uptime_s() - before)
                                  : "the trial is not over: " + ended.error());
+                if (ended) compare_slots();
                 note_layout();
                 tell_status();
             }
@@ -342,7 +353,10 @@ private:
                 end_in_order("the end of its plant", false);
             }
             if (pid == firmware_) firmware_ended(code);
-            if (const std::string said = slot_check_.end(pid, code, slots_); !said.empty()) voice_.say(said);
+            if (const std::string said = slot_check_.end(pid, code, slots_); !said.empty()) {
+                voice_.say(said);
+                tell_status();
+            }
             if (pid == service_) {
                 may_start_service_ = code != 1; // it has said why
                 start_service();
@@ -355,6 +369,7 @@ private:
         pass_on();
         take_notices();
         if (is_ending_) return;
+        bring_up_rest();
         last_ending_ = "the firmware ended with code " + std::to_string(code) + " after " +
                        text_of_seconds(uptime_s() - start_s_) + "; it said last: " + last_words_;
         voice_.say(last_ending_);
@@ -366,7 +381,7 @@ private:
         }
         if (code == 0) {
             voice_.say("it was asked to end; the power may go");
-        } else if (on_trial()) {
+        } else if (slots_.on_trial()) {
             voice_.say("it was on trial: the box goes back to the other slot");
             again_at_s_ = uptime_s() + tell_trial_s;
         } else if (may_start_again()) {
@@ -402,6 +417,10 @@ private:
         }
         if (firmware_ != no_firmware) voice_.say("the firmware does not end; it is killed");
         ::kill(-1, SIGKILL);
+        // With them go what they have open, and what they have mounted.
+        for (const double gone_s = uptime_s() + gone_patience_s;
+             ::waitpid(-1, nullptr, WNOHANG) >= 0 && uptime_s() < gone_s;)
+            init::pause_for(milliseconds{1});
         ::sync();
         voice_.let_go();
         if (!data_device_.empty() && ::umount(data_folder) != 0)
@@ -409,15 +428,13 @@ private:
         watchdog_.stand_down();
     }
 
-    /// A trial goes on at the next boot: who switched off has not judged it.
+    /// A trial, and a start, goes on at the next boot: who switched off has not judged it.
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
         bring_up_rest();
         voice_.say(by + " ends it");
         stop_everything();
+        if (const auto kept = slots_.keep_trial(); !kept) voice_.say(kept.error());
         again |= !again && renew_under_watchdog();
-        if (on_trial())
-            if (const auto kept = slots_.end_trial(init::SlotState::installed); !kept)
-                voice_.say(kept.error());
         voice_.say(again ? "restart" : "power off");
         if (again) init::restart_box();
         init::power_off();

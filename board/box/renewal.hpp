@@ -6,6 +6,7 @@
 #include "board/box/disk.hpp"
 #include "board/box/facts.hpp"
 #include "board/box/modules.hpp"
+#include "board/box/slots.hpp"
 #include "board/box/update.hpp"
 #include "board/box/voice.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels against the sums in their headers.
+// Kernels against the sums in their headers, and what follows.
 #include "board/box/slot_check.hpp"
 
 #include "board/box/update.hpp"
@@ -15,37 +15,65 @@ namespace tappet::box {
 
 namespace {
 
-constexpr int running_is_harmed = 1, other_is_harmed = 2;
+constexpr int running_is_harmed = 1, other_is_harmed = 2, not_looked = 4;
+
+std::string version_in(const Slot& slot) {
+    const std::uint32_t version = manifest_of(slot.header).version;
+    return version == 0 ? "the version in the other slot" : "version " + std::to_string(version);
+}
+
+/// It could boot, or could if the loader's file were not torn.
+bool is_of_use(const Slot& slot) {
+    return slot.state.state != init::SlotState::failed || slot.record.standing == Standing::proven;
+}
+
+const char* found(int code, bool gives_up) {
+    if (code >= not_looked) return "the slots were not compared with what was written there";
+    if (code == 0) return "both slots hold what was written there: the start is over";
+    if (code == other_is_harmed)
+        return "the kernel in the other slot is not what was written there: it is of no use; bring an update";
+    return gives_up ? "the kernel in the slot that runs is not what was written there: a byte changed on the "
+                      "disk; from the next start on the other slot is used"
+                    : "the kernel in the slot that runs is not what was written there, and the other slot is "
+                      "of no use; bring an update before the box is switched off";
+}
 
 } // namespace
 
-void SlotCheck::begin(const Slots& slots) {
+Verdict judge_fallback(Slots& slots) {
+    if (!is_fallback(slots.running(), slots.other())) return {};
+    const std::string begin = "the last start of " + version_in(slots.other()) +
+                              " in the other slot did not come to its end, ",
+                      end = ": it is given up, and what runs stays; bring an update";
+    if (const auto judged = slots.judge_other(); !judged)
+        return {begin + "and it cannot be judged: " + judged.error()};
+    if (slots.other().record.standing == Standing::harmed)
+        return {begin + "and its kernel is not what was written there, a byte changed on the disk" + end};
+    if (slots.other().record.standing == Standing::silent)
+        return {begin + "as those before it, though its kernel is whole" + end};
+    return {begin + "by a power cut, or it hung; its kernel is whole: the box goes back to it", true};
+}
+
+init::Done SlotCheck::begin(const Slots& slots) {
     child_ = ::fork();
-    if (child_ != 0) return;
+    if (child_ < 0) return init::failed("the slots are not compared with their sums");
+    if (child_ != 0) return {};
     sched_param idle{};
     ::sched_setscheduler(0, SCHED_IDLE, &idle);
     // What it mounts is its own, and goes with it.
     if (::unshare(CLONE_NEWNS) != 0 || ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0)
-        ::_exit(0);
-    const auto [running, other] = slots.in_order();
-    const auto harm = [](const Slots::Slot& slot, int code) {
-        return slot.state.state != init::SlotState::failed && is_harmed(slot) ? code : 0;
-    };
-    ::_exit(harm(*running, running_is_harmed) + harm(*other, other_is_harmed));
+        ::_exit(not_looked);
+    ::_exit((is_harmed(slots.running()) ? running_is_harmed : 0) +
+            (is_of_use(slots.other()) && is_harmed(slots.other()) ? other_is_harmed : 0));
 }
 
 std::string SlotCheck::end(pid_t pid, int code, Slots& slots) {
     if (pid != child_) return {};
     child_ = -1;
-    if (code > running_is_harmed + other_is_harmed || code == 0) return {}; // it was ended, or all is well
-    if (code == other_is_harmed)
-        return "the kernel in the other slot is not what was written there: it is of no use; bring an update";
-    if (code != running_is_harmed || slots.in_order()[1]->state.state != init::SlotState::good)
-        return "the kernel in the slot that runs is not what was written there, and the other slot is of no "
-               "use; bring an update before the box is switched off";
-    const auto given_up = slots.give_up_running();
-    return "the kernel in the slot that runs is not what was written there: a byte changed on the disk; " +
-           (given_up ? std::string{"from the next start on the other slot is used"} : given_up.error());
+    const int harm = code < not_looked ? code : 0; // else it was ended, and the slots are as they were
+    const bool gives_up = harm == running_is_harmed && slots.other().is_good();
+    const auto done = gives_up ? slots.give_up_running() : slots.end_start((harm & other_is_harmed) == 0);
+    return found(code, gives_up) + (done ? "" : "; what follows of it is not written: " + done.error());
 }
 
 } // namespace tappet::box

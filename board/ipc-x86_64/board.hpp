@@ -33,15 +33,15 @@ inline constexpr Board ipc_x86_64{
         "audit=0 nosmt cpufreq.default_governor=performance mitigations=auto "
         "sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
     .image = {.modules = kernel_modules(
-                  // Disks, which are looked for while the others come; the data partition's file system.
-                  "nvme async_probe", "ahci async_probe", "sd_mod", "ext4",
+                  // Disks, which are looked for while the others come; the file systems of data and slots.
+                  "nvme async_probe", "ahci async_probe", "sd_mod", "ext4", "vfat", "nls_cp437", "nls_ascii",
                   // CAN controllers, and the watchdogs of the usual chip sets.
                   "can-raw", "peak_pci", "peak_pciefd", "kvaser_pci", "ems_pci", "i2c-i801",
                   "iTCO_wdt heartbeat=10 nowayout=1", "wdat_wdt nowayout=1",
                   "sp5100_tco heartbeat=10 nowayout=1", "i6300esb heartbeat=10 nowayout=1"),
               .later_modules = kernel_modules(
-                  // Sticks, and the slots' file system.
-                  "usb-storage", "xhci-pci", "ehci-pci", "vfat", "nls_cp437", "nls_ascii",
+                  // Sticks.
+                  "usb-storage", "xhci-pci", "ehci-pci",
                   // The port to the utility unit; the power button.
                   "igb", "igc", "e1000e", "r8169", "realtek", "button", "evdev"),
               .consoles = consoles("tty0", "ttyS0,115200"),

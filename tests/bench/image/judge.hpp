@@ -2,6 +2,8 @@
 // whether the data partition keeps the settings.
 #pragma once
 
+#include "board/box/slot.hpp"
+#include "board/box/update.hpp"
 #include "tests/bench/image/power_cut.hpp"
 #include "tests/bench/image/settings.hpp"
 #include "tests/toolchain/program.hpp"
@@ -10,6 +12,7 @@
 #include "toolchain/tools/image/tool.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -69,18 +72,21 @@ public:
                " bytes that may not be there: " + text.substr(0, 200);
     }
 
-    /// The loader's rule: the highest revision whose state is whole and has not failed; one that it finds in
-    /// its trial had it.
+    /// The loader's rule: the highest revision whose state is whole; one that it finds in its trial had it,
+    /// and then the one before. Then init's, which may go back to the other one.
     [[nodiscard]] std::optional<std::size_t> slot_that_boots() const {
-        std::optional<std::size_t> best;
-        std::uint32_t revision = 0;
-        for (const std::size_t slot : {1U, 2U}) {
-            const auto state = init::decode(file_in(image::partitions()[slot], "BGENV   DAT"));
-            const bool may = state && (state->state == init::SlotState::good ||
-                                       state->state == init::SlotState::installed);
-            if (may && state->revision > revision) best = slot, revision = state->revision;
-        }
-        return best;
+        std::array<box::Slot, 2> slots{slot(1), slot(2)};
+        const auto newest = [&] { return slots[0].state.revision >= slots[1].state.revision ? 0U : 1U; };
+        if (box::Slot& first = slots[newest()]; first.state.state == init::SlotState::testing)
+            first.state = {.state = init::SlotState::failed};
+        const std::size_t running = newest();
+        if (slots[running].state.revision == 0) return std::nullopt;
+        box::Slot& other = slots[1 - running];
+        if (!box::is_fallback(slots[running], other)) return running + 1;
+        const bool is_harmed =
+            !box::is_of(other.header, file_in(image::partitions()[2 - running], "TAPPET  EFI"));
+        return box::after_cut_short(other.record, is_harmed).standing == box::Standing::proven ? 2 - running
+                                                                                               : running + 1;
     }
 
     /// A table of clusters in which one is of no file, or of a file that has less or more of them.
@@ -95,6 +101,16 @@ public:
     }
 
 private:
+    [[nodiscard]] box::Slot slot(std::size_t number) const {
+        const image::Partition& partition = image::partitions()[number];
+        box::Slot slot{.device = partition.name,
+                       .state = {.state = init::SlotState::failed},
+                       .header = file_in(partition, "MANIFEST   "),
+                       .record = box::record_of(file_in(partition, "RECORD     "))};
+        if (const auto state = init::decode(file_in(partition, "BGENV   DAT"))) slot.state = *state;
+        return slot;
+    }
+
     /// As the loader reads it, by the first table; less than there was when its chain of clusters breaks.
     [[nodiscard]] std::string file_in(const image::Partition& partition, std::string_view name) const {
         const char* const slot = disk_bytes_.data() + partition.first_sector * image::sector_bytes;

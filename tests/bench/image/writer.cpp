@@ -3,6 +3,8 @@
 // forgotten, each of them once: that must be found.
 #include "board/box/disk.hpp"
 #include "board/box/modules.hpp"
+#include "board/box/slots.hpp"
+#include "board/box/update.hpp"
 #include "board/box/voice.hpp"
 #include "tests/bench/image/settings.hpp"
 
@@ -64,8 +66,11 @@ private:
         for (int i = 0; i < 20; ++i)
             if (auto saved = save(); !saved) return saved;
         if (auto filled = fill(); !filled) return filled;
-        for (int i = 0; i < 3; ++i)
+        for (int i = 0; i < 3; ++i) {
             if (auto updated = update(); !updated) return updated;
+            if (auto started = start(); !started) return started;
+        }
+        if (auto returned = cut_start_short(); !returned) return returned;
         for (const char* file : {"/run/slot/tappet.efi", "/run/slot/BGENV.DAT"}) {
             if (auto begun = begin(file, file); !begun) return begun;
             if (auto updated = update(); !updated) return updated;
@@ -135,23 +140,53 @@ private:
         if (auto marked = mark(); !marked) return marked;
         box::Slots slots;
         static_cast<void>(slots.look());
-        if (auto installed = slots.install(kernel_of_version(version_.most), "its header"); !installed)
-            return installed;
+        const std::string kernel = kernel_of_version(version_.most);
+        const std::string header = box::header_of({{.version = version_.most}, kernel, {}}, nullptr);
+        if (auto installed = slots.install(kernel, header); !installed) return installed;
         const std::uint32_t before = version_.least;
         version_.least = version_.most;
         if (auto marked = mark(); !marked) return marked;
         version_.least = before; // a cut in the trial goes back
         if (auto marked = mark(); !marked) return marked;
-        if (auto begun = begin_trial(); !begun) return begun;
+        if (auto begun = loader_makes(init::SlotState::testing, init::SlotState::installed); !begun)
+            return begun;
         if (const auto looked = slots.look(); !looked) return looked;
         if (!slots.on_trial()) return std::unexpected("there is no trial");
-        if (auto ended = slots.end_trial(init::SlotState::good); !ended) return ended;
+        if (auto ended = slots.end_trial(); !ended) return ended;
         version_.least = version_.most;
         return mark();
     }
 
-    /// What the loader does to the slot that it boots for the first time.
-    static init::Done begin_trial() {
+    /// Of the version that has proven itself, which is the only one that may boot then. Twice, since from
+    /// the first time on the loader writes too.
+    static init::Done start() {
+        for (int i = 0; i < 2; ++i) {
+            if (auto begun = loader_makes(init::SlotState::testing, init::SlotState::installed); !begun)
+                return begun;
+            box::Slots slots;
+            if (auto looked = slots.look(); !looked) return looked;
+            if (slots.on_trial()) return std::unexpected("a start is taken for a trial");
+            if (auto ended = slots.end_start(true); !ended) return ended;
+        }
+        return {};
+    }
+
+    /// The loader goes to the other slot, and init there back.
+    static init::Done cut_start_short() {
+        for (const auto from : {init::SlotState::installed, init::SlotState::testing}) {
+            const auto to =
+                from == init::SlotState::testing ? init::SlotState::failed : init::SlotState::testing;
+            if (auto made = loader_makes(to, from); !made) return made;
+        }
+        box::Slots slots;
+        if (auto looked = slots.look(); !looked) return looked;
+        if (!box::is_fallback(slots.running(), slots.other())) return std::unexpected("no fallback");
+        if (auto judged = slots.judge_other(); !judged) return judged;
+        return start();
+    }
+
+    /// What the loader does to the slot that it boots, or did not boot to its end.
+    static init::Done loader_makes(init::SlotState to, init::SlotState from) {
         for (const char* name : box::slot_partitions) {
             const auto partition = box::find_partition(name);
             if (!partition) return std::unexpected(partition.error());
@@ -160,8 +195,9 @@ private:
                 return init::failed("mount " + *partition);
             const std::string file = "/run/loader/" + std::string{init::boot_state_file};
             auto state = init::decode(init::read_text(file));
-            if (state && state->state == init::SlotState::installed) {
-                state->state = init::SlotState::testing;
+            if (state && state->state == from) {
+                state->state = to;
+                if (to == init::SlotState::failed) state->revision = 0;
                 static_cast<void>(init::write_text(file, init::encode(*state)));
             }
             ::umount("/run/loader");

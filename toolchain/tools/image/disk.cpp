@@ -2,6 +2,7 @@
 // Partitions laid out here, written by sgdisk, mtools and mke2fs, none of which needs root or a mount.
 #include "toolchain/tools/image/disk.hpp"
 
+#include "board/box/slot.hpp"
 #include "board/box/update.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
@@ -43,6 +44,8 @@ void write_slot(const fs::path& file, const Partition& partition, const DiskPart
     put(file, work / init::boot_state_file, std::string{init::boot_state_file});
     write_file(work / box::header_file, parts.header);
     put(file, work / box::header_file, std::string{box::header_file});
+    write_file(work / box::record_file, box::encode(box::Record{}));
+    put(file, work / box::record_file, std::string{box::record_file});
     put(file, parts.kernel, file_in_slot);
 }
 

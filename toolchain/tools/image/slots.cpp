@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolchain/tools/image/slots.hpp"
 
+#include "board/box/slot.hpp"
 #include "board/box/update.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/image/tool.hpp"
@@ -43,6 +44,14 @@ std::uint32_t install(const fs::path& disk, const fs::path& kernel) {
     const std::uint32_t of_a = rank(a), of_b = rank(b);
     if (of_a == 0 && of_b == 0) throw Fault(disk.string() + " has no slot that could boot; flash it anew");
     const Partition& slot = of_a < of_b ? a : b;
+    const Partition& other = of_a < of_b ? b : a;
+    const auto write_text = [&](const Partition& to, std::string_view name, const std::string& text) {
+        write_file(work / "text", text);
+        write(disk, to, work / "text", name);
+    };
+    init::BootState state = read_slot(disk, other).value();
+    state.state = init::SlotState::good; // it boots whatever becomes of the new version
+    write_text(other, init::boot_state_file, init::encode(state));
     write(disk, slot, kernel, file_in_slot);
     read(disk, slot, file_in_slot, work / "back");
     if (read_file(work / "back") != read_file(kernel))
@@ -50,12 +59,11 @@ std::uint32_t install(const fs::path& disk, const fs::path& kernel) {
                     "; take another disk");
     // What it is its header would tell, and that is an update's.
     run_tool({"mdel", "-i", place(disk, slot), "::" + std::string{box::header_file}}, Trouble::is_told);
-    init::BootState state = read_slot(disk, of_a < of_b ? b : a).value();
+    write_text(slot, box::record_file, box::encode(box::Record{}));
     state.kernel = kernel_of(slot);
     state.revision = std::max(of_a, of_b) + 1;
     state.state = init::SlotState::installed;
-    write_file(work / "state", init::encode(state));
-    write(disk, slot, work / "state", init::boot_state_file);
+    write_text(slot, init::boot_state_file, init::encode(state));
     return state.revision;
 }
 
