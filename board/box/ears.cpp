@@ -20,8 +20,11 @@
 namespace tappet::box {
 
 namespace {
+
 constexpr std::string_view notify_name{"\0tappet-init", 12};
-}
+constexpr int most_at_once = 16; // whoever talks without end is not listened to without end
+
+} // namespace
 
 init::Done Ears::open() {
     sigset_t all;
@@ -34,9 +37,10 @@ init::Done Ears::open() {
     address.sun_family = AF_UNIX;
     std::memcpy(address.sun_path, notify_name.data(), notify_name.size());
     const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + notify_name.size());
+    const int yes = 1;
     int ends[2] = {-1, -1};
-    if (notices_ < 0 || ::bind(notices_, reinterpret_cast<sockaddr*>(&address), length) != 0 ||
-        ::pipe2(ends, O_CLOEXEC) != 0)
+    if (notices_ < 0 || ::setsockopt(notices_, SOL_SOCKET, SO_PASSCRED, &yes, sizeof yes) != 0 ||
+        ::bind(notices_, reinterpret_cast<sockaddr*>(&address), length) != 0 || ::pipe2(ends, O_CLOEXEC) != 0)
         return init::failed("nothing of the firmware will be heard");
     prints_ = ends[0];
     mouth_ = ends[1];
@@ -60,14 +64,30 @@ void Ears::wait(std::chrono::milliseconds time) const {
 
 void Ears::take_prints(const std::function<void(std::string_view)>& take) const {
     std::array<char, 4096> text{};
-    for (ssize_t count = 0; (count = ::read(prints_, text.data(), text.size())) > 0;)
+    ssize_t count = 0;
+    for (int i = 0; i < most_at_once && (count = ::read(prints_, text.data(), text.size())) > 0; ++i)
         take({text.data(), static_cast<std::size_t>(count)});
 }
 
 void Ears::take_notices(const std::function<void(std::string_view)>& take) const {
     std::array<char, 256> text{};
-    for (ssize_t count = 0; (count = ::recv(notices_, text.data(), text.size(), 0)) > 0;)
-        take({text.data(), static_cast<std::size_t>(count)});
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(ucred))> about{};
+    for (int i = 0; i < most_at_once; ++i) {
+        iovec part{text.data(), text.size()};
+        msghdr message{};
+        message.msg_iov = &part;
+        message.msg_iovlen = 1;
+        message.msg_control = about.data();
+        message.msg_controllen = about.size();
+        const ssize_t count = ::recvmsg(notices_, &message, 0);
+        if (count <= 0) return;
+        // The service, which strangers talk to, reaches the socket too; it has nothing to say here.
+        const cmsghdr* const header = CMSG_FIRSTHDR(&message);
+        ucred sender{};
+        const bool is_told = header != nullptr && header->cmsg_type == SCM_CREDENTIALS;
+        if (is_told) std::memcpy(&sender, CMSG_DATA(header), sizeof sender);
+        if (is_told && sender.uid == ::getuid()) take({text.data(), static_cast<std::size_t>(count)});
+    }
 }
 
 void Ears::take_signals(const std::function<void(int)>& take) const {

@@ -19,7 +19,9 @@ public:
 
     /// Until something comes, or the time is over.
     void wait(std::chrono::milliseconds time) const;
+    /// Some of it; what is left makes the next wait short.
     void take_prints(const std::function<void(std::string_view piece)>& take) const;
+    /// Of who is of our own user: nobody else says that the machine has armed or has proven itself.
     void take_notices(const std::function<void(std::string_view notice)>& take) const;
     void take_signals(const std::function<void(int signal)>& take) const;
     [[nodiscard]] bool power_button_was_pressed() const;

@@ -184,19 +184,23 @@ private:
     void note_layout() {
         const std::string layout = facts_.one("layout");
         if (slots_.on_trial() || init::read_line(layout_file) == layout) return;
-        if (const auto kept = write_through(layout_file + ".new", O_CREAT | O_TRUNC, layout + "\n"); !kept)
+        const std::string part = layout_file + ".new";
+        if (const auto kept = write_through(part, O_CREAT | O_TRUNC, layout + "\n"); !kept)
             voice_.say(kept.error());
-        else
-            ::rename((layout_file + ".new").c_str(), layout_file.c_str());
+        else if (::rename(part.c_str(), layout_file.c_str()) != 0)
+            voice_.say(init::failed("rename " + part).error());
     }
 
     void start_service() {
         const std::string port = facts_.one("service");
         if (port.empty() || !may_start_service_) return;
         if (service_ == no_firmware) {
+            const std::string offers = std::string{service_folder} + "/" + offers_folder;
             init::make_folder(service_folder);
-            ::mount("tmpfs", service_folder, "tmpfs", MS_NOSUID | MS_NODEV | MS_NOEXEC,
-                    "size=50%,mode=0700,uid=65534,gid=65534");
+            ::mount("tmpfs", service_folder, "tmpfs", MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=50%,mode=0755");
+            init::make_folder(offers);
+            if (::chown(offers.c_str(), nobody, nobody) != 0)
+                voice_.say(init::failed("give " + offers + " to nobody").error());
         }
         tell_status();
         service_ = init::start({"/init", "service", nonce_}, ears_.mouth(), "write the image anew")

@@ -12,6 +12,7 @@
 
 #include <fcntl.h>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,7 +26,12 @@ constexpr double says_what_it_is_s = 1.0; // a stick that was plugged in just no
 constexpr double stick_patience_s = 5.0;
 constexpr const char* measured_s = "60";
 
-std::string offered(const char* name) { return std::string{service_folder} + "/" + name; }
+/// A file, and not what else nobody could have put there: he may be a stranger by now. Empty: there is none.
+std::string offered(const char* name) {
+    const std::string path = std::string{service_folder} + "/" + name;
+    struct stat facts{};
+    return ::lstat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode) ? path : std::string{};
+}
 
 class Renewal {
 public:
@@ -40,8 +46,8 @@ public:
           voice_{voice} {}
 
     bool run() {
-        if (::access(offered(offered_order).c_str(), F_OK) == 0) return carry_out(offered(offered_order));
-        if (::access(offered(offered_update).c_str(), F_OK) == 0) return install(offered(offered_update));
+        if (const std::string order = offered(offered_order); !order.empty()) return carry_out(order);
+        if (const std::string update = offered(offered_update); !update.empty()) return install(update);
         const auto disk = await_stick();
         return disk && install(*disk);
     }
@@ -86,8 +92,10 @@ private:
         if (!key_ ||
             !is_signed({verb, own_.machine, own_.board, nonce_}, rest.substr(0, rest.find('\n')), *key_))
             return refuse("the order \"" + verb + "\"", "its signature does not fit this box's key");
-        const auto done = verb == "roll-back" ? slots_.roll_back()
-                                              : on_data(verb == "measure" ? &measure : &forget_settings);
+        const auto done = verb == "roll-back"       ? slots_.roll_back()
+                          : verb == "measure"       ? on_data(&measure)
+                          : verb == "factory-reset" ? on_data(&forget_settings)
+                                                    : std::unexpected("this version does not know it");
         if (!done) return refuse("the order \"" + verb + "\"", done.error());
         voice_.say(verb == "roll-back" ? "the version of the other slot goes on trial"
                    : verb == "measure" ? "it is measured; tappet box shows the figures"
@@ -123,12 +131,14 @@ private:
 
     /// All but what was said.
     static init::Done forget_settings(const std::string& folder) {
-        std::error_code error;
-        for (const auto& each : std::filesystem::directory_iterator{folder, error})
-            if (const std::string name = each.path().filename();
-                name != "lost+found" && !name.starts_with("box.log"))
-                std::filesystem::remove_all(each.path(), error);
-        return error ? init::Done{std::unexpected(error.message())} : init::Done{};
+        init::Done done{};
+        for (const std::string& name : init::names_in(folder)) {
+            if (name == "lost+found" || name.starts_with("box.log")) continue;
+            std::error_code error;
+            std::filesystem::remove_all(folder + "/" + name, error);
+            if (error) done = std::unexpected("remove " + name + ": " + error.message());
+        }
+        return done;
     }
 
     Manifest own_;

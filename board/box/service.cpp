@@ -20,6 +20,7 @@
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -29,11 +30,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t most_bytes = 48 * 1024 * 1024; // more than a slot holds is no update
 constexpr std::size_t longest_line = 512;
 constexpr std::chrono::seconds for_a_line{10};
 constexpr std::chrono::seconds for_an_update{300};
-constexpr uid_t nobody = 65534;
 
 class Client {
 public:
@@ -109,7 +108,7 @@ std::string take_update(Client& client, const ServiceFacts& facts) {
     std::string bytes = client.read(update_header_bytes, until);
     const std::uint64_t claimed = claimed_bytes(bytes);
     if (claimed == 0) return "refused\nit is no update; send the update.tap beside an image\n";
-    if (claimed > most_bytes) return "refused\nit says that it has more bytes than a slot\n";
+    if (claimed > most_update_bytes) return "refused\nit says that it has more bytes than a slot\n";
     // Before all of it is sent.
     if (const std::string why = refusal_of(manifest_of(bytes), facts.own); !why.empty())
         return "refused\n" + why + "\n";
@@ -181,9 +180,10 @@ int listen_at(std::uint16_t port) {
 }
 
 void give_up_rights() {
+    const rlimit none{0, 0}; // of further processes
     if (::chdir(service_folder) != 0 || ::chroot(".") != 0 || ::setgroups(0, nullptr) != 0 ||
         ::setresgid(nobody, nobody, nobody) != 0 || ::setresuid(nobody, nobody, nobody) != 0 ||
-        ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+        ::setrlimit(RLIMIT_NPROC, &none) != 0 || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         fail("cannot give up its rights");
 }
 

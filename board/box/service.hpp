@@ -10,13 +10,18 @@
 #include <expected>
 #include <string>
 
+#include <sys/types.h>
+
 namespace tappet::box {
 
-/// Where the process lives and leaves what was accepted. In memory: nothing of it outlives the power.
+/// Where the process lives. In memory: nothing of it outlives the power. It is init's, which writes there
+/// what init alone may write; what was accepted lies in the folder below, which is nobody's.
 inline constexpr const char* service_folder = "/run/service";
 inline constexpr const char* status_file = "status"; ///< init's text for who asks
-inline constexpr const char* offered_update = "update";
-inline constexpr const char* offered_order = "order"; ///< the verb and the signature, each in a line
+inline constexpr const char* offers_folder = "offers";
+inline constexpr const char* offered_update = "offers/update";
+inline constexpr const char* offered_order = "offers/order"; ///< the verb and the signature, each in a line
+inline constexpr uid_t nobody = 65534;
 
 /// Of boards that do not say another.
 inline constexpr std::uint16_t service_port = 4848;

@@ -12,9 +12,6 @@ namespace tappet::box {
 
 namespace {
 
-/// More than a slot holds is no update.
-constexpr std::uint64_t most_bytes = 48 * 1024 * 1024;
-
 /// The first bytes of a disk; fewer when it has no more.
 std::string read_head(const std::string& disk, std::uint64_t count) {
     std::string bytes(count, '\0');
@@ -47,8 +44,7 @@ bool has_usb_storage() {
 
 std::expected<Update, std::string> read_update(const std::string& disk, const PublicKey& key) {
     const std::uint64_t claimed = claimed_bytes(read_head(disk, update_header_bytes));
-    if (claimed > most_bytes)
-        return std::unexpected("it says that it has " + std::to_string(claimed) + " bytes, more than a slot");
+    if (claimed > most_update_bytes) return std::unexpected("it says that it has more bytes than a slot");
     return decode(read_head(disk, claimed), key);
 }
 

@@ -6,6 +6,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -71,7 +72,7 @@ std::string digits_of(const PublicKey& key) {
 
 std::uint64_t claimed_bytes(std::string_view header) {
     if (header.size() < update_header_bytes || !header.starts_with(mark)) return 0;
-    return update_header_bytes + number(lines_of(header), "kernel");
+    return std::min(number(lines_of(header), "kernel"), most_update_bytes) + update_header_bytes;
 }
 
 std::string header_of(const Update& update, const SecretKey* key) {

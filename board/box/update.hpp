@@ -38,9 +38,11 @@ struct KeyPair {
 [[nodiscard]] std::string digits_of(const PublicKey& key);
 
 inline constexpr std::size_t update_header_bytes = 4096;
+inline constexpr std::uint64_t most_update_bytes = 48 * 1024 * 1024; ///< a slot holds no more
 
 /// Whether what stands at the beginning of a disk is an update, and then how long it says that it is: it is
-/// not judged yet.
+/// not judged yet. Of whatever it says never more
+/// than most_update_bytes and a header.
 [[nodiscard]] std::uint64_t claimed_bytes(std::string_view header);
 
 /// The header of one page; null: unsigned, which no box takes as an update. Each slot holds its own beside

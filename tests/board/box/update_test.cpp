@@ -44,6 +44,17 @@ TEST_F(Updates, of_somebody_else_or_cut_short_are_refused) {
     EXPECT_EQ(claimed_bytes(std::string(update_header_bytes, 'x')), 0u);
 }
 
+TEST_F(Updates, that_claim_more_than_a_slot_holds_claim_no_more_than_that) {
+    for (const char* number : {"50331648", "18446744073709551615", "18446744073709547520", "-1", "1e9"}) {
+        std::string header = header_of(update, nullptr);
+        const std::string line = "kernel " + std::to_string(update.kernel.size());
+        header.replace(header.find(line), line.size(), std::string{"kernel "} + number);
+        header.resize(update_header_bytes);
+        EXPECT_GE(claimed_bytes(header), update_header_bytes) << number;
+        EXPECT_LE(claimed_bytes(header), most_update_bytes + update_header_bytes) << number;
+    }
+}
+
 TEST_F(Updates, are_taken_by_the_box_they_are_for_when_they_are_newer) {
     const Manifest own{"carpet-loom", "ipc-x86_64", "a5", 6, 0};
     EXPECT_EQ(refusal_of(update.manifest, own), "");

@@ -22,7 +22,26 @@ namespace tappet::image {
 
 namespace {
 
-constexpr timeval patience{30, 0}; // for the other end; the box needs seconds to judge an update
+constexpr timeval patience{30, 0};            // for the other end; the box needs seconds to judge an update
+constexpr std::size_t most_told = 256 * 1024; // of what may be no box
+
+/// What comes from the network is text on a terminal, and does nothing there.
+std::string only_text(std::string text) {
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c > '~'; }, '?');
+    return text;
+}
+
+/// Closed also when what follows its opening is thrown.
+struct Socket {
+    int number = -1;
+    Socket() = default;
+    ~Socket() {
+        if (number >= 0) ::close(number);
+    }
+    Socket(const Socket&) = delete;
+    Socket& operator=(const Socket&) = delete;
+};
 
 class Connection {
 public:
@@ -37,46 +56,42 @@ public:
         if (const int code = ::getaddrinfo(host.c_str(), port.c_str(), &wanted, &found); code != 0)
             throw Fault("\"" + box + "\" is no address of a box: " + ::gai_strerror(code));
         const std::unique_ptr<addrinfo, void (*)(addrinfo*)> addresses{found, ::freeaddrinfo};
-        for (const addrinfo* each = found; each != nullptr && socket_ < 0; each = each->ai_next) {
-            socket_ = ::socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, each->ai_protocol);
-            ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-            ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-            if (::connect(socket_, each->ai_addr, each->ai_addrlen) == 0) continue;
-            ::close(socket_);
-            socket_ = -1;
+        for (const addrinfo* each = found; each != nullptr && socket_.number < 0; each = each->ai_next) {
+            socket_.number = ::socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, each->ai_protocol);
+            ::setsockopt(socket_.number, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+            ::setsockopt(socket_.number, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+            if (::connect(socket_.number, each->ai_addr, each->ai_addrlen) == 0) continue;
+            ::close(socket_.number);
+            socket_.number = -1;
         }
-        if (socket_ < 0)
+        if (socket_.number < 0)
             throw Fault("no box answers at " + box + ": " + std::strerror(errno) +
                         "; check the address, and that its board has a service_port");
         const std::string hello = read_until('\n');
         if (!hello.starts_with(box::service_greeting)) throw Fault("what answers at " + box + " is no box");
-        const box::Words words = box::Facts{hello.substr(box::service_greeting.size())}.lines().front();
-        if (words.size() != 3) throw Fault("the box at " + box + " speaks another version of the protocol");
+        const box::Facts facts{hello.substr(box::service_greeting.size())};
+        if (facts.lines().empty() || facts.lines().front().size() != 3)
+            throw Fault("the box at " + box + " speaks another version of the protocol");
+        const box::Words& words = facts.lines().front();
         order_ = {{}, words[0], words[1], words[2]};
     }
-    ~Connection() {
-        if (socket_ >= 0) ::close(socket_);
-    }
-    Connection(const Connection&) = delete;
-    Connection& operator=(const Connection&) = delete;
-
     /// False: the other end has hung up; it may have said why.
     bool send(std::string_view bytes) const {
         while (!bytes.empty()) {
-            const ssize_t n = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+            const ssize_t n = ::send(socket_.number, bytes.data(), bytes.size(), MSG_NOSIGNAL);
             if (n <= 0) return false;
             bytes.remove_prefix(static_cast<std::size_t>(n));
         }
         return true;
     }
     Answer answer() {
-        ::shutdown(socket_, SHUT_WR);
+        ::shutdown(socket_.number, SHUT_WR);
         const std::string all = read_until(std::nullopt);
         const std::size_t line = all.find('\n');
         if (line == std::string::npos)
             throw Fault("the box at " + box_ +
                         " hung up without an answer; ask for its status by tappet box " + box_);
-        return {all.substr(0, line) == "ok", all.substr(line + 1)};
+        return {all.substr(0, line) == "ok", only_text(all.substr(line + 1))};
     }
     /// To be given a verb.
     [[nodiscard]] box::Order order() const { return order_; }
@@ -85,15 +100,15 @@ private:
     std::string read_until(std::optional<char> end) const {
         std::string text;
         std::array<char, 4096> piece{};
-        for (ssize_t n = 1; n > 0 && !(end && text.ends_with(*end));) {
-            n = ::recv(socket_, piece.data(), end ? 1 : piece.size(), 0);
+        for (ssize_t n = 1; n > 0 && text.size() < most_told && !(end && text.ends_with(*end));) {
+            n = ::recv(socket_.number, piece.data(), end ? 1 : piece.size(), 0);
             if (n > 0) text.append(piece.data(), static_cast<std::size_t>(n));
         }
         return text;
     }
 
     std::string box_;
-    int socket_ = -1;
+    Socket socket_{};
     box::Order order_{};
 };
 
