@@ -171,6 +171,43 @@ constexpr Sentence check_unit(const MachineView& m, const TableIndexView& r, con
     return {};
 }
 
+/// What a slot begins with could be loaded again: it reaches what the slot reaches.
+constexpr Sentence check_slot_reach(const BehaviourRow& row) {
+    const ScriptUnit unit = row.unit();
+    const auto misses = [&](std::string_view peer, std::string_view name, const auto& allowed) {
+        for (const std::string_view each : allowed)
+            if (name.empty() ? each == peer : is_named(each, peer, name)) return false;
+        return true;
+    };
+    const auto fault = [&](std::string_view what, std::string_view peer, std::string_view name) {
+        return of_behaviour(row, ": script \"", unit.name, "\", with which it begins, reaches \"", peer,
+                            name.empty() ? "" : ".", name, "\", and what is loaded does not; add it to ",
+                            what, "(...) of the slot");
+    };
+    for (std::size_t i = 1; i < unit.reach.size(); ++i)
+        if (misses(unit.reach[i].name, {}, row.slot.peers)) return fault("peers", unit.reach[i].name, {});
+    for (const BehaviourType& type : unit.types) {
+        for (const LinkRow& link : type.tables.links) {
+            if (link.peer == 0 || link.facet == LinkRow::component_itself) continue;
+            const Reachable& peer = unit.reach[link.peer];
+            const Facet& facet = peer.type->facets[link.facet];
+            const bool is_told = facet.kind == FacetKind::operation || facet.kind == FacetKind::method ||
+                                 facet.kind == FacetKind::command;
+            if (is_told && misses(peer.name, facet.name, row.slot.operations))
+                return fault("operations", peer.name, facet.name);
+        }
+        for (const TransitionRow& transition : type.machine.transitions) {
+            const std::size_t dot = transition.event.find('.');
+            if (!transition.on_event || dot == std::string_view::npos) continue;
+            const std::string_view peer = transition.event.substr(0, dot);
+            const std::string_view event = transition.event.substr(dot + 1);
+            if (peer != row.component && misses(peer, event, row.slot.events))
+                return fault("events", peer, event);
+        }
+    }
+    return {};
+}
+
 constexpr Sentence check_behaviours(const MachineView& m, const TableIndexView& r) {
     for (std::size_t b = 0; b < m.behaviours.size(); ++b) {
         const BehaviourRow& row = m.behaviours[b];
@@ -180,8 +217,12 @@ constexpr Sentence check_behaviours(const MachineView& m, const TableIndexView& 
             if (m.behaviours[j].component == row.component && (m.behaviours[j].is_slot() == row.is_slot()))
                 return of_behaviour(row, " stands in behaviours(...) twice; a component has one ",
                                     row.is_slot() ? "slot" : "behaviour", ": remove one");
-        Sentence fault = row.is_slot() ? check_slot(m, r, row) : check_unit(m, r, row);
-        if (!fault.empty()) return fault;
+        if (row.is_slot())
+            if (Sentence fault = check_slot(m, r, row); !fault.empty()) return fault;
+        if (row.is_slot() && !row.is_driven()) continue;
+        if (Sentence fault = check_unit(m, r, row); !fault.empty()) return fault;
+        if (row.is_slot())
+            if (Sentence fault = check_slot_reach(row); !fault.empty()) return fault;
     }
     for (const auto& row : m.components) {
         if (row.type->slot_required) {
@@ -195,7 +236,7 @@ constexpr Sentence check_behaviours(const MachineView& m, const TableIndexView& 
         if (!row.type->behaviour_required) continue;
         bool driven = false;
         for (const auto& behaviour : m.behaviours)
-            driven |= behaviour.component == row.name && !behaviour.is_slot();
+            driven |= behaviour.component == row.name && behaviour.is_driven();
         if (!driven)
             return of_component(row.name, ": no behaviour drives it; add behaviour(\"", row.name,
                                 "\", ...) to behaviours(...)");

@@ -164,8 +164,7 @@ void BehaviourUnit::bind(UnitPart& part, const BehaviourCode& native, const Reso
     }
     part.binding.machine = view;
     part.binding.component = component;
-    part.binding.code =
-        part.type->tables.nodes.empty() && part.type->tables.instructions.empty() ? native.code : code;
+    part.binding.code = part.type->machine.programs == nullptr ? native.code : code;
     part.binding.fast = native.fast;
     part.binding.data = part.data;
     part.binding.links = part.links;

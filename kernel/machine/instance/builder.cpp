@@ -42,7 +42,7 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
     connect_extras();
     place_needed_inputs();
     if (const Sentence fault = place_behaviours(); !fault.empty()) return std::unexpected(fault);
-    connect_controls();
+    if (const Sentence fault = connect_controls(); !fault.empty()) return std::unexpected(fault);
     connect_events();
     place_mailboxes();
     connect_operations();

@@ -41,7 +41,7 @@ private:
     void place_command_processors();
 
     [[nodiscard]] Sentence place_behaviours();
-    void connect_controls();
+    [[nodiscard]] Sentence connect_controls();
     [[nodiscard]] Sentence place_unit(std::size_t row, Behaviour& behaviour);
     void place_slot(std::size_t row, Behaviour& behaviour);
 

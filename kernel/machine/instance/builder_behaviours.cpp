@@ -38,7 +38,7 @@ Sentence MachineBuilder::place_behaviours() {
     return {};
 }
 
-void MachineBuilder::connect_controls() {
+Sentence MachineBuilder::connect_controls() {
     for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
         const ComponentRow& row = machine_.table.components[c];
         if (row.type->control == nullptr) continue;
@@ -56,8 +56,13 @@ void MachineBuilder::connect_controls() {
         }
         row.type->control(instance_.component(c), controlled);
     }
-    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b)
+    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b) {
         if (BehaviourUnit* const unit = instance_.unit_of_row(b); unit != nullptr) unit->connect_links();
+        if (BehaviourSlot* const slot = instance_.slot_of_row(b); slot != nullptr)
+            if (const Sentence fault = slot->begin(); !fault.empty())
+                return Sentence{"slot of \"", machine_.table.behaviours[b].component, "\": ", fault};
+    }
+    return {};
 }
 
 Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {

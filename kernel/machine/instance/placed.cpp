@@ -38,9 +38,13 @@ Waker PlacedMachine::post_waker_of(std::size_t activity) noexcept TAPPET_REALTIM
 }
 
 const BehaviourUnit* PlacedMachine::behaviour_of(std::string_view component) const noexcept {
-    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b)
-        if (machine_.table.behaviours[b].component == component && !machine_.table.behaviours[b].is_slot())
-            return at<BehaviourUnit>(machine_.plan.behaviours[b].unit_at);
+    for (std::size_t b = 0; b < machine_.table.behaviours.size(); ++b) {
+        const BehaviourRow& row = machine_.table.behaviours[b];
+        const BehaviourPlan& plan = machine_.plan.behaviours[b];
+        if (row.component == component && row.is_driven())
+            return row.is_slot() ? at<BehaviourSlot>(plan.slot_at)->active()
+                                 : at<BehaviourUnit>(plan.unit_at);
+    }
     return nullptr;
 }
 

@@ -49,7 +49,7 @@ public:
         return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
     }
 
-    /// What the table's row says that drives a component; null when none does.
+    /// What the table's row says that drives a component, or was loaded in its place; null when none does.
     [[nodiscard]] const BehaviourUnit* behaviour_of(std::string_view component) const noexcept;
     /// Of a behaviour row; null: it is a slot, or it is none.
     [[nodiscard]] BehaviourUnit* unit_of_row(std::size_t behaviour) noexcept {

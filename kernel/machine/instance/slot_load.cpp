@@ -22,6 +22,35 @@ void BehaviourSlot::place(const Place& place) {
     for (const std::string_view peer : place.row->slot.peers) reach(find_component(table, peer));
 }
 
+Sentence BehaviourSlot::begin() {
+    const BehaviourRow& row = *place_.row;
+    if (!row.is_driven()) return {};
+    const ScriptUnit unit = row.unit();
+    static_cast<void>(banks_[0].name.assign(unit.name.substr(0, 48)));
+    if (Sentence fault = fill(0, unit, row.code, place_.banks[0]); !fault.empty()) return fault;
+    active_.store(0, std::memory_order_relaxed);
+    for (SlotTask* task = tasks_; task != nullptr; task = task->next)
+        task->exchange(banks_[0].unit, 0, SlotTask::When::take_over);
+    set(SlotPhase::steady);
+    return {};
+}
+
+Sentence BehaviourSlot::fill(std::size_t number, const ScriptUnit& unit, std::span<const BehaviourCode> code,
+                             std::span<std::byte> memory) {
+    Bank& bank = banks_[number];
+    if (Sentence fault = bank.unit.place(unit, code, place_.row->options, memory, place_.events,
+                                         *place_.machine, place_.component);
+        !fault.empty())
+        return Sentence{bank.name.view(), ": ", fault};
+    for (SlotTask* task = tasks_; task != nullptr; task = task->next)
+        if (Sentence fault = task->fit(unit, number); !fault.empty())
+            return Sentence{bank.name.view(), ": ", fault};
+    bank.unit.connect_links();
+    bank.unit.trace(place_.trace, place_.engine);
+    bank.filled = true;
+    return {};
+}
+
 Sentence BehaviourSlot::may_load() const noexcept {
     // asked_ first: obey() sets the phase before it takes that back.
     if (asked_.load(std::memory_order_acquire) || phase() == SlotPhase::waiting ||
@@ -63,18 +92,7 @@ Sentence BehaviourSlot::compile(std::size_t characters, std::string_view name) {
     const ScriptOutcome outcome =
         compile_loaded({place_.text.data(), characters}, bank.name.view(), reach, room);
     if (!outcome.good()) return outcome.fault;
-    if (Sentence fault =
-            bank.unit.place(outcome.unit, {}, row.options, place_.banks[number].subspan(layout.used()),
-                            place_.events, *place_.machine, place_.component);
-        !fault.empty())
-        return Sentence{bank.name.view(), ": ", fault};
-    for (SlotTask* task = tasks_; task != nullptr; task = task->next)
-        if (Sentence fault = task->fit(outcome.unit, number); !fault.empty())
-            return Sentence{bank.name.view(), ": ", fault};
-    bank.unit.connect_links();
-    bank.unit.trace(place_.trace, place_.engine);
-    bank.filled = true;
-    return {};
+    return fill(number, outcome.unit, {}, place_.banks[number].subspan(layout.used()));
 }
 
 Sentence BehaviourSlot::parse_moment(std::string_view text, SlotMoment& moment) const {

@@ -162,7 +162,7 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
             plan.handles_at = layout.take<EventHandle>(plan.event_count);
             plan.text_bytes = slot_text_bytes(row.slot);
             plan.text_at = layout.take(plan.text_bytes, 1);
-            plan.memory_bytes = 2 * slot_bank_bytes(row.slot, plan.event_count, longest_slot_event(m, row));
+            plan.memory_bytes = 2 * bank_bytes(row, plan.event_count, longest_slot_event(m, row));
         } else {
             const ScriptUnit unit = row.unit();
             plan.event_count = events_of(unit).count;

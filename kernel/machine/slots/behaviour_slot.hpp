@@ -71,6 +71,8 @@ public:
         task.next = tasks_;
         tasks_ = &task;
     }
+    /// By start-up, after all tasks: what its row begins with is at work from the start.
+    [[nodiscard]] Sentence begin();
 
     // ---- in a background activity, one at a time; not real-time
 
@@ -153,6 +155,9 @@ private:
     [[nodiscard]] int spare() const noexcept TAPPET_REALTIME {
         return active_.load(std::memory_order_relaxed) == 0 ? 1 : 0;
     }
+    /// A unit into a bank, ready to take over.
+    [[nodiscard]] Sentence fill(std::size_t bank, const ScriptUnit& unit, std::span<const BehaviourCode> code,
+                                std::span<std::byte> memory);
     [[nodiscard]] bool is_due() noexcept TAPPET_REALTIME;
     void hand_over(Time now) noexcept TAPPET_REALTIME;
     void switch_to_target(Time now) noexcept TAPPET_REALTIME;

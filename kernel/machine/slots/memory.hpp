@@ -177,6 +177,13 @@ constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events, std:
     layout.take<ProgramLink>(2 * sizes.links);
     layout.take<CommandSlot>(slot.command_slots);
     layout.take(slot.command_slots * slot_command_bytes, data_alignment);
+    return layout.used();
+}
+/// Of either bank of a row: whatever it begins with has room there, too.
+constexpr std::size_t bank_bytes(const BehaviourRow& row, std::size_t events, std::size_t longest) {
+    detail::UnitLayout layout;
+    layout.take(std::max(slot_bank_bytes(row.slot, events, longest), unit_bytes(row.unit(), events)),
+                unit_alignment);
     layout.take(0, unit_alignment); // the other bank stands after it
     return layout.used();
 }

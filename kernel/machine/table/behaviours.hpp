@@ -7,6 +7,7 @@
 #include "kernel/statechart/execution.hpp"
 #include "kernel/statechart/rows.hpp"
 
+#include <concepts>
 #include <cstdint>
 #include <string_view>
 
@@ -63,10 +64,15 @@ struct BehaviourRow {
     BehaviourOptions options{};
 
     [[nodiscard]] constexpr bool is_slot() const noexcept { return reserves; }
-    /// What it runs, as one form; of a row that lies where it stays. Empty of a slot.
+    /// It runs something from the start: whatever is no slot, and a slot that begins with what was compiled.
+    [[nodiscard]] constexpr bool is_driven() const noexcept {
+        return script != nullptr || !instance.name.empty();
+    }
+    /// What it runs from the start, as one form; of a row that lies where it stays. Empty of a slot that
+    /// begins with nothing.
     [[nodiscard]] constexpr ScriptUnit unit() const noexcept {
         if (script != nullptr) return *script;
-        if (reserves) return {};
+        if (!is_driven()) return {};
         return {.name = type.name, .types = {&type, 1}, .instances = {&instance, 1}};
     }
 };
@@ -130,6 +136,13 @@ constexpr void apply(BehaviourOptions& row, StatementBound bound) noexcept {
     row.statements = bound.statements;
 }
 constexpr void apply(BehaviourOptions& row, OnError what) noexcept { row.on_error = what; }
+template <class Option>
+constexpr void apply(BehaviourRow& row, const Option& option) noexcept {
+    if constexpr (std::same_as<Option, Slot>)
+        row.slot = option, row.reserves = true;
+    else
+        apply(row.options, option);
+}
 
 } // namespace detail
 
@@ -182,7 +195,9 @@ constexpr detail::StatementBound at_most(std::uint32_t statements) noexcept { re
 /// What an error that no parent handles does; it stops the machine unless stated.
 constexpr OnError on_error(OnError what) noexcept { return what; }
 
-/// A state machine table that drives a component; it runs in the component's activity.
+/// A state machine table that drives a component; it runs in the component's activity. As an option of this
+/// and of a script, slot(...) is room for another one that is loaded in its place while the machine runs;
+/// what it begins with reaches no more than the slot does, so that it can be loaded again.
 template <std::size_t S, std::size_t T, class... Options>
 constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<S, T>& machine,
                                  const Options&... options) noexcept {
@@ -191,7 +206,7 @@ constexpr BehaviourRow behaviour(std::string_view component, const StateMachine<
     row.type.machine = machine.view();
     row.type.name = row.type.machine.name;
     row.instance.name = row.type.name;
-    (detail::apply(row.options, options), ...);
+    (detail::apply(row, options), ...);
     return row;
 }
 /// A compiled script, or its tables as they are; `script` and `code`, which stands in the order of its types,
@@ -203,7 +218,7 @@ constexpr BehaviourRow behaviour(std::string_view component, const ScriptUnit& s
     row.component = component;
     row.script = &script;
     row.code = code;
-    (detail::apply(row.options, options), ...);
+    (detail::apply(row, options), ...);
     return row;
 }
 /// Room and reach for a behaviour that is loaded while the machine runs.
@@ -212,9 +227,8 @@ constexpr BehaviourRow behaviour(std::string_view component, const Slot& slot,
                                  const Options&... options) noexcept {
     BehaviourRow row;
     row.component = component;
-    row.slot = slot;
-    row.reserves = true;
-    (detail::apply(row.options, options), ...);
+    detail::apply(row, slot);
+    (detail::apply(row, options), ...);
     return row;
 }
 

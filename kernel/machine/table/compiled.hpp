@@ -1,6 +1,7 @@
 // Behaviour rows that run native code:
 //     behaviour("weft", compiled<weft_script>)     a script, compiled with the firmware
 //     behaviour("loom", compiled<loom_cycle>)      a state machine table
+//     behaviour("weft", compiled<weft_script>, slot(...))  likewise, until another one is loaded in its place
 // Both are variables at namespace scope. What their code has folded in is not stored a second time.
 #pragma once
 
@@ -90,7 +91,7 @@ constexpr BehaviourRow behaviour(std::string_view component, const CompiledBehav
     row.type = compiled.type;
     row.instance.name = compiled.type.name;
     row.code = compiled.code;
-    (detail::apply(row.options, options), ...);
+    (detail::apply(row, options), ...);
     return row;
 }
 

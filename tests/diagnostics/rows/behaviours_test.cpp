@@ -1,4 +1,5 @@
 // Behaviours: state machine tables, what they hear, and the slots for what is loaded.
+#include "kernel/script/compiled.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 #include "tests/diagnostics/small_machine.hpp"
 
@@ -15,6 +16,18 @@ struct Observer {
     static constexpr bool sees_machine = true;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
+
+/// Drives the shaft, hears the weft and tells the tension.
+constexpr ScriptSource checking{"checking.osd", R"(
+StateMachine Checking {
+    initial state Good { entry { do tension.relax(); } transition weft.broken() select Bad }
+    state Bad { transition wrapped() select Good }
+    final state Off { }
+}
+RootStateMachine Checking checking
+)"};
+constexpr auto checking_reach = script_reach(reachable<Shaft>("shaft"), reachable<Weft>("weft", false), reachable<Tension>("tension"));
+constexpr const ScriptUnit& checks = compiled_script<checking, checking_reach>;
 
 constexpr Fault behaviour_faults[] = {
     {"behaviour_missing", [](Table& m) { m.behaviours.clear(); },
@@ -109,6 +122,23 @@ constexpr Fault slot_faults[] = {
      R"(loom: slot of "shaft": its angle "encoder.angle" is written in another activity; name an output of activity "motion")"},
     {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
      R"(loom: slot of "shaft" reserves no nodes, data or depth; state all three)"},
+    {"slot_begins_beyond_its_peers",
+     [](Table& m) { m.add(behaviour("shaft", checks, {}, slot(nodes(10), data_bytes(64), depth(4)))); },
+     R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft", and what is loaded does not; add it to peers(...) of the slot)"},
+    {"slot_begins_beyond_its_operations",
+     [](Table& m) {
+         m.add(
+             behaviour("shaft", checks, {},
+                       slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"), operations("tension.pre_tension"))));
+     },
+     R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "tension.relax", and what is loaded does not; add it to operations(...) of the slot)"},
+    {"slot_begins_beyond_its_events",
+     [](Table& m) {
+         m.add(behaviour("shaft", checks, {},
+                         slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"), operations("tension.relax"),
+                              events("weft.inserted"))));
+     },
+     R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft.broken", and what is loaded does not; add it to events(...) of the slot)"},
     {"slot_stack",
      [](Table& m) {
          m.add(component<Observer>("browser"));

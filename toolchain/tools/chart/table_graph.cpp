@@ -156,8 +156,10 @@ private:
             const ComponentRow& part = row_of(name);
             std::string box{name};
             for (const BehaviourRow& each : table_.behaviours)
-                if (each.component == name)
-                    box += "\n" + (each.is_slot() ? "(slot)" : "(" + std::string{each.unit().name} + ")");
+                if (each.component == name) {
+                    box += each.is_driven() ? "\n(" + std::string{each.unit().name} + ")" : "";
+                    box += each.is_slot() ? "\n(slot)" : "";
+                }
             if (!part.watched.empty()) box += "\nwatches " + std::string{part.watched};
             if (!part.controlled.empty()) box += "\ncontrols " + std::string{part.controlled};
             text_ += "    " + id(name) + " [label=" + quoted(box) + "];\n";

@@ -112,6 +112,18 @@ constexpr auto table = machine("bakery",
     behaviours(behaviour("shop", sells, {}),
                behaviour("oven", slot(nodes(60), data_bytes(1024), depth(3), command_slots(2), timers(2), text_bytes(2000),
                                       peers("feeding", "door"), operations("feeding.stop"), events("door.moved"), trial(3)), on_error(OnError::report))));
+
+/// The same, and its slot begins with the shape.
+constexpr auto begun = machine("bakery",
+    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Baking>("baking", controls("oven"), set("heat", 80.0)),
+               component<Loaves>("making", controls("oven")), component<Panel>("panel"), component<Watcher>("watcher")),
+    activities(
+        activity("fast", every(1ms), budget(50us), runs("oven", "door", "baking", "making", "feeder")),
+        activity("desk", every(5ms), budget(50us), runs("panel")),
+        activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
+    connections(),
+    reactions(uses("panel.bake", "making.run"), uses("panel.stop", "baking.stop")),
+    behaviours(behaviour("oven", script, {}, slot(nodes(60), data_bytes(1024), depth(3), text_bytes(2000), trial(3)))));
 // clang-format on
 
 struct Bakery {
@@ -335,6 +347,34 @@ TEST(What_is_loaded, goes_on_where_the_machine_was_switched_off) {
         bakery.world.stop();
         EXPECT_EQ(bakery.instance.save_properties(bakery.instance.standing()).view(), "");
     }
+}
+
+struct Begun : testing::Test, Rig<Firmware<begun, board>> {
+    template <class T> T& property(std::string_view task, std::string_view name) {
+        const MachineView& of = instance.machine().table;
+        const std::size_t c = find_component(of, task);
+        return *static_cast<T*>(instance.facet({c, find_facet(of.components[c], name)}));
+    }
+};
+
+TEST_F(Begun, one_is_given_the_properties_from_the_start_and_does_as_it_is_told) {
+    run(5ms);
+    const BehaviourUnit& unit = *instance.slot_of("oven")->active();
+    EXPECT_EQ(property<double>("baking", "heat"), 80.0) << "of the row";
+    const BehaviourType& type = unit.unit().types[unit.parts()[0].row->type];
+    double heat = 0.0;
+    for (const VariableRow& each : type.tables.variables)
+        if (each.name == "heat") std::memcpy(&heat, unit.parts()[0].data + each.at, sizeof heat);
+    EXPECT_EQ(heat, 80.0);
+    auto& panel = *instance.find<Panel>("panel");
+    ASSERT_TRUE(panel.bake.send(2, 0.25));
+    run(20ms);
+    EXPECT_EQ(panel.bake.state(), CommandState::done);
+    EXPECT_EQ(panel.bake.result(), 2);
+    EXPECT_EQ(state(unit, 0), "Cold");
+    ASSERT_TRUE(panel.halt_it.send());
+    run(20ms);
+    EXPECT_EQ(panel.halt_it.state(), CommandState::done);
 }
 
 } // namespace
