@@ -29,10 +29,18 @@ struct MethodOperations {
     bool is_const = false; ///< it only looks at its component
 };
 
-/// What start-up does with the caller's side.
+/// Whose method a call runs. `call` is that of its MethodOperations.
+struct MethodGoal {
+    const void* call = nullptr;
+    void* component = nullptr;
+};
+
+/// What start-up does with the caller's side, and who hands over between components that answer by turns.
 struct MethodCallOperations {
     TypeId result = nullptr;
-    void (*bind)(void* method_call, const void* call, void* component) = nullptr;
+    void (*bind)(void* method_call, const MethodGoal& goal) = nullptr;
+    /// From now on; a call that is under way ends where it began. `goal` stays. Real-time, from any thread.
+    void (*aim)(void* method_call, const MethodGoal* goal) noexcept TAPPET_REALTIME = nullptr;
 };
 
 template <class Signature>
@@ -49,25 +57,32 @@ public:
 
     /// Calling what no row connects breaks a contract: an optional one is asked first.
     R operator()(const std::remove_cvref_t<A>&... arguments) const noexcept TAPPET_REALTIME {
-        TAPPET_CONTRACT(function_ != nullptr, Contract::precondition, 0);
-        if (function_ == nullptr) return R();
-        return function_(component_, arguments...);
+        const MethodGoal* const goal = goal_.load(std::memory_order_acquire);
+        TAPPET_CONTRACT(goal != nullptr, Contract::precondition, 0);
+        if (goal == nullptr) return R();
+        return (*static_cast<const Function*>(goal->call))(goal->component, arguments...);
     }
     /// Whether a row connects it. Always true of one that is not optional.
-    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return function_ != nullptr; }
+    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
+        return goal_.load(std::memory_order_relaxed) != nullptr;
+    }
 
     static constexpr MethodCallOperations operations{
         type_id<std::conditional_t<std::is_void_v<R>, Arguments<>, R>>,
-        [](void* method_call, const void* call, void* component) {
+        [](void* method_call, const MethodGoal& goal) {
             auto& self = *static_cast<MethodCall*>(method_call);
-            self.function_ = *static_cast<const Function*>(call);
-            self.component_ = component;
+            self.bound_ = goal;
+            self.goal_.store(&self.bound_, std::memory_order_release);
+        },
+        [](void* method_call, const MethodGoal* goal) noexcept TAPPET_REALTIME {
+            auto& self = *static_cast<MethodCall*>(method_call);
+            self.goal_.store(goal, std::memory_order_release);
         }};
     using Signature = Arguments<std::remove_cvref_t<A>...>;
 
 private:
-    Function function_ = nullptr;
-    void* component_ = nullptr;
+    MethodGoal bound_{};
+    std::atomic<const MethodGoal*> goal_{nullptr};
 };
 
 /// `Method` is a `R (Component::*)(A...) noexcept TAPPET_REALTIME`.

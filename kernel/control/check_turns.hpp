@@ -11,9 +11,10 @@ constexpr Sentence of_exclusive(const ExclusiveRow& row, const Pieces&... fault)
     return Sentence{"exclusive \"", row.by, "\": ", fault...};
 }
 
-/// Inputs of one row that several write by turns, and that a hand-over links anew; and those that come from
-/// other activities, whose growing stale makes a chain fall back.
+/// Inputs of one row that several write by turns, and calls that several answer, which a hand-over links
+/// anew; and inputs that come from other activities, whose growing stale makes a chain fall back.
 inline constexpr std::size_t max_links = 16;
+inline constexpr std::size_t max_calls = 8;
 inline constexpr std::size_t max_watched = 16;
 
 constexpr bool is_member(const ExclusiveRow& row, const MachineView& m, std::size_t component) noexcept {
@@ -26,6 +27,17 @@ constexpr bool is_shared(const TableIndexView& r, std::size_t x) noexcept {
     for (std::size_t j = r.connections_into.first[link.to.component]; j != nowhere;
          j = r.connections_into.next[j])
         if (j != x && r.connections[j].to == link.to) return true;
+    return false;
+}
+
+/// Whether a row leads a call to a member, and another row leads it elsewhere.
+constexpr bool is_answered_by_turns(const ExclusiveRow& row, const MachineView& m, const TableIndexView& r,
+                                    std::size_t x) noexcept {
+    if (m.reactions[x].kind != ReactionKind::uses || !is_member(row, m, r.reactions[x].to.component))
+        return false;
+    for (std::size_t j = 0; j < m.reactions.size(); ++j)
+        if (j != x && m.reactions[j].kind == ReactionKind::uses && r.reactions[j].from == r.reactions[x].from)
+            return true;
     return false;
 }
 
@@ -53,8 +65,9 @@ constexpr Sentence check_member(const ControlView& c, const ExclusiveRow& row, c
                                 const Seats& seats) {
     const std::size_t component = find_component(m, name);
     if (component == nowhere) return unknown_component(m, name);
-    if (level_of(seats, component) == no_level)
-        return Sentence{"\"", name, "\" has no role in a level; write it there first"};
+    const bool is_process = level_of(seats, component) == no_level && has_seat(seats, component);
+    if (level_of(seats, component) == no_level && !is_process)
+        return Sentence{"\"", name, "\" has no role in control(...); give it one first"};
     const std::size_t by = find_component(m, row.by);
     if (r.activity[component] != r.activity[by])
         return Sentence{"\"",
@@ -69,7 +82,7 @@ constexpr Sentence check_member(const ControlView& c, const ExclusiveRow& row, c
     if (r.position[component] < r.position[by])
         return Sentence{"\"", row.by, "\" runs after \"", name,
                         "\" and would hand over in the midst of a step; name it first in runs(...)"};
-    if (m.components[component].type->start == nullptr)
+    if (m.components[component].type->start == nullptr && !is_process)
         return Sentence{
             "\"", name, "\" of chain \"", chain.name,
             "\" has no start(), so that it would go on where it was when it ran last; write its first "
@@ -101,6 +114,32 @@ constexpr Sentence check_one_writer(const ExclusiveRow& row, const MachineView& 
             return of_exclusive(row, "while chain \"", row.chains[k].name, "\" runs nobody writes \"",
                                 m.connections[x].to, "\"; add the component that does to the chain");
     }
+    return {};
+}
+
+/// Of a call that members answer: each chain has one who does.
+constexpr Sentence check_shared_calls(const ExclusiveRow& row, const MachineView& m,
+                                      const TableIndexView& r) {
+    std::size_t calls = 0;
+    for (std::size_t x = 0; x < m.reactions.size(); ++x) {
+        if (!is_answered_by_turns(row, m, r, x)) continue;
+        unsigned answered = 0;
+        bool is_first = true;
+        for (std::size_t j = 0; j < m.reactions.size(); ++j) {
+            if (m.reactions[j].kind != ReactionKind::uses || !(r.reactions[j].from == r.reactions[x].from))
+                continue;
+            answered |= chains_of(row, m.components[r.reactions[j].to.component].name);
+            is_first = is_first && j >= x;
+        }
+        for (std::size_t k = 0; k < row.chains.size(); ++k)
+            if ((answered >> k & 1) == 0)
+                return of_exclusive(
+                    row, "while chain \"", row.chains[k].name, "\" runs nobody answers \"",
+                    m.reactions[x].event,
+                    "\"; add the component that does to the chain, and a row uses(...) to it");
+        calls += is_first ? 1 : 0;
+    }
+    if (calls > max_calls) return of_exclusive(row, too_many("calls answered by turns", max_calls));
     return {};
 }
 
@@ -145,7 +184,8 @@ constexpr Sentence check_shared_inputs(const ExclusiveRow& row, const MachineVie
     return {};
 }
 
-/// A Controller that takes over begins with what the Effector sent last.
+/// A Controller that takes over begins with what the Effector sent last. Of Estimators that take turns each
+/// tells of the same world: what they write is no reason to begin anew.
 constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const MachineView& m,
                                   const TableIndexView& r, const Seats& seats) {
     const ComponentRow& own = m.components[seat.component];
@@ -153,7 +193,8 @@ constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const 
     for (const ExclusiveRow& row : c.exclusives) takes_turns |= chains_of(row, own.name) != 0;
     for (std::size_t x = r.connections_into.first[seat.component]; x != nowhere;
          x = r.connections_into.next[x])
-        takes_turns |= is_shared(r, x) && !m.connections[x].buffered;
+        takes_turns |= is_shared(r, x) && !m.connections[x].buffered &&
+                       seat_of(seats, r.connections[x].from.component).role != ControlRole::estimator;
     if (seat.tracked.empty())
         return takes_turns
                    ? of_level(c.levels[seat.level], "the Controller \"", own.name,
@@ -200,6 +241,7 @@ constexpr Sentence check_turns(const ControlView& c, const MachineView& m, const
                     return of_exclusive(row, fault);
         }
         if (Sentence fault = check_shared_inputs(row, m, r); !fault.empty()) return fault;
+        if (Sentence fault = check_shared_calls(row, m, r); !fault.empty()) return fault;
     }
     for (const Seat& seat : seats)
         if (seat.role == ControlRole::controller)

@@ -75,6 +75,29 @@ void find_inputs(const ControlView& control, MachineInstance& machine, Turns& tu
     }
 }
 
+void find_calls(MachineInstance& machine, Turns& turns) {
+    const AcceptedMachine& accepted = machine.machine();
+    for (std::size_t x = 0; x < accepted.table.reactions.size(); ++x) {
+        const Link& link = accepted.index.reactions[x];
+        if (!is_answered_by_turns(*turns.rows, accepted.table, accepted.index, x)) continue;
+        void* const call = machine.facet(link.from);
+        SharedCall* place = nullptr;
+        for (SharedCall& each : turns.calls)
+            if (each.call == call) place = &each;
+        if (place == nullptr) {
+            static_cast<void>( // they were counted by the check
+                turns.calls.push(
+                    {.call = call, .operations = facet_at(accepted.table, link.from).method_call}));
+            place = turns.calls.end() - 1;
+        }
+        const unsigned in = chains_of(*turns.rows, accepted.table.components[link.to.component].name);
+        for (std::size_t k = 0; k < turns.rows->chains.size(); ++k)
+            if ((in >> k & 1) != 0)
+                place->goals[k] = {facet_at(accepted.table, link.to).method->call,
+                                   machine.component(link.to.component)};
+    }
+}
+
 } // namespace
 
 std::size_t Turns::find(std::string_view chain) const noexcept TAPPET_REALTIME {
@@ -96,6 +119,7 @@ void Turns::link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REA
         if ((writer.part & beginning) != 0) each.port->forget(writer.output);
         each.port->link_local(each.input, writer.output);
     }
+    for (const SharedCall& each : calls) each.operations->aim(each.call, &each.goals[chain]);
 }
 
 void Turns::begin() noexcept TAPPET_REALTIME {
@@ -168,6 +192,10 @@ std::size_t Turns::role_of(std::uint32_t part) const noexcept TAPPET_REALTIME {
             if (role.component == engine->plan().parts[part].name) return place;
             ++place;
         }
+    for (const RoleRow& role : processes) {
+        if (role.component == engine->plan().parts[part].name) return place;
+        ++place;
+    }
     return place;
 }
 
@@ -181,11 +209,13 @@ void connect(const ControlView& control, MachineInstance& machine, std::size_t s
         turns->row = i;
         turns->rows = &control.exclusives[i];
         turns->levels = control.levels;
+        turns->processes = control.processes;
         const std::size_t by = find_component(accepted.table, turns->rows->by);
         const std::size_t activity = accepted.index.activity[by];
         turns->engine = &machine.engines()[activity];
         find_parts(control, accepted, activity, *turns);
         find_inputs(control, machine, *turns);
+        find_calls(machine, *turns);
         static_cast<ChainSwitch*>(machine.component(by))->place(*turns);
     }
 }
@@ -197,6 +227,7 @@ Sentence describe_stop(const ControlView& control, std::size_t row) {
         if (part.empty() && place < level.roles.size()) part = level.roles[place].component;
         place -= std::min(place, level.roles.size());
     }
+    if (part.empty() && place < control.processes.size()) part = control.processes[place].component;
     const ExclusiveRow& exclusive = control.exclusives[row >> 16];
     return Sentence{"exclusive \"",
                     exclusive.by,

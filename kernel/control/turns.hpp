@@ -30,6 +30,13 @@ struct SharedInput {
     std::array<Writer, ExclusiveRow::max_chains> writers{}; ///< of each chain
 };
 
+/// A method call that members of the chains answer by turns.
+struct SharedCall {
+    void* call = nullptr;
+    const MethodCallOperations* operations = nullptr;
+    std::array<MethodGoal, ExclusiveRow::max_chains> goals{}; ///< of each chain
+};
+
 /// An input that a member reads from another activity.
 struct WatchedInput {
     void* input = nullptr;
@@ -46,9 +53,11 @@ struct Turns {
     Engine* engine = nullptr;
     const ExclusiveRow* rows = nullptr; ///< the row itself
     std::span<const LevelRow> levels;
+    std::span<const RoleRow> processes;
     std::array<Engine::Parts, ExclusiveRow::max_chains> members{};
     Engine::Parts level = 0; ///< of the level's parts those that always run
     Bounded<SharedInput, max_links> shared{};
+    Bounded<SharedCall, max_calls> calls{};
     Bounded<WatchedInput, max_watched> watched{};
     std::atomic<std::uint32_t> running{0}; ///< the chain
     std::array<std::atomic<std::uint64_t>, ExclusiveRow::max_chains>
@@ -60,7 +69,8 @@ struct Turns {
     [[nodiscard]] Engine::Parts run_in(std::size_t chain) const noexcept TAPPET_REALTIME {
         return members[chain] | ~all();
     }
-    /// Inputs read what a chain's members write; those of `beginning` have written nothing yet.
+    /// Inputs read what a chain's members write, and calls reach them; those of `beginning` have written
+    /// nothing yet.
     void link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REALTIME;
     /// Before the engine's parts start: the first chain.
     void begin() noexcept TAPPET_REALTIME;
@@ -75,7 +85,7 @@ struct Turns {
     static constexpr std::uint32_t nobody = ~std::uint32_t{0};
     [[nodiscard]] std::uint32_t failed_part(Engine::Parts among) const noexcept TAPPET_REALTIME;
     void ask_stop(std::uint32_t part) noexcept TAPPET_REALTIME;
-    /// Its place among the roles of all levels.
+    /// Its place among the roles of all levels, and of the process components after them.
     [[nodiscard]] std::size_t role_of(std::uint32_t part) const noexcept TAPPET_REALTIME;
 };
 

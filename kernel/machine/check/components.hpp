@@ -218,4 +218,12 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
     return {};
 }
 
+/// Of two writers of one input, or two answerers of one call: whether a section of the table sees to it that
+/// one at a time runs.
+constexpr bool take_turns(const MachineView& m, std::size_t one, std::size_t other) {
+    for (std::size_t e = 0; e < m.extras->size(); ++e)
+        if (m.extras->at(e)->take_turns(m, one, other)) return true;
+    return false;
+}
+
 } // namespace tappet::checks

@@ -153,13 +153,6 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
     return {};
 }
 
-/// Of two writers of one input: whether a section of the table sees to it that one at a time runs.
-constexpr bool take_turns(const MachineView& m, std::size_t one, std::size_t other) {
-    for (std::size_t e = 0; e < m.extras->size(); ++e)
-        if (m.extras->at(e)->take_turns(m, one, other)) return true;
-    return false;
-}
-
 /// A row against those before it: an input has one writer at a time, a port not too many buffers.
 constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, std::size_t x) {
     const ConnectionRow& row = m.connections[x];

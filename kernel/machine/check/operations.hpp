@@ -159,6 +159,8 @@ constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
             if (r.reactions[j].to == link.to)
                 return of_use(row, " stands in reactions(...) twice (rows ", j + 1, " and ", i + 1,
                               "); remove one");
+            if (to.kind == FacetKind::method && take_turns(m, r.reactions[j].to.component, link.to.component))
+                continue;
             return of_use(row, ": row ", j + 1, " gives \"", row.event, "\" another goal already, \"",
                           m.reactions[j].target.operation, "\"; a call has one: remove a row, or give \"",
                           m.components[link.from.component].name, "\" a second call");

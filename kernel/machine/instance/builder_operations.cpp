@@ -14,8 +14,8 @@ void MachineBuilder::connect_operations() {
         const Link& link = machine_.index.reactions[row];
         const Facet& requester = facet_at(table, link.from);
         if (requester.method_call != nullptr) {
-            requester.method_call->bind(instance_.facet(link.from), facet_at(table, link.to).method->call,
-                                        instance_.component(link.to.component));
+            requester.method_call->bind(instance_.facet(link.from), {facet_at(table, link.to).method->call,
+                                                                     instance_.component(link.to.component)});
             continue;
         }
         const std::size_t sender = sender_of(table, machine_.index, row);

@@ -6,7 +6,42 @@ namespace {
 using namespace tappet;
 using namespace tappet::diagnostics;
 
+/// Process components that answer a call by turns, and who asks.
+struct Answering {
+    double far() noexcept TAPPET_REALTIME { return 1.0; }
+    static constexpr auto interface() { return facets(method<&Answering::far>("far", "how far")); }
+};
+struct Asking {
+    MethodCall<double()> ask;
+    static constexpr auto interface() { return facets(calls<&Asking::ask>("ask", "how far")); }
+};
+void answer_by_turns(Table& m, const ExclusiveRow& row) {
+    m.add(component<ChainSwitch>("gauge"));
+    m.put(activity(
+        "motion", every(1ms), budget(100us),
+        runs("gauge", "mode", "slide", "encoder", "standing", "jogging", "position", "gentle", "limiter")));
+    for (const std::string_view name : {"drawn", "measured"}) {
+        place(m, component<Answering>(name));
+        m.control.processes.push_back(process(name));
+    }
+    place(m, component<Asking>("asker"));
+    m.add(uses("asker.ask", "drawn.far"));
+    m.add(uses("asker.ask", "measured.far"));
+    m.control.exclusives.push_back(row);
+}
+
 constexpr Fault turn_faults[] = {
+    {"call_that_nobody_answers_for_a_while",
+     [](Table& m) {
+         answer_by_turns(m, exclusive("gauge", fallback("drawn", "drawn"), chain("measured", "measured"),
+                                      chain("neither")));
+     },
+     R"(axis: exclusive "gauge": while chain "neither" runs nobody answers "asker.ask"; add the component that does to the chain, and a row uses(...) to it)"},
+    {"call_of_two_who_answer_at_once",
+     [](Table& m) {
+         answer_by_turns(m, exclusive("gauge", fallback("both", "drawn", "measured"), chain("one", "drawn")));
+     },
+     R"(axis: use "asker.ask" -> "measured.far": row 4 gives "asker.ask" another goal already, "drawn.far"; a call has one: remove a row, or give "asker" a second call)"},
     {"switch_of_nobody", [](Table& m) { m.control.exclusives[0].by = "mod"; },
      R"(axis: exclusive "mod": there is no component "mod"; did you mean "mode"?)"},
     {"switch_of_another_type", [](Table& m) { m.control.exclusives[0].by = "slide"; },
@@ -42,7 +77,7 @@ constexpr Fault turn_faults[] = {
      R"(axis: exclusive "mode": there is no component "spindle"; add it to components(...))"},
     {"chain_of_no_level",
      [](Table& m) { static_cast<void>(m.control.exclusives[0].chains[1].members.push("slide")); },
-     R"(axis: exclusive "mode": "slide" has no role in a level; write it there first)"},
+     R"(axis: exclusive "mode": "slide" has no role in control(...); give it one first)"},
     {"switch_after_its_chains",
      [](Table& m) {
          m.put(activity(
