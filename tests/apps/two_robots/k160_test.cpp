@@ -1,5 +1,6 @@
 // The robot that holds the body, with its plant under virtual time: homing, states, set points, ends of
 // joints.
+#include "tests/apps/two_robots/states.hpp"
 #include "toolchain/machine/test.hpp"
 
 namespace two_robots::k160 {
@@ -34,6 +35,63 @@ TEST_P(K160, goes_from_power_on_through_homing_to_the_breath) {
     run.run_for(10s);
     EXPECT_EQ(state(), "Simulating");
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+}
+
+// Thesis 3.4.7: state machines are (un-)loaded at run-time as scripts.
+TEST_P(K160, stands_without_its_states_and_goes_on_with_them_when_they_are_loaded_again) {
+    LoadedStates states{run};
+    EXPECT_EQ(states.slot().phase(), SlotPhase::steady) << "the compiled ones are there from the start";
+    ASSERT_TRUE(comes_to("Waiting")) << state();
+    plant.leave_alone();
+    run.run_for(100ms);
+    const Joints at = plant.joints();
+    EXPECT_EQ(states.unload(), "");
+    EXPECT_EQ(states.slot().phase(), SlotPhase::empty);
+    run.run_for(1s);
+    EXPECT_TRUE(plant.brakes_are_on()) << "their last state leaves the arm safe";
+    plant.press("start", run.now() + 200ms);
+    run.run_for(1s);
+    EXPECT_TRUE(plant.brakes_are_on()) << "nobody hears the button";
+    EXPECT_LT((plant.joints() - at).cwiseAbs().maxCoeff(), 1e-3);
+
+    EXPECT_EQ(states.load("k160/body_robot.osd"), "");
+    EXPECT_EQ(state(), "Off");
+    std::vector<std::string> entered;
+    run.judge_by([&](Time) {
+        if (const auto now = state(); !now.empty() && (entered.empty() || entered.back() != now))
+            entered.emplace_back(now);
+    });
+    const auto press = [&](std::string_view button, std::string_view until) {
+        plant.press(button, run.now() + 200ms);
+        return comes_to(until, 60s);
+    };
+    ASSERT_TRUE(press("start", "Waiting")) << state();
+    ASSERT_TRUE(press("ready", "Moving")) << state();
+    ASSERT_TRUE(comes_to("Waiting")) << state();
+    ASSERT_TRUE(press("work", "Simulating")) << state();
+    run.run_for(10s);
+    const std::vector<std::string> wanted{"Off", "PoweredOn", "Waiting", "Moving", "Waiting", "Simulating"};
+    EXPECT_EQ(entered, wanted) << "the counters were set: nothing is homed a second time";
+    EXPECT_EQ(states.slot().phase(), SlotPhase::steady) << states.slot().describe_roll_back().view();
+    EXPECT_EQ(states.slot().script(), "k160/body_robot.osd");
+    EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
+}
+
+TEST_P(K160, finds_its_zeros_by_states_that_were_loaded) {
+    plant.leave_alone();
+    LoadedStates states{run};
+    EXPECT_EQ(states.load("k160/body_robot.osd"), "");
+    plant.press("start", run.now() + 200ms);
+    ASSERT_TRUE(comes_to("Homing", 2s)) << state();
+    ASSERT_TRUE(comes_to("Waiting")) << state();
+    run.run_for(100ms);
+    const Joints error = of<JointSensor>("joints").positions.last() - plant.joints();
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error.transpose();
+    EXPECT_EQ(states.roll_back(), "") << "to the compiled ones";
+    EXPECT_EQ(state(), "Off");
+    EXPECT_TRUE(plant.brakes_are_on());
+    plant.press("start", run.now() + 200ms);
+    EXPECT_TRUE(comes_to("Waiting", 2s)) << state();
 }
 
 TEST_P(K160, knows_its_joints_within_what_a_switch_repeats) {
