@@ -7,6 +7,8 @@
 #include "kernel/component/operation_interface.hpp"
 #include "kernel/motion/closed_form.hpp"
 
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +17,7 @@ namespace two_robots {
 // clang-format off
 /// Rz(q1) Tz(l1) Rx(-q2) Tz(l2) Rx(-q3) Tz(l3) Rz(q4) Rx(-q5) Rz(q6) Tz(l6): how KUKA's 160 and, with the wrist below, its
 /// 361 are built; lengths in m.
-constexpr motion::Chain<Base, Flange, 6> kuka_arm(double l1, double l2, double l3, double l6) noexcept {
+constexpr motion::Chain<Base, Flange, 6> kuka_arm(double l1, double l2, double l3, double l6) noexcept TAPPET_REALTIME {
     return {{{
         {.alpha_deg = 90, .d_m = l1, .theta_deg = 90},
         {.a_m = l2, .theta_deg = 90, .reversed = true},
@@ -74,16 +76,22 @@ struct JointSolution {
     SixNumbers joints{};
 };
 
+/// Where the flange of an arm is for some joints. `robot`: folded, or Loaded. Real-time.
+template <class Wrist, class Robot>
+Posture posture_of(const Robot& robot, const SixNumbers& joints) noexcept TAPPET_REALTIME {
+    const Joints q = joints.joints();
+    auto pose = motion::forward_with_jacobian(robot, Wrist::angles(q));
+    Wrist::columns(q, pose.jacobian.matrix);
+    Posture posture{.flange = FrameNumbers{pose.frame}};
+    Eigen::Map<Eigen::Matrix<double, 6, 6>>{posture.jacobian_numbers.data()} = pose.jacobian.matrix;
+    return posture;
+}
+
 /// Process component of an arm: where its flange is for some joints, and the joints for a place. Real-time.
 template <const auto& arm, class Wrist>
 struct Kinematics {
     Posture posture(const SixNumbers& joints) noexcept TAPPET_REALTIME {
-        const Joints q = joints.joints();
-        auto pose = motion::forward_with_jacobian(motion::folded<arm>, Wrist::angles(q));
-        Wrist::columns(q, pose.jacobian.matrix);
-        Posture posture{.flange = FrameNumbers{pose.frame}};
-        Eigen::Map<Eigen::Matrix<double, 6, 6>>{posture.jacobian_numbers.data()} = pose.jacobian.matrix;
-        return posture;
+        return posture_of<Wrist>(motion::folded<arm>, joints);
     }
     /// The nearest one to `near`, without a look at where the joints end.
     JointSolution solve(const FrameNumbers& flange, const SixNumbers& near) noexcept TAPPET_REALTIME {
@@ -98,6 +106,35 @@ struct Kinematics {
                       method<&Kinematics::solve>("solve", "the joints for a place of the flange, near others",
                                                  any_thread));
     }
+};
+
+/// The same of an arm whose lengths somebody measured, to be asked in place of the drawn one. Its callers run
+/// in any activity, and its lengths are set in its own: each is a number that is whole. Real-time.
+template <class Wrist>
+struct MeasuredKinematics {
+    Property<double> l1{1.0}, l2{0.5}, l3{0.5}, l6{0.1};
+
+    void changed() noexcept TAPPET_REALTIME {
+        const std::array<double, 4> set{l1.get(), l2.get(), l3.get(), l6.get()};
+        for (std::size_t i = 0; i < set.size(); ++i) lengths_[i].store(set[i], std::memory_order_relaxed);
+    }
+    Posture posture(const SixNumbers& joints) noexcept TAPPET_REALTIME {
+        const auto length = [this](std::size_t i) noexcept
+            TAPPET_REALTIME { return lengths_[i].load(std::memory_order_relaxed); };
+        return posture_of<Wrist>(motion::Loaded{kuka_arm(length(0), length(1), length(2), length(3))},
+                                 joints);
+    }
+    static constexpr auto interface() {
+        return facets(
+            method<&MeasuredKinematics::posture>("posture", "of the flange for these joints", any_thread),
+            property<&MeasuredKinematics::l1>("l1", "m", "from the floor to joint 2", range(0.1, 2.0)),
+            property<&MeasuredKinematics::l2>("l2", "m", "of the upper arm", range(0.1, 2.0)),
+            property<&MeasuredKinematics::l3>("l3", "m", "of the forearm", range(0.1, 2.0)),
+            property<&MeasuredKinematics::l6>("l6", "m", "from the wrist to the flange", range(0.01, 1.0)));
+    }
+
+private:
+    std::array<std::atomic<double>, 4> lengths_{1.0, 0.5, 0.5, 0.1};
 };
 
 using K361Kinematics = Kinematics<k361_arm, ConeWrist>;

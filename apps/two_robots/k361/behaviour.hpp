@@ -14,8 +14,7 @@ namespace two_robots::k361 {
 /// The tool's loop runs in an activity of its own.
 inline constexpr auto reach =
     script_reach(reachable<Robot>("robot"), reachable<ChainSwitch>("mode"), reachable<JointPath>("path"),
-                 reachable<JointEffector>("drives"), reachable<Replay>("replay", false),
-                 reachable<BodyEstimator>("body", false));
+                 reachable<JointEffector>("drives"), reachable<Replay>("replay", false));
 
 inline constexpr const ScriptUnit& states = compiled_script<scripts::tool_robot, reach>;
 

@@ -1,6 +1,7 @@
-// Estimator of the tool's loop: where the body is now and how it moves, from places of LEDs that are past.
+// Estimators of the tool's loop: where the body is now and how it moves, from places of LEDs that are past.
 #pragma once
 
+#include "apps/two_robots/tool/kalman_track.hpp"
 #include "apps/two_robots/tool/leds.hpp"
 #include "apps/two_robots/tool/values.hpp"
 #include "kernel/component/component.hpp"
@@ -8,7 +9,6 @@
 #include "kernel/motion/estimators.hpp"
 #include "kernel/motion/positive.hpp"
 
-#include <atomic>
 #include <bit>
 
 namespace two_robots {
@@ -45,64 +45,81 @@ namespace two_robots {
     return true;
 }
 
-/// Writes in each step while it knows the body: from two exposures on, until the last one is too old. What
-/// is written is said of now, straight on from what was measured. Real-time.
-struct BodyEstimator {
+/// What all of them have: six tracks, each a filter of a value and its speed, of places and of angles from a
+/// reference. Writes in each step while it knows the body: from two exposures on, until the last one is too
+/// old. What is written is said of now, straight on from what was measured. One that takes the place of
+/// another goes on from its model. `Own` makes its filter. Real-time.
+template <class Own, class Filter>
+struct AnyBodyEstimator {
     Input<Leds> leds;
+    Input<BodyModel> before;
     Output<BodyModel> model;
     Output<bool> good;
     Property<bool> predicts{true};
-    Property<double> alpha{0.5}, beta{0.17};
 
-    void start(const Cycle&) noexcept TAPPET_REALTIME {
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         lose();
-        good.write(false);
+        if (before.good() && leds.good()) go_on(before.get(), cycle.now);
+        put(cycle.now);
+        good.write(knows());
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         Leds seen;
         const Flow flow = leds.read(seen);
         if (flow == Flow::fresh) take(seen, leds.stamp());
-        const bool knows = (flow == Flow::fresh || flow == Flow::old) && filters_[0].good();
-        if (knows) model.write(predicts.get() ? at(cycle.now) : BodyModel{measured_, {}});
         if (flow == Flow::stale) lose();
-        if (good.last() != knows) good.write(knows);
-        is_seen_.store(knows, std::memory_order_relaxed);
+        put(cycle.now);
+        if (good.last() != knows()) good.write(knows());
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        good.write(false);
-        is_seen_.store(false, std::memory_order_relaxed);
-    }
-    bool is_seen() const noexcept TAPPET_REALTIME { return is_seen_.load(std::memory_order_relaxed); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { good.write(false); }
 
-    // clang-format off
-    static constexpr auto interface() {
+protected:
+    template <class... Facets>
+    static constexpr auto estimator_facets(const Facets&... more) {
         return facets(
-            input<&BodyEstimator::leds>("leds", "m", "at the time of their exposure"),
-            output<&BodyEstimator::model>("model", "", "where the body is now, and its twist; while it is known"),
-            output<&BodyEstimator::good>("good", "", "the body is known"),
-            method<&BodyEstimator::is_seen>("is_seen", "the body is known", any_thread),
-            property<&BodyEstimator::predicts>("predicts", "", "false: the last exposure as it is, to see what that costs"),
-            property<&BodyEstimator::alpha>("alpha", "", "of the alpha-beta estimators, on places", range(0.05, 1.0)),
-            property<&BodyEstimator::beta>("beta", "", "of the alpha-beta estimators, on speeds", range(0.01, 1.0)));
+            input<&Own::leds>("leds", "m", "at the time of their exposure"),
+            input<&Own::before>("before", "", "the model of the one whose place it takes", optional),
+            output<&Own::model>("model", "", "where the body is now, and its twist; while it is known"),
+            output<&Own::good>("good", "", "the body is known"),
+            property<&Own::predicts>("predicts", "",
+                                     "false: the last exposure as it is, to see what that costs"),
+            more...);
     }
-    // clang-format on
 
 private:
+    [[nodiscard]] bool knows() const noexcept TAPPET_REALTIME { return tracks_[0].good(); }
+    void put(Time now) noexcept TAPPET_REALTIME {
+        if (knows()) model.write(predicts.get() ? at(now) : BodyModel{measured_, {}});
+    }
     void take(const Leds& seen, Time at) noexcept TAPPET_REALTIME {
         if (!fit_body(seen, measured_)) return;
-        if (!filters_[0].good()) reference_ = measured_.rotation;
-        const Eigen::Vector3d turn = motion::rotation_vector(measured_.rotation * reference_.transpose());
+        if (!knows()) reference_ = measured_.rotation;
+        track(measured_, at);
+    }
+    void track(const BodyFrame& body, Time at) noexcept TAPPET_REALTIME {
+        const Eigen::Vector3d turn = motion::rotation_vector(body.rotation * reference_.transpose());
         for (int i = 0; i < 3; ++i) {
-            filters_[static_cast<std::size_t>(i)].sample(measured_.position[i], at);
-            filters_[static_cast<std::size_t>(3 + i)].sample(turn[i], at);
+            tracks_[static_cast<std::size_t>(i)].sample(body.position[i], at);
+            tracks_[static_cast<std::size_t>(3 + i)].sample(turn[i], at);
+        }
+    }
+    /// As if the last exposure and one before it had told its place and speed.
+    void go_on(const BodyModel& from, Time now) noexcept TAPPET_REALTIME {
+        constexpr Duration between = 20ms;
+        reference_ = from.frame.rotation;
+        for (const Time at : {leds.stamp() - between, leds.stamp()}) {
+            const double ago = to_seconds(now - at);
+            measured_.position = from.frame.position - from.twist.linear * ago;
+            measured_.rotation = motion::rotation_about(-ago * from.twist.angular) * reference_;
+            track(measured_, at);
         }
     }
     [[nodiscard]] BodyModel at(Time now) const noexcept TAPPET_REALTIME {
         BodyModel body;
         Eigen::Vector3d turn;
         for (int i = 0; i < 3; ++i) {
-            const motion::AlphaBeta& way = filters_[static_cast<std::size_t>(i)];
-            const motion::AlphaBeta& angle = filters_[static_cast<std::size_t>(3 + i)];
+            const Filter& way = tracks_[static_cast<std::size_t>(i)];
+            const Filter& angle = tracks_[static_cast<std::size_t>(3 + i)];
             body.frame.position[i] = way.at(now);
             body.twist.linear[i] = way.velocity();
             turn[i] = angle.at(now);
@@ -112,16 +129,44 @@ private:
         return body;
     }
     void lose() noexcept TAPPET_REALTIME {
-        for (motion::AlphaBeta& each : filters_) each = motion::AlphaBeta{{alpha.get(), beta.get()}};
+        for (Filter& each : tracks_) each = static_cast<const Own&>(*this).filter();
     }
 
-    static constexpr motion::AlphaBetaGains gains{0.5, 0.17};
-    std::array<motion::AlphaBeta, 6> filters_{motion::AlphaBeta{gains}, motion::AlphaBeta{gains},
-                                              motion::AlphaBeta{gains}, motion::AlphaBeta{gains},
-                                              motion::AlphaBeta{gains}, motion::AlphaBeta{gains}};
+    std::array<Filter, 6> tracks_{Own::usual, Own::usual, Own::usual, Own::usual, Own::usual, Own::usual};
     BodyFrame measured_{};
     Eigen::Matrix3d reference_ = Eigen::Matrix3d::Identity();
-    std::atomic<bool> is_seen_{false};
+};
+
+/// By alpha-beta filters.
+struct BodyEstimator : AnyBodyEstimator<BodyEstimator, motion::AlphaBeta> {
+    static constexpr motion::AlphaBeta usual{motion::AlphaBetaGains{0.5, 0.17}};
+    Property<double> alpha{0.5}, beta{0.17};
+
+    [[nodiscard]] motion::AlphaBeta filter() const noexcept TAPPET_REALTIME {
+        return motion::AlphaBeta{{alpha.get(), beta.get()}};
+    }
+    static constexpr auto interface() {
+        return estimator_facets(
+            property<&BodyEstimator::alpha>("alpha", "", "of the filters, on places", range(0.05, 1.0)),
+            property<&BodyEstimator::beta>("beta", "", "of the filters, on speeds", range(0.01, 1.0)));
+    }
+};
+
+/// By Kalman filters, whose gains follow from what they are told of noise.
+struct KalmanBodyEstimator : AnyBodyEstimator<KalmanBodyEstimator, KalmanTrack> {
+    static constexpr KalmanTrack usual{{.acceleration = 0.02, .noise = 0.02e-3}};
+    Property<double> acceleration{0.02}, noise{0.02e-3};
+
+    [[nodiscard]] KalmanTrack filter() const noexcept TAPPET_REALTIME {
+        return KalmanTrack{{acceleration.get(), noise.get()}};
+    }
+    static constexpr auto interface() {
+        return estimator_facets(
+            property<&KalmanBodyEstimator::acceleration>(
+                "acceleration", "m/s^2", "deviation, from exposure to exposure", range(1e-3, 10.0)),
+            property<&KalmanBodyEstimator::noise>("noise", "m", "deviation of a place that was measured",
+                                                  range(1e-6, 1e-2)));
+    }
 };
 
 } // namespace two_robots

@@ -9,6 +9,7 @@
 #include "kernel/motion/path.hpp"
 #include "kernel/motion/trajectory.hpp"
 
+#include <atomic>
 #include <cstdint>
 
 namespace two_robots {
@@ -47,6 +48,7 @@ struct Replay {
         rounds.write(0);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        sees_body_.store(model.good(), std::memory_order_relaxed);
         if (!model.good()) {
             leg_ = Leg::none; // where the body is not known there is no way to go
             return;
@@ -60,7 +62,12 @@ struct Replay {
         else
             follow_line(cycle.now);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { leg_ = Leg::none; }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        leg_ = Leg::none;
+        sees_body_.store(false, std::memory_order_relaxed);
+    }
+    /// Whoever of the Estimators tells it.
+    bool sees_body() const noexcept TAPPET_REALTIME { return sees_body_.load(std::memory_order_relaxed); }
 
     /// Above the hole, into it, along the path, until something else is told.
     bool operate() noexcept TAPPET_REALTIME {
@@ -95,6 +102,7 @@ struct Replay {
             calls<&Replay::posture>("posture", "of the flange for some joints"),
             command<&Replay::operate, &Replay::operates>("operate", "into the hole and along the path; done when the path begins"),
             command<&Replay::withdraw, &Replay::is_out>("withdraw", "out of the hole"),
+            method<&Replay::sees_body>("sees_body", "it is known where the body is", any_thread),
             property<&Replay::tool_length>("tool_length", "m", "from flange to tip", range(0.05, 1.0)),
             property<&Replay::depth>("depth", "m", "of the path below the hole", range(0.06, 0.25)),
             property<&Replay::above>("above", "m", "the hole: where it comes in from", range(0.01, 0.2)),
@@ -189,6 +197,7 @@ private:
     Time began_{};
     double at_s_ = 0.0, pace_ = 0.0;
     bool begins_ = false, is_withdrawn_ = false;
+    std::atomic<bool> sees_body_{false};
 };
 
 } // namespace two_robots
