@@ -30,7 +30,7 @@ public:
     void put(const Joints& joints) {
         if (!teller_) return;
         const SixNumbers numbers{joints};
-        static_cast<void>(teller_->send(std::as_bytes(std::span{numbers.of})));
+        static_cast<void>(teller_->tell(std::as_bytes(std::span{numbers.of})));
     }
     void take(Joints& joints) {
         SixNumbers numbers;

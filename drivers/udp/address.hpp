@@ -1,6 +1,8 @@
 // An IPv4 address and a port as the system wants them.
 #pragma once
 
+#include "kernel/base/realtime.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -21,8 +23,11 @@ inline bool read_address(std::string_view numbers, std::uint16_t port, sockaddr_
     into.sin_port = htons(port);
     return ::inet_pton(AF_INET, text.data(), &into.sin_addr) == 1;
 }
-inline const sockaddr* as_socket_address(const sockaddr_in& address) noexcept {
+inline const sockaddr* as_socket_address(const sockaddr_in& address) noexcept TAPPET_REALTIME {
     return static_cast<const sockaddr*>(static_cast<const void*>(&address));
+}
+inline sockaddr* as_socket_address(sockaddr_in& address) noexcept TAPPET_REALTIME {
+    return static_cast<sockaddr*>(static_cast<void*>(&address));
 }
 
 } // namespace tappet::udp

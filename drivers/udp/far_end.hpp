@@ -1,4 +1,4 @@
-// The other end of datagrams: the instrument that sends them, as a plant holds it.
+// The other end of datagrams: the instrument that sends them, or who is asked, as a plant holds it.
 #pragma once
 
 #include "drivers/twin/far_end.hpp"
@@ -16,8 +16,11 @@ public:
 
     /// Now. What does not go out is counted.
     void send(std::span<const std::byte> datagram) {
-        if (wires_ == nullptr || !wires_->send(datagram)) ++refused_;
+        if (wires_ == nullptr || !wires_->tell(datagram)) ++refused_;
     }
+    /// The next one that the machine sent; nothing: there is none. On the bench, where machines reach each
+    /// other themselves, there never is.
+    std::size_t receive(std::span<std::byte> into) { return wires_ == nullptr ? 0 : wires_->hear(into); }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
     void take(Time) override {}

@@ -27,7 +27,7 @@ std::expected<void, Sentence> Sender::open(std::string_view address, std::uint16
     return {};
 }
 
-bool Sender::send(std::span<const std::byte> datagram) noexcept {
+bool Sender::tell(std::span<const std::byte> datagram) noexcept {
     return ::send(socket_, datagram.data(), datagram.size(), 0) == static_cast<ssize_t>(datagram.size());
 }
 

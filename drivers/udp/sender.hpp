@@ -17,7 +17,8 @@ public:
     ~Sender() override;
     /// A machine that listens at each address of its box does so at this one's own.
     std::expected<void, Sentence> open(std::string_view address, std::uint16_t port);
-    bool send(std::span<const std::byte> datagram) noexcept override;
+    bool tell(std::span<const std::byte> datagram) noexcept override;
+    std::size_t hear(std::span<std::byte>) noexcept override { return 0; }
 
 private:
     int socket_ = -1;

@@ -8,6 +8,8 @@
 #include <expected>
 #include <string_view>
 
+#include <netinet/in.h>
+
 namespace tappet::udp {
 
 /// IPv4.
@@ -20,10 +22,14 @@ public:
 
     /// Listens at that address of this box; 0.0.0.0: at each of them. Not real-time.
     std::expected<void, Sentence> open(std::string_view address, std::uint16_t port);
+    /// Asks at that address of another box, and hears its answers only. Not real-time.
+    std::expected<void, Sentence> ask(std::string_view address, std::uint16_t port);
     std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME override;
+    bool send(std::span<const std::byte> datagram) noexcept TAPPET_REALTIME override;
 
 private:
     int socket_ = -1;
+    sockaddr_in to_{}; ///< of no family: to nobody yet
 };
 
 } // namespace tappet::udp

@@ -5,6 +5,7 @@
 
 namespace two_robots::k160::bindings {
 
-inline constexpr Binding bench = binding(wired("robot-can", "can1"), lines_at("panel"));
+inline constexpr Binding bench =
+    binding(wired("robot-can", "can1"), wired("time-port", "0.0.0.0:5007"), lines_at("panel"));
 
 } // namespace two_robots::k160::bindings

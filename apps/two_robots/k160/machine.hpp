@@ -7,6 +7,7 @@
 #include "apps/two_robots/kinematics.hpp"
 #include "apps/two_robots/wires.hpp"
 #include "drivers/can/restarter.hpp"
+#include "drivers/udp/peer_clock.hpp"
 #include "kernel/control/control.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
@@ -33,13 +34,14 @@ inline constexpr auto table = machine("k160",
         component<ChainSwitch>("mode"),
         component<K160Kinematics>("kinematics"),
         component<JointSensor>("joints", set<counts_per_rad>("counts_per_rad")),
-        component<Homing>("homing", set<switch_angles>("switch_angles")),
-        component<Idle>("idle"), component<Standing>("standing"), component<Turning>("turning"), component<JointPath>("path", set<ready>("ready")),
-        component<BodySimulation>("breath", set<breath_direction>("direction")),
-        component<JointPid>("pid", set("kp", 2.0), set<lowest>("lowest"), set<highest>("highest")),
-        component<JointFeedForward>("forward", set("kp", 10.0), set<lowest>("lowest"), set<highest>("highest")),
-        component<JointEffector>("drives", set<volts_per_rate>("volts_per_rate")),
+        component<Homing>("homing", set<switch_angles>("switch_angles"), properties_file("homing.cpf", optional)),
+        component<Idle>("idle"), component<Standing>("standing"), component<Turning>("turning"), component<JointPath>("path", set<ready>("ready"), properties_file("path.cpf", optional)),
+        component<BodySimulation>("breath", set<breath_direction>("direction"), properties_file("breath.cpf", optional)),
+        component<JointPid>("pid", set("kp", 2.0), set<lowest>("lowest"), set<highest>("highest"), properties_file("pid.cpf", optional)),
+        component<JointFeedForward>("forward", set("kp", 10.0), set<lowest>("lowest"), set<highest>("highest"), properties_file("forward.cpf", optional)),
+        component<JointEffector>("drives", set<volts_per_rate>("volts_per_rate"), properties_file("drives.cpf", optional)),
         component<Robot>("robot"),
+        component<udp::ClockAnswers>("time", device("time-port")),
         component<can::Restarter>("restarter", device("robot-can")),
         component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities( // threads; their priorities follow from the deadlines
@@ -47,6 +49,7 @@ inline constexpr auto table = machine("k160",
         activity("loop", every(servo_period, phase(1ms)),                deadline(1500us), budget(200us),
             runs("mode", "kinematics", "joints", "homing", "idle", "standing", "turning", "path", "breath", "pid", "forward", "drives", "robot")),
         activity("io",        on_device("io"), at_most(8, 2ms), runs("io"), deadline(1ms), budget(30us)),
+        activity("clock",     every(servo_period), runs("time"), deadline(1900us), budget(60us)),
         activity("restarter", every(100ms), not_real_time, runs("restarter")),
         activity("browser",   every(20ms),  not_real_time, runs("browser", "interpreter"), stack(224 * 1024))),
     connections( // data flow

@@ -5,6 +5,7 @@
 #include "apps/two_robots/arm_plant.hpp"
 #include "apps/two_robots/joints_link.hpp"
 #include "apps/two_robots/k160/machine.hpp"
+#include "drivers/udp/far_end.hpp"
 
 namespace two_robots::k160 {
 
@@ -38,6 +39,8 @@ public:
     }
 
     void leave_alone() { works_by_itself_ = false; }
+
+    udp::FarEnd time_port{ends, "time-port"};
 
 private:
     Plant(std::uint64_t seed, Random place)

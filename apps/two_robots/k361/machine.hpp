@@ -9,6 +9,7 @@
 #include "apps/two_robots/tool/superposition.hpp"
 #include "apps/two_robots/wires.hpp"
 #include "drivers/can/restarter.hpp"
+#include "drivers/udp/peer_clock.hpp"
 #include "kernel/control/control.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
@@ -32,18 +33,19 @@ inline constexpr auto table = machine("k361",
         component<gpio::LinePort<robot_lines>>("io", device("robot-io")),
         component<ChainSwitch>("mode"),
         component<ChainSwitch>("geometry"), component<K361Kinematics>("kinematics"),
-        component<MeasuredKinematics<ConeWrist>>("measured", set("l1", 1.020), set("l2", 0.480), set("l3", 0.645), set("l6", 0.120)),
+        component<MeasuredKinematics<ConeWrist>>("measured", set("l1", 1.020), set("l2", 0.480), set("l3", 0.645), set("l6", 0.120), properties_file("measured.cpf", optional)),
         component<JointSensor>("joints", set<counts_per_rad>("counts_per_rad"), set("absolute", true)),
         component<Idle>("idle"), component<Standing>("standing"), component<Turning>("turning"), component<Twisting>("twisting"),
-        component<JointPath>("path", set<ready>("ready")), component<Cartesian>("cartesian"),
-        component<JointPid>("pid", set("kp", 2.0), set<lowest>("lowest"), set<highest>("highest")),
-        component<JointFeedForward>("forward", set("kp", 10.0), set<lowest>("lowest"), set<highest>("highest")),
-        component<JointEffector>("drives", set<volts_per_rate>("volts_per_rate")),
+        component<JointPath>("path", set<ready>("ready"), properties_file("path.cpf", optional)), component<Cartesian>("cartesian"),
+        component<JointPid>("pid", set("kp", 2.0), set<lowest>("lowest"), set<highest>("highest"), properties_file("pid.cpf", optional)),
+        component<JointFeedForward>("forward", set("kp", 10.0), set<lowest>("lowest"), set<highest>("highest"), properties_file("forward.cpf", optional)),
+        component<JointEffector>("drives", set<volts_per_rate>("volts_per_rate"), properties_file("drives.cpf", optional)),
         component<Robot>("robot"),
         component<LedCamera>("camera", device("camera-link"), set("latency", 61ms)),
         component<ChainSwitch>("estimation"), component<BodyEstimator>("body"), component<KalmanBodyEstimator>("body_kalman"),
-        component<Replay>("replay", set("tool_length", 0.40)),
+        component<Replay>("replay", set("tool_length", 0.40), properties_file("replay.cpf", optional)),
         component<Superposition>("superposition"),
+        component<udp::PeerClock>("body_clock", device("body-time")), // of the robot that holds the body
         component<can::Restarter>("restarter", device("robot-can")),
         component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities( // threads; their priorities follow from the deadlines
@@ -53,6 +55,7 @@ inline constexpr auto table = machine("k361",
         activity("loop", every(servo_period, phase(1ms)),                deadline(1500us), budget(200us),
             runs("mode", "geometry", "kinematics", "measured", "joints", "idle", "standing", "turning", "twisting", "path", "cartesian", "pid", "forward", "drives", "robot")),
         activity("io",        on_device("io"), at_most(8, 2ms), runs("io"), deadline(1ms), budget(30us)),
+        activity("clock",     every(servo_period), runs("body_clock"), deadline(1900us), budget(60us)),
         activity("restarter", every(100ms), not_real_time, runs("restarter")),
         activity("browser",   every(20ms),  not_real_time, runs("browser", "interpreter"), stack(224 * 1024))),
     connections( // data flow
@@ -119,7 +122,8 @@ inline constexpr auto table = machine("k361",
         loop("joints by feed-forward", gain("forward.kp"), transport(14ms)), // wires and drives
         loop("joints by PID", gain("pid.kp"), transport(14ms))),
     reporting( // what tappet-browse report writes to files
-        report("joints.positions", every(5)), report("drives.sent", every(5)), report("body.model", every(10)), report("replay.set_point", every(10)), report("mode.chain", on_change())));
+        report("joints.positions", every(5)), report("drives.sent", every(5)), report("body.model", every(10)), report("body_kalman.model", every(10)), report("replay.set_point", every(10)), report("mode.chain", on_change()),
+        report("body_clock.ahead", on_change()), report("body_clock.error", on_change())));
 // clang-format on
 
 } // namespace two_robots::k361

@@ -8,6 +8,7 @@
 #include "apps/two_robots/joints_link.hpp"
 #include "apps/two_robots/k160/plant.hpp"
 #include "apps/two_robots/k361/machine.hpp"
+#include "apps/two_robots/time_link.hpp"
 #include "toolchain/machine/host.hpp"
 
 #include <optional>
@@ -35,6 +36,7 @@ public:
     Time move(Time now) override {
         move_arm(now);
         const BodyFrame body = body_held_by(move_body());
+        time_link.carry(now, body_time, body_arm_.time_port);
         camera.look(now, body, camera_link);
         judge(tip_in_body(body, joints(), tool_length));
         now_.body = body.position;
@@ -97,6 +99,8 @@ public:
 
     SimulatedCamera camera;
     udp::FarEnd camera_link{ends, "camera-link"};
+    TimeLink time_link;
+    udp::FarEnd body_time{ends, "body-time"};
     std::string picture{}; ///< the file to write; empty: none
 
 private:
@@ -108,6 +112,7 @@ private:
                        return at;
                    }()},
           camera{seed},
+          time_link{seed},
           body_arm_{seed},
           seed_{seed} {}
 

@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 namespace two_robots::k361 {
 namespace {
 
@@ -145,6 +147,38 @@ TEST_P(Operation, is_led_by_states_that_were_loaded_while_it_stood) {
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
 }
 
+// Thesis 3.3, time: whenever several processors are used they synchronise their clocks. What is told of the
+// other robot's clock is compared with what it is.
+TEST_P(Operation, knows_the_other_robots_clock_as_well_as_it_says) {
+    const auto& clock = of<udp::PeerClock>("body_clock");
+    const auto wrong = [&] { return (clock.ahead.last() - plant.time_link.ahead(run.now())); };
+    const auto looks_for = [&](Duration time) {
+        Duration worst{};
+        for (const Time end = run.now() + time; run.now() < end;) {
+            run.run_for(50ms);
+            // Since it was told the clocks drifted apart a little further.
+            EXPECT_LE(std::abs(wrong().count()), (clock.error.last() + 30us).count());
+            worst = std::max(worst, clock.error.last());
+        }
+        return worst;
+    };
+    run.run_for(3s);
+    EXPECT_LT(looks_for(20s), 3ms);
+    EXPECT_GT(clock.exchanges.last(), 150);
+    EXPECT_GT(clock.lost.last(), 0);
+    plant.time_link.faults.is_cut = true;
+    const Duration before = clock.error.last();
+    EXPECT_GT(looks_for(20s), before + 20s / 10000) << "nobody answers, and it says so";
+    plant.time_link.faults.is_cut = false;
+    run.run_for(2s);
+    EXPECT_LT(clock.error.last(), 3ms);
+    EXPECT_EQ(clock.jumps.last(), 0);
+    plant.time_link.set_by(1s);
+    run.run_for(2s);
+    EXPECT_EQ(clock.jumps.last(), 1) << "somebody set it";
+    EXPECT_LT(looks_for(5s), 4ms);
+}
+
 TEST_P(Operation, knows_where_the_body_is) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     double worst = 0.0;
@@ -277,6 +311,31 @@ TEST(TwoRobots, run_alike_for_one_seed) {
     const std::uint64_t first = digest_of_a_run(3);
     EXPECT_EQ(digest_of_a_run(3), first);
     EXPECT_NE(digest_of_a_run(4), first);
+}
+
+// Thesis 3.4.3: both robots have the same components, but differ in state machines; and the one has its zeros
+// to find and a body to move.
+TEST(TwoRobots, have_their_components_of_one_set_of_types) {
+    const auto types_of = [](const MachineView& table) {
+        std::set<std::string_view> names;
+        for (const ComponentRow& each : table.components) names.insert(each.type->tag->name);
+        return names;
+    };
+    const auto here = types_of(k361::table.view()), there = types_of(k160::table.view());
+    std::vector<std::string_view> in_both, only_there;
+    std::ranges::set_intersection(here, there, std::back_inserter(in_both));
+    std::ranges::set_difference(there, here, std::back_inserter(only_there));
+    EXPECT_EQ(in_both.size(), 15u) << testing::PrintToString(in_both);
+    const auto ends_with = [](const char* name) {
+        return testing::ResultOf(
+            [name](std::string_view type) {
+                return type.ends_with(name) || type.contains(std::string{name} + "<");
+            },
+            testing::IsTrue());
+    };
+    EXPECT_THAT(only_there,
+                testing::UnorderedElementsAre(ends_with("Homing"), ends_with("Kinematics"),
+                                              ends_with("BodySimulation"), ends_with("ClockAnswers")));
 }
 
 } // namespace

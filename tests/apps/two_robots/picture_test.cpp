@@ -1,4 +1,4 @@
-// The program of both robots draws their run, or says why not.
+// The program of both robots draws their run, or says why not; and it keeps properties in files.
 #include "apps/two_robots/host/picture.hpp"
 #include "tests/toolchain/program.hpp"
 
@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -40,6 +41,32 @@ TEST(Program, draws_the_picture_of_its_page_or_says_why_not) {
     const tappet::Ended nowhere = tappet::run_line(K361 " --for 1 --picture /nowhere/at/all.svg");
     EXPECT_EQ(nowhere.exit_code, 2);
     EXPECT_THAT(nowhere.text, HasSubstr("the picture cannot be written to \"/nowhere/at/all.svg\"; name a"));
+}
+
+// Thesis 3.4.5: control parameters, the kinematics to use, the length of the tools, limits of joints.
+TEST(Program, reads_properties_from_files_and_saves_them_there) {
+    const std::string directory = testing::TempDir() + "two_robots_properties";
+    std::filesystem::create_directory(directory);
+    const auto run = [&] { return tappet::run_line(K361 " --for 1 --properties '" + directory + "'"); };
+    const auto set = [&](const std::string& file, const std::string& from, const std::string& to) {
+        std::string text = content(directory + file);
+        const std::size_t at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << text;
+        std::ofstream{directory + file} << text.replace(at, from.size(), to);
+    };
+    const tappet::Ended first = run();
+    EXPECT_EQ(first.exit_code, 0) << first.text;
+    for (const auto* file : {"/replay.cpf", "/forward.cpf", "/pid.cpf", "/drives.cpf", "/measured.cpf"})
+        EXPECT_THAT(content(directory + file), HasSubstr("</properties>")) << file;
+    set("/replay.cpf", "<value>0.4</value>", "<value>0.35</value>");
+    EXPECT_EQ(run().exit_code, 0);
+    EXPECT_THAT(content(directory + "/replay.cpf"), HasSubstr("<value>0.35</value>"))
+        << "it was read, and saved again";
+    set("/replay.cpf", "<value>0.35</value>", "<value>35</value>");
+    const tappet::Ended refused = run();
+    EXPECT_NE(refused.exit_code, 0) << "a tool of 35 m";
+    EXPECT_THAT(refused.text, HasSubstr("tool_length"));
+    std::filesystem::remove_all(directory);
 }
 
 } // namespace

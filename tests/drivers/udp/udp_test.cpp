@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cstring>
 #include <string>
 
 #include <arpa/inet.h>
@@ -41,24 +42,34 @@ std::uint16_t free_port() {
 TEST(Twin, gives_datagrams_in_their_order_and_nothing_when_none_is_there) {
     Twin twin;
     EXPECT_EQ(received(twin), "");
-    EXPECT_TRUE(twin.send(bytes_of("one")));
-    EXPECT_TRUE(twin.send(bytes_of("two")));
+    EXPECT_TRUE(twin.tell(bytes_of("one")));
+    EXPECT_TRUE(twin.tell(bytes_of("two")));
     EXPECT_EQ(received(twin), "one");
     EXPECT_EQ(received(twin), "two");
     EXPECT_EQ(received(twin), "");
 }
 
+TEST(Twin, gives_the_plant_what_the_machine_sends) {
+    Twin twin;
+    ASSERT_TRUE(twin.send(bytes_of("asked")));
+    EXPECT_EQ(received(twin), "") << "it does not hear itself";
+    std::array<std::byte, most_bytes> bytes;
+    ASSERT_EQ(twin.hear(bytes), 5u);
+    EXPECT_EQ(std::memcmp(bytes.data(), "asked", 5), 0);
+    EXPECT_EQ(twin.hear(bytes), 0u);
+}
+
 TEST(Twin, drops_what_nobody_takes_and_what_is_too_long) {
     Twin twin;
     int taken = 0;
-    while (twin.send(bytes_of("x")) && taken < 1000) ++taken;
+    while (twin.tell(bytes_of("x")) && taken < 1000) ++taken;
     EXPECT_EQ(taken, 32);
-    EXPECT_FALSE(Twin{}.send(bytes_of(std::string(most_bytes + 1, 'x'))));
+    EXPECT_FALSE(Twin{}.tell(bytes_of(std::string(most_bytes + 1, 'x'))));
 }
 
 TEST(Twin, tells_the_whole_size_of_what_does_not_fit) {
     Twin twin;
-    ASSERT_TRUE(twin.send(bytes_of("a long one")));
+    ASSERT_TRUE(twin.tell(bytes_of("a long one")));
     std::array<std::byte, 4> small;
     EXPECT_EQ(twin.receive(small), 10u);
 }
@@ -70,15 +81,38 @@ TEST(Socket, receives_what_is_sent_to_its_port) {
     EXPECT_EQ(received(socket), "") << "it does not wait";
     Sender sender;
     ASSERT_TRUE(sender.open("0.0.0.0", port).has_value()) << "each address of this box";
-    ASSERT_TRUE(sender.send(bytes_of("measured")));
+    ASSERT_TRUE(sender.tell(bytes_of("measured")));
     std::string got;
     for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(socket);
     EXPECT_EQ(got, "measured");
-    ASSERT_TRUE(sender.send(bytes_of("a long one")));
+    ASSERT_TRUE(sender.tell(bytes_of("a long one")));
     std::array<std::byte, 4> small;
     std::size_t size = 0;
     for (int i = 0; i < 2000 && size == 0; ++i, ::usleep(1000)) size = socket.receive(small);
     EXPECT_EQ(size, 10u);
+}
+
+TEST(Socket, asks_another_one_and_hears_its_answer) {
+    const auto awaited = [](Device& at) {
+        std::string got;
+        for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(at);
+        return got;
+    };
+    const std::uint16_t port = free_port();
+    Socket answers, asks, other;
+    ASSERT_TRUE(answers.open("127.0.0.1", port).has_value());
+    EXPECT_FALSE(answers.send(bytes_of("to whom?"))) << "nobody has asked";
+    ASSERT_TRUE(asks.ask("127.0.0.1", port).has_value());
+    ASSERT_TRUE(other.ask("127.0.0.1", port).has_value());
+    for (Socket* each : {&asks, &other, &asks}) {
+        ASSERT_TRUE(each->send(bytes_of("what time is it")));
+        EXPECT_EQ(awaited(answers), "what time is it");
+        ASSERT_TRUE(answers.send(bytes_of("noon")));
+        EXPECT_EQ(awaited(*each), "noon");
+    }
+    const auto wrong = Socket{}.ask("the clock", port);
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(std::string{wrong.error().view()}, HasSubstr("\"the clock\" is no IPv4 address"));
 }
 
 TEST(Socket, says_why_it_cannot_be_opened) {

@@ -1,0 +1,104 @@
+// How far another machine's clock is ahead, from questions and answers between the two: what is certain, not
+// what is likely.
+#pragma once
+
+#include "kernel/base/realtime.hpp"
+#include "kernel/base/time.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+namespace tappet::udp {
+
+/// The four times of a question and its answer: two of the clock of who asks, two of the other one.
+struct ClockTimes {
+    Time asked{}, received{}, answered{}, got{};
+};
+
+/// A question reaches the other machine after it was asked, and the answer this one after it was given, so
+/// that the other clock is ahead by no less than `answered - got` and no more than `received - asked`. Each
+/// exchange narrows what is known; as it ages it widens by as much as the two clocks may drift. Real-time.
+class ClockExchange {
+public:
+    /// `drift`: between the two clocks, seconds in a second.
+    void take(const ClockTimes& times, double drift) noexcept TAPPET_REALTIME {
+        age(times.got, drift);
+        const Duration way = after(times.got - times.asked, drift);
+        const Duration least = times.answered - times.got, most = times.received - times.asked + way;
+        if (!known_ || most < least_ || least > most_) { // before, or another clock than before
+            jumps_ += known_ ? 1 : 0;
+            least_ = least, most_ = most;
+            known_ = true;
+        } else {
+            least_ = std::max(least_, least);
+            most_ = std::min(most_, most);
+        }
+    }
+    /// What is known of `now`.
+    void age(Time now, double drift) noexcept TAPPET_REALTIME {
+        const Duration wider = after(now - at_, drift);
+        if (known_) least_ -= wider, most_ += wider;
+        at_ = now;
+    }
+    [[nodiscard]] bool known() const noexcept TAPPET_REALTIME { return known_; }
+    /// Of the other clock against the own one, give or take error().
+    [[nodiscard]] Duration ahead() const noexcept TAPPET_REALTIME { return least_ + error(); }
+    [[nodiscard]] Duration error() const noexcept TAPPET_REALTIME { return (most_ - least_ + 1ns) / 2; }
+    /// Exchanges that cannot be of the clock that was known before.
+    [[nodiscard]] std::int64_t jumps() const noexcept TAPPET_REALTIME { return jumps_; }
+
+private:
+    /// Rounded upwards.
+    static Duration after(Duration time, double drift) noexcept TAPPET_REALTIME {
+        return time > Duration::zero()
+                   ? Duration{static_cast<std::int64_t>(static_cast<double>(time.count()) * drift) + 1}
+                   : Duration::zero();
+    }
+
+    bool known_ = false;
+    Duration least_{}, most_{};
+    Time at_{};
+    std::int64_t jumps_ = 0;
+};
+
+/// A question and its answer have one form, little-endian: u32 "clk1", u32 number, and of the times three in
+/// ns; those of the other clock are nought in a question.
+namespace clock_packet {
+
+inline constexpr std::uint32_t mark = 0x316b6c63;
+inline constexpr std::size_t bytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(std::int64_t);
+using Packet = std::array<std::byte, bytes>;
+
+struct Content {
+    std::uint32_t number = 0;
+    Time asked{}, received{}, answered{};
+    [[nodiscard]] bool is_question() const noexcept TAPPET_REALTIME { return answered == Time{}; }
+};
+
+inline Packet write(const Content& content) noexcept TAPPET_REALTIME {
+    const std::array<std::uint32_t, 2> head{mark, content.number};
+    const std::array<std::int64_t, 3> times{to_ns(content.asked), to_ns(content.received),
+                                            to_ns(content.answered)};
+    Packet packet;
+    std::memcpy(packet.data(), head.data(), sizeof head);
+    std::memcpy(packet.data() + sizeof head, times.data(), sizeof times);
+    return packet;
+}
+/// False: it is none.
+[[nodiscard]] inline bool read(std::span<const std::byte> packet, Content& content) noexcept TAPPET_REALTIME {
+    std::array<std::uint32_t, 2> head{};
+    std::array<std::int64_t, 3> times{};
+    if (packet.size() != bytes) return false;
+    std::memcpy(head.data(), packet.data(), sizeof head);
+    std::memcpy(times.data(), packet.data() + sizeof head, sizeof times);
+    content = {head[1], at_ns(times[0]), at_ns(times[1]), at_ns(times[2])};
+    return head[0] == mark;
+}
+
+} // namespace clock_packet
+
+} // namespace tappet::udp
