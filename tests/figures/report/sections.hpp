@@ -33,6 +33,7 @@ inline constexpr std::array sections{
             "Four applications on one processor, from minimal to large, with drifting periods, a background activity and random load, in five "
             "settings: no communication, data through locks, data through Tappet's connectors, commands, events (thesis 4.2.3, 4.4.4, 4.5.4, 4.6.4)."},
     Section{"scope", "Watching: the thread scope", "What recording every function of every activity costs the machine that is watched."},
+    Section{"recording", "Reporting: a hundred ports", "What recording values costs the machine that is recorded."},
     Section{"scale", "Scale",
             "Generated machines of growing size: what the compiler takes, what the firmware takes, and what one component costs at run time."},
     Section{"firmware", "The firmware of the carpet loom", "Its size, its memory, and the time from its start to an armed machine."},
