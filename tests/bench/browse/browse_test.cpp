@@ -9,8 +9,6 @@
 #include <fstream>
 #include <set>
 
-#include <grp.h>
-
 namespace tappet::bench {
 namespace {
 
@@ -18,51 +16,13 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
 
-struct Outcome {
-    int code = -1;
-    std::string text{}; ///< standard output, and errors after it
-};
-
-constexpr uid_t root = 0;
 constexpr uid_t an_observer = 1000; ///< whom the bench's board does not list
 constexpr uid_t an_operator = 1001;
 
-/// Runs the browser to its end, as that user.
 Outcome browse(std::vector<std::string> words, uid_t user = root) {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {};
-    words.insert(words.begin(), "tappet-browse");
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const pid_t process = ::fork();
-    if (process == 0) {
-        ::dup2(ends[1], STDOUT_FILENO);
-        ::dup2(ends[1], STDERR_FILENO);
-        if (user != root && (::setgroups(0, nullptr) != 0 || ::setgid(user) != 0 || ::setuid(user) != 0))
-            ::_exit(126);
-        ::execvp(arguments[0], arguments.data());
-        ::_exit(127);
-    }
-    ::close(ends[1]);
-    Outcome outcome;
-    std::array<char, 4096> piece{};
-    for (ssize_t count = 0; (count = ::read(ends[0], piece.data(), piece.size())) > 0;)
-        outcome.text.append(piece.data(), static_cast<std::size_t>(count));
-    ::close(ends[0]);
-    int status = 0;
-    ::waitpid(process, &status, 0);
-    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
+    return Browser{}.run(std::move(words), user);
 }
-
-/// The number after "NAME = ".
-double value_of(const std::string& name) {
-    const Outcome outcome = browse({"get", name});
-    const std::size_t at = outcome.text.find(" = ");
-    EXPECT_EQ(outcome.code, 0) << outcome.text;
-    return at == std::string::npos ? -1.0 : std::strtod(outcome.text.c_str() + at + 3, nullptr);
-}
+double value_of(const std::string& name) { return Browser{}.value_of(name); }
 
 /// One loom for all that a browser asks of it; the last test ends it.
 class LoomBrowser : public testing::Test {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "apps/carpet_loom/wires.hpp"
-#include "tests/drivers/foreign.hpp"
+#include "tests/bench/processes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,27 +17,10 @@
 namespace tappet::bench {
 
 namespace wires = loom::wires;
-using namespace std::chrono_literals;
 using WallTime = std::chrono::system_clock::time_point; ///< candump stamps with it
 using WallDuration = std::chrono::microseconds;
 
 inline WallTime wall_now() { return std::chrono::system_clock::now(); }
-
-/// Looks every so often until it is so; false after `patience`.
-template <class Condition> bool soon(Condition&& is_so, std::chrono::milliseconds patience = 5s,
-                                     std::chrono::milliseconds every = 2ms) {
-    for (const auto end = std::chrono::steady_clock::now() + patience;
-         std::chrono::steady_clock::now() < end;) {
-        if (is_so()) return true;
-        std::this_thread::sleep_for(every);
-    }
-    return is_so();
-}
-
-inline std::string content_of(const std::string& path) {
-    std::ifstream file{path};
-    return {std::istreambuf_iterator<char>{file}, {}};
-}
 
 /// The process of the machine, a child of its guardian's; 0: it has none.
 inline pid_t machine_of(const Foreign& guardian) {
@@ -93,13 +76,6 @@ inline std::vector<Logged> frames_of(const std::string& log) {
         frames.push_back(frame);
     }
     return frames;
-}
-
-/// A number in the summary of the firmware; -1 when it is not there.
-inline double number_in(const std::string& json, std::string_view key) {
-    const std::string wanted = "\"" + std::string{key} + "\": ";
-    const std::size_t at = json.find(wanted);
-    return at == std::string::npos ? -1.0 : std::strtod(json.c_str() + at + wanted.size(), nullptr);
 }
 
 /// The loom, weaving or about to. The plant samples the lines each millisecond: the emulator is slow enough
