@@ -193,15 +193,9 @@ private:
 
     void start_service() {
         const std::string port = facts_.one("service");
-        if (port.empty() || !may_start_service_) return;
-        if (service_ == no_firmware) {
-            const std::string offers = std::string{service_folder} + "/" + offers_folder;
-            init::make_folder(service_folder);
-            ::mount("tmpfs", service_folder, "tmpfs", MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=50%,mode=0755");
-            init::make_folder(offers);
-            if (::chown(offers.c_str(), nobody, nobody) != 0)
-                voice_.say(init::failed("give " + offers + " to nobody").error());
-        }
+        if (port.empty()) return;
+        if (service_ == no_firmware)
+            if (const auto made = make_service_folder(); !made) voice_.say(made.error());
         tell_status();
         service_ = init::start({"/init", "service", nonce_}, ears_.mouth(), "write the image anew")
                        .value_or(no_firmware);
@@ -285,6 +279,10 @@ private:
             await_networks();
         else if (uptime_s() > start_s_ + patience_s) // it has neither armed nor ended
             bring_up_rest();
+        if (service_again_at_s_ != 0.0 && uptime_s() >= service_again_at_s_) {
+            service_again_at_s_ = 0.0;
+            start_service();
+        }
         if (again_at_s_ != 0.0 && uptime_s() >= again_at_s_) {
             again_at_s_ = 0.0;
             if (slots_.on_trial()) restart();
@@ -361,10 +359,8 @@ private:
                 voice_.say(said);
                 tell_status();
             }
-            if (pid == service_) {
-                may_start_service_ = code != 1; // it has said why
-                start_service();
-            }
+            if (pid == service_ && code != 1) // else it has said why
+                service_again_at_s_ = uptime_s() + again_after_s;
         });
     }
 
@@ -485,7 +481,6 @@ private:
     double await_networks_until_s_ = 0.0; // 0: no longer
     bool has_all_ = false;
     bool may_start_ = false; // settings are never guessed: not without the data partition
-    bool may_start_service_ = true;
     bool is_armed_ = false;
     bool is_locked_down_ = false;
     bool plant_is_ready_ = false;
@@ -501,6 +496,7 @@ private:
     pid_t service_ = no_firmware;
     double start_s_ = 0.0;
     double again_at_s_ = 0.0; // 0: nothing is started or restarted
+    double service_again_at_s_ = 0.0;
     Ears ears_{};
 };
 

@@ -3,7 +3,6 @@
 #include "board/box/service.hpp"
 
 #include "board/box/facts.hpp"
-#include "board/init/system.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,7 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sched.h>
+#include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/random.h>
 #include <sys/resource.h>
@@ -33,6 +33,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t longest_line = 512;
 constexpr std::chrono::seconds for_a_line{10};
 constexpr std::chrono::seconds for_an_update{300};
+constexpr uid_t nobody = 65534;
 
 class Client {
 public:
@@ -188,6 +189,17 @@ void give_up_rights() {
 }
 
 } // namespace
+
+init::Done make_service_folder() {
+    const std::string offers = std::string{service_folder} + "/" + offers_folder;
+    init::make_folder(service_folder);
+    if (::mount("tmpfs", service_folder, "tmpfs", MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=50%,mode=0755") !=
+        0)
+        return init::failed(std::string{"mount "} + service_folder);
+    init::make_folder(offers);
+    if (::chown(offers.c_str(), nobody, nobody) != 0) return init::failed("give nobody " + offers);
+    return {};
+}
 
 std::string new_nonce() {
     std::array<unsigned char, 16> bytes{};

@@ -5,12 +5,11 @@
 #pragma once
 
 #include "board/box/update.hpp"
+#include "board/init/system.hpp"
 
 #include <cstdint>
 #include <expected>
 #include <string>
-
-#include <sys/types.h>
 
 namespace tappet::box {
 
@@ -21,7 +20,9 @@ inline constexpr const char* status_file = "status"; ///< init's text for who as
 inline constexpr const char* offers_folder = "offers";
 inline constexpr const char* offered_update = "offers/update";
 inline constexpr const char* offered_order = "offers/order"; ///< the verb and the signature, each in a line
-inline constexpr uid_t nobody = 65534;
+
+/// Before the process is started for the first time.
+[[nodiscard]] init::Done make_service_folder();
 
 /// Of boards that do not say another.
 inline constexpr std::uint16_t service_port = 4848;

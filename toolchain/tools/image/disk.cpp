@@ -61,6 +61,7 @@ void copy_into(std::fstream& disk, const fs::path& file, const Partition& partit
         disk.seekp(static_cast<std::streamoff>(partition.first_sector * sector_bytes + at));
         disk.write(block.data(), static_cast<std::streamsize>(count));
     }
+    if (!from.is_open() || from.bad()) throw Fault("cannot read " + file.string() + "; check the disk");
 }
 
 } // namespace
