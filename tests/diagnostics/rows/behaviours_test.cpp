@@ -26,7 +26,8 @@ StateMachine Checking {
 }
 RootStateMachine Checking checking
 )"};
-constexpr auto checking_reach = script_reach(reachable<Shaft>("shaft"), reachable<Weft>("weft", false), reachable<Tension>("tension"));
+constexpr auto checking_reach =
+    script_reach(reachable<Shaft>("shaft"), reachable<Weft>("weft", false), reachable<Tension>("tension"));
 constexpr const ScriptUnit& checks = compiled_script<checking, checking_reach>;
 
 constexpr Fault behaviour_faults[] = {
@@ -127,16 +128,16 @@ constexpr Fault slot_faults[] = {
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft", and what is loaded does not; add it to peers(...) of the slot)"},
     {"slot_begins_beyond_its_operations",
      [](Table& m) {
-         m.add(
-             behaviour("shaft", checks, {},
-                       slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"), operations("tension.pre_tension"))));
+         m.add(behaviour("shaft", checks, {},
+                         slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"),
+                              operations("tension.pre_tension"))));
      },
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "tension.relax", and what is loaded does not; add it to operations(...) of the slot)"},
     {"slot_begins_beyond_its_events",
      [](Table& m) {
          m.add(behaviour("shaft", checks, {},
-                         slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"), operations("tension.relax"),
-                              events("weft.inserted"))));
+                         slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"),
+                              operations("tension.relax"), events("weft.inserted"))));
      },
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft.broken", and what is loaded does not; add it to events(...) of the slot)"},
     {"slot_stack",
