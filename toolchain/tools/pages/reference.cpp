@@ -8,6 +8,7 @@
 #include "drivers/instruments/force_sensor.hpp"
 #include "drivers/instruments/velocity_axis.hpp"
 #include "drivers/modbus/client.hpp"
+#include "drivers/udp/peer_clock.hpp"
 #include "kernel/base/decimal.hpp"
 #include "kernel/control/control.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
@@ -56,6 +57,8 @@ const Described components[] = {
     {"drivers/gpio/line_port.hpp", "LinePort", "gpio::LinePort<line_map>",
      component_type<gpio::LinePort<lines>>},
     {"drivers/can/bus.hpp", "Bus", "can::Bus<signal_map>", component_type<can::Bus<frames>>},
+    {"drivers/udp/peer_clock.hpp", "ClockAnswers", "udp::ClockAnswers", component_type<udp::ClockAnswers>},
+    {"drivers/udp/peer_clock.hpp", "PeerClock", "udp::PeerClock", component_type<udp::PeerClock>},
     {"drivers/can/restarter.hpp", "Restarter", "can::Restarter", component_type<can::Restarter>},
     {"drivers/modbus/client.hpp", "Client", "modbus::Client<register_map>",
      component_type<modbus::Client<registers>>},

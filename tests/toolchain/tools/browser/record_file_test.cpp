@@ -148,7 +148,7 @@ TEST(RecordFile, of_a_writer_that_was_killed_is_whole_up_to_the_last_second) {
 }
 
 TEST(RecordFile, that_finds_no_more_room_says_so_and_is_whole_up_to_there) {
-    for (const rlim_t most : {20'000, 20'013, 20'031}) { // somewhere in a record
+    for (const rlim_t most : {20'000u, 20'013u, 20'031u}) { // somewhere in a record
         Recorder recorder;
         recorder.start([most] { // as of a disk that is full: the last write takes a part
             ::signal(SIGXFSZ, SIG_IGN);

@@ -79,6 +79,7 @@ constexpr std::string_view unsaid[] = {
     ": component \" .. \" may block, and activity \" .. \" runs functions of \" .. \" too; ",
     "the table has more than  ..  activities; merge those of equal period",
     "inputs from other activities",
+    "calls answered by turns",
     "inputs written by turns",
 };
 
