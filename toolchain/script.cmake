@@ -1,14 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-# tappet_script(<target> <file>.osd): the script as a constant of C++, for compiled_script of kernel/script/compiled.hpp.
-# Who is linked with the target includes "<path in the tree>/<file>.osd.hpp" and has tappet::scripts::<file>, a ScriptSource.
+# Text files as constants of C++. Who is linked with the target includes "<path in the tree>/<file>.hpp".
+#   tappet_script(<target> <file>.osd)   tappet::scripts::<file>, for compiled_script of kernel/script/compiled.hpp
+#   tappet_file(<target> <file>)         tappet::files::<file_extension>, for from_dbc of drivers/can/from_dbc.hpp
 function(tappet_script target file)
+    get_filename_component(name "${file}" NAME_WE)
+    if(NOT name MATCHES "^[A-Za-z_][A-Za-z0-9_]*$")
+        message(FATAL_ERROR "script \"${file}\": its name becomes one of C++; use characters, digits and _ only")
+    endif()
+    tappet_constant(${target} "${file}" "scripts::${name}")
+endfunction()
+
+function(tappet_file target file)
+    get_filename_component(name "${file}" NAME)
+    string(MAKE_C_IDENTIFIER "${name}" name)
+    tappet_constant(${target} "${file}" "files::${name}")
+endfunction()
+
+function(tappet_constant target file constant)
     set(generator "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/script_header.cmake")
     cmake_path(ABSOLUTE_PATH file NORMALIZE OUTPUT_VARIABLE from)
     cmake_path(RELATIVE_PATH from BASE_DIRECTORY "${CMAKE_SOURCE_DIR}" OUTPUT_VARIABLE place)
     set(header "${CMAKE_BINARY_DIR}/scripts/${place}.hpp")
     add_custom_command(
         OUTPUT "${header}"
-        COMMAND "${CMAKE_COMMAND}" "-DFROM=${from}" "-DTO=${header}" "-DPLACE=${place}" -P "${generator}"
+        COMMAND "${CMAKE_COMMAND}" "-DFROM=${from}" "-DTO=${header}" "-DPLACE=${place}" "-DCONSTANT=${constant}" -P "${generator}"
         DEPENDS "${from}" "${generator}"
         COMMENT "${place} as a constant"
         VERBATIM)

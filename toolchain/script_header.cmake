@@ -1,23 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes the header TO with the script of the file FROM, which messages call PLACE; see script.cmake.
-get_filename_component(name "${FROM}" NAME_WE)
+# Writes the header TO with the text of the file FROM, which messages call PLACE, as tappet::CONSTANT; see script.cmake.
+cmake_minimum_required(VERSION 3.25)
+string(REGEX MATCH "^([a-z]+)::(.+)$" ignored "${CONSTANT}")
+set(room "${CMAKE_MATCH_1}")
+set(name "${CMAKE_MATCH_2}")
 file(READ "${FROM}" text)
-if(NOT name MATCHES "^[A-Za-z_][A-Za-z0-9_]*$")
-    message(FATAL_ERROR "script \"${PLACE}\": its name becomes one of C++; use characters, digits and _ only")
+file(READ "${FROM}" bytes HEX)
+string(REGEX REPLACE "(..)" " \\1" bytes "${bytes}")
+if(bytes MATCHES " 00")
+    message(FATAL_ERROR "\"${PLACE}\" is no text: a byte of it is zero; take that out")
 endif()
-if(text MATCHES "[)]tappet_script\"")
-    message(FATAL_ERROR "script \"${PLACE}\": it holds the characters that end its constant; write them apart")
+if(text MATCHES "[)]tappet_text\"")
+    message(FATAL_ERROR "\"${PLACE}\" holds the characters that end its constant; write them apart")
 endif()
-# The text begins after the bracket, so that its lines are those of the file.
+# A byte that may be no UTF-8 stands in a literal of its own, so that compilers read none.
+if(bytes MATCHES " [89a-f]")
+    foreach(byte RANGE 128 255)
+        string(ASCII ${byte} character)
+        math(EXPR high "${byte} / 64")
+        math(EXPR middle "${byte} / 8 % 8")
+        math(EXPR low "${byte} % 8")
+        string(REPLACE "${character}" ")tappet_text\" \"\\${high}${middle}${low}\" R\"tappet_text(" text "${text}")
+    endforeach()
+endif()
+# The text begins after the bracket, so that its lines are those of the file. It is an array: with g++ a view of a literal
+# costs its whole length wherever it is handed over in a constant expression.
 file(WRITE "${TO}"
-"// The script ${PLACE} as a constant; made when it changed.
+"// The file ${PLACE} as a constant; made when it changed.
 #pragma once
 
-#include \"kernel/script/compiled.hpp\"
+#include \"kernel/base/source_text.hpp\"
 
-namespace tappet::scripts {
+namespace tappet::${room} {
 
-inline constexpr ScriptSource ${name}{\"${PLACE}\", R\"tappet_script(${text})tappet_script\"};
+inline constexpr char ${name}_text[] = R\"tappet_text(${text})tappet_text\";
+inline constexpr SourceText ${name}{\"${PLACE}\", {${name}_text, sizeof ${name}_text - 1}};
 
-} // namespace tappet::scripts
+} // namespace tappet::${room}
 ")

@@ -23,7 +23,8 @@ namespace tappet::can {
 /// A frame on demand goes out once for each writing; all of its signals are written in one cycle of one
 /// writer, so that no command leaves with the arguments of another. A row that wakes makes it leave at once.
 /// A frame with an input that was never written, is stale by its row, or is no number does not go out: the
-/// receiver's own time-out notices.
+/// receiver's own time-out notices. Of a multiplexed frame what its multiplexors select is written, read and
+/// sent; the other signals stay as they are.
 ///
 /// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
 /// what is written after it leaves. It looks for that restart every now and then and rests in between.
@@ -252,6 +253,7 @@ private:
         const FrameRow& row = map.frames[f];
         const CausedBy arrival{frame.stamp};
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            if (!store_.is_in(row, s, frame)) continue;
             if (is_integer(map.signals[s]))
                 integer_out[s].write(store_.integer(s), frame.stamp);
             else
@@ -306,11 +308,19 @@ private:
         bool agreed = true; ///< all are of the same time
     };
 
+    /// By the values of multiplexors that were read before it.
+    [[nodiscard]] bool is_selected(const FrameRow& row, std::size_t s) const noexcept TAPPET_REALTIME {
+        return map.holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME {
+            return to_raw_integer(map.signals[m], integers_[m]).bits;
+        });
+    }
+
     Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         Reading found;
         const FrameRow& row = map.frames[f];
         Time first{};
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            if (!is_selected(row, s)) continue;
             const bool integer = is_integer(map.signals[s]);
             const Flow flow = integer ? integer_in[s].read(integers_[s]) : physical_in[s].read(physical_[s]);
             const Time stamp = integer ? integer_in[s].stamp() : physical_in[s].stamp();
@@ -327,8 +337,9 @@ private:
         const FrameRow& row = map.frames[f];
         const std::uint64_t refused = store_.count.refused;
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            if (!is_selected(row, s)) continue;
             if (is_integer(map.signals[s]))
-                store_.set_bits(s, static_cast<std::uint64_t>(integers_[s]));
+                store_.set_integer(s, integers_[s]);
             else
                 store_.set_physical(s, physical_[s]);
         }

@@ -2,17 +2,10 @@
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
-#include "kernel/component/facet_name.hpp"
 
 #include <array>
 
 namespace tappet::can {
-
-/// A signal is a whole number unless a factor, an offset or a float makes it a physical value.
-constexpr bool is_integer(const Signal& s) noexcept {
-    return s.factor == 1 && s.offset == 0 &&
-           (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
-}
 
 /// The names of a map's facets, "frame.signal" and "frame.received".
 template <const auto& map> struct FacetNames {

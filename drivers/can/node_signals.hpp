@@ -9,11 +9,13 @@
 
 namespace tappet::can {
 
-/// A machine's map as the nodes see it.
+/// A machine's map as the nodes see it. What they send has no range: a node may send what its description
+/// forbids.
 template <std::size_t F, std::size_t S>
 constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
     for (FrameRow& row : map.frames)
         row.direction = row.direction == Direction::receive ? Direction::transmit : Direction::receive;
+    for (Signal& each : map.signals) each.has_range = false;
     std::swap(map.received, map.transmitted);
     std::swap(map.received_count, map.transmitted_count);
     return map;

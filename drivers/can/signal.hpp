@@ -1,11 +1,14 @@
 // One signal inside a CAN frame: where its bits lie and what they mean, as the DBC format numbers them.
 #pragma once
 
+#include "kernel/base/bounded.hpp"
 #include "kernel/base/realtime.hpp"
 
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace tappet::can {
@@ -18,8 +21,30 @@ enum class Order : std::uint8_t {
 
 enum class Kind : std::uint8_t { unsigned_integer, signed_integer, float32, float64 };
 
+/// Values of a multiplexor, both ends included.
+struct Selection {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+
+    constexpr Selection() noexcept = default;
+    // NOLINTNEXTLINE: one value is a selection
+    constexpr Selection(std::integral auto value) noexcept : Selection{value, value} {}
+    constexpr Selection(std::integral auto first, std::integral auto last) noexcept
+        : from{static_cast<std::uint32_t>(first)}, to{static_cast<std::uint32_t>(last)} {}
+};
+/// when("page", 1, between(4, 7))
+constexpr Selection between(std::uint32_t first, std::uint32_t last) noexcept { return {first, last}; }
+
+/// What a value means, before factor and offset.
+struct ValueName {
+    std::int64_t value = 0;
+    std::string_view name{};
+};
+
 /// physical = raw * factor + offset; the sign belongs to the raw value.
 struct Signal {
+    static constexpr std::size_t most_selections = 8;
+
     std::string_view name{};
     std::uint16_t start = 0; ///< in DBC's numbering: bit 8 * byte + position
     std::uint8_t bits = 0;
@@ -30,6 +55,14 @@ struct Signal {
     std::string_view unit{};
     double safe_value = 0; ///< of what is transmitted: sent when the machine's process is no more
     bool says_safe = false;
+    bool has_range = false; ///< of physical values, as they are sent: `least` and `most`
+    double least = 0;
+    double most = 0;
+    /// The signal of the same frame that says by its value whether this one is in it; empty: it always is.
+    std::string_view multiplexor{};
+    Bounded<Selection, most_selections> selections{};
+    std::span<const ValueName> names{}; ///< of some values
+    std::string_view in_file{};         ///< its name in its DBC file, where a row gives it another
 
     // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm").safe(0)
     constexpr Signal as_signed() const noexcept {
@@ -68,6 +101,47 @@ struct Signal {
         copy.says_safe = true;
         return copy;
     }
+    /// What is sent beyond it becomes its nearest end, except values that have a name.
+    constexpr Signal range(double new_least, double new_most) const noexcept {
+        Signal copy = *this;
+        copy.least = new_least;
+        copy.most = new_most;
+        copy.has_range = true;
+        return copy;
+    }
+    /// In the frame only while its signal `of` has one of these values: when("page", 1, between(4, 7)).
+    template <std::convertible_to<Selection>... S>
+        requires(sizeof...(S) > 0 && sizeof...(S) <= most_selections)
+    constexpr Signal when(std::string_view of, const S&... values) const noexcept {
+        Signal copy = *this;
+        copy.multiplexor = of;
+        copy.selections = {{Selection(values)...}, sizeof...(S)};
+        return copy;
+    }
+    /// Of a constant list that outlives the map.
+    constexpr Signal named(std::span<const ValueName> values) const noexcept {
+        Signal copy = *this;
+        copy.names = values;
+        return copy;
+    }
+    /// Its facet has this name, whatever its file calls it.
+    constexpr Signal called(std::string_view facet) const noexcept {
+        Signal copy = *this;
+        copy.in_file = name;
+        copy.name = facet;
+        return copy;
+    }
+
+    [[nodiscard]] constexpr bool is_selected_by(std::uint64_t raw) const noexcept TAPPET_REALTIME {
+        for (const Selection& each : selections)
+            if (raw >= each.from && raw <= each.to) return true;
+        return false;
+    }
+    [[nodiscard]] constexpr bool has_name(std::int64_t value) const noexcept TAPPET_REALTIME {
+        for (const ValueName& each : names)
+            if (each.value == value) return true;
+        return false;
+    }
 };
 
 constexpr Signal signal(std::string_view name, std::uint16_t start, std::uint8_t bits) noexcept {
@@ -76,6 +150,15 @@ constexpr Signal signal(std::string_view name, std::uint16_t start, std::uint8_t
     s.start = start;
     s.bits = bits;
     return s;
+}
+
+/// A signal of a DBC file, which says where it lies and what it means.
+constexpr Signal signal(std::string_view name) noexcept { return signal(name, 0, 0); }
+
+/// A signal is a whole number unless a factor, an offset or a float makes it a physical value.
+constexpr bool is_integer(const Signal& s) noexcept {
+    return s.factor == 1 && s.offset == 0 &&
+           (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
 }
 
 using Payload = std::array<std::uint8_t, 8>;
@@ -146,8 +229,8 @@ struct Raw {
     bool refused = false; ///< not a number
 };
 
-/// Real-time. Rounds to the nearest, halves away from zero.
-constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
+namespace detail {
+constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
     const double number = (physical - s.offset) / s.factor;
     if (number != number) return {.refused = true};
     if (s.kind == Kind::float64) return {.bits = std::bit_cast<std::uint64_t>(number)};
@@ -171,6 +254,23 @@ constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME 
         return {.bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(number - half)) & all};
     if (is_signed) return {.bits = low & all, .saturated = number < -limit};
     return {.bits = 0, .saturated = number - half <= -1.0};
+}
+} // namespace detail
+
+/// Real-time. Rounds to the nearest, halves away from zero.
+constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
+    const Raw raw = detail::to_any_raw(s, physical);
+    if (!s.has_range || (physical >= s.least && physical <= s.most) || raw.refused) return raw;
+    if (!raw.saturated && s.has_name(to_integer(s, raw.bits))) return raw;
+    return {.bits = detail::to_any_raw(s, physical < s.least ? s.least : s.most).bits, .saturated = true};
+}
+
+/// Likewise of a signal without factor and offset. Without a range it is a set of bits, of which those beyond
+/// its width are cut.
+constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPET_REALTIME {
+    if (s.has_range && s.bits < 64)
+        if (const Raw raw = to_raw(s, static_cast<double>(value)); raw.saturated) return raw;
+    return {.bits = static_cast<std::uint64_t>(value) & detail::mask_of(s)};
 }
 
 } // namespace tappet::can

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "drivers/can/frame.hpp"
-#include "drivers/can/signal.hpp"
+#include "drivers/can/multiplexing.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/component/facet_name.hpp"
 
 #include <concepts>
 #include <cstddef>
@@ -25,6 +27,8 @@ struct FrameRow {
     std::size_t first = 0; ///< its signals in the map's array
     std::size_t signals = 0;
     bool silence_is_safe = false; ///< transmit: it is not sent when the machine's process is no more
+    bool multiplexed = false;     ///< not all of its signals are in every frame
+    std::string_view in_file{};   ///< its name in its DBC file, where a row gives it another
 };
 
 /// A row together with its signals, before the map flattens them.
@@ -36,6 +40,13 @@ template <std::size_t N> struct FrameWithSignals {
     constexpr FrameWithSignals safe_by_silence() const noexcept {
         FrameWithSignals copy = *this;
         copy.row.silence_is_safe = true;
+        return copy;
+    }
+    /// Its facets begin with this name, whatever its file calls it.
+    constexpr FrameWithSignals called(std::string_view name) const noexcept {
+        FrameWithSignals copy = *this;
+        copy.row.in_file = row.name;
+        copy.row.name = name;
         return copy;
     }
 };
@@ -86,23 +97,26 @@ constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Rate
                                                 {signals...}};
 }
 
-inline constexpr std::size_t no_such = ~std::size_t{0};
-
 /// What one end of a bus takes and sends, and what it sends last.
 struct Identifiers {
     std::span<const Identifier> receive{}, transmit{};
     std::span<const Frame> safe{}; ///< see SignalMap::safe_frames
 };
 
+/// Of all multiplexed frames of a map together, beyond one frame each.
+inline constexpr std::size_t most_safe_pages = 16;
+
 template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<FrameRow, F> frames{};
     std::array<Signal, S> signals{};
     std::array<std::size_t, S> frame_of{}; ///< the frame that holds a signal
-    std::array<Identifier, F> received{};  ///< the first `received_count` are valid
+    std::array<std::size_t, S> multiplexor_of{};
+    std::array<Identifier, F> received{}; ///< the first `received_count` are valid
     std::array<Identifier, F> transmitted{};
     /// What makes the receivers safe when the machine's process is no more: the cyclic ones first, whose
-    /// receivers are told what to do before those on demand tell them what to be.
-    std::array<Frame, F> safe{};
+    /// receivers are told what to do before those on demand tell them what to be. Of a multiplexed one each
+    /// page, the one that its multiplexor's safe value selects as the last.
+    std::array<Frame, F + (S < most_safe_pages ? S : most_safe_pages)> safe{};
     std::size_t received_count = 0;
     std::size_t transmitted_count = 0;
     std::size_t safe_count = 0;
@@ -117,6 +131,15 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     }
     [[nodiscard]] constexpr std::span<const Frame> safe_frames() const noexcept {
         return std::span{safe}.first(safe_count);
+    }
+    [[nodiscard]] constexpr Multiplexing multiplexing() const noexcept TAPPET_REALTIME {
+        return {signals, multiplexor_of};
+    }
+    /// Whether a frame of the row holds the signal; raw_of(m) is the value there of a multiplexor.
+    template <class RawOf>
+    [[nodiscard]] constexpr bool holds(const FrameRow& row, std::size_t s, const RawOf& raw_of) const noexcept
+        TAPPET_REALTIME {
+        return !row.multiplexed || multiplexing().holds(s, raw_of);
     }
     [[nodiscard]] constexpr std::size_t frame(Identifier id) const noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < F; ++f)
@@ -142,14 +165,29 @@ template <std::size_t F, std::size_t S> struct SignalMap {
 
 namespace detail {
 
+/// A sentence, and of which row and signal it speaks; no_such: of none.
+struct MapFault {
+    Sentence text{};
+    std::size_t frame = no_such;
+    std::size_t signal = no_such;
+};
+
 constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept {
     const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
     if (s.name.empty()) return Sentence{"frame \"", frame.name, "\" has a signal without a name: name it"};
+    if (frame.name.size() + 1 + s.name.size() > FacetName::most)
+        return Sentence{who, ": a facet's name has at most ", FacetName::most,
+                        " characters; give it or its frame a shorter one with .called(\"..\")"};
+    if (s.name == "received" && frame.direction == Direction::receive)
+        return Sentence{who, " has the name of the event that its frame arrived: rename it"};
     if (s.bits == 0 || s.bits > 64) return Sentence{who, " has ", unsigned{s.bits}, " bits: give it 1 to 64"};
-    if (s.kind == Kind::float32 && s.bits != 32)
+    const bool is_float = s.kind == Kind::float32 || s.kind == Kind::float64;
+    if (is_float && s.bits != (s.kind == Kind::float64 ? 64 : 32))
         return Sentence{who, " is a float of ", unsigned{s.bits}, " bits: give it 32 or 64"};
     if (s.factor == 0 || s.factor != s.factor)
         return Sentence{who, " has the factor 0: every value would be the offset; give it another"};
+    if (s.has_range && !(s.least <= s.most))
+        return Sentence{who, " has a range that holds nothing: say the lesser end first"};
     const unsigned end = 8u * frame.length;
     const unsigned low = bit_place(s, 0);
     const unsigned high = bit_place(s, s.bits - 1u);
@@ -163,6 +201,19 @@ constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept
                                                 : " (its highest) and goes down ",
                         unsigned{s.bits},
                         " bits; move it or lengthen the frame"};
+    for (std::size_t i = 0; i < s.names.size(); ++i) {
+        const std::int64_t value = s.names[i].value;
+        if (!is_float && to_integer(s, static_cast<std::uint64_t>(value) & mask_of(s)) != value)
+            return Sentence{who,
+                            " has a name for the value ",
+                            value,
+                            ", which its ",
+                            unsigned{s.bits},
+                            " bits cannot hold: correct one of them"};
+        for (std::size_t other = 0; other < i; ++other)
+            if (s.names[other].value == value)
+                return Sentence{who, " has two names for the value ", value, ": keep one"};
+    }
     return {};
 }
 
@@ -194,50 +245,176 @@ constexpr Sentence rate_fault(const FrameRow& frame) noexcept {
     return {};
 }
 
-template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const SignalMap<F, S>& map) noexcept {
-    for (std::size_t f = 0; f < F; ++f) {
+/// `before`: those of its frame that stand before it; its multiplexor must be among them.
+constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
+                                     std::span<const Signal> before) noexcept {
+    if (s.multiplexor.empty()) return {};
+    const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
+    Nearest nearest{s.multiplexor};
+    for (const Signal& each : before) {
+        nearest.consider(each.name);
+        if (each.name != s.multiplexor) continue;
+        if (!is_integer(each) || each.bits > 32)
+            return Sentence{"signal \"",
+                            frame.name,
+                            ".",
+                            each.name,
+                            "\" selects \"",
+                            s.name,
+                            "\" but is no whole number of at most 32 bits: take factor and offset away"};
+        for (const Selection& values : s.selections)
+            if (values.from > values.to || values.to > mask_of(each))
+                return Sentence{who,         " is selected by values that \"",
+                                each.name,   "\" never has: ",
+                                values.from, " to ",
+                                values.to,   "; correct them"};
+        return {};
+    }
+    return Sentence{who,
+                    " is selected by \"",
+                    s.multiplexor,
+                    "\", which does not stand before it in its frame",
+                    nearest.best().empty() ? "" : "; did you mean \"",
+                    nearest.best(),
+                    nearest.best().empty() ? "; write it there" : "\"?"};
+}
+
+template <std::size_t F, std::size_t S>
+constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noexcept {
+    std::array<std::uint64_t, S> places{}; // of a signal's bits, as 8 * byte + position
+    for (std::size_t f = 0; f < frames; ++f) {
         const FrameRow& row = map.frames[f];
         const Sentence who{"frame \"", row.name, "\""};
-        if (row.name.empty()) return Sentence{"frame ", f + 1, " has no name: name it"};
+        if (row.name.empty()) return {Sentence{"frame ", f + 1, " has no name: name it"}, f};
+        if (row.name.size() + 1 + std::string_view{"received"}.size() > FacetName::most)
+            return {Sentence{who, ": its name is too long for a facet's, which has at most ", FacetName::most,
+                             " characters; give it a shorter one with .called(\"..\")"},
+                    f};
         if (!valid(row.identifier))
-            return Sentence{who, " has the identifier ", row.identifier.id,
-                            ": a standard one ends at 2047, an extended one at 536870911"};
+            return {Sentence{who, " has the identifier ", row.identifier.id,
+                             ": a standard one ends at 2047, an extended one at 536870911"},
+                    f};
         if (row.length > 8)
-            return Sentence{who, " has ", unsigned{row.length}, " bytes: a classic frame holds 8 at most"};
+            return {Sentence{who, " has ", unsigned{row.length}, " bytes: a classic frame holds 8 at most"},
+                    f};
         for (std::size_t other = 0; other < f; ++other) {
             if (map.frames[other].name == row.name)
-                return Sentence{who, " is there twice: rename one of them"};
+                return {Sentence{who, " is there twice: rename one of them"}, f};
             if (map.frames[other].identifier == row.identifier)
-                return Sentence{who, " has the identifier of \"", map.frames[other].name,
-                                "\": give it its own"};
+                return {
+                    Sentence{who, " has the identifier of \"", map.frames[other].name, "\": give it its own"},
+                    f};
         }
-        std::array<std::size_t, 64> owner{};
-        owner.fill(no_such);
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            if (const Sentence fault = signal_fault(row, map.signals[s]); !fault.empty()) return fault;
-            if (const Sentence fault = safe_fault(row, map.signals[s]); !fault.empty()) return fault;
-            for (std::size_t other = row.first; other < s; ++other)
-                if (map.signals[other].name == map.signals[s].name)
-                    return Sentence{who, " has two signals \"", map.signals[s].name,
-                                    "\": rename one of them"};
-            for (unsigned i = 0; i < map.signals[s].bits; ++i) {
-                const unsigned place = bit_place(map.signals[s], i);
-                if (owner[place] != no_such)
-                    return Sentence{"signal \"",
-                                    row.name,
-                                    ".",
-                                    map.signals[s].name,
-                                    "\" overlaps \"",
-                                    map.signals[owner[place]].name,
-                                    "\" at bit ",
-                                    place,
-                                    ": move one of them"};
-                owner[place] = s;
+            const Signal& signal = map.signals[s];
+            const auto before = std::span{map.signals}.subspan(row.first, s - row.first);
+            if (const Sentence fault = signal_fault(row, signal); !fault.empty()) return {fault, f, s};
+            if (const Sentence fault = multiplexor_fault(row, signal, before); !fault.empty())
+                return {fault, f, s};
+            if (const Sentence fault = safe_fault(row, signal); !fault.empty()) return {fault, f, s};
+            for (unsigned i = 0; i < signal.bits; ++i) places[s] |= std::uint64_t{1} << bit_place(signal, i);
+            for (std::size_t other = row.first; other < s; ++other) {
+                if (map.signals[other].name == signal.name)
+                    return {Sentence{who, " has two signals \"", signal.name, "\": rename one of them"}, f,
+                            s};
+                const std::uint64_t shared = places[s] & places[other];
+                if (shared != 0 && !map.multiplexing().exclude_each_other(s, other))
+                    return {Sentence{"signal \"", row.name, ".", signal.name, "\" overlaps \"",
+                                     map.signals[other].name, "\" at bit ",
+                                     static_cast<unsigned>(std::countr_zero(shared)), ": move one of them"},
+                            f, s};
             }
         }
-        if (const Sentence fault = rate_fault(row); !fault.empty()) return fault;
+        if (const Sentence fault = rate_fault(row); !fault.empty()) return {fault, f};
     }
     return {};
+}
+
+/// The frame with the safe values that holds the signal; no_such: with what the safe values select.
+template <std::size_t F, std::size_t S>
+constexpr Frame safe_frame(const SignalMap<F, S>& map, const FrameRow& row, std::size_t wanted,
+                           std::array<bool, S>& held) noexcept {
+    std::array<std::uint64_t, S> raw{};
+    for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+        raw[s] = to_raw(map.signals[s], map.signals[s].safe_value).bits;
+    if (wanted != no_such)
+        for (std::size_t at = wanted, up = map.multiplexor_of[at]; up != no_such;
+             at = up, up = map.multiplexor_of[at])
+            raw[up] = map.signals[at].selections[0].from;
+    Frame frame;
+    frame.id = row.identifier.id;
+    frame.extended = row.identifier.extended;
+    frame.length = row.length;
+    for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+        if (!map.holds(row, s, [&](std::size_t m) { return raw[m]; })) continue;
+        insert(frame.data, map.signals[s], raw[s]);
+        held[s] = true;
+    }
+    return frame;
+}
+
+/// False when there is no room for the pages of the row.
+template <std::size_t F, std::size_t S>
+constexpr bool add_safe_frames(SignalMap<F, S>& map, const FrameRow& row, std::size_t& room) noexcept {
+    std::array<bool, S> held{};
+    const Frame last = safe_frame(map, row, no_such, held);
+    for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+        if (held[s]) continue;
+        if (room-- == 0) return false;
+        map.safe[map.safe_count++] = safe_frame(map, row, s, held);
+    }
+    map.safe[map.safe_count++] = last;
+    return true;
+}
+
+/// What follows from the first `frames` rows, and what is wrong with them.
+template <std::size_t F, std::size_t S>
+constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
+    map.multiplexor_of.fill(no_such);
+    for (std::size_t f = 0; f < frames; ++f) {
+        FrameRow& row = map.frames[f];
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+            map.frame_of[s] = f;
+            row.multiplexed |= !map.signals[s].multiplexor.empty();
+            for (std::size_t other = row.first; other < s; ++other)
+                if (map.signals[other].name == map.signals[s].multiplexor) map.multiplexor_of[s] = other;
+        }
+        if (row.direction == Direction::receive)
+            map.received[map.received_count++] = row.identifier;
+        else
+            map.transmitted[map.transmitted_count++] = row.identifier;
+    }
+    if (const MapFault fault = map_fault(map, frames); !fault.text.empty()) return fault;
+    std::size_t room = map.safe.size() - F;
+    for (const bool cyclic : {true, false})
+        for (std::size_t f = 0; f < frames; ++f) {
+            const FrameRow& row = map.frames[f];
+            if (row.direction == Direction::receive || row.silence_is_safe ||
+                (row.every > Duration::zero()) != cyclic)
+                continue;
+            if (!add_safe_frames(map, row, room))
+                return {Sentence{"frame \"", row.name,
+                                 "\" has too many pages, each of which must be sent to be "
+                                 "safe: more than ",
+                                 most_safe_pages,
+                                 " beside the first ones of all frames; make "
+                                 "its receiver safe by silence, .safe_by_silence()"},
+                        f};
+        }
+    return {};
+}
+
+/// Into `frames` and `signals` of a map or the like.
+template <class Map, std::size_t... N>
+constexpr void flatten(Map& into, const FrameWithSignals<N>&... rows) noexcept {
+    std::size_t f = 0;
+    std::size_t s = 0;
+    [[maybe_unused]] const auto add = [&](const auto& row) {
+        into.frames[f] = row.row;
+        into.frames[f++].first = s;
+        for (const Signal& one : row.signals) into.signals[s++] = one;
+    };
+    (add(rows), ...);
 }
 
 } // namespace detail
@@ -245,36 +422,8 @@ template <std::size_t F, std::size_t S> constexpr Sentence map_fault(const Signa
 /// Flattens the rows and checks them: static_assert(map.fault.empty(), map.fault).
 template <std::size_t... N> constexpr auto signal_map(const FrameWithSignals<N>&... rows) noexcept {
     SignalMap<sizeof...(N), (N + ... + 0)> map;
-    std::size_t f = 0;
-    std::size_t s = 0;
-    const auto flatten = [&](const auto& row) {
-        map.frames[f] = row.row;
-        map.frames[f].first = s;
-        for (const Signal& one : row.signals) {
-            map.signals[s] = one;
-            map.frame_of[s] = f;
-            ++s;
-        }
-        if (row.row.direction == Direction::receive)
-            map.received[map.received_count++] = row.row.identifier;
-        else
-            map.transmitted[map.transmitted_count++] = row.row.identifier;
-        ++f;
-    };
-    (flatten(rows), ...);
-    map.fault = detail::map_fault(map);
-    for (const bool cyclic : {true, false})
-        for (const FrameRow& row : map.frames) {
-            if (!map.fault.empty() || row.direction == Direction::receive || row.silence_is_safe ||
-                (row.every > Duration::zero()) != cyclic)
-                continue;
-            Frame& frame = map.safe[map.safe_count++];
-            frame.id = row.identifier.id;
-            frame.extended = row.identifier.extended;
-            frame.length = row.length;
-            for (const Signal& one : std::span{map.signals}.subspan(row.first, row.signals))
-                insert(frame.data, one, to_raw(one, one.safe_value).bits);
-        }
+    detail::flatten(map, rows...);
+    map.fault = detail::complete(map, map.frames.size()).text;
     return map;
 }
 

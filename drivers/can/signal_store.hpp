@@ -35,7 +35,7 @@ public:
             return Decoded::wrong_length;
         }
         for (std::size_t s = row.first; s < row.first + row.signals; ++s)
-            raw_[s] = extract(frame.data, map_->signals[s]);
+            if (is_in(row, s, frame)) raw_[s] = extract(frame.data, map_->signals[s]);
         ++count.decoded;
         which = f;
         return Decoded::yes;
@@ -44,7 +44,15 @@ public:
         std::size_t which = no_such;
         return decode(frame, which);
     }
-    /// The frame of a row with the values as they are; its stamp is `now`.
+    /// Whether a received frame of the row holds the signal.
+    [[nodiscard]] constexpr bool is_in(const FrameRow& row, std::size_t s, const Frame& frame) const noexcept
+        TAPPET_REALTIME {
+        return map_->holds(row, s, [&](std::size_t m) noexcept TAPPET_REALTIME {
+            return extract(frame.data, map_->signals[m]);
+        });
+    }
+    /// The frame of a row with the values as they are, of a multiplexed one those that they select; its stamp
+    /// is `now`.
     [[nodiscard]] constexpr Frame encode(std::size_t f, Time now) const noexcept TAPPET_REALTIME {
         const FrameRow& row = map_->frames[f];
         Frame frame;
@@ -53,7 +61,8 @@ public:
         frame.length = row.length;
         frame.stamp = now;
         for (std::size_t s = row.first; s < row.first + row.signals; ++s)
-            insert(frame.data, map_->signals[s], raw_[s]);
+            if (map_->holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME { return raw_[m]; }))
+                insert(frame.data, map_->signals[s], raw_[s]);
         return frame;
     }
     [[nodiscard]] constexpr double physical(std::size_t s) const noexcept TAPPET_REALTIME {
@@ -64,21 +73,30 @@ public:
         return to_integer(map_->signals[s], raw_[s]);
     }
     constexpr void set_physical(std::size_t s, double value) noexcept TAPPET_REALTIME {
-        const Raw raw = to_raw(map_->signals[s], value);
-        if (raw.refused)
-            ++count.refused;
-        else
-            raw_[s] = raw.bits;
-        if (raw.saturated) ++count.saturated;
+        set(s, to_raw(map_->signals[s], value));
+    }
+    /// Of a signal without factor and offset: a number within its range if it says one, otherwise bits.
+    constexpr void set_integer(std::size_t s, std::int64_t value) noexcept TAPPET_REALTIME {
+        set(s, to_raw_integer(map_->signals[s], value));
     }
     /// Bits beyond the signal's width are cut: for control words, which are sets of bits.
-    constexpr void set_bits(std::size_t s, std::uint64_t bits) noexcept TAPPET_REALTIME { raw_[s] = bits; }
+    constexpr void set_bits(std::size_t s, std::uint64_t bits) noexcept TAPPET_REALTIME {
+        raw_[s] = bits & detail::mask_of(map_->signals[s]);
+    }
 
     [[nodiscard]] constexpr const SignalMap<F, S>& map() const noexcept TAPPET_REALTIME { return *map_; }
 
     DecodeCounters count{};
 
 private:
+    constexpr void set(std::size_t s, const Raw& raw) noexcept TAPPET_REALTIME {
+        if (raw.refused)
+            ++count.refused;
+        else
+            raw_[s] = raw.bits;
+        if (raw.saturated) ++count.saturated;
+    }
+
     const SignalMap<F, S>* map_;
     std::array<std::uint64_t, S> raw_{};
 };

@@ -11,6 +11,8 @@ namespace tappet {
 /// Of pieces, one behind the other; more than 63 characters do not compile.
 class FacetName {
 public:
+    static constexpr std::size_t most = 63;
+
     constexpr FacetName() noexcept = default;
     constexpr FacetName(std::initializer_list<std::string_view> pieces) {
         for (const std::string_view piece : pieces)
@@ -19,7 +21,7 @@ public:
     [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters_.data(), length_}; }
 
 private:
-    std::array<char, 63> characters_{};
+    std::array<char, most> characters_{};
     std::size_t length_ = 0;
 };
 

@@ -5,14 +5,12 @@
 //     constexpr const tappet::ScriptUnit& weft_script = tappet::compiled_script<weft_source, weft_reach>;
 #pragma once
 
+#include "kernel/base/source_text.hpp"
 #include "kernel/script/compile.hpp"
 
 namespace tappet {
 
-struct ScriptSource {
-    std::string_view name{};
-    std::string_view text{};
-};
+using ScriptSource = SourceText;
 
 /// A component that a script reaches, by type and name.
 template <class T>

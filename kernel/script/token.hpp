@@ -2,6 +2,7 @@
 // target alike.
 #pragma once
 
+#include "kernel/base/digits.hpp"
 #include "kernel/base/time.hpp"
 
 #include <algorithm>
@@ -184,24 +185,6 @@ struct Token {
 
 constexpr bool is_letter(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
-
-/// Digits * 10^exponent: the nearest double where both are exactly representable (Clinger 1990), otherwise
-/// within one unit of the last place.
-constexpr double real_of(std::uint64_t digits, int exponent) noexcept {
-    if (digits == 0) return 0;
-    long double value = static_cast<long double>(digits);
-    long double power = 10;
-    const bool shrinks = exponent < 0;
-    auto left = static_cast<unsigned>(shrinks ? -exponent : exponent);
-    long double scale = 1;
-    for (; left != 0; left >>= 1) {
-        if (left & 1u) scale *= power;
-        if (left > 1) power *= power;
-    }
-    value = shrinks ? value / scale : value * scale;
-    return static_cast<double>(value);
 }
 
 /// Reads forward; to read a piece again, begin() there.

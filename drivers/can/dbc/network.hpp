@@ -1,0 +1,128 @@
+// What a DBC file says: messages, their signals, and names of values, as rows that point into its text.
+#pragma once
+
+#include "drivers/can/dbc/scanner.hpp"
+#include "drivers/can/signal_map.hpp"
+
+namespace tappet::can::dbc {
+
+/// Vector's name for nobody, as a sender and as a receiver.
+inline constexpr std::string_view nobody = "Vector__XXX";
+
+struct SignalRow {
+    Signal shape{};     ///< its unit as it stands in the file
+    std::size_t at = 0; ///< of its name in the text
+    std::size_t message = 0;
+    std::string_view receivers{};
+    std::string_view long_name{};
+    bool is_multiplexor = false;
+    bool is_multiplexed = false;
+    bool too_many_selections = false;
+    std::uint32_t page = 0;            ///< m0: 0
+    std::size_t selected_by = no_such; ///< a signal
+    std::size_t first_value = 0;
+    std::size_t values = 0;
+    bool is_taken = false;        ///< by the node in question
+    const Signal* row = nullptr;  ///< what the machine says of it
+    std::size_t placed = no_such; ///< in the node's map
+};
+
+struct MessageRow {
+    Identifier identifier{};
+    bool is_independent = false; ///< Vector's shelf for signals without a message
+    std::string_view name{};
+    std::string_view long_name{};
+    std::size_t at = 0;
+    std::uint16_t length = 0;
+    std::string_view sender{};
+    std::string_view more_senders{};
+    std::size_t first = 0;
+    std::size_t signals = 0;
+    bool says_every = false;
+    Duration every{};
+    bool is_taken = false;
+    Direction direction = Direction::receive;
+    const FrameRow* row = nullptr;
+};
+
+/// Upper bounds, from a glance at the text.
+struct Room {
+    std::size_t messages = 0, signals = 0, values = 0;
+};
+constexpr Room room_for(std::string_view text) noexcept {
+    Room room;
+    std::size_t quotes = 0;
+    bool begins = true;
+    const char* const characters = text.data();
+    const std::size_t size = text.size();
+    for (std::size_t i = 0; i < size; ++i) {
+        const char c = characters[i];
+        quotes += c == '"';
+        if (begins && (c == 'B' || c == 'S')) {
+            room.messages += text.substr(i, 4) == "BO_ ";
+            room.signals += text.substr(i, 4) == "SG_ ";
+        }
+        begins = c == '\n' || c == '\r' || (begins && (c == ' ' || c == '\t'));
+    }
+    room.values = quotes / 2;
+    return room;
+}
+
+/// Its rows lie in room that somebody else owns.
+struct Network {
+    std::string_view file{};
+    std::string_view text{};
+    std::string_view nodes{}; ///< all of them, as a list
+    std::span<MessageRow> messages{};
+    std::span<SignalRow> signals{};
+    std::span<ValueName> values{}; ///< as they stand in the file
+    Room used{};
+    Sentence fault{};
+
+    [[nodiscard]] constexpr std::span<MessageRow> all() const noexcept {
+        return messages.first(used.messages);
+    }
+    [[nodiscard]] constexpr std::span<SignalRow> of(const MessageRow& message) const noexcept {
+        return signals.subspan(message.first, message.signals);
+    }
+    [[nodiscard]] constexpr SignalRow* find(const MessageRow& message, std::string_view name) const noexcept {
+        for (SignalRow& each : of(message))
+            if (each.shape.name == name) return &each;
+        return nullptr;
+    }
+    [[nodiscard]] constexpr bool sends(const MessageRow& message, std::string_view node) const noexcept {
+        return message.sender == node || names(message.more_senders, node);
+    }
+
+    /// The first one counts.
+    template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
+        if (!fault.empty()) return;
+        unsigned line = 1, column = 1;
+        for (std::size_t i = 0; i < at && i < text.size(); ++i) {
+            ++column;
+            if (text[i] == '\n') ++line, column = 1;
+        }
+        fault = Sentence{file, ":", line, ":", column, ": ", pieces...};
+    }
+};
+
+/// A network with its room; `text` outlives it.
+template <Room room> struct Store {
+    std::array<MessageRow, room.messages> messages{};
+    std::array<SignalRow, room.signals> signals{};
+    std::array<ValueName, room.values> values{};
+    std::string_view file{}, text{}, nodes{};
+    Room used{};
+    Sentence fault{};
+
+    constexpr Network network() noexcept {
+        return {file, text, nodes, messages, signals, values, used, fault};
+    }
+    constexpr void keep(const Network& from) noexcept {
+        nodes = from.nodes;
+        used = from.used;
+        fault = from.fault;
+    }
+};
+
+} // namespace tappet::can::dbc

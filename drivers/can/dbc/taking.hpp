@@ -1,0 +1,261 @@
+// What of a network one node takes: its frames and signals as rows of a signal map.
+#pragma once
+
+#include "drivers/can/dbc/network.hpp"
+#include "drivers/can/dbc/node.hpp"
+#include "drivers/can/dbc/scanner.hpp"
+#include "drivers/can/dbc/texts.hpp"
+#include "kernel/base/decimal.hpp"
+
+namespace tappet::can::dbc {
+
+/// What the map of a node needs.
+struct Sizes {
+    std::size_t frames = 0, signals = 0, values = 0, characters = 0;
+};
+
+class Taking {
+public:
+    constexpr Taking(Network& network, const NodeView& node) noexcept : net_{network}, node_{node} {}
+
+    /// Marks what is taken. Its fault becomes the network's.
+    constexpr Sizes take() {
+        find_node();
+        for (const FrameRow& row : node_.frames) find_message(row);
+        Sizes sizes;
+        for (MessageRow& message : net_.all()) {
+            if (!ok() || message.is_independent) continue;
+            take_message(message);
+            if (message.is_taken && ok()) add(sizes, message);
+        }
+        return sizes;
+    }
+    /// Into a map of at least these sizes.
+    template <std::size_t F, std::size_t S>
+    constexpr void fill(SignalMap<F, S>& map, std::span<ValueName> values, std::span<char> characters) {
+        std::array<const MessageRow*, F> messages{};
+        std::array<const SignalRow*, S> signals{};
+        values_ = values;
+        characters_ = characters;
+        std::size_t f = 0, s = 0;
+        for (MessageRow& message : net_.all()) {
+            if (!message.is_taken) continue;
+            messages[f] = &message;
+            FrameRow& frame = map.frames[f++];
+            frame = frame_of(message);
+            frame.first = s;
+            // What selects others stands before them.
+            const auto all = net_.of(message);
+            for (std::size_t depth = 0; s - frame.first < count(message) && depth <= all.size(); ++depth)
+                for (SignalRow& each : all) {
+                    if (!each.is_taken || depth_of(each) != depth) continue;
+                    each.placed = s;
+                    signals[s] = &each;
+                    map.signals[s++] = signal_of(each, map.signals);
+                }
+            frame.signals = s - frame.first;
+        }
+        const detail::MapFault fault = detail::complete(map, f);
+        if (fault.text.empty()) return;
+        net_.fail(fault.signal != no_such ? signals[fault.signal]->at : messages[fault.frame]->at,
+                  fault.text);
+    }
+
+private:
+    [[nodiscard]] constexpr bool ok() const noexcept { return net_.fault.empty(); }
+    static constexpr std::string_view in_file(const auto& row) noexcept {
+        return row.in_file.empty() ? row.name : row.in_file;
+    }
+    static constexpr std::size_t depth_of(const SignalRow& signal, const Network& net) noexcept {
+        std::size_t depth = 0;
+        for (std::size_t up = signal.selected_by; up != no_such; up = net.signals[up].selected_by) ++depth;
+        return depth;
+    }
+    [[nodiscard]] constexpr std::size_t depth_of(const SignalRow& signal) const noexcept {
+        return depth_of(signal, net_);
+    }
+    [[nodiscard]] constexpr std::size_t count(const MessageRow& message) const noexcept {
+        std::size_t taken = 0;
+        for (const SignalRow& each : net_.of(message)) taken += each.is_taken;
+        return taken;
+    }
+
+    // ---- what the rows name
+
+    constexpr void find_node() {
+        if (!ok() || node_.name.empty() || names(net_.nodes, node_.name)) return;
+        Nearest nearest{node_.name};
+        for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
+        const std::size_t at =
+            net_.nodes.empty() ? 0 : static_cast<std::size_t>(net_.nodes.data() - net_.text.data());
+        net_.fail(at, "BU_ names no node \"", node_.name, "\"",
+                  nearest.best().empty() ? "; name one of its nodes, or none: node(\"\", ..)"
+                                         : "; did you mean \"",
+                  nearest.best(), nearest.best().empty() ? "" : "\"?");
+    }
+    constexpr void find_message(const FrameRow& row) {
+        if (!ok()) return;
+        const std::string_view name = in_file(row);
+        Nearest nearest{name};
+        for (MessageRow& each : net_.all()) {
+            if (each.is_independent) continue;
+            nearest.consider(each.name);
+            if (each.name != name) continue;
+            if (each.row != nullptr)
+                return net_.fail(each.at, "message \"", name, "\" has two rows of \"", node_.name,
+                                 "\"; keep one");
+            if (row.length != 0 || row.identifier.id != 0)
+                return net_.fail(each.at, "the row of message \"", name,
+                                 "\" says what its file says; leave identifier and length out");
+            each.row = &row;
+            for (const Signal& signal : node_.signals.subspan(row.first, row.signals))
+                find_signal(each, signal);
+            return;
+        }
+        net_.fail(0, "it has no message \"", name, "\", which a row of \"", node_.name, "\" names",
+                  nearest.best().empty() ? "; take the row away" : "; did you mean \"", nearest.best(),
+                  nearest.best().empty() ? "" : "\"?");
+    }
+    constexpr void find_signal(const MessageRow& message, const Signal& row) {
+        if (!ok()) return;
+        const std::string_view name = in_file(row);
+        SignalRow* const found = net_.find(message, name);
+        if (found == nullptr) {
+            Nearest nearest{name};
+            for (const SignalRow& each : net_.of(message)) nearest.consider(each.shape.name);
+            return net_.fail(message.at, "message \"", message.name, "\" has no signal \"", name,
+                             "\", which its row names",
+                             nearest.best().empty() ? "; take it away" : "; did you mean \"", nearest.best(),
+                             nearest.best().empty() ? "" : "\"?");
+        }
+        if (row.bits != 0 || row.start != 0 || row.factor != 1 || row.offset != 0 || row.has_range ||
+            row.order != Order::intel || row.kind != Kind::unsigned_integer || !row.multiplexor.empty())
+            return net_.fail(found->at, "the row of signal \"", name,
+                             "\" says what its file says; write signal(\"", name,
+                             "\"), its safe value and unit");
+        if (found->row != nullptr)
+            return net_.fail(found->at, "the row of message \"", message.name, "\" names \"", name,
+                             "\" twice; keep one");
+        found->row = &row;
+    }
+
+    // ---- what is taken
+
+    constexpr void take_message(MessageRow& message) {
+        const bool is_ours = !node_.name.empty() && net_.sends(message, node_.name);
+        const bool sends = message.row != nullptr && message.row->direction == Direction::transmit;
+        if (is_ours && message.row == nullptr)
+            return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", node_.name,
+                             "\", which does not say how it becomes safe; write transmit(\"", message.name,
+                             "\", signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
+        if (message.row != nullptr && is_ours != sends && (is_ours || message.sender != nobody))
+            return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", message.sender,
+                             is_ours ? "\", so \"" : "\", not by \"", node_.name,
+                             is_ours ? "\" does not receive it; write transmit(..)"
+                                     : "\"; write receive(..)");
+        message.direction = sends ? Direction::transmit : Direction::receive;
+        const bool takes_all = sends || (message.row != nullptr && message.row->signals == 0);
+        for (SignalRow& each : net_.of(message))
+            if (takes_all || each.row != nullptr ||
+                (!node_.name.empty() && names(each.receivers, node_.name)))
+                for (SignalRow* up = &each; up != nullptr && !up->is_taken;
+                     up = up->selected_by == no_such ? nullptr : &net_.signals[up->selected_by])
+                    up->is_taken = true;
+        message.is_taken = message.row != nullptr || count(message) != 0;
+        if (message.is_taken) check_rate(message);
+        for (const SignalRow& each : net_.of(message))
+            if (each.is_taken && each.too_many_selections)
+                net_.fail(each.at, "signal \"", each.shape.name, "\" is selected by more than ",
+                          Signal::most_selections, " ranges; leave some to a second signal");
+        if (message.is_taken && message.length > 64)
+            net_.fail(message.at, "message \"", message.name, "\" has ", std::size_t{message.length},
+                      " bytes, which no frame holds; a transport protocol is needed for it");
+    }
+    static constexpr bool says_rate(const MessageRow& message) noexcept {
+        return message.row != nullptr && message.row->every != as_in_file.every;
+    }
+    constexpr void check_rate(const MessageRow& message) {
+        if (!says_rate(message) && message.every <= Duration::zero())
+            net_.fail(message.at, "message \"", message.name,
+                      "\" has no cycle time (GenMsgCycleTime); write can::every(..) or can::on_demand(..) into ",
+                      message.direction == Direction::transmit ? "transmit(\"" : "receive(\"", message.name, "\", ..)");
+        if (says_rate(message) && message.every > Duration::zero() && message.row->every != message.every)
+            net_.fail(message.at, "message \"", message.name, "\" has a cycle time of ",
+                      decimal(static_cast<double>(message.every.count()) / 1e6),
+                      " ms and a row with another one; leave it out of the row");
+    }
+
+    // ---- rows of the map, whose texts no longer lie in the file's
+
+    template <class Put> static constexpr std::size_t length_of(const Put& put_all) {
+        std::size_t length = 0;
+        put_all([&](std::string_view piece) { length += piece.size(); });
+        return length;
+    }
+    template <class PutAll> constexpr std::string_view kept(const PutAll& put_all) {
+        const std::size_t from = used_characters_;
+        put_all([&](std::string_view piece) {
+            for (const char each : piece) characters_[used_characters_++] = each;
+        });
+        return {characters_.data() + from, used_characters_ - from};
+    }
+    constexpr void add(Sizes& sizes, const MessageRow& message) const {
+        ++sizes.frames;
+        sizes.characters += message.name.size();
+        for (const SignalRow& each : net_.of(message)) {
+            if (!each.is_taken) continue;
+            ++sizes.signals;
+            sizes.characters += each.shape.name.size();
+            sizes.characters += length_of([&](const auto& put) { put_unit(each.shape.unit, put); });
+            sizes.values += each.values;
+            for (const ValueName& value : net_.values.subspan(each.first_value, each.values))
+                sizes.characters += length_of([&](const auto& put) { put_as_utf8(value.name, put); });
+        }
+    }
+    constexpr FrameRow frame_of(const MessageRow& message) {
+        FrameRow frame;
+        frame.identifier = message.identifier;
+        frame.direction = message.direction;
+        frame.length = static_cast<std::uint8_t>(message.length);
+        frame.every = frame.apart = message.every;
+        frame.name = kept([&](const auto& put) { put(message.name); });
+        if (message.row == nullptr) return frame;
+        if (!message.row->in_file.empty()) frame.name = message.row->name;
+        if (says_rate(message)) {
+            frame.every = message.row->every;
+            frame.apart = message.row->apart;
+            frame.jitter = message.row->jitter;
+        }
+        frame.silence_is_safe = message.row->silence_is_safe;
+        return frame;
+    }
+    template <std::size_t S>
+    constexpr Signal signal_of(const SignalRow& row, const std::array<Signal, S>& placed) {
+        Signal signal = row.shape;
+        signal.name = kept([&](const auto& put) { put(row.shape.name); });
+        signal.unit = kept([&](const auto& put) { put_unit(row.shape.unit, put); });
+        const std::size_t first = used_values_;
+        for (const ValueName& value : net_.values.subspan(row.first_value, row.values))
+            values_[used_values_++] = {value.value,
+                                       kept([&](const auto& put) { put_as_utf8(value.name, put); })};
+        signal.names = values_.subspan(first, row.values);
+        if (row.selected_by != no_such)
+            signal.multiplexor = placed[net_.signals[row.selected_by].placed].name;
+        if (row.row == nullptr) return signal;
+        if (!row.row->in_file.empty()) signal.name = row.row->name;
+        if (!row.row->unit.empty()) signal.unit = row.row->unit;
+        if (!row.row->names.empty()) signal.names = row.row->names;
+        signal.says_safe = row.row->says_safe;
+        signal.safe_value = row.row->safe_value;
+        return signal;
+    }
+
+    Network& net_;
+    NodeView node_;
+    std::span<ValueName> values_{};
+    std::span<char> characters_{};
+    std::size_t used_values_ = 0;
+    std::size_t used_characters_ = 0;
+};
+
+} // namespace tappet::can::dbc
