@@ -6,11 +6,11 @@
 
 using namespace tappet;
 
-constexpr char text[] = R"(BU_: controller drive
+constexpr char press_text[] = R"(BU_: controller drive
 BO_ 385 drive: 3 drive
  SG_ speed : 0|16@1- (0.1,0) [0|0] "rpm controller
 )";
-constexpr SourceText file{"press.dbc", {text, sizeof text - 1}};
+constexpr SourceText file{"press.dbc", {press_text, sizeof press_text - 1}};
 constexpr auto controller = can::node("controller");
 constexpr auto signals = can::from_dbc<file, controller>;
 constexpr auto table =
