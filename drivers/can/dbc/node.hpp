@@ -8,18 +8,20 @@ namespace tappet::can {
 /// As often as its file says (GenMsgCycleTime).
 inline constexpr Rate as_in_file{Duration{-1}, Duration{-1}, {}};
 
-/// receive("drive", every(2ms)): the rate where the file has no cycle time. A message that does not name this node
-/// as a receiver is taken all the same, alone all of its signals, otherwise those named.
+/// receive("drive", every(2ms)): the rate where the file has no cycle time. A message that does not name this
+/// node as a receiver is taken all the same, alone all of its signals, otherwise those named.
 template <std::same_as<Signal>... Signals>
 constexpr auto receive(std::string_view name, Rate rate, const Signals&... signals) noexcept {
     return FrameWithSignals<sizeof...(Signals)>{
-        {{}, name, Direction::receive, 0, rate.every, rate.apart, rate.jitter, 0, sizeof...(Signals)}, {signals...}};
+        {{}, name, Direction::receive, 0, rate.every, rate.apart, rate.jitter, 0, sizeof...(Signals)},
+        {signals...}};
 }
 /// transmit("command", every(2ms), signal("speed").safe(0))
 template <std::same_as<Signal>... Signals>
 constexpr auto transmit(std::string_view name, Rate rate, const Signals&... signals) noexcept {
     return FrameWithSignals<sizeof...(Signals)>{
-        {{}, name, Direction::transmit, 0, rate.every, rate.apart, rate.jitter, 0, sizeof...(Signals)}, {signals...}};
+        {{}, name, Direction::transmit, 0, rate.every, rate.apart, rate.jitter, 0, sizeof...(Signals)},
+        {signals...}};
 }
 /// Likewise with the file's cycle time.
 template <std::same_as<Signal>... Signals>

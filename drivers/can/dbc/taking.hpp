@@ -176,9 +176,11 @@ private:
     }
     constexpr void check_rate(const MessageRow& message) {
         if (!says_rate(message) && message.every <= Duration::zero())
-            net_.fail(message.at, "message \"", message.name,
-                      "\" has no cycle time (GenMsgCycleTime); write can::every(..) or can::on_demand(..) into ",
-                      message.direction == Direction::transmit ? "transmit(\"" : "receive(\"", message.name, "\", ..)");
+            net_.fail(
+                message.at, "message \"", message.name,
+                "\" has no cycle time (GenMsgCycleTime); write can::every(..) or can::on_demand(..) into ",
+                message.direction == Direction::transmit ? "transmit(\"" : "receive(\"", message.name,
+                "\", ..)");
         if (says_rate(message) && message.every > Duration::zero() && message.row->every != message.every)
             net_.fail(message.at, "message \"", message.name, "\" has a cycle time of ",
                       decimal(static_cast<double>(message.every.count()) / 1e6),

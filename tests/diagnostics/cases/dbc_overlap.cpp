@@ -10,6 +10,7 @@ constexpr char press_text[] = R"(BU_: controller drive
 BO_ 385 drive: 3 drive
  SG_ speed : 0|16@1- (0.1,0) [0|0] "rpm" controller
  SG_ status : 12|8@1+ (1,0) [0|0] "" controller
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
 )";
 constexpr SourceText file{"press.dbc", {press_text, sizeof press_text - 1}};
 constexpr auto controller = can::node("controller");

@@ -6,15 +6,16 @@
 namespace tappet::can {
 namespace {
 
-constexpr auto us = node("us", transmit("ours", on_demand, signal("a").safe(0)));
+constexpr auto us = node("us", transmit("ours", signal("a").safe(0)));
 
 std::string fault(const std::string& text, const NodeView& node = us.view()) {
     return std::string{DbcMap{text, node}.map.fault.view()};
 }
 
-/// Line 1: nodes, 2: a message of theirs, 3 and 4: its signals, 5: ours, 6: its signal; then what is added.
+/// Line 1: a cycle time and nodes, 2: a message of theirs, 3 and 4: its signals, 5: ours, 6: its signal; then
+/// what is added.
 std::string with(const std::string& added) {
-    return "BU_: us them\n"
+    return "BA_DEF_DEF_ \"GenMsgCycleTime\" 20; BU_: us them\n"
            "BO_ 1 theirs: 8 them\n"
            " SG_ a : 0|8@1+ (1,0) [0|0] \"\" us\n"
            " SG_ b : 8|8@1+ (1,0) [0|0] \"\" us\n"
@@ -103,7 +104,7 @@ TEST(DbcFaults, names) {
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,0) [0|0] \"\" us,robot")),
               "t.dbc:8:35: BU_ names no node \"robot\"; add it there");
     EXPECT_EQ(fault(with(""), node("uss").view()),
-              "t.dbc:1:6: BU_ names no node \"uss\"; did you mean \"us\"?");
+              "t.dbc:1:40: BU_ names no node \"uss\"; did you mean \"us\"?");
     EXPECT_EQ(fault(with("BO_ 1 more: 8 them")),
               "t.dbc:7:5: message \"more\" has the identifier of \"theirs\"; give it its own");
     EXPECT_EQ(fault(with("BO_ 3 theirs: 8 them")),
@@ -183,45 +184,47 @@ TEST(DbcFaults, rows_of_the_node) {
     EXPECT_EQ(of(node("us")), "t.dbc:5:7: message \"ours\" is sent by \"us\", which does not say how it "
                               "becomes safe; write transmit(\"ours\", "
                               "signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
-    EXPECT_EQ(
-        of(node("us", transmit("ours", signal("a").safe(0)))),
-        "t.dbc:5:7: message \"ours\" has no cycle time (GenMsgCycleTime); write every(..) or on_demand into "
-        "transmit(\"ours\", ..)");
+    EXPECT_EQ(fault(with("BA_ \"GenMsgCycleTime\" BO_ 2 0;")),
+              "t.dbc:5:7: message \"ours\" has no cycle time (GenMsgCycleTime); write can::every(..) or "
+              "can::on_demand(..) into transmit(\"ours\", ..)");
+    EXPECT_EQ(fault(with("BA_ \"GenMsgCycleTime\" BO_ 1 0;")),
+              "t.dbc:2:7: message \"theirs\" has no cycle time (GenMsgCycleTime); write can::every(..) or "
+              "can::on_demand(..) into receive(\"theirs\", ..)");
     EXPECT_EQ(fault(with("BA_ \"GenMsgCycleTime\" BO_ 2 10;"),
                     node("us", transmit("ours", every(5ms), signal("a").safe(0))).view()),
               "t.dbc:5:7: message \"ours\" has a cycle time of 10 ms and a row with another one; leave it "
               "out of the row");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand, signal("a")))),
+    EXPECT_EQ(of(node("us", transmit("ours", signal("a")))),
               "t.dbc:6:6: signal \"ours.a\" does not say its safe value: write .safe(..) behind it, or "
               ".safe_by_silence() "
               "behind the frame");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand, signal("a").safe(256)))),
+    EXPECT_EQ(of(node("us", transmit("ours", signal("a").safe(256)))),
               "t.dbc:6:6: signal \"ours.a\" cannot hold its safe value: it is outside of the signal's range");
-    EXPECT_EQ(of(node("us", transmit("our", on_demand))),
+    EXPECT_EQ(of(node("us", transmit("our"))),
               "t.dbc:1:1: it has no message \"our\", which a row of \"us\" names; did you mean \"ours\"?");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand, signal("aa").safe(0)))),
+    EXPECT_EQ(of(node("us", transmit("ours", signal("aa").safe(0)))),
               "t.dbc:5:7: message \"ours\" has no signal \"aa\", which its row names; did you mean \"a\"?");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand).safe_by_silence(), transmit("theirs", on_demand))),
+    EXPECT_EQ(of(node("us", transmit("ours").safe_by_silence(), transmit("theirs"))),
               "t.dbc:2:7: message \"theirs\" is sent by \"them\", not by \"us\"; write receive(..)");
     EXPECT_EQ(
         of(node("us", receive("ours"))),
         "t.dbc:5:7: message \"ours\" is sent by \"us\", so \"us\" does not receive it; write transmit(..)");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand).safe_by_silence(), receive("ours"))),
+    EXPECT_EQ(of(node("us", transmit("ours").safe_by_silence(), receive("ours"))),
               "t.dbc:5:7: message \"ours\" has two rows of \"us\"; keep one");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand, signal("a", 0, 8).safe(0)))),
+    EXPECT_EQ(of(node("us", transmit("ours", signal("a", 0, 8).safe(0)))),
               "t.dbc:6:6: the row of signal \"a\" says what its file says; write signal(\"a\"), its safe "
               "value and unit");
-    EXPECT_EQ(of(node("us", transmit("ours", on_demand, signal("a").safe(0), signal("a").safe(1)))),
+    EXPECT_EQ(of(node("us", transmit("ours", signal("a").safe(0), signal("a").safe(1)))),
               "t.dbc:6:6: the row of message \"ours\" names \"a\" twice; keep one");
     EXPECT_EQ(
-        of(node("us", transmit(standard(2), "ours", bytes(8), on_demand))),
+        of(node("us", transmit(standard(2), "ours", bytes(8), on_demand(10ms)))),
         "t.dbc:5:7: the row of message \"ours\" says what its file says; leave identifier and length out");
 }
 
 TEST(DbcFaults, names_that_are_no_facets) {
     const std::string long_name(56, 'x');
     const auto silent = [](const auto&... rows) {
-        return node("us", transmit("ours", on_demand).safe_by_silence(), rows...);
+        return node("us", transmit("ours").safe_by_silence(), rows...);
     };
     EXPECT_EQ(fault(with("BO_ 3 " + long_name + ": 8 them\n SG_ speed_abc : 0|8@1+ (1,0) [0|0] \"\" us"),
                     silent().view()),

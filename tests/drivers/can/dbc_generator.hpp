@@ -31,12 +31,7 @@ public:
         return text_ + tail_;
     }
 
-    /// What "us" sends in the last file, and whether it has a cycle time.
-    struct Own {
-        std::string name;
-        bool has_period;
-    };
-    std::vector<Own> own{};
+    std::vector<std::string> own{}; ///< what "us" sends in the last file
 
 private:
     using Places = std::array<bool, 64>;
@@ -65,11 +60,9 @@ private:
         for (std::size_t i = lines_.size(); i > 1; --i) std::swap(lines_[i - 1], lines_[below(i)]);
         for (const std::string& line : lines_) text_ += line;
         text_ += '\n';
-        const bool has_period = random_.one_in(2);
-        if (sender == "us") own.push_back({name, has_period});
-        if (has_period)
-            tail_ += "BA_ \"GenMsgCycleTime\" BO_ " + std::to_string(id_) + ' ' +
-                     std::to_string(1 + below(500)) + ";\n";
+        if (sender == "us") own.push_back(name);
+        tail_ += "BA_ \"GenMsgCycleTime\" BO_ " + std::to_string(id_) + ' ' + std::to_string(1 + below(500)) +
+                 ";\n";
         if (random_.one_in(4)) tail_ += "BO_TX_BU_ " + std::to_string(id_) + " : them,others;\n";
     }
     /// One multiplexor, M, and pages m0 and on.

@@ -59,11 +59,11 @@ struct Taken {
     std::unique_ptr<DbcMap> read;
 
     explicit Taken(std::uint64_t seed) : generator{seed}, text{generator.file()} {
-        for (const DbcGenerator::Own& own : generator.own) {
+        for (const std::string& own : generator.own) {
             FrameRow& row = rows.emplace_back();
-            row.name = own.name;
+            row.name = own;
             row.direction = Direction::transmit;
-            row.every = own.has_period ? as_in_file.period : on_demand.period;
+            row.every = as_in_file.every;
             row.silence_is_safe = true;
         }
         read = std::make_unique<DbcMap>(text, NodeView{"us", rows, {}});

@@ -11,10 +11,10 @@ namespace {
 
 constexpr auto controller =
     node("controller", transmit("drive_command", signal("controlword").safe(2), signal("speed").safe(0)),
-         transmit("lamps", on_demand, signal("Which").safe(0), signal("Brightness").called("level").safe(50),
-                  signal("Colour").safe(4))
+         transmit("lamps", on_demand(10ms), signal("Which").safe(0),
+                  signal("Brightness").called("level").safe(50), signal("Colour").safe(4))
              .called("panel_lamps"),
-         receive("diagnosis", signal("code").in("min")));
+         receive("service", on_demand(20ms)), receive("diagnosis", on_demand(1s), signal("code").in("min")));
 constexpr auto map = from_dbc<files::press_dbc, controller>;
 TAPPET_ACCEPTED(map.fault);
 
@@ -24,9 +24,9 @@ constexpr Signal found(std::string_view path) { return map.signals[map.signal(pa
 static_assert(map.frames.size() == 5 && map.signals.size() == 15);
 static_assert(map.receives().size() == 3 && map.transmits().size() == 2);
 static_assert(map.frame(standard(385)) == 0 && map.frame(extended(2566844962 & 0x1FFF'FFFF)) == 1);
-static_assert(map.frames[0].every == 10ms && map.frames[1].every == 0ms);
+static_assert(map.frames[0].every == 10ms && map.frames[1].every == 0ms && map.frames[1].apart == 20ms);
 static_assert(map.frames[2].name == "drive_command" && map.frames[2].every == 5ms);
-static_assert(map.frame("panel_lamps") == 3 && map.frames[3].every == on_demand.period);
+static_assert(map.frame("panel_lamps") == 3 && map.frames[3].apart == 10ms);
 static_assert(found("drive.load").order == Order::motorola && found("drive.load").unit == "%");
 static_assert(found("drive.torque_of_the_shaft").kind == Kind::signed_integer);
 static_assert(found("drive.torque_of_the_shaft").unit == "N m" && found("drive_command.speed").unit == "rpm");
@@ -43,7 +43,7 @@ static_assert(map.safe_frames().size() == 3);
 static_assert(map.safe_frames()[0].data == Payload{2, 0, 0, 0});
 static_assert(map.safe_frames()[1].data == Payload{1, 4} && map.safe_frames()[2].data == Payload{0, 100});
 
-constexpr auto panel = node("panel");
+constexpr auto panel = node("panel", receive("lamps", on_demand(10ms)));
 constexpr auto panel_map = from_dbc<files::press_dbc, panel>;
 static_assert(panel_map.frames.size() == 2 && panel_map.signals.size() == 4);
 static_assert(panel_map.signal("drive.torque_of_the_shaft") == 0 && panel_map.signal("lamps.Which") == 1);
@@ -113,7 +113,7 @@ TEST(Signals, send_a_named_value_beyond_their_range) {
 
 // By hand the same words make the same map.
 constexpr auto by_hand = signal_map(
-    transmit(standard(514), "lamps", bytes(2), on_demand, signal("Which", 0, 4).range(0, 3).safe(0),
+    transmit(standard(514), "lamps", bytes(2), on_demand(10ms), signal("Which", 0, 4).range(0, 3).safe(0),
              signal("Brightness", 8, 8).times(0.5).range(0, 100).in("%").when("Which", 0).safe(50),
              signal("Colour", 8, 8).range(0, 7).when("Which", 1).safe(4)));
 TAPPET_ACCEPTED(by_hand.fault);

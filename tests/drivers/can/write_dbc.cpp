@@ -26,10 +26,8 @@ int main(int count, char** words) {
         out << ";\ninline constexpr tappet::SourceText file_" << seed << "{\"t.dbc\", {text_" << seed
             << ", sizeof text_" << seed << " - 1}};\ninline constexpr auto node_" << seed
             << " = tappet::can::node(\"us\"";
-        for (const auto& own : generator.own)
-            out << ",\n    tappet::can::transmit(\"" << own.name
-                << "\", tappet::can::" << (own.has_period ? "as_in_file" : "on_demand")
-                << ").safe_by_silence()";
+        for (const std::string& own : generator.own)
+            out << ",\n    tappet::can::transmit(\"" << own << "\").safe_by_silence()";
         out << ");\ninline constexpr auto map_" << seed << " = tappet::can::from_dbc<file_" << seed
             << ", node_" << seed << ">;\n\n";
     }
