@@ -4,6 +4,7 @@
 #include "drivers/can/bus_traffic.hpp"
 #include "drivers/can/device.hpp"
 #include "drivers/can/facet_names.hpp"
+#include "drivers/can/services.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "drivers/can/transmit_queue.hpp"
 #include "kernel/component/cause.hpp"
@@ -29,14 +30,18 @@ namespace tappet::can {
 /// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
 /// what is written after it leaves. It looks for that restart every now and then and rests in between.
 /// Likewise a bus that was stopped begins anew: what arrived, waited or was demanded before is forgotten.
-template <const auto& map> struct Bus {
+///
+/// With services, what they receive leaves by the buffered output `services`, and what comes in by the
+/// buffered input `to_send` goes out, all of it in order.
+template <const auto& map, const auto& protocol = no_services>
+struct Bus {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
     static_assert(map.transmitted_count <= TransmitQueue::capacity,
                   "what is sent at one time fits the queue");
     static constexpr std::string_view device_kind = "can";
-    static constexpr Identifiers device_map{map.receives(), map.transmits(), map.safe_frames()};
+    static constexpr Identifiers device_map = AllIdentifiers<map, protocol>::value;
     static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
         return bus_traffic(map, use, into);
     }
@@ -65,6 +70,8 @@ template <const auto& map> struct Bus {
     Output<std::int64_t> sent_too_often{};
     Event<> bus_fault{};
     Event<> bus_recovered{};
+    [[no_unique_address]] ServicePort<protocol.any, BufferOutput<Frame>> services{};
+    [[no_unique_address]] ServicePort<protocol.any, BufferInput<Frame>> to_send{};
     Timer next_send{};
     Timer next_service{};
 
@@ -99,6 +106,7 @@ template <const auto& map> struct Bus {
         // What was demanded meanwhile waits for no reading.
         if (send_on_demand(cycle.now)) device_->service(cycle.now);
         take_frames();
+        send_services();
         static_cast<void>(send_on_demand(cycle.now));
         finish(cycle.now);
     }
@@ -107,6 +115,7 @@ template <const auto& map> struct Bus {
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
             if (is_cyclic(f)) send(f, cycle.now);
+        send_services();
         static_cast<void>(send_on_demand(cycle.now));
         device_->service(cycle.now);
         // They wait for the frames in flight, and nobody serves the device after this.
@@ -140,7 +149,7 @@ template <const auto& map> struct Bus {
     }
 
     static constexpr auto interface() {
-        std::array<Facet, signal_count + frame_count + fixed_facets> list{};
+        std::array<Facet, signal_count + frame_count + fixed_facets + (protocol.any ? 2 : 0)> list{};
         std::size_t n = 0;
         for (std::size_t s = 0; s < signal_count; ++s) list[n++] = signal_facet(s);
         for (std::size_t f = 0; f < frame_count; ++f) {
@@ -173,6 +182,10 @@ template <const auto& map> struct Bus {
                 timer<&Bus::next_service, &Bus::serve_device>("next_service", "the next time-out of a frame"),
             })
             list[n++] = facet;
+        if constexpr (protocol.any) {
+            list[n++] = output<&Bus::services>("services", "", "frames of the protocol's own, received");
+            list[n++] = input<&Bus::to_send>("to_send", "", "frames of the protocol's own, to be sent");
+        }
         return list;
     }
 
@@ -247,6 +260,8 @@ private:
         if (const Decoded decoded = store_.decode(frame, f); decoded != Decoded::yes) {
             if (decoded == Decoded::wrong_length)
                 wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
+            if constexpr (protocol.any)
+                if (protocol.takes(frame)) ++(services.push(frame) ? taken_ : lost_);
             return;
         }
         ++taken_;
@@ -375,6 +390,13 @@ private:
         }
         return sent;
     }
+    void send_services() noexcept TAPPET_REALTIME {
+        if constexpr (protocol.any) {
+            Frame frame;
+            for (int n = 0; n < max_frames_per_cycle && to_send.pop(frame); ++n)
+                static_cast<void>(device_->send(frame, Keep::every));
+        }
+    }
     /// What waited, what arrived and what was demanded while nobody served the bus.
     void forget_stopped_time() noexcept TAPPET_REALTIME {
         device_->purge();
@@ -385,6 +407,10 @@ private:
         forget_demands();
     }
     void forget_demands() noexcept TAPPET_REALTIME {
+        if constexpr (protocol.any) {
+            Frame forgotten;
+            for (int n = 0; n < max_passes && to_send.pop(forgotten);) ++n;
+        }
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             static_cast<void>(read_inputs(f));

@@ -49,7 +49,7 @@ const std::vector<Row> house{
     {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
     {"drivers/udp",       {"kernel/component", "drivers/twin"}},
-    {"drivers/canopen",   {"drivers/can"}},
+    {"drivers/canopen",   {"drivers/can", "kernel/pieces", "kernel/motion"}},
     {"drivers/instruments", {"kernel/component"}},
     {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/udp"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},

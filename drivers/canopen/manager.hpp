@@ -1,0 +1,289 @@
+// The manager of a CANopen network (CiA 302-2) as a component: it starts the nodes that are what the table
+// says, watches them, and produces SYNC, TIME and a heartbeat.
+#pragma once
+
+#include "drivers/canopen/network.hpp"
+#include "drivers/canopen/trouble_text.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/component/facet_name.hpp"
+#include "kernel/pieces/changed.hpp"
+
+namespace tappet::canopen {
+
+/// An emergency message (CiA 301, 7.2.7). Code 0: the errors are gone.
+struct Emergency {
+    std::int64_t node = 0;
+    std::int64_t code = 0;
+    std::int64_t error_register = 0;
+    Time at{};
+    bool operator==(const Emergency&) const = default;
+};
+
+/// All real-time, in a periodic activity whose period is at most that of SYNC. Rows of the table:
+///     component<can::Bus<signals, canopen::frames<network>>>("can", device("can")),
+///     component<canopen::Manager<network>>("network"),
+///     buffer<64>("can.services", "network.received"), buffer<32>("network.to_send", "can.to_send", wakes),
+///
+/// At its start it resets the communication of all nodes. Each is then checked, configured and started by
+/// itself when it boots, when its heartbeat comes, or when it answers at all; so it is after a loss, a
+/// reboot, or when it left its operational state. One that is not what the table says is refused until it
+/// boots anew.
+template <const auto& map> struct Manager {
+    TAPPET_ACCEPTED(map.fault);
+    static constexpr std::size_t node_count = map.nodes.size();
+    static constexpr int max_frames_per_cycle = 64;
+    /// SDO requests that leave in one cycle: configuring must not fill the bus.
+    static constexpr int max_requests_per_cycle = 1;
+
+    BufferInput<can::Frame> received{};
+    BufferOutput<can::Frame> to_send{};
+    Input<Duration> time_of_day{};
+    Output<bool> operational{};
+    Output<std::int64_t> silent_node{};
+    Output<Text<240>> reason{};
+    Output<std::int64_t> reboots{};
+    Output<std::int64_t> not_sent{};
+    std::array<Output<NodePhase>, node_count> phases{};
+    std::array<Output<std::int64_t>, node_count> errors{};
+    Event<std::int64_t, std::int64_t, std::int64_t> emergency{};
+
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        can::Frame forgotten;
+        for (int n = 0; n < max_frames_per_cycle && received.pop(forgotten);) ++n;
+        for (std::size_t i = 0; i < node_count; ++i) {
+            watches_[i].start(nodes[i], steps_of(i), map.first_step[i], cycle.now);
+            error_[i].write(errors[i], 0);
+        }
+        next_beat_ = next_sync_ = next_time_ = cycle.now;
+        counter_ = 0;
+        emergencies_.clear();
+        told_ = NodeTrouble{.step = no_step};
+        if constexpr (map.manager.beats != Duration{})
+            send(heartbeat_frame(map.manager.id, NmtState::boot_up), cycle.now);
+        send(nmt_frame(NmtCommand::reset_communication, 0), cycle.now);
+        tell();
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { operational_.write(operational, false); }
+
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        produce(cycle.now);
+        can::Frame frame;
+        for (int n = 0; n < max_frames_per_cycle && received.pop(frame); ++n) take(frame, cycle.now);
+        for (std::size_t i = 0; i < node_count; ++i) {
+            watches_[i].tick(cycle.now);
+            if (NmtCommand command{}; watches_[i].next_command(command))
+                send(nmt_frame(command, nodes[i].id), cycle.now);
+        }
+        send_requests(cycle.now);
+        tell();
+    }
+
+    /// NMT reset node, of a person's: it boots and is configured anew.
+    void reset(std::int64_t node) noexcept TAPPET_REALTIME {
+        for (const WatchedNode& each : nodes)
+            if (each.id == node) to_reset_ = each.id;
+    }
+
+    /// The last sixteen, the oldest first.
+    [[nodiscard]] std::span<const Emergency> emergencies() const noexcept {
+        return {emergencies_.begin(), emergencies_.size()};
+    }
+    [[nodiscard]] const NodeWatch& watch(std::size_t i) const noexcept { return watches_[i]; }
+
+    static constexpr auto interface() {
+        std::array<Facet, 10 + 2 * node_count> list{};
+        std::size_t n = 0;
+        for (const Facet& facet : {
+                 input<&Manager::received>("received", "", "frames of the network"),
+                 output<&Manager::to_send>("to_send", "", "frames for the network"),
+                 input<&Manager::time_of_day>("time_of_day", "s", "since 1984, for TIME", optional),
+                 output<&Manager::operational>("operational", "", "every node works; written on change"),
+                 output<&Manager::silent_node>("silent_node", "",
+                                               "the first that is not heard, 0: none; written on change"),
+                 output<&Manager::reason>("reason", "", "why not every node works; written on change"),
+                 output<&Manager::reboots>("reboots", "", "of nodes that worked; written on change"),
+                 output<&Manager::not_sent>("not_sent", "", "frames that found no room; written on change"),
+                 tappet::event<&Manager::emergency>("emergency", "EMCY: node, code, error register"),
+                 operation<&Manager::reset>("reset", "NMT reset of one node"),
+             })
+            list[n++] = facet;
+        for (std::size_t i = 0; i < node_count; ++i) {
+            list[n++] = {.name = phase_names[i].view(),
+                         .doc = "how far the node is; written on change",
+                         .kind = FacetKind::output,
+                         .type = type_id<NodePhase>,
+                         .index = i,
+                         .at = [](void* self, std::size_t k) noexcept -> void* {
+                             return &static_cast<Manager*>(self)->phases[k];
+                         },
+                         .port = &PortAccess::data<NodePhase>};
+            list[n++] = {.name = error_names[i].view(),
+                         .doc = "code of its last emergency, 0: none; written on change",
+                         .kind = FacetKind::output,
+                         .type = type_id<std::int64_t>,
+                         .index = i,
+                         .at = [](void* self, std::size_t k) noexcept -> void* {
+                             return &static_cast<Manager*>(self)->errors[k];
+                         },
+                         .port = &PortAccess::data<std::int64_t>};
+        }
+        return list;
+    }
+
+private:
+    static constexpr std::uint16_t no_step = 0xFFFF;
+
+    // What of the table a program holds.
+    static constexpr auto nodes = [] {
+        std::array<WatchedNode, node_count> all{};
+        for (std::size_t i = 0; i < node_count; ++i) {
+            const NodeRow& row = map.nodes[i];
+            all[i] = {row.id,    row.name,       row.dictionary.product, row.dictionary.file,
+                      row.beats, row.lost_after, row.answers_within};
+        }
+        return all;
+    }();
+    static constexpr auto steps = [] {
+        std::array<ConfigurationStep, map.steps.used> all{};
+        std::copy_n(map.steps.begin(), all.size(), all.begin());
+        return all;
+    }();
+    static constexpr auto first_step = map.first_step;
+    static constexpr auto names(std::string_view end) {
+        std::array<FacetName, node_count> all{};
+        for (std::size_t i = 0; i < node_count; ++i) all[i] = {map.nodes[i].name, end};
+        return all;
+    }
+    static constexpr auto phase_names = names(".phase");
+    static constexpr auto error_names = names(".error");
+
+    static constexpr std::span<const ConfigurationStep> steps_of(std::size_t i) noexcept TAPPET_REALTIME {
+        return std::span{steps}.subspan(first_step[i], first_step[i + 1] - first_step[i]);
+    }
+
+    void send(can::Frame frame, Time now) noexcept TAPPET_REALTIME {
+        frame.stamp = now;
+        if (!to_send.push(frame)) ++lost_;
+    }
+
+    void take(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < node_count; ++i) {
+            const std::uint32_t id = nodes[i].id;
+            if (frame.id == cob::heartbeat + id && frame.length == 1)
+                return watches_[i].take_heartbeat(frame.data[0], now);
+            if (frame.id == cob::sdo_answer + id && frame.length == 8)
+                return watches_[i].take_answer(frame.data);
+            if (frame.id == cob::emergency + id && frame.length == 8) return take_emergency(i, frame);
+        }
+    }
+    void take_emergency(std::size_t i, const can::Frame& frame) noexcept TAPPET_REALTIME {
+        const auto code = static_cast<std::int64_t>(frame.data[0] | frame.data[1] << 8);
+        if (emergencies_.full()) {
+            for (std::size_t k = 1; k < emergencies_.size(); ++k) emergencies_[k - 1] = emergencies_[k];
+            --emergencies_.used;
+        }
+        static_cast<void>(emergencies_.push({nodes[i].id, code, frame.data[2], frame.stamp}));
+        error_[i].write(errors[i], code);
+        emergency.emit(nodes[i].id, code, frame.data[2]);
+    }
+
+    /// Absolute times: a late cycle moves none after it, and what was missed is left out.
+    static bool is_due(Time& next, Duration every, Time now) noexcept TAPPET_REALTIME {
+        if (next > now) return false;
+        next += ((now - next) / every + 1) * every;
+        return true;
+    }
+    void produce(Time now) noexcept TAPPET_REALTIME {
+        constexpr ManagerRow row = map.manager;
+        if constexpr (row.sync_every != Duration{})
+            if (is_due(next_sync_, row.sync_every, now)) {
+                can::Frame sync;
+                sync.id = cob::sync;
+                if constexpr (row.sync_overflow != 0) {
+                    counter_ = counter_ == row.sync_overflow ? std::uint8_t{1}
+                                                             : static_cast<std::uint8_t>(counter_ + 1);
+                    sync.length = 1;
+                    sync.data[0] = counter_;
+                }
+                send(sync, now);
+            }
+        if constexpr (row.beats != Duration{})
+            if (is_due(next_beat_, row.beats, now)) send(heartbeat_frame(row.id, NmtState::operational), now);
+        if constexpr (row.time_every != Duration{})
+            if (is_due(next_time_, row.time_every, now)) send_time(now);
+        if (to_reset_ != 0) send(nmt_frame(NmtCommand::reset_node, to_reset_), now);
+        to_reset_ = 0;
+    }
+    /// TIME_OF_DAY: milliseconds of the day in 28 bits, days since 1984 in 16. Nobody knows the time: none.
+    void send_time(Time now) noexcept TAPPET_REALTIME {
+        if (!time_of_day.good()) return;
+        const Duration since = time_of_day.get() + (now - time_of_day.stamp());
+        constexpr Duration day = 24h;
+        can::Frame time;
+        time.id = cob::time;
+        time.length = 6;
+        to_bytes(static_cast<std::uint64_t>(since % day / 1ms), std::span{time.data}.first(4));
+        to_bytes(static_cast<std::uint64_t>(since / day), std::span{time.data}.subspan(4, 2));
+        send(time, now);
+    }
+
+    /// In turn, so that no node waits for another one.
+    void send_requests(Time now) noexcept TAPPET_REALTIME {
+        int left = max_requests_per_cycle;
+        for (std::size_t k = 0; k < node_count && left > 0; ++k) {
+            turn_ = turn_ + 1 < node_count ? turn_ + 1 : 0;
+            can::Frame frame;
+            if (!watches_[turn_].next_request(frame.data, now)) continue;
+            frame.id = cob::sdo_request + nodes[turn_].id;
+            frame.length = 8;
+            send(frame, now);
+            --left;
+        }
+    }
+
+    void tell() noexcept TAPPET_REALTIME {
+        bool all = true;
+        std::int64_t silent = 0;
+        std::uint64_t reboots_now = 0;
+        std::size_t worst = node_count;
+        for (std::size_t i = 0; i < node_count; ++i) {
+            const NodePhase phase = watches_[i].phase();
+            phase_[i].write(phases[i], phase);
+            reboots_now += watches_[i].reboots();
+            if (phase == NodePhase::operational) continue;
+            all = false;
+            if (phase == NodePhase::lost && silent == 0) silent = nodes[i].id;
+            const bool worse =
+                worst == node_count || (watches_[worst].trouble().kind == NodeTrouble::Kind::none &&
+                                        watches_[i].trouble().kind != NodeTrouble::Kind::none);
+            if (worse) worst = i;
+        }
+        operational_.write(operational, all);
+        silent_.write(silent_node, silent);
+        reboots_.write(reboots, static_cast<std::int64_t>(reboots_now));
+        not_sent_.write(not_sent, static_cast<std::int64_t>(lost_));
+        const NodeTrouble trouble = all ? NodeTrouble{} : watches_[worst].trouble();
+        if (worst == worst_ && trouble == told_) return;
+        worst_ = worst;
+        told_ = trouble;
+        Text<240> text;
+        if (!all) text.append(to_text(nodes[worst], trouble, steps[trouble.step]).view());
+        reason.write(text);
+    }
+
+    std::array<NodeWatch, node_count> watches_{};
+    Bounded<Emergency, 16> emergencies_{};
+    std::array<Changed<NodePhase>, node_count> phase_{};
+    std::array<Changed<std::int64_t>, node_count> error_{};
+    Changed<bool> operational_{};
+    Changed<std::int64_t> silent_{}, reboots_{}, not_sent_{};
+    NodeTrouble told_{};
+    std::size_t worst_ = node_count;
+    std::size_t turn_ = 0;
+    std::uint64_t lost_ = 0;
+    std::uint8_t counter_ = 0;
+    std::uint8_t to_reset_ = 0;
+    Time next_beat_{}, next_sync_{}, next_time_{};
+};
+
+} // namespace tappet::canopen

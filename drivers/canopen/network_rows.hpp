@@ -1,0 +1,148 @@
+// The rows of a CANopen network's table, as they are written; network.hpp puts them together.
+#pragma once
+
+#include "drivers/can/signal_map.hpp"
+#include "drivers/canopen/object_dictionary.hpp"
+#include "drivers/canopen/protocol.hpp"
+#include "kernel/base/bounded.hpp"
+
+#include <initializer_list>
+
+namespace tappet::canopen {
+
+/// When a PDO is sent, or acted upon (CiA 301, 7.5.2.36).
+struct Transmission {
+    std::uint8_t type = 255;
+    Duration event_timer{}; ///< 0: none
+    Duration inhibit_time{};
+};
+/// At events of the device's own, and by a timer besides; no more often than the inhibit time allows.
+constexpr Transmission on_event(Duration timer = {}, Duration inhibit_time = {}) noexcept {
+    return {255, timer, inhibit_time};
+}
+/// At each n-th SYNC, n up to 240; 0: at the next SYNC after it changed.
+constexpr Transmission synchronous(std::uint8_t every = 1) noexcept { return {every, {}, {}}; }
+
+struct PdoRow {
+    std::string_view frame{};
+    Transmission how{};
+    Bounded<Address, 8> objects{};
+};
+struct ParameterRow {
+    Address at{};
+    std::int64_t value = 0;
+};
+
+struct NodeRow {
+    static constexpr std::size_t most_pdos = 2 * predefined_pdos;
+    static constexpr std::size_t most_parameters = 24;
+
+    std::uint8_t id = 0;
+    std::string_view name{};
+    Dictionary dictionary{};
+    Duration beats{};
+    Duration lost_after{};
+    Duration answers_within = 100ms; ///< each request of an SDO transfer
+    bool any_revision = false;
+    Bounded<PdoRow, most_pdos> pdos{};
+    Bounded<ParameterRow, most_parameters> parameters{};
+    bool too_many = false;
+
+    /// It is lost when nothing was heard for so long; when it is not said, three periods and a half.
+    constexpr NodeRow heartbeat(Duration every, Duration lost = {}) const noexcept {
+        NodeRow copy = *this;
+        copy.beats = every;
+        copy.lost_after = lost != Duration{} ? lost : every * 7 / 2;
+        return copy;
+    }
+    /// The frame of the signal map holds these objects, in their order.
+    constexpr NodeRow pdo(std::string_view frame, Transmission how,
+                          std::initializer_list<Address> objects) const noexcept {
+        NodeRow copy = *this;
+        PdoRow row{frame, how, {}};
+        for (const Address& each : objects) copy.too_many |= !row.objects.push(each);
+        copy.too_many |= !copy.pdos.push(row);
+        return copy;
+    }
+    constexpr NodeRow pdo(std::string_view frame, std::initializer_list<Address> objects) const noexcept {
+        return pdo(frame, on_event(), objects);
+    }
+    /// Before the network is started.
+    constexpr NodeRow write(Address at, std::int64_t value) const noexcept {
+        NodeRow copy = *this;
+        copy.too_many |= !copy.parameters.push({at, value});
+        return copy;
+    }
+    /// One of another revision is taken, too.
+    constexpr NodeRow of_any_revision() const noexcept {
+        NodeRow copy = *this;
+        copy.any_revision = true;
+        return copy;
+    }
+    constexpr NodeRow answers(Duration within) const noexcept {
+        NodeRow copy = *this;
+        copy.answers_within = within;
+        return copy;
+    }
+};
+constexpr NodeRow node(std::uint8_t id, std::string_view name, const Dictionary& dictionary) noexcept {
+    NodeRow row;
+    row.id = id;
+    row.name = name;
+    row.dictionary = dictionary;
+    return row;
+}
+
+/// The machine's own part in the network.
+struct ManagerRow {
+    std::uint8_t id = 127;
+    Duration beats{};               ///< 0: it produces no heartbeat
+    Duration sync_every{};          ///< 0: no SYNC
+    std::uint8_t sync_overflow = 0; ///< 1019h: the counter runs from 1 to this; 0: there is none
+    Duration time_every{};          ///< 0: no TIME
+
+    constexpr ManagerRow heartbeat(Duration every) const noexcept {
+        ManagerRow copy = *this;
+        copy.beats = every;
+        return copy;
+    }
+    constexpr ManagerRow sync(Duration every, std::uint8_t counts_to = 0) const noexcept {
+        ManagerRow copy = *this;
+        copy.sync_every = every;
+        copy.sync_overflow = counts_to;
+        return copy;
+    }
+    constexpr ManagerRow time(Duration every) const noexcept {
+        ManagerRow copy = *this;
+        copy.time_every = every;
+        return copy;
+    }
+};
+constexpr ManagerRow manager(std::uint8_t id) noexcept { return {.id = id}; }
+
+/// One transfer of a node's start.
+struct ConfigurationStep {
+    enum class Kind : std::uint8_t {
+        identity, ///< it must read so, or it is another device
+        write,
+        confirm, ///< what was written must read so
+    };
+    Kind kind = Kind::write;
+    std::uint8_t bytes = 0;
+    Address at{};
+    std::uint64_t value = 0;
+    bool operator==(const ConfigurationStep&) const = default;
+};
+
+/// The rows of a network, checked and worked out.
+template <std::size_t N> struct NetworkMap {
+    static constexpr std::size_t most_steps = 96 * N;
+
+    ManagerRow manager{};
+    std::array<NodeRow, N> nodes{};
+    Bounded<ConfigurationStep, most_steps> steps{};
+    std::array<std::size_t, N + 1> first_step{}; ///< of a node; the last is where all end
+    Sentence fault{};                            ///< empty when the table is right
+};
+
+} // namespace tappet::canopen

@@ -1,0 +1,213 @@
+// One node as the manager knows it: from its boot-up over its configuration to its work, and back when it is
+// lost (CiA 301, 7.3.2; CiA 302-2, boot NMT slave).
+#pragma once
+
+#include "drivers/canopen/frames.hpp"
+#include "drivers/canopen/sdo_client.hpp"
+
+namespace tappet::canopen {
+
+enum class NodePhase : std::uint8_t {
+    absent,      ///< not heard of yet
+    configuring, ///< its identity is read, its configuration written and read back
+    starting,    ///< told to start
+    operational,
+    lost,    ///< its heartbeat is missing, or it answers no request
+    refused, ///< another device, or one that does not take its configuration: until it boots again
+};
+
+/// Why a node does not work.
+struct NodeTrouble {
+    enum class Kind : std::uint8_t {
+        none,
+        silent,
+        no_answer,
+        rebooted,
+        left,
+        other_device,
+        aborted,
+        not_kept
+    };
+    Kind kind = Kind::none;
+    std::uint16_t step = 0; ///< of the network's, where there is one
+    SdoAbort why = SdoAbort::none;
+    std::uint64_t found = 0;
+    bool operator==(const NodeTrouble&) const = default;
+};
+
+/// What the manager must know of a node while it runs.
+struct WatchedNode {
+    std::uint8_t id = 0;
+    std::string_view name{}, product{}, file{};
+    Duration beats{}, lost_after{}, answers_within{};
+};
+
+/// Real-time; each call takes a bounded number of steps.
+class NodeWatch {
+public:
+    static constexpr Duration poll_every = 1s; ///< a node that is not heard of
+
+    /// Forgets all; `steps` are those of this node, the first of them number `first`.
+    void start(const WatchedNode& row, std::span<const ConfigurationStep> steps, std::size_t first,
+               Time now) noexcept TAPPET_REALTIME {
+        row_ = &row;
+        steps_ = steps;
+        first_ = first;
+        client_.set_time_out(row.answers_within);
+        client_.forget();
+        phase_ = NodePhase::absent;
+        trouble_ = {};
+        command_ = {};
+        heard_ = NmtState::boot_up;
+        poll_at_ = now + poll_every;
+    }
+
+    [[nodiscard]] NodePhase phase() const noexcept TAPPET_REALTIME { return phase_; }
+    [[nodiscard]] const NodeTrouble& trouble() const noexcept TAPPET_REALTIME { return trouble_; }
+    [[nodiscard]] std::uint64_t reboots() const noexcept TAPPET_REALTIME { return reboots_; }
+
+    void take_heartbeat(std::uint8_t byte, Time now) noexcept TAPPET_REALTIME {
+        const auto state = static_cast<NmtState>(byte & 0x7Fu); // the highest bit is node guarding's
+        heard_ = state;
+        heard_at_ = now;
+        if (state == NmtState::boot_up) {
+            if (phase_ == NodePhase::operational || phase_ == NodePhase::starting) {
+                ++reboots_;
+                trouble_ = {.kind = NodeTrouble::Kind::rebooted};
+            }
+            return configure();
+        }
+        switch (phase_) {
+        case NodePhase::absent:
+        case NodePhase::lost: configure(); break;
+        case NodePhase::starting:
+            if (state != NmtState::operational) break;
+            phase_ = NodePhase::operational;
+            trouble_ = {};
+            break;
+        case NodePhase::operational:
+            if (state == NmtState::operational) break;
+            trouble_ = {.kind = NodeTrouble::Kind::left};
+            configure();
+            break;
+        case NodePhase::refused:
+            if (state == NmtState::operational) command(NmtCommand::enter_pre_operational);
+            break;
+        case NodePhase::configuring: break;
+        }
+    }
+    void take_answer(const sdo::Payload& answer) noexcept TAPPET_REALTIME { client_.take(answer); }
+
+    void tick(Time now) noexcept TAPPET_REALTIME {
+        client_.tick(now);
+        switch (phase_) {
+        case NodePhase::absent:
+        case NodePhase::lost:
+            if (now >= poll_at_) {
+                heard_ = NmtState::pre_operational;
+                configure();
+            }
+            break;
+        case NodePhase::configuring: go_on(now); break;
+        case NodePhase::starting:
+            if (now >= start_again_) {
+                command(NmtCommand::start);
+                start_again_ = now + 2 * row_->beats;
+            }
+            [[fallthrough]];
+        case NodePhase::operational:
+            if (now - heard_at_ > row_->lost_after) lose({.kind = NodeTrouble::Kind::silent}, now);
+            break;
+        case NodePhase::refused: break;
+        }
+    }
+
+    /// An NMT command for this node that is to leave before anything else.
+    [[nodiscard]] bool next_command(NmtCommand& command) noexcept TAPPET_REALTIME {
+        if (!command_.wanted) return false;
+        command_.wanted = false;
+        command = command_.what;
+        return true;
+    }
+    [[nodiscard]] bool has_request() const noexcept TAPPET_REALTIME { return client_.has_request(); }
+    [[nodiscard]] bool next_request(sdo::Payload& request, Time now) noexcept TAPPET_REALTIME {
+        return client_.next(request, now);
+    }
+
+private:
+    struct Command {
+        bool wanted = false;
+        NmtCommand what = NmtCommand::start;
+    };
+
+    void command(NmtCommand what) noexcept TAPPET_REALTIME { command_ = {true, what}; }
+    void configure() noexcept TAPPET_REALTIME {
+        if (heard_ == NmtState::operational || heard_ == NmtState::stopped)
+            command(NmtCommand::enter_pre_operational); // what it sends may not be what the map reads
+        client_.forget();
+        phase_ = NodePhase::configuring;
+        step_ = 0;
+    }
+    void lose(const NodeTrouble& why, Time now) noexcept TAPPET_REALTIME {
+        phase_ = NodePhase::lost;
+        trouble_ = why;
+        poll_at_ = now + poll_every;
+    }
+    void refuse(NodeTrouble::Kind kind, std::uint64_t found = 0) noexcept TAPPET_REALTIME {
+        phase_ = NodePhase::refused;
+        trouble_ = {kind, static_cast<std::uint16_t>(first_ + step_), client_.why(), found};
+    }
+
+    void go_on(Time now) noexcept TAPPET_REALTIME {
+        using State = SdoClient::State;
+        switch (client_.state()) {
+        case State::busy: return;
+        case State::aborted:
+            if (client_.why() != SdoAbort::time_out) return refuse(NodeTrouble::Kind::aborted);
+            return lose({.kind = NodeTrouble::Kind::no_answer}, now);
+        case State::done:
+            if (const ConfigurationStep& step = steps_[step_]; step.kind != ConfigurationStep::Kind::write) {
+                const std::uint64_t found = low_bits(from_bytes(client_.value()), 8u * step.bytes);
+                if (found != step.value)
+                    return refuse(step.kind == ConfigurationStep::Kind::identity
+                                      ? NodeTrouble::Kind::other_device
+                                      : NodeTrouble::Kind::not_kept,
+                                  found);
+            }
+            ++step_;
+            break;
+        case State::idle: break;
+        }
+        if (step_ < steps_.size()) return begin_step();
+        client_.forget();
+        phase_ = NodePhase::starting;
+        heard_at_ = start_again_ = now;
+    }
+    void begin_step() noexcept TAPPET_REALTIME {
+        const ConfigurationStep& step = steps_[step_];
+        if (step.kind != ConfigurationStep::Kind::write) return client_.read(step.at);
+        std::array<std::uint8_t, 8> bytes{};
+        to_bytes(step.value, bytes);
+        client_.write(step.at, std::span{bytes}.first(step.bytes < bytes.size() ? step.bytes : bytes.size()));
+    }
+
+    const WatchedNode* row_ = nullptr;
+    std::span<const ConfigurationStep> steps_{};
+    std::size_t first_ = 0;
+    std::size_t step_ = 0;
+    SdoClient client_{};
+    NodePhase phase_ = NodePhase::absent;
+    NodeTrouble trouble_{};
+    Command command_{};
+    NmtState heard_ = NmtState::boot_up;
+    Time heard_at_{};
+    Time poll_at_{};
+    Time start_again_{};
+    std::uint64_t reboots_ = 0;
+};
+
+} // namespace tappet::canopen
+
+template <>
+inline constexpr auto tappet::names_of<tappet::canopen::NodePhase> =
+    std::array<std::string_view, 6>{"absent", "configuring", "starting", "operational", "lost", "refused"};

@@ -1,0 +1,140 @@
+// A CANopen node at the other end of the wires, for plants: NMT slave, heartbeat, SDO server and PDOs as its
+// dictionary describes them and as the machine configures them, with every fault on demand (CiA 301).
+#pragma once
+
+#include "drivers/can/frame.hpp"
+#include "drivers/canopen/simulated_objects.hpp"
+
+#include <algorithm>
+
+namespace tappet::canopen {
+
+/// Where a node's frames go. Real-time.
+class FrameSink {
+public:
+    FrameSink() = default;
+    FrameSink(const FrameSink&) = default;
+    FrameSink& operator=(const FrameSink&) = default;
+    virtual ~FrameSink() = default;
+    /// Its stamp is when the node asks for the bus.
+    virtual void send(const can::Frame& frame) noexcept TAPPET_REALTIME = 0;
+};
+
+/// Without power at first. Real-time; each call takes a bounded number of steps.
+class SimulatedNode : public SimulatedObjects {
+public:
+    static constexpr Duration boot_time = 100ms;
+    /// What a frame of the machine's was to it.
+    enum class Heard : std::uint8_t { nothing, process_data, started, reset };
+
+    SimulatedNode(std::uint8_t node, const Dictionary& dictionary, std::span<std::uint64_t> values) noexcept
+        TAPPET_REALTIME : SimulatedObjects{node, dictionary, values} {}
+
+    using SimulatedObjects::id;
+    /// Its clock runs so much too fast.
+    void set_clock_error(std::int64_t parts_per_million) noexcept TAPPET_REALTIME {
+        ppm_ = parts_per_million;
+    }
+    /// Everything that was configured is forgotten; it sends its boot-up message at that time.
+    void power_on(Time boots_at) noexcept TAPPET_REALTIME {
+        reset(0x1000, 0xFFFF);
+        begin(boots_at);
+    }
+    /// Fault: it falls silent.
+    void power_off() noexcept TAPPET_REALTIME {
+        stop_work(NmtState::boot_up);
+        boots_at_ = never;
+        is_on_ = false;
+    }
+    /// Fault: its cable is broken, and it does not notice; or it is repaired.
+    void cut_off(bool cut) noexcept TAPPET_REALTIME { is_cut_ = cut; }
+    /// Fault: it answers no SDO request.
+    void mute(bool silent) noexcept TAPPET_REALTIME { is_mute_ = silent; }
+
+    [[nodiscard]] NmtState state() const noexcept TAPPET_REALTIME { return state_; }
+    [[nodiscard]] bool alive() const noexcept TAPPET_REALTIME {
+        return is_on_ && !is_cut_ && boots_at_ == never;
+    }
+    [[nodiscard]] bool operational() const noexcept TAPPET_REALTIME {
+        return state_ == NmtState::operational;
+    }
+
+    /// When tick() has something to do.
+    [[nodiscard]] Time next() const noexcept TAPPET_REALTIME {
+        Time next = std::min({boots_at_, beat_at_, master_lost_at_});
+        for (const Pdo& pdo : sent_) next = std::min({next, pdo.timer_at, pdo.due});
+        return next;
+    }
+    /// Boots, beats. True when process data is due: set the objects, then send_due().
+    bool tick(Time now, FrameSink& out) noexcept TAPPET_REALTIME;
+    void send_due(FrameSink& out) noexcept TAPPET_REALTIME;
+    /// Something of that TPDO changed: it goes out if it does so at events. Numbers are from 0.
+    void send_pdo(std::size_t number, Time due, FrameSink& out) noexcept TAPPET_REALTIME;
+
+    Heard receive(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
+    /// Code 0: no error is left.
+    void send_emergency(std::uint16_t code, std::uint8_t error_register, Time due, FrameSink& out) noexcept
+        TAPPET_REALTIME;
+
+private:
+    struct Pdo {
+        bool valid = false;
+        std::uint32_t identifier = 0;
+        std::uint8_t type = 255;
+        std::uint8_t syncs = 0; ///< since it was sent last
+        bool changed = false;   ///< for the next SYNC
+        Time timer_at = never;
+        Duration timer{};
+        Time due = never;
+        unsigned bits = 0;
+        Bounded<std::uint16_t, 8> objects{}; ///< places in the dictionary
+        bool operator==(const Pdo&) const = default;
+    };
+    using Pdos = std::array<Pdo, predefined_pdos>;
+
+    [[nodiscard]] Duration own(Duration time) const noexcept TAPPET_REALTIME {
+        return time + Duration{to_ns(Time{time}) / 1'000'000 * ppm_};
+    }
+    void begin(Time boots_at) noexcept TAPPET_REALTIME;
+    void stop_work(NmtState state) noexcept TAPPET_REALTIME;
+    void start_work(Time now) noexcept TAPPET_REALTIME;
+    Heard manage(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
+    void serve(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
+    void synchronise(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
+    bool take_pdo(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
+    void emit(can::Frame frame, Time due, FrameSink& out) const noexcept TAPPET_REALTIME;
+    void beat(NmtState state, Time due, FrameSink& out) const noexcept TAPPET_REALTIME;
+    void read_pdo(Pdo& pdo, std::uint16_t communication, Time now) noexcept TAPPET_REALTIME;
+    [[nodiscard]] can::Frame pack(const Pdo& pdo) noexcept TAPPET_REALTIME;
+    SdoAbort may_write(const Object& object, std::uint64_t bits) noexcept TAPPET_REALTIME override;
+    SdoAbort may_map(Address mapping, std::uint64_t bits) const noexcept TAPPET_REALTIME;
+    void written(Address at) noexcept TAPPET_REALTIME override;
+
+    bool is_on_ = false;
+    bool is_cut_ = false;
+    bool is_mute_ = false;
+    std::int64_t ppm_ = 0;
+    NmtState state_ = NmtState::boot_up;
+    Time now_{}; ///< of the request that is served
+    Time boots_at_ = never;
+    Time beat_at_ = never;
+    Time master_lost_at_ = never;
+    SdoServer server_{};
+    Pdos sent_{}, taken_{};
+};
+
+/// With its own values.
+template <const Dictionary& device> class SimulatedDevice final : public SimulatedNode {
+public:
+    explicit SimulatedDevice(std::uint8_t node) noexcept TAPPET_REALTIME
+        : SimulatedNode{node, device, own_values_} {
+        reset(0x1000, 0xFFFF);
+    }
+    SimulatedDevice(const SimulatedDevice&) = delete;
+    SimulatedDevice& operator=(const SimulatedDevice&) = delete;
+
+private:
+    std::array<std::uint64_t, device.objects.size()> own_values_{};
+};
+
+} // namespace tappet::canopen

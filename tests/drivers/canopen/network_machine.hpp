@@ -1,0 +1,184 @@
+// A machine with the manager of a network, and the network's nodes at the other end of its bus.
+#pragma once
+
+#include "apps/carpet_loom/nodes/drive.eds.hpp"
+#include "apps/carpet_loom/nodes/encoder.eds.hpp"
+#include "drivers/can/bus.hpp"
+#include "drivers/can/twin_bus.hpp"
+#include "drivers/canopen/manager.hpp"
+#include "drivers/canopen/simulated_node.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "tests/drivers/components/board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tappet::test {
+
+inline constexpr auto signals = can::signal_map(
+    can::receive(can::standard(0x185), "drive", can::bytes(6), can::signal("statusword", 0, 16),
+                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+    can::receive(can::standard(0x187), "encoder", can::bytes(4), can::signal("position", 0, 16),
+                 can::signal("sample", 16, 16)),
+    can::transmit(can::standard(0x205), "drive_command", can::bytes(6), can::every(2ms),
+                  can::signal("controlword", 0, 16).safe(2),
+                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)));
+
+inline constexpr auto nodes =
+    canopen::network(signals, canopen::manager(127).heartbeat(100ms).sync(10ms, 20).time(1s),
+                     canopen::node(5, "drive", canopen::dictionary<eds::drive>)
+                         .heartbeat(50ms)
+                         .pdo("drive", canopen::on_event(5ms), {0x6041, 0x606C})
+                         .pdo("drive_command", {0x6040, 0x60FF})
+                         .write(0x6060, 3)
+                         .write(0x605A, 2),
+                     canopen::node(7, "encoder", canopen::dictionary<eds::encoder>)
+                         .heartbeat(50ms, 120ms)
+                         .pdo("encoder", canopen::synchronous(), {0x2100, 0x2101}));
+
+/// Writes what the drive is told, and notes what the network tells.
+struct Operator {
+    Input<std::int64_t> statusword{}, position{};
+    Input<double> velocity{};
+    Input<bool> operational{};
+    Output<std::int64_t> controlword{};
+    Output<double> target{};
+    Output<Duration> clock{};
+    std::vector<std::array<std::int64_t, 3>> emergencies{};
+
+    void on_emergency(std::int64_t node, std::int64_t code, std::int64_t error_register) noexcept
+        TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test keeps them", emergencies.push_back({node, code, error_register}));
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        controlword.write(6);
+        target.write(-12.3);
+        if (cycle.now < Time{500ms}) clock.write(Duration{24h} * 366 + 1500ms);
+    }
+    static constexpr auto interface() {
+        return facets(input<&Operator::statusword>("statusword", "", "of the drive"),
+                      input<&Operator::position>("position", "", "of the encoder"),
+                      input<&Operator::velocity>("velocity", "rpm", "of the drive"),
+                      input<&Operator::operational>("operational", "", "all nodes"),
+                      output<&Operator::controlword>("controlword", "", "to the drive"),
+                      output<&Operator::target>("target", "rpm", "to the drive"),
+                      output<&Operator::clock>("clock", "s", "since 1984"),
+                      operation<&Operator::on_emergency>("on_emergency", "a node says so"));
+    }
+};
+
+using Bus = can::Bus<signals, canopen::frames<nodes>>;
+using Manager = canopen::Manager<nodes>;
+
+// clang-format off
+inline constexpr auto network_machine = machine("network-machine",
+    components(
+        component<Bus>("can", device("wire")),
+        component<Manager>("network"),
+        component<Operator>("operator")),
+    activities(
+        activity("can",     on_device("can"), at_most(12, 1ms), runs("can"), deadline(500us), budget(20us)),
+        activity("network", every(1ms), runs("network", "operator"), budget(50us))),
+    connections(
+        buffer<64>("can.services",      "network.received"),
+        buffer<32>("network.to_send",   "can.to_send", wakes),
+        data("operator.clock",          "network.time_of_day"),
+        data("can.drive.statusword",    "operator.statusword"),
+        data("can.drive.velocity",      "operator.velocity"),
+        data("can.encoder.position",    "operator.position"),
+        data("network.operational",     "operator.operational", delayed),
+        data("operator.controlword",    "can.drive_command.controlword", stale_after(10ms), hold),
+        data("operator.target",         "can.drive_command.velocity",    stale_after(10ms), hold)),
+    reactions(
+        when("network.emergency", tell("operator.on_emergency", queue(8)))),
+    behaviours());
+// clang-format on
+
+/// The machine, the wire and the nodes.
+struct NetworkMachine : testing::Test, canopen::FrameSink {
+    static constexpr Duration tick = 100us;
+
+    NetworkMachine() {
+        EXPECT_TRUE(twin.open({.interface = "machine",
+                               .receive = Bus::device_map.receive,
+                               .transmit = Bus::device_map.transmit}));
+        EXPECT_TRUE(far_end.open({.interface = "nodes",
+                                  .receive = Bus::device_map.transmit,
+                                  .transmit = Bus::device_map.receive}));
+        EXPECT_TRUE(wire.attach(twin));
+        EXPECT_TRUE(wire.attach(far_end));
+        wire.set_bit_rate(500'000);
+        const ProvidedDevice provided{type_id<can::Device>, "wire", static_cast<can::Device*>(&twin)};
+        const auto configured = instance.configure({&provided, 1});
+        if (!configured) ADD_FAILURE() << configured.error().view();
+        manager = instance.find<Manager>("network");
+        people = instance.find<Operator>("operator");
+        drive.power_on(Time{20ms});
+        encoder.power_on(Time{30ms});
+    }
+    ~NetworkMachine() override { EXPECT_EQ(refused, 0) << "frames of the nodes"; }
+    void run_until(Duration end) {
+        if (!started) {
+            world.add({this, [](void* self) { return static_cast<NetworkMachine*>(self)->next_tick; },
+                       [](void* self, Time now) { static_cast<NetworkMachine*>(self)->carry(now); }});
+            world.start();
+        }
+        started = true;
+        EXPECT_TRUE(world.run_until(Time{end}));
+    }
+    void run(Duration time) { run_until(clock.now().time_since_epoch() + time); }
+    void carry(Time now) {
+        next_tick = now + tick;
+        wire.deliver_until(now);
+        can::Frame frame;
+        while (far_end.receive(frame).what != can::Received::none) {
+            heard.push_back(frame);
+            for (canopen::SimulatedNode* node : all)
+                if (node->receive(frame, now, *this) == canopen::SimulatedNode::Heard::started) ++starts;
+        }
+        for (canopen::SimulatedNode* node : all) {
+            if (!node->tick(now, *this)) continue;
+            drive.set(0x6041, 0x0231);
+            drive.set(0x606C, static_cast<std::uint32_t>(-1234));
+            encoder.set(0x2100, 0x0ABC);
+            node->send_due(*this);
+        }
+        far_end.service(now);
+        wire.deliver_until(now);
+    }
+    void send(const can::Frame& frame) noexcept override {
+        can::Frame now = frame;
+        now.stamp = clock.now();
+        refused += far_end.send(now, can::Keep::every) == can::Send::queued ? 0 : 1;
+    }
+    [[nodiscard]] bool operational() const { return manager->operational.last(); }
+    [[nodiscard]] std::string reason() const { return std::string{manager->reason.last().view()}; }
+    [[nodiscard]] canopen::NodePhase phase(std::size_t node) const { return manager->phases[node].last(); }
+    [[nodiscard]] std::vector<can::Frame> heard_of(std::uint32_t id) const {
+        std::vector<can::Frame> some;
+        for (const auto& frame : heard)
+            if (frame.id == id) some.push_back(frame);
+        return some;
+    }
+
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    can::TwinBus wire{1};
+    can::Twin twin, far_end;
+    MachineInstance instance{Firmware<network_machine, board>::machine(), clock};
+    VirtualWorld world{instance};
+    canopen::SimulatedDevice<canopen::dictionary<eds::drive>> drive{5};
+    canopen::SimulatedDevice<canopen::dictionary<eds::encoder>> encoder{7};
+    std::array<canopen::SimulatedNode*, 2> all{&drive, &encoder};
+    bool started = false;
+    Time next_tick{};
+    int starts = 0;
+    int refused = 0;
+    std::vector<can::Frame> heard;
+    Manager* manager = nullptr;
+    Operator* people = nullptr;
+};
+
+} // namespace tappet::test

@@ -1,0 +1,262 @@
+// A network's table: what it makes a node do at its start, and each way in which it is refused.
+#include "apps/carpet_loom/nodes/drive.eds.hpp"
+#include "apps/carpet_loom/nodes/encoder.eds.hpp"
+#include "drivers/canopen/network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tappet::canopen {
+namespace {
+
+constexpr const Dictionary& drive = dictionary<eds::drive>;
+constexpr const Dictionary& encoder = dictionary<eds::encoder>;
+
+constexpr can::Signal statusword = can::signal("statusword", 0, 16);
+constexpr can::Signal velocity = can::signal("velocity", 16, 32).as_signed();
+constexpr auto drive_frame = can::receive(can::standard(0x185), "drive", can::bytes(6), statusword, velocity);
+constexpr auto command_frame = can::transmit(can::standard(0x205), "command", can::bytes(2), can::every(2ms),
+                                             can::signal("word", 0, 16).safe(0));
+constexpr auto map = can::signal_map(drive_frame, command_frame);
+
+constexpr NodeRow bare = node(5, "drive", drive).heartbeat(100ms);
+constexpr NodeRow whole = bare.pdo("drive", on_event(5ms), {0x6041, 0x606C}).pdo("command", {0x6040});
+constexpr ManagerRow boss = manager(127);
+
+TEST(NetworkTable, configures_in_the_order_of_the_standard) {
+    constexpr auto table = network(map, boss, whole.write(0x6060, -1));
+    ASSERT_EQ(table.fault.view(), "");
+    using enum ConfigurationStep::Kind;
+    const std::vector<ConfigurationStep> wanted{
+        {identity, 4, 0x1000, 0x00020192},
+        {identity, 4, {0x1018, 1}, 0x3E7},
+        {identity, 4, {0x1018, 2}, 0x402},
+        {identity, 4, {0x1018, 3}, 0x00010002},
+        {write, 1, 0x6060, 0xFF},
+        {write, 2, 0x1017, 100},
+        {confirm, 1, 0x6060, 0xFF},
+        {confirm, 2, 0x1017, 100},
+        {write, 4, {0x1800, 1}, 0xC0000185},
+        {write, 1, {0x1800, 2}, 255},
+        {write, 2, {0x1800, 3}, 0},
+        {write, 2, {0x1800, 5}, 5},
+        {write, 1, {0x1A00, 0}, 0},
+        {write, 4, {0x1A00, 1}, 0x60410010},
+        {write, 4, {0x1A00, 2}, 0x606C0020},
+        {write, 1, {0x1A00, 0}, 2},
+        {write, 4, {0x1800, 1}, 0x40000185},
+        {confirm, 4, {0x1800, 1}, 0x40000185},
+        {confirm, 1, {0x1800, 2}, 255},
+        {confirm, 1, {0x1A00, 0}, 2},
+        {confirm, 4, {0x1A00, 1}, 0x60410010},
+        {confirm, 4, {0x1A00, 2}, 0x606C0020},
+        {write, 4, {0x1400, 1}, 0x80000205},
+        {write, 1, {0x1400, 2}, 255},
+        {write, 1, {0x1600, 0}, 0},
+        {write, 4, {0x1600, 1}, 0x60400010},
+        {write, 1, {0x1600, 0}, 1},
+        {write, 4, {0x1400, 1}, 0x205},
+        {confirm, 4, {0x1400, 1}, 0x205},
+        {confirm, 1, {0x1400, 2}, 255},
+        {confirm, 1, {0x1600, 0}, 1},
+        {confirm, 4, {0x1600, 1}, 0x60400010},
+    };
+    const std::vector<ConfigurationStep> steps{table.steps.begin(), table.steps.end()};
+    EXPECT_EQ(steps, wanted);
+}
+
+TEST(NetworkTable, silences_the_pdos_that_nobody_maps) {
+    constexpr auto alone = can::signal_map(drive_frame);
+    const auto table = network(alone, boss, bare.pdo("drive", {0x6041, 0x606C}));
+    ASSERT_EQ(table.fault.view(), "");
+    EXPECT_EQ(table.steps[table.steps.size() - 1],
+              (ConfigurationStep{ConfigurationStep::Kind::write, 4, {0x1400, 1}, 0x80000205}));
+}
+
+TEST(NetworkTable, takes_a_dcf_at_its_word_unless_a_row_says_otherwise) {
+    static constexpr EdsSource source{"own.dcf", R"([1000]
+DataType=7
+AccessType=ro
+DefaultValue=5
+[1017]
+DataType=6
+AccessType=rw
+DefaultValue=0
+ParameterValue=77
+[2000]
+DataType=6
+AccessType=rw
+ParameterValue=12
+[2001]
+DataType=6
+AccessType=rw
+ParameterValue=13
+[2002]
+DataType=6
+AccessType=rw
+DefaultValue=14
+[DeviceComissioning]
+NodeID=5
+)"};
+    constexpr auto none = can::signal_map(
+        can::receive(can::extended(0x185), "no PDO", can::bytes(1), can::signal("byte", 0, 8)));
+    const auto table =
+        network(none, boss, node(5, "own", dictionary<source>).heartbeat(100ms).write(0x2001, 15));
+    ASSERT_EQ(table.fault.view(), "");
+    std::string writes;
+    for (const ConfigurationStep& step : table.steps)
+        if (step.kind == ConfigurationStep::Kind::write)
+            writes += std::string{to_text(step.at).view()} + "=" + std::to_string(step.value) + " ";
+    EXPECT_EQ(writes, "2000h:0=12 2001h:0=15 1017h:0=100 ");
+    const auto other = network(none, boss, node(6, "own", dictionary<source>).heartbeat(100ms));
+    EXPECT_EQ(other.fault.view(),
+              "node 6 \"own\": own.dcf is the configuration of node 5; take the one of this node");
+}
+
+/// Where the drive's file has it.
+std::string line(Address at) { return std::to_string(drive.find(at)->line); }
+template <class Map, class... Nodes>
+std::string fault_of(const Map& signals, const ManagerRow& by, const Nodes&... nodes) {
+    return std::string{network(signals, by, nodes...).fault.view()};
+}
+std::string of_row(const NodeRow& row) { return fault_of(map, boss, row); }
+/// With another frame in place of the drive's.
+template <class Frame> std::string of_frame(const Frame& frame, const NodeRow& row) {
+    return fault_of(can::signal_map(frame), boss, row);
+}
+
+TEST(NetworkTable, refuses_nodes_that_are_not_told_apart_or_not_watched) {
+    EXPECT_EQ(of_row(node(0, "drive", drive)),
+              "node 0 \"drive\" has no identifier from 1 to 127; give it one");
+    EXPECT_EQ(of_row(node(127, "drive", drive)),
+              "node 127 \"drive\" has the identifier of the manager; give one of them another");
+    EXPECT_EQ(of_row(node(5, "drive", drive)),
+              "node 5 \"drive\" has no heartbeat, so that nobody would see it lost; write .heartbeat(100ms)");
+    EXPECT_EQ(of_row(bare.heartbeat(1500us)),
+              "node 5 \"drive\" has a heartbeat that is no count of ms up to 65535; round it");
+    EXPECT_EQ(of_row(bare.heartbeat(100ms, 100ms)),
+              "node 5 \"drive\" would be lost before its next heartbeat comes; "
+              "let heartbeat(every, lost) wait longer");
+    EXPECT_EQ(fault_of(map, boss, whole, node(5, "other", encoder).heartbeat(1s)),
+              "node 5 \"other\" has the identifier or the name of node 5 \"drive\"; give it its own");
+    EXPECT_EQ(fault_of(map, manager(128), whole),
+              "manager(128): its identifier is from 1 to 127; give it one");
+    EXPECT_EQ(fault_of(map, boss.sync(1ms, 241), whole),
+              "manager: SYNC counts to 241; the standard allows 2 to 240");
+    EXPECT_EQ(of_row(node(5, "drive", Dictionary{}).heartbeat(1s)),
+              "node 5 \"drive\" has no dictionary; name it: canopen::dictionary<eds::..>");
+}
+
+TEST(NetworkTable, refuses_pdos_that_the_device_or_the_map_has_not) {
+    EXPECT_EQ(of_row(bare),
+              "node 5 \"drive\": frame \"drive\" is one of its PDOs and nobody configures it; write "
+              ".pdo(\"drive\", {..})");
+    EXPECT_EQ(of_row(bare.pdo("drives", {0x6041})),
+              "node 5 \"drive\": frame \"drives\" is not in the signal map; write its row there");
+    EXPECT_EQ(of_row(node(6, "drive", drive).heartbeat(1s).pdo("drive", {0x6041})),
+              "node 6 \"drive\": frame \"drive\" has the identifier 185h, which is none of the node's PDOs; "
+              "its first "
+              "are 186h (it sends) and 206h (it receives)");
+    EXPECT_EQ(of_frame(can::receive(can::standard(0x205), "drive", can::bytes(2), can::signal("word", 0, 16)),
+                       bare.pdo("drive", {0x6040})),
+              "node 5 \"drive\": frame \"drive\" is one that the node receives, by its identifier; exchange "
+              "can::receive and can::transmit");
+    EXPECT_EQ(of_frame(can::receive(can::standard(0x285), "drive", can::bytes(2), statusword),
+                       bare.pdo("drive", {0x6041})),
+              "node 5 \"drive\": frame \"drive\" is a PDO that the device has not: "
+              "apps/carpet_loom/nodes/drive.eds "
+              "has no 1801h or no 1A01h; take another identifier");
+    EXPECT_EQ(of_row(whole.pdo("drive", {0x6041})),
+              "node 5 \"drive\": frame \"drive\" has 6 bytes, but its objects "
+              "take 16 bits; correct one of them");
+    EXPECT_EQ(of_row(whole.pdo("drive", {0x6041, 0x606C})),
+              "node 5 \"drive\": frame \"drive\" is mapped twice; keep one row");
+    EXPECT_EQ(of_row(bare.pdo("drive", synchronous(), {0x6041, 0x606C})),
+              "node 5 \"drive\": frame \"drive\" is synchronous and nobody produces SYNC; write "
+              "manager(..).sync(..)");
+    EXPECT_EQ(of_row(bare.pdo("drive", synchronous(245), {0x6041, 0x606C})),
+              "node 5 \"drive\": frame \"drive\" is synchronous(245); the standard ends at 240");
+    EXPECT_EQ(of_row(bare.pdo("drive", on_event(2500us), {0x6041, 0x606C})),
+              "node 5 \"drive\": frame \"drive\" has an event timer that is no count of ms, or an inhibit "
+              "time that is "
+              "none of 100 us, up to 65535; round it");
+    EXPECT_EQ(of_frame(command_frame, bare.pdo("command", on_event(5ms), {0x6040})),
+              "node 5 \"drive\": frame \"command\" has an event timer, which the device has not: "
+              "apps/carpet_loom/nodes/drive.eds has no 1400h:5; let it be synchronous, or send by itself");
+}
+
+TEST(NetworkTable, refuses_objects_that_do_not_fit_the_frame) {
+    EXPECT_EQ(of_row(bare.pdo("drive", {0x6041, 0x606D})),
+              "node 5 \"drive\": frame \"drive\" holds object 606Dh:0, which "
+              "apps/carpet_loom/nodes/drive.eds does not "
+              "have; correct one of them");
+    EXPECT_EQ(of_row(bare.pdo("drive", {0x605A, 0x606C})),
+              "node 5 \"drive\": frame \"drive\" holds object 605Ah:0, which may not be mapped into a PDO "
+              "(apps/carpet_loom/nodes/drive.eds:" +
+                  line(0x605A) + "); take another one");
+    EXPECT_EQ(of_row(bare.pdo("drive", {0x6041, 0x60FF})),
+              "node 5 \"drive\": frame \"drive\" holds object 60FFh:0, which the device only receives "
+              "(apps/carpet_loom/nodes/drive.eds:" +
+                  line(0x60FF) + "); map it in the other direction");
+    EXPECT_EQ(of_row(bare.pdo("command", {0x6041})),
+              "node 5 \"drive\": frame \"command\" holds object 6041h:0, which the device only sends "
+              "(apps/carpet_loom/nodes/drive.eds:" +
+                  line(0x6041) + "); map it in the other direction");
+    const auto with = [](auto... signals) {
+        return of_frame(can::receive(can::standard(0x185), "drive", can::bytes(6), signals...),
+                        bare.pdo("drive", {0x6041, 0x606C}));
+    };
+    EXPECT_EQ(with(can::signal("speed", 16, 32)), "node 5 \"drive\": signal \"drive.speed\" is unsigned, but "
+                                                  "object 606Ch:0 \"Velocity actual value\" is "
+                                                  "signed; write as_signed()");
+    EXPECT_EQ(with(can::signal("word", 0, 16).as_signed()),
+              "node 5 \"drive\": signal \"drive.word\" is signed, but object 6041h:0 \"Statusword\" is "
+              "unsigned; take "
+              "as_signed() or as_float() away");
+    EXPECT_EQ(with(can::signal("speed", 8, 32).as_signed()),
+              "node 5 \"drive\": signal \"drive.speed\" reaches from bit 8 to 39, but object 6041h:0 "
+              "\"Statusword\" "
+              "from 0 to 15; move it or shorten it");
+    EXPECT_EQ(with(can::signal("word", 7, 16).big_endian()),
+              "node 5 \"drive\": signal \"drive.word\" is big-endian, and CANopen has no such values; take "
+              "big_endian() away");
+    EXPECT_EQ(with(can::signal("ready", 0, 1), can::signal("on", 1, 1)), "") << "bits of an object";
+}
+
+TEST(NetworkTable, refuses_values_that_the_device_does_not_take) {
+    const auto written = [](Address at, std::int64_t value) { return of_row(whole.write(at, value)); };
+    EXPECT_EQ(written(0x2000, 1),
+              "node 5 \"drive\": write(2000h:0, 1): apps/carpet_loom/nodes/drive.eds has no such "
+              "object; correct one of them");
+    EXPECT_EQ(written(0x6041, 1), "node 5 \"drive\": write(6041h:0, 1): the object is only read "
+                                  "(apps/carpet_loom/nodes/drive.eds:" +
+                                      line(0x6041) + "); take it away");
+    EXPECT_EQ(written(0x6060, 11),
+              "node 5 \"drive\": write(6060h:0, 11): the value is outside of what the object "
+              "takes (apps/carpet_loom/nodes/drive.eds:" +
+                  line(0x6060) + "); correct it");
+    EXPECT_EQ(written(0x6040, -1),
+              "node 5 \"drive\": write(6040h:0, -1): the value is outside of what the object "
+              "takes (apps/carpet_loom/nodes/drive.eds:" +
+                  line(0x6040) + "); correct it");
+    EXPECT_EQ(written(0x1017, 5),
+              "node 5 \"drive\": write(1017h:0, 5) is what heartbeat(), pdo() and sync() write; "
+              "say it there");
+    EXPECT_EQ(of_row(whole.write(0x6060, 1).write(0x6060, 3)),
+              "node 5 \"drive\" writes 6060h:0 twice; keep one row");
+}
+
+TEST(NetworkTable, keeps_its_own_identifiers) {
+    for (const std::uint32_t id : {0x000u, 0x080u, 0x0FFu, 0x100u, 0x585u, 0x605u, 0x705u}) {
+        const auto own = can::signal_map(
+            can::receive(can::standard(id), "mine", can::bytes(1), can::signal("byte", 0, 8)));
+        EXPECT_EQ(fault_of(own, boss, bare),
+                  "frame \"mine\" has the identifier " + std::string{hex(id, 3).view()} +
+                      ", which is the network's own; take it out of the signal map");
+    }
+}
+
+} // namespace
+} // namespace tappet::canopen

@@ -1,0 +1,175 @@
+// SDO transfers between our client and our server, and each way in which one ends early.
+#include "apps/carpet_loom/nodes/drive.eds.hpp"
+#include "drivers/canopen/sdo_client.hpp"
+#include "drivers/canopen/simulated_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace tappet::canopen {
+namespace {
+
+constexpr EdsSource texts{"texts.eds", R"([1000]
+DataType=7
+AccessType=ro
+DefaultValue=1
+[2000]
+DataType=9
+AccessType=rw
+DefaultValue=a name that takes three segments
+[2001]
+DataType=0x1B
+AccessType=rw
+DefaultValue=0x1122334455667788
+[2002]
+DataType=5
+AccessType=wo
+[2003]
+DataType=9
+AccessType=rw
+DefaultValue=
+[2004]
+DataType=2
+AccessType=rw
+LowLimit=-5
+HighLimit=5
+[2005]
+DataType=9
+AccessType=ro
+DefaultValue=more characters than the 64 bytes that a client of ours takes in one transfer hold
+)"};
+
+/// A client and a server with nothing between them.
+struct Connection : testing::Test {
+    Connection() { device.power_on(Time{}); }
+    /// Carries frames until the transfer ends.
+    SdoAbort carry() {
+        for (int i = 0; i < 100; ++i) {
+            sdo::Payload request, answer;
+            if (client.next(request, now) && server.serve(request, device, answer)) client.take(answer);
+            if (client.state() == SdoClient::State::done) return SdoAbort::none;
+            if (client.state() == SdoClient::State::aborted) return client.why();
+        }
+        return SdoAbort::time_out;
+    }
+    SdoAbort read(Address at) {
+        client.read(at);
+        return carry();
+    }
+    SdoAbort write(Address at, const std::string& value) {
+        client.write(at, {reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+        return carry();
+    }
+    [[nodiscard]] std::string text() const { return {client.value().begin(), client.value().end()}; }
+
+    SimulatedDevice<dictionary<texts>> device{1};
+    SdoClient client;
+    SdoServer server;
+    Time now{};
+};
+
+TEST_F(Connection, reads_and_writes_of_every_length) {
+    EXPECT_EQ(read(0x1000), SdoAbort::none);
+    EXPECT_EQ(from_bytes(client.value()), 1u);
+    EXPECT_EQ(read(0x2001), SdoAbort::none);
+    EXPECT_EQ(from_bytes(client.value()), 0x1122334455667788u);
+    EXPECT_EQ(read(0x2000), SdoAbort::none);
+    EXPECT_EQ(text(), "a name that takes three segments");
+    EXPECT_EQ(read(0x2003), SdoAbort::none);
+    EXPECT_EQ(text(), "");
+    for (std::size_t length = 1; length <= sdo::most_bytes; ++length) {
+        const std::string value(length, static_cast<char>('a' + length % 26));
+        ASSERT_EQ(write(0x2000, value), SdoAbort::none) << length;
+        ASSERT_EQ(read(0x2000), SdoAbort::none) << length;
+        ASSERT_EQ(text(), value);
+    }
+}
+
+TEST_F(Connection, ends_with_the_code_of_the_standard) {
+    EXPECT_EQ(read(0x3000), SdoAbort::no_object);
+    EXPECT_EQ(read({0x2000, 1}), SdoAbort::no_sub_index);
+    EXPECT_EQ(read(0x2002), SdoAbort::write_only);
+    EXPECT_EQ(write(0x1000, "abcd"), SdoAbort::read_only);
+    EXPECT_EQ(write(0x2002, "ab"), SdoAbort::too_long);
+    EXPECT_EQ(write(0x2001, "abc"), SdoAbort::too_short);
+    EXPECT_EQ(write(0x2004, "\x06"), SdoAbort::too_high);
+    EXPECT_EQ(write(0x2004, "\xFA"), SdoAbort::too_low);
+    EXPECT_EQ(write(0x2004, "\xFB"), SdoAbort::none) << "-5";
+    device.refuse(0x2004, SdoAbort::hardware);
+    EXPECT_EQ(write(0x2004, "\x01"), SdoAbort::hardware);
+    EXPECT_EQ(to_text(SdoAbort::hardware), "access failed due to a hardware error");
+    EXPECT_EQ(to_text(SdoAbort{0x1234}), "a code of the device's maker");
+}
+
+TEST_F(Connection, takes_no_more_than_it_holds) {
+    EXPECT_EQ(read(0x2005), SdoAbort::none) << "our server gives what fits";
+    // A foreign one says a size beyond.
+    client.read(0x2005);
+    sdo::Payload request;
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::with_address(0x41, 0x2005, 65));
+    EXPECT_EQ(client.why(), SdoAbort::out_of_memory);
+    ASSERT_TRUE(client.next(request, now)) << "and is told so";
+    EXPECT_EQ(request, sdo::abort_frame(0x2005, SdoAbort::out_of_memory));
+    // One that says no size goes on and on.
+    client.read(0x2005);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::with_address(0x40, 0x2005));
+    unsigned toggle = 0;
+    for (int i = 0; i < 20 && client.state() == SdoClient::State::busy; ++i) {
+        ASSERT_TRUE(client.next(request, now));
+        EXPECT_EQ(request[0], 0x60 | toggle << 4);
+        sdo::Payload segment{static_cast<std::uint8_t>(toggle << 4)};
+        client.take(segment);
+        toggle ^= 1u;
+    }
+    EXPECT_EQ(client.why(), SdoAbort::out_of_memory);
+}
+
+TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer) {
+    sdo::Payload request;
+    client.read(0x1000);
+    ASSERT_TRUE(client.next(request, now));
+    client.tick(now + 100ms);
+    EXPECT_EQ(client.state(), SdoClient::State::busy);
+    client.tick(now + 101ms);
+    EXPECT_EQ(client.why(), SdoAbort::time_out);
+    client.take(sdo::with_address(0x43, 0x1000, 1));
+    EXPECT_EQ(client.state(), SdoClient::State::aborted) << "too late";
+
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::with_address(0x41, 0x2000, 10));
+    ASSERT_TRUE(client.next(request, now));
+    client.take({0x10});
+    EXPECT_EQ(client.why(), SdoAbort::toggle_bit);
+
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::with_address(0x43, 0x1000, 1));
+    EXPECT_EQ(client.state(), SdoClient::State::busy) << "an answer for another object is none";
+    client.take(sdo::with_address(0x60, 0x2000));
+    EXPECT_EQ(client.why(), SdoAbort::unknown_command);
+}
+
+TEST_F(Connection, has_a_server_that_takes_no_segment_out_of_turn) {
+    sdo::Payload answer;
+    ASSERT_TRUE(server.serve({0x60}, device, answer));
+    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::unknown_command);
+    ASSERT_TRUE(server.serve({0x00}, device, answer));
+    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::unknown_command);
+    ASSERT_TRUE(server.serve(sdo::with_address(0xA0, 0x2000), device, answer)) << "block transfer";
+    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::unknown_command);
+    ASSERT_TRUE(server.serve(sdo::with_address(0x21, 0x2000, 3), device, answer));
+    EXPECT_EQ(answer[0], 0x60);
+    ASSERT_TRUE(server.serve({0x10}, device, answer));
+    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::toggle_bit);
+    ASSERT_TRUE(server.serve(sdo::with_address(0x21, 0x2000, 3), device, answer));
+    ASSERT_TRUE(server.serve({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}, device, answer));
+    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::wrong_length);
+    EXPECT_FALSE(server.serve(sdo::abort_frame(0x2000, SdoAbort::general), device, answer));
+}
+
+} // namespace
+} // namespace tappet::canopen
