@@ -13,6 +13,7 @@
 #include "apps/carpet_loom/warp_tension.hpp"
 #include "apps/carpet_loom/weft_insertion.hpp"
 #include "drivers/can/restarter.hpp"
+#include "drivers/canopen/manager.hpp"
 #include "kernel/limits/limits.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/machine/table/machine.hpp"
@@ -26,13 +27,13 @@ namespace tappet::carpet {
 // clang-format off
 inline constexpr auto table = machine("carpet-loom",
     components(
-        component<can::Bus<can_signals>>("can", device("loom-can")),
+        component<can::Bus<can_signals, canopen::frames<loom_network>>>("can", device("loom-can")),
         component<gpio::LinePort<io_lines>>("io", device("loom-io")),
         component<MainShaft>("shaft", properties_file("shaft.cpf", optional)), // angle, angle events, brake angle
         component<WeftInsertion>("weft"),                    // release, arrival, pattern
         component<MainDrive>("main", set("speed_rpm", 600.0), properties_file("main.cpf", optional)),
         component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0), properties_file("warp.cpf", optional)),
-        component<Network>("network"),                       // CANopen: starts and watches the nodes
+        component<canopen::Manager<loom_network>>("network"), // CANopen: configures, starts and watches the nodes
         component<Loom>("loom"),                             // the states of the whole
         component<can::Restarter>("restarter", device("loom-can")), // restarts a bus that went off, a few times
         component<modbus::Client<utility_registers>>("utility", device("loom-utility")),
@@ -73,14 +74,8 @@ inline constexpr auto table = machine("carpet-loom",
         data("weft.pattern",              "can.dobby_command.pattern"),
         data("loom.feeder_colour",        "can.feeder_command.colour"),
         data("loom.feeder_speed",         "can.feeder_command.speed"),
-        data("can.heartbeat_1.state",     "network.heartbeat_1",  stale_after(350ms), hold),
-        data("can.heartbeat_2.state",     "network.heartbeat_2",  stale_after(350ms), hold),
-        data("can.heartbeat_3.state",     "network.heartbeat_3",  stale_after(350ms), hold),
-        data("can.heartbeat_4.state",     "network.heartbeat_4",  stale_after(350ms), hold),
-        data("can.heartbeat_5.state",     "network.heartbeat_5",  stale_after(350ms), hold),
-        data("can.heartbeat_6.state",     "network.heartbeat_6",  stale_after(350ms), hold),
-        data("network.command",           "can.nmt.command",      wakes),
-        data("network.node",              "can.nmt.node",         wakes),
+        buffer<64>("can.services",        "network.received"),
+        buffer<32>("network.to_send",     "can.to_send",          wakes),
         data("main.enabled",              "loom.main_enabled",    wakes),
         data("main.at_speed",             "loom.main_at_speed",   wakes),
         data("main.fault",                "loom.main_fault",      wakes),

@@ -17,11 +17,6 @@ constexpr can::Rate cyclic(std::int64_t period_us) {
     return can::every(std::chrono::microseconds{period_us});
 }
 
-constexpr auto heartbeat(std::string_view name, std::uint8_t node) {
-    return can::receive(can::standard(wires::cob::heartbeat + node), name, can::bytes(1),
-                        cyclic(wires::heartbeat_period_us), can::signal("state", 0, 8));
-}
-
 } // namespace detail
 
 // clang-format off
@@ -44,11 +39,6 @@ inline constexpr auto can_signals = can::signal_map(
     can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5), can::on_demand(10ms),
         can::signal("pick_taken", 0, 32),
         can::signal("level", 32, 8)),
-    detail::heartbeat("heartbeat_1", 1), detail::heartbeat("heartbeat_2", 2), detail::heartbeat("heartbeat_3", 3),
-    detail::heartbeat("heartbeat_4", 4), detail::heartbeat("heartbeat_5", 5), detail::heartbeat("heartbeat_6", 6),
-    can::transmit(can::standard(wires::cob::nmt), "nmt", can::bytes(2), can::on_demand(10ms),
-        can::signal("command", 0, 8).safe(wires::nmt_command::pre_operational),
-        can::signal("node", 8, 8).safe(0)), // all
     can::transmit(can::standard(wires::cob::main_drive_command), "main_drive_command", can::bytes(6), can::every(2ms),
         can::signal("controlword", 0, 16).safe(canopen::controlword::quick_stop),
         can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)),

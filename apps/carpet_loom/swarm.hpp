@@ -108,7 +108,7 @@ private:
         "io.lamp_run",       "io.lamp_stop",        "loom.lamp_fault",    "loom.feeder_colour",
         "loom.feeder_speed", "weft.pattern",        "loom.drop_wire",     "loom.tension_in_band",
         "loom.main_fault",   "loom.main_slips",     "loom.let_off_fault", "main.velocity",
-        "warp.measured",     "network.heartbeat_3", "console.speed_rpm",  "shaft.stop_error_deg"};
+        "warp.measured",     "network.silent_node", "console.speed_rpm",  "shaft.stop_error_deg"};
     static constexpr std::array<SwarmScript, 3> scripts{
         {{"weft", "twill.osd",
           "StateMachine Twill {"

@@ -7,7 +7,7 @@
 
 namespace tappet::loom::wires {
 
-// --- CANopen, 1 Mbit/s, 11-bit identifiers, little-endian (CiA 301)
+// --- CANopen, 1 Mbit/s, 11-bit identifiers, little-endian (CiA 301); the nodes' objects are in nodes/*.eds
 
 namespace node {
 inline constexpr std::uint8_t main_drive = 1;    // CiA 402, velocity
@@ -17,14 +17,10 @@ inline constexpr std::uint8_t load_cell = 4;     // CiA 404
 inline constexpr std::uint8_t feeder = 5;        // CiA 414-2
 inline constexpr std::uint8_t dobby = 6;         // CiA 414
 inline constexpr std::uint8_t count = 6;
+inline constexpr std::uint8_t machine = 127; // the network's manager
 } // namespace node
 
 namespace cob {
-inline constexpr std::uint32_t nmt = 0x000; // {command u8, node u8 (0 = all)}
-inline constexpr std::uint32_t emergency =
-    0x080; // + node: {code u16, error register u8, 5 bytes of the maker}
-inline constexpr std::uint32_t heartbeat = 0x700; // + node: {state u8}
-
 // To the loom (RPDO).
 inline constexpr std::uint32_t main_drive_command = 0x201; // {controlword u16, target velocity i32 0.1 rpm}
 inline constexpr std::uint32_t let_off_drive_command =
@@ -41,21 +37,6 @@ inline constexpr std::uint32_t load_cell_tension = 0x184; // {tension i16 0.1 N,
 inline constexpr std::uint32_t feeder_status = 0x185;     // {status u8, windings in stock u16}
 inline constexpr std::uint32_t dobby_status = 0x186;      // {pick number taken u32, level u8}; on change
 } // namespace cob
-
-namespace nmt_command {
-inline constexpr std::uint8_t start = 0x01;
-inline constexpr std::uint8_t stop = 0x02;
-inline constexpr std::uint8_t pre_operational = 0x80;
-inline constexpr std::uint8_t reset_node = 0x81;
-inline constexpr std::uint8_t reset_communication = 0x82;
-} // namespace nmt_command
-
-namespace nmt_state { // the byte of a heartbeat
-inline constexpr std::uint8_t boot_up = 0x00;
-inline constexpr std::uint8_t stopped = 0x04;
-inline constexpr std::uint8_t operational = 0x05;
-inline constexpr std::uint8_t pre_operational = 0x7F;
-} // namespace nmt_state
 
 inline constexpr std::int64_t encoder_period_us = 1'000; // from the encoder's own clock
 inline constexpr std::int64_t load_cell_period_us = 1'000;
@@ -79,12 +60,10 @@ inline constexpr std::uint8_t ready = 0x01;
 inline constexpr std::uint8_t empty = 0x02;
 } // namespace feeder_bit
 
-namespace emergency_code { // CiA 301 and CiA 402
-inline constexpr std::uint16_t error_reset = 0x0000;
+namespace emergency_code { // CiA 402
 inline constexpr std::uint16_t over_current = 0x2310;
 inline constexpr std::uint16_t motor_blocked = 0x7121;
 inline constexpr std::uint16_t command_lost = 0x8130;
-inline constexpr std::uint16_t wrong_length = 0x8210;
 } // namespace emergency_code
 
 // --- GPIO, chip "loom-io": offsets

@@ -43,6 +43,7 @@ template <const auto& map> struct Manager {
     Output<Text<240>> reason{};
     Output<std::int64_t> reboots{};
     Output<std::int64_t> not_sent{};
+    Output<std::int64_t> wrong_lengths{};
     std::array<Output<NodePhase>, node_count> phases{};
     std::array<Output<std::int64_t>, node_count> errors{};
     Event<std::int64_t, std::int64_t, std::int64_t> emergency{};
@@ -91,7 +92,7 @@ template <const auto& map> struct Manager {
     [[nodiscard]] const NodeWatch& watch(std::size_t i) const noexcept { return watches_[i]; }
 
     static constexpr auto interface() {
-        std::array<Facet, 10 + 2 * node_count> list{};
+        std::array<Facet, 11 + 2 * node_count> list{};
         std::size_t n = 0;
         for (const Facet& facet : {
                  input<&Manager::received>("received", "", "frames of the network"),
@@ -103,6 +104,8 @@ template <const auto& map> struct Manager {
                  output<&Manager::reason>("reason", "", "why not every node works; written on change"),
                  output<&Manager::reboots>("reboots", "", "of nodes that worked; written on change"),
                  output<&Manager::not_sent>("not_sent", "", "frames that found no room; written on change"),
+                 output<&Manager::wrong_lengths>(
+                     "wrong_lengths", "", "frames that are not as the standard has them; written on change"),
                  tappet::event<&Manager::emergency>("emergency", "EMCY: node, code, error register"),
                  operation<&Manager::reset>("reset", "NMT reset of one node"),
              })
@@ -167,13 +170,18 @@ private:
     }
 
     void take(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
+        const std::uint32_t service = frame.id & ~std::uint32_t{most_nodes};
+        const std::uint8_t length = service == cob::heartbeat ? 1 : 8;
         for (std::size_t i = 0; i < node_count; ++i) {
-            const std::uint32_t id = nodes[i].id;
-            if (frame.id == cob::heartbeat + id && frame.length == 1)
-                return watches_[i].take_heartbeat(frame.data[0], now);
-            if (frame.id == cob::sdo_answer + id && frame.length == 8)
-                return watches_[i].take_answer(frame.data);
-            if (frame.id == cob::emergency + id && frame.length == 8) return take_emergency(i, frame);
+            if ((frame.id & most_nodes) != nodes[i].id) continue;
+            if (frame.length != length) {
+                ++malformed_;
+                return;
+            }
+            if (service == cob::heartbeat) watches_[i].take_heartbeat(frame.data[0], now);
+            if (service == cob::sdo_answer) watches_[i].take_answer(frame.data);
+            if (service == cob::emergency) take_emergency(i, frame);
+            return;
         }
     }
     void take_emergency(std::size_t i, const can::Frame& frame) noexcept TAPPET_REALTIME {
@@ -262,6 +270,7 @@ private:
         silent_.write(silent_node, silent);
         reboots_.write(reboots, static_cast<std::int64_t>(reboots_now));
         not_sent_.write(not_sent, static_cast<std::int64_t>(lost_));
+        malformed_told_.write(wrong_lengths, static_cast<std::int64_t>(malformed_));
         const NodeTrouble trouble = all ? NodeTrouble{} : watches_[worst].trouble();
         if (worst == worst_ && trouble == told_) return;
         worst_ = worst;
@@ -276,11 +285,12 @@ private:
     std::array<Changed<NodePhase>, node_count> phase_{};
     std::array<Changed<std::int64_t>, node_count> error_{};
     Changed<bool> operational_{};
-    Changed<std::int64_t> silent_{}, reboots_{}, not_sent_{};
+    Changed<std::int64_t> silent_{}, reboots_{}, not_sent_{}, malformed_told_{};
     NodeTrouble told_{};
     std::size_t worst_ = node_count;
     std::size_t turn_ = 0;
     std::uint64_t lost_ = 0;
+    std::uint64_t malformed_ = 0;
     std::uint8_t counter_ = 0;
     std::uint8_t to_reset_ = 0;
     Time next_beat_{}, next_sync_{}, next_time_{};

@@ -46,6 +46,7 @@ struct WatchedNode {
 class NodeWatch {
 public:
     static constexpr Duration poll_every = 1s; ///< a node that is not heard of
+    static constexpr int most_tries = 3;       ///< of a transfer that is not answered
 
     /// Forgets all; `steps` are those of this node, the first of them number `first`.
     void start(const WatchedNode& row, std::span<const ConfigurationStep> steps, std::size_t first,
@@ -147,6 +148,7 @@ private:
         client_.forget();
         phase_ = NodePhase::configuring;
         step_ = 0;
+        tries_ = 0;
     }
     void lose(const NodeTrouble& why, Time now) noexcept TAPPET_REALTIME {
         phase_ = NodePhase::lost;
@@ -164,6 +166,7 @@ private:
         case State::busy: return;
         case State::aborted:
             if (client_.why() != SdoAbort::time_out) return refuse(NodeTrouble::Kind::aborted);
+            if (++tries_ < most_tries) return begin_step();
             return lose({.kind = NodeTrouble::Kind::no_answer}, now);
         case State::done:
             if (const ConfigurationStep& step = steps_[step_]; step.kind != ConfigurationStep::Kind::write) {
@@ -175,6 +178,7 @@ private:
                                   found);
             }
             ++step_;
+            tries_ = 0;
             break;
         case State::idle: break;
         }
@@ -195,6 +199,7 @@ private:
     std::span<const ConfigurationStep> steps_{};
     std::size_t first_ = 0;
     std::size_t step_ = 0;
+    int tries_ = 0;
     SdoClient client_{};
     NodePhase phase_ = NodePhase::absent;
     NodeTrouble trouble_{};

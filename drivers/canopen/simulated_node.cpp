@@ -141,10 +141,7 @@ SimulatedNode::Heard SimulatedNode::receive(const can::Frame& frame, Time now, F
         serve(frame, now, out);
         return Heard::nothing;
     }
-    if (frame.id == cob::sync) {
-        synchronise(frame, now);
-        return Heard::nothing;
-    }
+    if (frame.id == cob::sync) return synchronise(now) ? Heard::process_data : Heard::nothing;
     const std::uint64_t watched = get({0x1016, 1});
     if (watched != 0 && frame.id == cob::heartbeat + (watched >> 16 & 0x7F)) {
         master_lost_at_ = now + own(std::chrono::milliseconds{watched & 0xFFFF});
@@ -180,7 +177,7 @@ void SimulatedNode::serve(const can::Frame& frame, Time now, FrameSink& out) noe
     if (server_.serve(frame.data, *this, answer.data)) emit(answer, now, out);
 }
 
-void SimulatedNode::synchronise(const can::Frame&, Time now) noexcept TAPPET_REALTIME {
+bool SimulatedNode::synchronise(Time now) noexcept TAPPET_REALTIME {
     for (Pdo& pdo : sent_) {
         if (!pdo.valid || pdo.type > 240) continue;
         ++pdo.syncs;
@@ -190,23 +187,36 @@ void SimulatedNode::synchronise(const can::Frame&, Time now) noexcept TAPPET_REA
         pdo.changed = false;
         pdo.due = now;
     }
+    bool any = false;
+    for (Pdo& pdo : taken_) {
+        if (!pdo.changed) continue;
+        pdo.changed = false;
+        unpack(pdo, pdo.held);
+        any = true;
+    }
+    return any;
+}
+
+void SimulatedNode::unpack(const Pdo& pdo, std::uint64_t whole) noexcept TAPPET_REALTIME {
+    unsigned at = 0;
+    for (const std::uint16_t place : pdo.objects) {
+        const unsigned wide = bits_of(dictionary().objects[place].type);
+        value_at(place) = low_bits(at < 64 ? whole >> at : 0, wide);
+        at += wide;
+    }
 }
 
 bool SimulatedNode::take_pdo(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME {
-    for (const Pdo& pdo : taken_) {
+    for (Pdo& pdo : taken_) {
         if (!pdo.valid || pdo.identifier != frame.id) continue;
         if (8u * frame.length < pdo.bits) {
             send_emergency(emergency_code::pdo_too_short, 0x11, now, out);
             return false;
         }
-        const std::uint64_t whole = from_bytes(frame.data);
-        unsigned at = 0;
-        for (const std::uint16_t place : pdo.objects) {
-            const unsigned wide = bits_of(dictionary().objects[place].type);
-            value_at(place) = low_bits(at < 64 ? whole >> at : 0, wide);
-            at += wide;
-        }
-        return true;
+        pdo.held = from_bytes(frame.data);
+        pdo.changed = pdo.type <= 240;
+        if (!pdo.changed) unpack(pdo, pdo.held);
+        return !pdo.changed;
     }
     return false;
 }

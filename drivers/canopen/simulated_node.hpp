@@ -71,6 +71,11 @@ public:
     /// Something of that TPDO changed: it goes out if it does so at events. Numbers are from 0.
     void send_pdo(std::size_t number, Time due, FrameSink& out) noexcept TAPPET_REALTIME;
 
+    /// That TPDO as it would go out now; without data while the node does not work.
+    [[nodiscard]] can::Frame pdo(std::size_t number) noexcept TAPPET_REALTIME {
+        return number < sent_.size() ? pack(sent_[number]) : can::Frame{};
+    }
+
     Heard receive(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
     /// Code 0: no error is left.
     void send_emergency(std::uint16_t code, std::uint8_t error_register, Time due, FrameSink& out) noexcept
@@ -83,6 +88,7 @@ private:
         std::uint8_t type = 255;
         std::uint8_t syncs = 0; ///< since it was sent last
         bool changed = false;   ///< for the next SYNC
+        std::uint64_t held = 0; ///< taken, and of no effect before it
         Time timer_at = never;
         Duration timer{};
         Time due = never;
@@ -100,7 +106,9 @@ private:
     void start_work(Time now) noexcept TAPPET_REALTIME;
     Heard manage(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
     void serve(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
-    void synchronise(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
+    /// True when commands that waited for it came into effect.
+    bool synchronise(Time now) noexcept TAPPET_REALTIME;
+    void unpack(const Pdo& pdo, std::uint64_t whole) noexcept TAPPET_REALTIME;
     bool take_pdo(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
     void emit(can::Frame frame, Time due, FrameSink& out) const noexcept TAPPET_REALTIME;
     void beat(NmtState state, Time due, FrameSink& out) const noexcept TAPPET_REALTIME;
@@ -124,7 +132,7 @@ private:
 };
 
 /// With its own values.
-template <const Dictionary& device> class SimulatedDevice final : public SimulatedNode {
+template <const Dictionary& device> class SimulatedDevice : public SimulatedNode {
 public:
     explicit SimulatedDevice(std::uint8_t node) noexcept TAPPET_REALTIME
         : SimulatedNode{node, device, own_values_} {

@@ -61,7 +61,7 @@ const std::vector<Row> house{
     // contain another machine.
     {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
-    {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "drivers/canopen"}},
+    {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "apps/carpet_loom/network.hpp", "drivers/canopen"}},
 
     // A browser meets a machine at its memory and its socket only.
     {"toolchain/tools/browser", {"kernel/base", "kernel/machine/map/layout.hpp", "kernel/machine/map/black_box.hpp", "kernel/machine/map/view.hpp",

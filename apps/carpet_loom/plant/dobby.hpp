@@ -10,17 +10,16 @@ class Dobby {
 public:
     static constexpr double level_deg = 10.0; // either side of stop_deg
 
-    explicit Dobby(Random& random) noexcept TAPPET_REALTIME : node_(wires::node::dobby, 0, random) {}
+    explicit Dobby(Random& random) noexcept TAPPET_REALTIME : node_(wires::node::dobby, random) {}
 
-    [[nodiscard]] Node& node() noexcept TAPPET_REALTIME { return node_; }
-    [[nodiscard]] const Node& node() const noexcept TAPPET_REALTIME { return node_; }
+    [[nodiscard]] canopen::SimulatedNode& node() noexcept TAPPET_REALTIME { return node_; }
+    [[nodiscard]] const canopen::SimulatedNode& node() const noexcept TAPPET_REALTIME { return node_; }
     [[nodiscard]] std::uint16_t pattern() const noexcept TAPPET_REALTIME { return pattern_; }
     [[nodiscard]] std::uint32_t taken() const noexcept TAPPET_REALTIME { return taken_; }
 
-    void command(const Wire& wire) noexcept TAPPET_REALTIME {
-        if (!node_.alive() || !node_.operational()) return;
-        offered_ = static_cast<std::uint32_t>(wire.signals.integer(pick));
-        offered_pattern_ = static_cast<std::uint16_t>(wire.signals.integer(pattern_bits));
+    void command() noexcept TAPPET_REALTIME {
+        offered_ = static_cast<std::uint32_t>(node_.get(0x2310));
+        offered_pattern_ = static_cast<std::uint16_t>(node_.get(0x2311));
     }
     void restart() noexcept TAPPET_REALTIME { offered_ = taken_; }
     /// The harnesses cross level. False when no new pick was offered: the old pattern is woven again.
@@ -43,20 +42,14 @@ public:
     void introduce(Time now, Wire& out) noexcept TAPPET_REALTIME { tell(now, out); }
 
 private:
-    static constexpr Wire::Signals::ReceivedSignal pick{"dobby_command.pick"};
-    static constexpr Wire::Signals::ReceivedSignal pattern_bits{"dobby_command.pattern"};
-    static constexpr Wire::Signals::Sent status{"dobby"};
-    static constexpr Wire::Signals::SentSignal pick_taken{"dobby.pick_taken"}, is_level{"dobby.level"};
-
     void tell(Time now, Wire& out) noexcept TAPPET_REALTIME {
         told_ = true;
-        if (!node_.alive() || !node_.operational()) return;
-        out.signals.set_integer(pick_taken, taken_);
-        out.signals.set_integer(is_level, level_ ? 1 : 0);
-        out.send(status, now);
+        node_.set(0x2300, taken_);
+        node_.set(0x2301, level_ ? 1 : 0);
+        node_.send_pdo(0, now, out);
     }
 
-    Node node_;
+    Node<canopen::dictionary<eds::dobby>> node_;
     std::uint32_t offered_ = 0;
     std::uint32_t taken_ = 0;
     std::uint16_t offered_pattern_ = 0;

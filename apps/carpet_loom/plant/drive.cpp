@@ -1,10 +1,14 @@
 // What the drive makes of its commands, of silence and of faults.
 #include "apps/carpet_loom/plant/drive.hpp"
 
+#include "apps/carpet_loom/plant/shapes.hpp"
+
 namespace tappet::loom {
 namespace {
 
 constexpr Duration command_timeout = std::chrono::microseconds{wires::drive_command_timeout_us};
+
+constexpr std::int64_t profile_velocity = 3;
 
 } // namespace
 
@@ -17,18 +21,14 @@ std::uint16_t Drive::statusword() const noexcept TAPPET_REALTIME {
     return static_cast<std::uint16_t>(word);
 }
 
-void Drive::refuse(Time now, Wire& wire) const noexcept TAPPET_REALTIME {
-    if (node_.alive() && node_.operational()) send_emergency(wires::emergency_code::wrong_length, now, wire);
-}
-
 void Drive::command(Time now, Wire& wire) noexcept TAPPET_REALTIME {
-    if (!node_.alive() || !node_.operational()) return;
     last_command_ = now;
-    target_ = static_cast<std::int32_t>(wire.signals.integer(names_.target));
+    const bool in_mode = node_.get_signed(0x6060) == profile_velocity;
+    target_ = in_mode ? static_cast<std::int32_t>(node_.get_signed(0x60FF)) : 0;
     const bool was_faulty = state() == DriveState::fault;
-    drive_.control(static_cast<std::uint16_t>(wire.signals.integer(names_.controlword)));
+    drive_.control(static_cast<std::uint16_t>(node_.get(0x6040)));
     if (was_faulty && state() != DriveState::fault)
-        send_emergency(wires::emergency_code::error_reset, now, wire);
+        send_emergency(canopen::emergency_code::error_reset, now, wire);
 }
 
 void Drive::supervise(bool standing, bool at_target, bool at_limit, Time now, Wire& wire) noexcept
@@ -52,19 +52,18 @@ void Drive::restart() noexcept TAPPET_REALTIME {
     target_ = 0;
 }
 
-void Drive::send_status(double actual_rpm, Time due, Wire& wire) const noexcept TAPPET_REALTIME {
-    wire.signals.set_integer(names_.statusword, statusword());
-    wire.signals.set(names_.velocity, actual_rpm);
-    wire.send(names_.status, due);
+void Drive::send_status(double actual_rpm, Wire& wire) noexcept TAPPET_REALTIME {
+    node_.set(0x6041, statusword());
+    node_.set(0x6061, node_.get(0x6060));
+    node_.set(0x606C, static_cast<std::uint64_t>(round_to_int(actual_rpm * velocity_per_rpm_)));
+    node_.send_due(wire);
 }
 
-void Drive::send_emergency(std::uint16_t code, Time now, Wire& wire) const noexcept TAPPET_REALTIME {
-    if (!node_.alive()) return;
+void Drive::send_emergency(std::uint16_t code, Time now, Wire& wire) noexcept TAPPET_REALTIME {
     // Error register (1001h): bit 0 generic, bit 4 communication; both clear when all errors are gone.
     const unsigned reg = code == 0 ? 0x00u : (code & 0xF000u) == 0x8000u ? 0x11u : 0x01u;
-    wire.emergency.set_integer(names_.code, code);
-    wire.emergency.set_integer(names_.error_register, reg);
-    wire.send_emergency(names_.emergency, now);
+    node_.set(0x603F, code);
+    node_.send_emergency(code, static_cast<std::uint8_t>(reg), now, wire);
 }
 
 } // namespace tappet::loom

@@ -7,21 +7,19 @@ namespace tappet::loom {
 
 class Feeder {
 public:
-    explicit Feeder(Random& random) noexcept TAPPET_REALTIME
-        : node_(wires::node::feeder, wires::feeder_status_period_us, random) {}
+    explicit Feeder(Random& random) noexcept TAPPET_REALTIME : node_(wires::node::feeder, random) {}
 
-    [[nodiscard]] Node& node() noexcept TAPPET_REALTIME { return node_; }
-    [[nodiscard]] const Node& node() const noexcept TAPPET_REALTIME { return node_; }
+    [[nodiscard]] canopen::SimulatedNode& node() noexcept TAPPET_REALTIME { return node_; }
+    [[nodiscard]] const canopen::SimulatedNode& node() const noexcept TAPPET_REALTIME { return node_; }
     [[nodiscard]] bool fed() const noexcept TAPPET_REALTIME {
         return windings_ >= wires::nominal::windings_per_pick;
     }
     [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return empty_; }
     [[nodiscard]] std::uint8_t colour() const noexcept TAPPET_REALTIME { return colour_; }
 
-    void command(const Wire& wire) noexcept TAPPET_REALTIME {
-        if (!node_.alive() || !node_.operational()) return;
-        colour_ = static_cast<std::uint8_t>(wire.signals.integer(selected));
-        per_minute_ = static_cast<std::uint32_t>(wire.signals.integer(speed));
+    void command() noexcept TAPPET_REALTIME {
+        colour_ = static_cast<std::uint8_t>(node_.get(0x2210));
+        per_minute_ = static_cast<std::uint32_t>(node_.get(0x2211));
     }
     void restart() noexcept TAPPET_REALTIME { per_minute_ = 0; }
     void run_out() noexcept TAPPET_REALTIME { empty_ = true; }
@@ -34,7 +32,7 @@ public:
         windings_ -= std::min(wanted, windings_);
     }
     /// Every status period: winds by the commanded speed, then tells.
-    void tick(Time due, Wire& out) noexcept TAPPET_REALTIME {
+    void send_status(Wire& out) noexcept TAPPET_REALTIME {
         if (!empty_ && windings_ < drum) {
             wound_ +=
                 per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period_us / 1000); // 1/60000
@@ -45,20 +43,15 @@ public:
         std::uint8_t status = 0;
         if (fed() && !empty_) status |= wires::feeder_bit::ready;
         if (empty_) status |= wires::feeder_bit::empty;
-        out.signals.set_integer(status_bits, status);
-        out.signals.set_integer(stock, windings_);
-        out.send(frame, due);
+        node_.set(0x2200, status);
+        node_.set(0x2201, windings_);
+        node_.send_due(out);
     }
 
 private:
-    static constexpr Wire::Signals::ReceivedSignal selected{"feeder_command.colour"};
-    static constexpr Wire::Signals::ReceivedSignal speed{"feeder_command.speed"};
-    static constexpr Wire::Signals::Sent frame{"feeder"};
-    static constexpr Wire::Signals::SentSignal status_bits{"feeder.status"}, stock{"feeder.windings"};
-
     static constexpr std::uint32_t drum = 20; // windings it holds
 
-    Node node_;
+    Node<canopen::dictionary<eds::feeder>> node_;
     std::uint8_t colour_ = 0;
     std::uint32_t per_minute_ = 0;
     std::uint32_t wound_ = 0;

@@ -9,24 +9,16 @@ constexpr double let_off_unit_rad_s = rad_s_per_rpm / wires::let_off_velocity_pe
 constexpr Duration blocked_limit = 500ms;
 constexpr double load_cell_noise_n = 2.0;
 
-// The names of what the plant itself sends and hears.
-using Signals = Wire::Signals;
-constexpr Signals::Received nmt{"nmt"}, feeder_command{"feeder_command"}, dobby_command{"dobby_command"};
-constexpr Signals::ReceivedSignal nmt_command{"nmt.command"}, nmt_node{"nmt.node"};
-constexpr Signals::Sent load_cell_frame{"load_cell"};
-constexpr Signals::SentSignal encoder_sample_number{"encoder.sample"};
-constexpr Signals::SentSignal tension{"load_cell.tension"}, load_cell_status{"load_cell.status"};
-
 } // namespace
 
 Plant::Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALTIME
     : settings_(settings),
       seed_(seed),
       random_(seed),
-      main_(wires::node::main_drive, main_drive_names, random_),
-      let_off_(wires::node::let_off_drive, let_off_names, random_),
-      encoder_(wires::node::encoder, wires::encoder_period_us, random_),
-      load_cell_(wires::node::load_cell, wires::load_cell_period_us, random_),
+      main_(wires::node::main_drive, wires::main_velocity_per_rpm, random_),
+      let_off_(wires::node::let_off_drive, wires::let_off_velocity_per_rpm, random_),
+      encoder_(wires::node::encoder, random_),
+      load_cell_(wires::node::load_cell, random_),
       feeder_(random_),
       dobby_(random_),
       shaft_(random_),
@@ -165,13 +157,13 @@ void Plant::run_timers(Time now) noexcept TAPPET_REALTIME {
 void Plant::tick_nodes(Time now) noexcept TAPPET_REALTIME {
     const double into_s = into_step_s(now);
     if (main_.node().next() <= now && main_.node().tick(now, wire_))
-        main_.send_status(shaft_.speed_rad_s_at(into_s) / rad_s_per_rpm, now, wire_);
+        main_.send_status(shaft_.speed_rad_s_at(into_s) / rad_s_per_rpm, wire_);
     if (let_off_.node().next() <= now && let_off_.node().tick(now, wire_))
-        let_off_.send_status(warp_.beam_rad_s() / rad_s_per_rpm, now, wire_);
+        let_off_.send_status(warp_.beam_rad_s() / rad_s_per_rpm, wire_);
     if (encoder_.next() <= now && encoder_.tick(now, wire_)) {
-        wire_.signals.set_integer(encoder_position, encoder_code_at(now));
-        wire_.signals.set_integer(encoder_sample_number, encoder_samples_++);
-        wire_.send(encoder_frame, now);
+        encoder_.set(0x2100, encoder_code_at(now));
+        encoder_.set(0x2101, encoder_samples_++);
+        encoder_.send_due(wire_);
     }
     if (load_cell_.next() <= now && load_cell_.tick(now, wire_)) {
         const double first = random_.unit();
@@ -181,47 +173,35 @@ void Plant::tick_nodes(Time now) noexcept TAPPET_REALTIME {
         const std::uint8_t status = noisy > Warp::hard_high_n
                                         ? wires::load_cell_bit::valid | wires::load_cell_bit::overload
                                         : wires::load_cell_bit::valid;
-        wire_.signals.set(tension, noisy);
-        wire_.signals.set_integer(load_cell_status, status);
-        wire_.send(load_cell_frame, now);
+        load_cell_.set({0x7130, 1}, static_cast<std::uint64_t>(round_to_int(noisy * wires::tension_per_n)));
+        load_cell_.set({0x6150, 1}, status);
+        load_cell_.send_due(wire_);
     }
-    if (feeder_.node().next() <= now && feeder_.node().tick(now, wire_)) feeder_.tick(now, wire_);
-    if (dobby_.node().next() <= now) static_cast<void>(dobby_.node().tick(now, wire_));
+    if (feeder_.node().next() <= now && feeder_.node().tick(now, wire_)) feeder_.send_status(wire_);
+    if (dobby_.node().next() <= now && dobby_.node().tick(now, wire_)) dobby_.node().send_due(wire_);
 }
 static_assert((wires::encoder_codes_per_turn & (wires::encoder_codes_per_turn - 1)) == 0,
               "codes are masked out of the position");
 
-void Plant::manage_network(Time now) noexcept TAPPET_REALTIME {
-    const auto command = static_cast<std::uint8_t>(wire_.signals.integer(nmt_command));
-    const auto meant = static_cast<std::uint8_t>(wire_.signals.integer(nmt_node));
-    for (std::uint8_t id = 1; id <= wires::node::count; ++id) {
-        Node* const node = node_of(id);
-        const bool was_operational = node->operational();
-        if (node->network_management(command, meant, now)) restart_application(id);
-        if (id == wires::node::dobby && !was_operational && node->operational()) dobby_.introduce(now, wire_);
+void Plant::hear(std::uint8_t node, canopen::SimulatedNode::Heard what) noexcept TAPPET_REALTIME {
+    using Heard = canopen::SimulatedNode::Heard;
+    if (what == Heard::reset) restart_application(node);
+    if (what == Heard::started && node == wires::node::dobby) dobby_.introduce(now_, wire_);
+    if (what != Heard::process_data) return;
+    switch (node) {
+    case wires::node::main_drive: main_.command(now_, wire_); break;
+    case wires::node::let_off_drive: let_off_.command(now_, wire_); break;
+    case wires::node::feeder: feeder_.command(); break;
+    case wires::node::dobby: dobby_.command(); break;
+    default: break;
     }
-}
-
-void Plant::hear(std::size_t row) noexcept TAPPET_REALTIME {
-    if (row == nmt.index) manage_network(now_);
-    if (row == feeder_command.index) feeder_.command(wire_);
-    if (row == dobby_command.index) dobby_.command(wire_);
-    for (Drive* const drive : {&main_, &let_off_})
-        if (drive->hears(row)) drive->command(now_, wire_);
 }
 
 void Plant::receive(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
     advance(now);
     Wire::note(frame, now_, log_);
-    std::size_t row = 0;
-    switch (wire_.signals.decode(frame, row)) {
-    case can::Decoded::yes: hear(row); break;
-    case can::Decoded::wrong_length:
-        if (frame.id == wires::cob::main_drive_command) main_.refuse(now_, wire_);
-        if (frame.id == wires::cob::let_off_drive_command) let_off_.refuse(now_, wire_);
-        break;
-    case can::Decoded::unknown_identifier: break;
-    }
+    for (std::uint8_t id = 1; id <= wires::node::count; ++id)
+        hear(id, node_of(id)->receive(frame, now_, wire_));
     if (frame.id == wires::cob::main_drive_command || frame.id == wires::cob::let_off_drive_command)
         shorten_rest();
     find_next_timer();

@@ -53,8 +53,8 @@ public:
     /// The encoder's last sample, as it would be now: a world in real time that is late sends the shaft as it
     /// is, not as it was.
     [[nodiscard]] can::Frame encoder_sample() noexcept TAPPET_REALTIME {
-        wire_.signals.set_integer(encoder_position, encoder_code_at(now_));
-        return wire_.signals.encode(encoder_frame, now_);
+        encoder_.set(0x2100, encoder_code_at(now_));
+        return encoder_.pdo(0);
     }
 
     // GPIO: offsets of wires::line. Lines that are no outputs of the machine are ignored.
@@ -95,9 +95,6 @@ public:
     [[nodiscard]] const Feeder& feeder() const noexcept TAPPET_REALTIME { return feeder_; }
 
 private:
-    static constexpr Wire::Signals::Sent encoder_frame{"encoder"};
-    static constexpr Wire::Signals::SentSignal encoder_position{"encoder.position"};
-
     struct ActiveFault {
         Fault fault = Fault::weft_break;
         std::uint8_t node = 0;
@@ -123,8 +120,7 @@ private:
         const double codes = position_deg_at(at) * (wires::encoder_codes_per_turn / 360.0);
         return static_cast<std::uint16_t>(floor_to_int(codes) & (wires::encoder_codes_per_turn - 1));
     }
-    void manage_network(Time now) noexcept TAPPET_REALTIME;
-    void hear(std::size_t row) noexcept TAPPET_REALTIME;
+    void hear(std::uint8_t node, canopen::SimulatedNode::Heard what) noexcept TAPPET_REALTIME;
 
     // weaving.cpp: what happens at the angles of a turn, and its measures
     void pass_marks(double position_deg) noexcept TAPPET_REALTIME;
@@ -143,7 +139,7 @@ private:
     void draw_troubles() noexcept TAPPET_REALTIME;
     void work(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool broken() const noexcept TAPPET_REALTIME;
-    [[nodiscard]] Node* node_of(std::uint8_t id) noexcept TAPPET_REALTIME;
+    [[nodiscard]] canopen::SimulatedNode* node_of(std::uint8_t id) noexcept TAPPET_REALTIME;
     void restart_application(std::uint8_t id) noexcept TAPPET_REALTIME;
 
     Settings settings_;
@@ -155,8 +151,8 @@ private:
 
     Drive main_;
     Drive let_off_;
-    Node encoder_;
-    Node load_cell_;
+    Node<canopen::dictionary<eds::encoder>> encoder_;
+    Node<canopen::dictionary<eds::load_cell>> load_cell_;
     Feeder feeder_;
     Dobby dobby_;
     MainShaft shaft_;

@@ -3,7 +3,7 @@
 
 namespace tappet::loom {
 
-Node* Plant::node_of(std::uint8_t id) noexcept TAPPET_REALTIME {
+canopen::SimulatedNode* Plant::node_of(std::uint8_t id) noexcept TAPPET_REALTIME {
     switch (id) {
     case wires::node::main_drive: return &main_.node();
     case wires::node::let_off_drive: return &let_off_.node();
@@ -38,9 +38,9 @@ void Plant::start_fault(const ScriptedFault& row) noexcept TAPPET_REALTIME {
         stays = row.lasts > Duration{}; // the drop wire itself is what stays broken
         break;
     case Fault::node_lost: {
-        Node* const node = node_of(row.node);
+        canopen::SimulatedNode* const node = node_of(row.node);
         if (node == nullptr) return;
-        node->die();
+        node->power_off();
         restart_application(row.node);
         blame(StopCause::fault);
         break;
@@ -83,7 +83,7 @@ void Plant::start_fault(const ScriptedFault& row) noexcept TAPPET_REALTIME {
 void Plant::end_fault(const ActiveFault& active) noexcept TAPPET_REALTIME {
     switch (active.fault) {
     case Fault::node_lost:
-        if (Node* const node = node_of(active.node)) node->revive(now_);
+        if (auto* const node = node_of(active.node)) node->power_on(now_ + canopen::SimulatedNode::boot_time);
         break;
     case Fault::warp_break: contacts_[wires::line::drop_wire].set(false, now_, random_, edges_); break;
     case Fault::oil_lost: climate_.lose_oil(false); break;

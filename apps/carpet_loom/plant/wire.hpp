@@ -1,9 +1,8 @@
-// The loom's end of the CAN bus: what its nodes send and hear, by the names of the machine's map.
+// The loom's end of the CAN bus: what its nodes send, in the order in which it is due.
 #pragma once
 
-#include "apps/carpet_loom/maps.hpp"
 #include "apps/carpet_loom/plant/outbox.hpp"
-#include "drivers/can/node_signals.hpp"
+#include "drivers/canopen/simulated_node.hpp"
 #include "kernel/base/digest.hpp"
 
 #include <bit>
@@ -11,28 +10,13 @@
 
 namespace tappet::loom {
 
-// clang-format off
-/// What the drives send that the loom's machine does not listen to (CiA 301).
-inline constexpr auto emergencies = can::signal_map(
-    can::receive(can::standard(wires::cob::emergency + wires::node::main_drive), "main_drive", can::bytes(8), can::on_demand(10ms),
-        can::signal("code", 0, 16), can::signal("register", 16, 8)),
-    can::receive(can::standard(wires::cob::emergency + wires::node::let_off_drive), "let_off", can::bytes(8), can::on_demand(10ms),
-        can::signal("code", 0, 16), can::signal("register", 16, 8)));
-// clang-format on
-
 /// Keeps a digest of everything that ever went out, fetched or not. A frame's stamp is when its node asks for
 /// the bus.
-class Wire : public Outbox<can::Frame, 256> {
+class Wire final : public Outbox<can::Frame, 256>, public canopen::FrameSink {
 public:
-    using Signals = can::NodeSignals<carpet::can_signals>;
-    using Emergencies = can::NodeSignals<emergencies>;
-
-    Signals signals;
-    Emergencies emergency;
-
-    void send(Signals::Sent frame, Time due) noexcept TAPPET_REALTIME { push(signals.encode(frame, due)); }
-    void send_emergency(Emergencies::Sent frame, Time due) noexcept TAPPET_REALTIME {
-        push(emergency.encode(frame, due));
+    void send(const can::Frame& frame) noexcept TAPPET_REALTIME override {
+        note(frame, frame.stamp, log_);
+        push(frame);
     }
     [[nodiscard]] const Digest& log() const noexcept TAPPET_REALTIME { return log_; }
 
@@ -44,10 +28,6 @@ public:
     }
 
 private:
-    void push(const can::Frame& frame) noexcept TAPPET_REALTIME {
-        note(frame, frame.stamp, log_);
-        Outbox::push(frame);
-    }
     Digest log_;
 };
 

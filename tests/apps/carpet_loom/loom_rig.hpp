@@ -9,6 +9,7 @@
 #include "apps/carpet_loom/network.hpp"
 #include "apps/carpet_loom/warp_tension.hpp"
 #include "apps/carpet_loom/weft_insertion.hpp"
+#include "drivers/canopen/manager.hpp"
 #include "tests/apps/carpet_loom/loom_run.hpp"
 
 #include <gtest/gtest.h>
@@ -19,6 +20,9 @@
 #include <string_view>
 
 namespace tappet::carpet {
+
+using CanBus = can::Bus<can_signals, canopen::frames<loom_network>>;
+using Network = canopen::Manager<loom_network>;
 
 /// Only what a test asks for goes wrong; the operator is at work.
 inline loom::Settings no_faults() { return {}; }

@@ -13,7 +13,6 @@ namespace line = wires::line;
 class Wires : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(seed, Wires, seeds(4));
 
-using CanBus = can::Bus<can_signals>;
 using LinePort = gpio::LinePort<io_lines>;
 using Utility = modbus::Client<utility_registers>;
 
@@ -152,8 +151,17 @@ TEST_P(Wires, commands_that_are_lost_are_said_again) {
 TEST_P(Wires, a_start_command_to_a_node_that_is_lost_is_said_again) {
     LoomRig rig{GetParam()};
     rig.bus().faults.lose.next = 5;
-    rig.bus().faults.only = can::standard(cob::nmt);
+    rig.bus().faults.only = can::standard(canopen::cob::nmt);
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state();
+}
+
+TEST_P(Wires, a_configuration_whose_frames_are_lost_now_and_then_comes_to_its_end) {
+    LoomRig rig{GetParam()};
+    rig.bus().faults.lose.one_in = 20;
+    ASSERT_TRUE(rig.run_until([&] { return rig.component<Network>("network").operational.last(); }, 10s))
+        << rig.component<Network>("network").reason.last().view();
+    rig.bus().faults.lose.one_in = 0;
+    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
 }
 
 // --- GPIO

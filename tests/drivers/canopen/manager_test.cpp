@@ -2,13 +2,21 @@
 // does not start.
 #include "tests/drivers/canopen/network_machine.hpp"
 
+#include <gtest/gtest.h>
+
 namespace tappet::test {
 namespace {
 
 using canopen::Identity;
 using canopen::NodePhase;
 using canopen::SdoAbort;
-using Network = NetworkMachine;
+
+struct Network : testing::Test, NetworkRig {
+    ~Network() override {
+        EXPECT_TRUE(good);
+        EXPECT_EQ(refused, 0) << "frames of the nodes";
+    }
+};
 
 TEST_F(Network, checks_configures_and_starts_its_nodes) {
     run_until(400ms);
@@ -227,6 +235,7 @@ TEST_F(Network, survives_frames_that_nobody_asked_for) {
         }
     run(100ms);
     EXPECT_TRUE(operational()) << reason();
+    EXPECT_EQ(manager->wrong_lengths.last(), 24) << "8 of each sort";
 }
 
 } // namespace

@@ -1,17 +1,11 @@
-// A machine with the manager of a network, and the network's nodes at the other end of its bus.
+// A machine with the manager of a network, and the network's nodes at the other end of its bus. Of no test
+// framework.
 #pragma once
 
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "apps/carpet_loom/nodes/encoder.eds.hpp"
-#include "drivers/can/bus.hpp"
-#include "drivers/can/twin_bus.hpp"
 #include "drivers/canopen/manager.hpp"
-#include "drivers/canopen/simulated_node.hpp"
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-#include "tests/drivers/components/board.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/drivers/canopen/wire_rig.hpp"
 
 #include <string>
 #include <vector>
@@ -98,48 +92,17 @@ inline constexpr auto network_machine = machine("network-machine",
 // clang-format on
 
 /// The machine, the wire and the nodes.
-struct NetworkMachine : testing::Test, canopen::FrameSink {
-    static constexpr Duration tick = 100us;
-
-    NetworkMachine() {
-        EXPECT_TRUE(twin.open({.interface = "machine",
-                               .receive = Bus::device_map.receive,
-                               .transmit = Bus::device_map.transmit}));
-        EXPECT_TRUE(far_end.open({.interface = "nodes",
-                                  .receive = Bus::device_map.transmit,
-                                  .transmit = Bus::device_map.receive}));
-        EXPECT_TRUE(wire.attach(twin));
-        EXPECT_TRUE(wire.attach(far_end));
-        wire.set_bit_rate(500'000);
-        const ProvidedDevice provided{type_id<can::Device>, "wire", static_cast<can::Device*>(&twin)};
-        const auto configured = instance.configure({&provided, 1});
-        if (!configured) ADD_FAILURE() << configured.error().view();
-        manager = instance.find<Manager>("network");
-        people = instance.find<Operator>("operator");
+struct NetworkRig : WireRig<network_machine, Bus> {
+    NetworkRig() : WireRig{500'000} {
         drive.power_on(Time{20ms});
         encoder.power_on(Time{30ms});
     }
-    ~NetworkMachine() override { EXPECT_EQ(refused, 0) << "frames of the nodes"; }
-    void run_until(Duration end) {
-        if (!started) {
-            world.add({this, [](void* self) { return static_cast<NetworkMachine*>(self)->next_tick; },
-                       [](void* self, Time now) { static_cast<NetworkMachine*>(self)->carry(now); }});
-            world.start();
-        }
-        started = true;
-        EXPECT_TRUE(world.run_until(Time{end}));
+    void hear(const can::Frame& frame, Time now) override {
+        heard.push_back(frame);
+        for (canopen::SimulatedNode* node : all)
+            if (node->receive(frame, now, *this) == canopen::SimulatedNode::Heard::started) ++starts;
     }
-    void run(Duration time) { run_until(clock.now().time_since_epoch() + time); }
-    void carry(Time now) {
-        next_tick = now + tick;
-        wire.deliver_until(now);
-        can::Frame frame;
-        while (far_end.receive(frame).what != can::Received::none) {
-            heard.push_back(frame);
-            pass_on(frame, now);
-            for (canopen::SimulatedNode* node : all)
-                if (node->receive(frame, now, *this) == canopen::SimulatedNode::Heard::started) ++starts;
-        }
+    void pass(Time now) override {
         for (canopen::SimulatedNode* node : all) {
             if (!node->tick(now, *this)) continue;
             drive.set(0x6041, 0x0231);
@@ -147,17 +110,6 @@ struct NetworkMachine : testing::Test, canopen::FrameSink {
             encoder.set(0x2100, 0x0ABC);
             node->send_due(*this);
         }
-        pass_time(now);
-        far_end.service(now);
-        wire.deliver_until(now);
-    }
-    /// For nodes that are not ours.
-    virtual void pass_on(const can::Frame&, Time) {}
-    virtual void pass_time(Time) {}
-    void send(const can::Frame& frame) noexcept override {
-        can::Frame now = frame;
-        now.stamp = clock.now();
-        refused += far_end.send(now, can::Keep::every) == can::Send::queued ? 0 : 1;
     }
     [[nodiscard]] bool operational() const { return manager->operational.last(); }
     [[nodiscard]] std::string reason() const { return std::string{manager->reason.last().view()}; }
@@ -169,21 +121,13 @@ struct NetworkMachine : testing::Test, canopen::FrameSink {
         return some;
     }
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    can::TwinBus wire{1};
-    can::Twin twin, far_end;
-    MachineInstance instance{Firmware<network_machine, board>::machine(), clock};
-    VirtualWorld world{instance};
     canopen::SimulatedDevice<canopen::dictionary<eds::drive>> drive{5};
     canopen::SimulatedDevice<canopen::dictionary<eds::encoder>> encoder{7};
     std::vector<canopen::SimulatedNode*> all{&drive, &encoder};
-    bool started = false;
-    Time next_tick{};
     int starts = 0;
-    int refused = 0;
     std::vector<can::Frame> heard;
-    Manager* manager = nullptr;
-    Operator* people = nullptr;
+    Manager* manager = instance.find<Manager>("network");
+    Operator* people = instance.find<Operator>("operator");
 };
 
 } // namespace tappet::test

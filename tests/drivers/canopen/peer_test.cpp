@@ -3,7 +3,10 @@
 #include "tests/drivers/canopen/network_machine.hpp"
 #include "tests/drivers/canopen/peer.hpp"
 
+#include <gtest/gtest.h>
+
 #include <map>
+#include <optional>
 #include <sstream>
 
 namespace tappet::test {
@@ -12,23 +15,21 @@ namespace {
 const std::string nodes_folder = TAPPET_SOURCE "/apps/carpet_loom/nodes/";
 
 /// In place of a simulated node, each millisecond.
-struct WithPeer : NetworkMachine {
-    void pass_on(const can::Frame& frame, Time) override {
+struct WithPeer : testing::Test, NetworkRig {
+    ~WithPeer() override { EXPECT_TRUE(good); }
+    void hear(const can::Frame& frame, Time now) override {
+        NetworkRig::hear(frame, now);
         if (peer) peer->give(frame);
     }
-    void pass_time(Time now) override {
+    void pass(Time now) override {
+        NetworkRig::pass(now);
         const std::int64_t ms = to_ns(now) / 1'000'000;
         if (!peer || ms == moved_to) return;
         moved_to = ms;
-        for (const can::Frame& frame : peer->move_to(ms)) {
-            answers.push_back(frame);
-            if (to_machine) send(frame);
-        }
+        for (const can::Frame& frame : peer->move_to(ms)) send(frame);
     }
     std::optional<Peer> peer;
     std::int64_t moved_to = -1;
-    bool to_machine = true;
-    std::vector<can::Frame> answers;
 };
 
 TEST_F(WithPeer, is_configured_and_started_by_our_manager) {

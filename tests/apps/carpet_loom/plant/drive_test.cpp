@@ -12,20 +12,20 @@ namespace {
 struct TestDrive : testing::Test {
     TestDrive() {
         static_cast<void>(drive.node().tick(now, out));
-        static_cast<void>(drive.node().network_management(wires::nmt_command::start, 1, now));
+        for (const can::Frame& frame : start(wires::node::main_drive)) hear(frame);
+        static_cast<void>(sent());
         EXPECT_EQ(drive.state(), DriveState::not_ready);
         supervise(true); // transition 1
     }
     void supervise(bool standing) { drive.supervise(standing, true, false, now, out); }
     DriveState give(std::uint16_t word) {
         now += 1ms;
-        std::size_t row = 0;
-        const can::Frame frame =
-            machine.frame("main_drive_command", {{"controlword", word}, {"velocity", 6000}});
-        EXPECT_EQ(out.signals.decode(frame, row), can::Decoded::yes);
-        EXPECT_TRUE(drive.hears(row));
-        drive.command(now, out);
+        hear(machine.frame("main_drive_command", {{"controlword", word}, {"velocity", 6000}}));
         return drive.state();
+    }
+    void hear(const can::Frame& frame) {
+        if (drive.node().receive(frame, now, out) == canopen::SimulatedNode::Heard::process_data)
+            drive.command(now, out);
     }
     void enable() {
         give(0x06);
@@ -41,7 +41,7 @@ struct TestDrive : testing::Test {
     Wire out;
     MachineSide machine;
     Time now = at_ns(200'000'000); // every node has booted
-    Drive drive{wires::node::main_drive, main_drive_names, random};
+    Drive drive{wires::node::main_drive, wires::main_velocity_per_rpm, random};
 };
 
 using Faulty = TestDrive;
@@ -71,7 +71,7 @@ TEST_F(Faulty, resets_a_fault_on_the_rising_edge_of_bit_7_only_15) {
     EXPECT_EQ(give(0x80), DriveState::switch_on_disabled);
     const auto frames = sent();
     ASSERT_EQ(frames.size(), 1U);
-    EXPECT_EQ(emergency_of(frames[0]), (Emergency{wires::emergency_code::error_reset, 0x00}));
+    EXPECT_EQ(emergency_of(frames[0]), (Emergency{canopen::emergency_code::error_reset, 0x00}));
 }
 TEST_F(Faulty, is_not_reset_before_the_reaction_has_ended) {
     enable();
@@ -107,15 +107,25 @@ using BadFrames = TestDrive;
 TEST_F(BadFrames, of_another_length_are_answered_by_an_emergency_message_and_change_nothing) {
     give(0x06);
     static_cast<void>(sent());
-    drive.refuse(now, out);
+    can::Frame cut = machine.frame("main_drive_command", {{"controlword", 0x07}});
+    cut.length = 5;
+    hear(cut);
     EXPECT_EQ(drive.state(), DriveState::ready_to_switch_on);
     const auto frames = sent();
     ASSERT_EQ(frames.size(), 1U);
-    EXPECT_EQ(emergency_of(frames[0]).code, wires::emergency_code::wrong_length);
+    EXPECT_EQ(emergency_of(frames[0]).code, canopen::emergency_code::pdo_too_short);
 }
 TEST_F(BadFrames, are_not_heard_outside_the_operational_state) {
-    static_cast<void>(drive.node().network_management(wires::nmt_command::pre_operational, 0, now));
+    hear(canopen::nmt_frame(NmtCommand::enter_pre_operational, 0));
     EXPECT_EQ(give(0x06), DriveState::switch_on_disabled);
+}
+
+TEST_F(BadFrames, of_a_mode_that_it_does_not_have_move_nothing) {
+    enable();
+    EXPECT_EQ(drive.target(), 6000);
+    drive.node().set(0x6060, 8);
+    give(0x0F);
+    EXPECT_EQ(drive.target(), 0);
 }
 
 } // namespace

@@ -1,14 +1,46 @@
-// The machine's end of the loom's bus, for tests of its nodes: frames made and read by the names of its map.
+// The machine's end of the loom's bus, for tests of its nodes: frames made and read by the names of its map,
+// and what the manager of the network sends to them.
 #pragma once
 
-#include "apps/carpet_loom/maps.hpp"
+#include "apps/carpet_loom/network.hpp"
 #include "drivers/can/signal_store.hpp"
+#include "drivers/canopen/sdo.hpp"
 
 #include <initializer_list>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tappet::loom {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+/// The requests by which a node is configured; 0: all nodes.
+inline std::vector<can::Frame> configuration(std::uint8_t node) {
+    const auto& network = carpet::loom_network;
+    std::vector<can::Frame> requests;
+    for (std::size_t n = 0; n < network.nodes.size(); ++n) {
+        if (node != 0 && network.nodes[n].id != node) continue;
+        for (std::size_t i = network.first_step[n]; i < network.first_step[n + 1]; ++i) {
+            const canopen::ConfigurationStep& step = network.steps[i];
+            if (step.kind != canopen::ConfigurationStep::Kind::write) continue;
+            can::Frame request;
+            request.id = canopen::cob::sdo_request + network.nodes[n].id;
+            request.length = 8;
+            request.data = canopen::sdo::with_address(0x23u | (4u - step.bytes) << 2, step.at,
+                                                      static_cast<std::uint32_t>(step.value));
+            requests.push_back(request);
+        }
+    }
+    return requests;
+}
+/// The same, and it is started.
+inline std::vector<can::Frame> start(std::uint8_t node) {
+    std::vector<can::Frame> frames = configuration(node);
+    frames.push_back(canopen::nmt_frame(NmtCommand::start, node));
+    return frames;
+}
 
 class MachineSide {
 public:
@@ -19,9 +51,6 @@ public:
         for (const auto& [signal, value] : signals)
             store_.set_bits(index(name, signal), static_cast<std::uint64_t>(value));
         return store_.encode(row, Time{});
-    }
-    can::Frame network(std::int64_t command, std::int64_t node) {
-        return frame("nmt", {{"command", command}, {"node", node}});
     }
     /// The frame's name; empty: none of the map's.
     std::string_view take(const can::Frame& frame) {

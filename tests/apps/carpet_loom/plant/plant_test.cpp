@@ -25,7 +25,10 @@ struct Traffic {
     }
 };
 
-can::Frame network(std::uint8_t command, std::uint8_t node) { return MachineSide{}.network(command, node); }
+void give(Plant& plant, const std::vector<can::Frame>& frames) {
+    for (const can::Frame& frame : frames) plant.receive(frame, plant.now());
+}
+std::uint8_t state(NmtState as) { return static_cast<std::uint8_t>(as); }
 
 std::int64_t sample_of(const can::Frame& encoder) {
     MachineSide machine;
@@ -43,13 +46,16 @@ TEST(Nodes, boot_beat_and_are_mute_until_they_are_started) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Plant plant(alone(), seed);
         Traffic traffic;
+        traffic.run(plant, 200ms);
+        EXPECT_EQ(traffic.of.size(), std::size_t{wires::node::count}) << "boot-up messages alone";
+        give(plant, configuration(0));
         traffic.run(plant, 1s);
-        EXPECT_EQ(traffic.of.size(), std::size_t{wires::node::count});
+        EXPECT_EQ(traffic.of.size(), 2 * std::size_t{wires::node::count}) << "and answers";
         for (std::uint32_t node = 1; node <= wires::node::count; ++node) {
-            const auto& beats = traffic.of[wires::cob::heartbeat + node];
+            const auto& beats = traffic.of[canopen::cob::heartbeat + node];
             ASSERT_GT(beats.size(), 8U);
-            EXPECT_EQ(beats[0].data[0], wires::nmt_state::boot_up);
-            EXPECT_EQ(beats[1].data[0], wires::nmt_state::pre_operational);
+            EXPECT_EQ(beats[0].data[0], state(NmtState::boot_up));
+            EXPECT_EQ(beats[1].data[0], state(NmtState::pre_operational));
             EXPECT_NEAR(to_seconds(beats[2].stamp - beats[1].stamp), 0.1, 1e-5);
         }
     }
@@ -59,7 +65,7 @@ TEST(Nodes, send_at_their_rates_once_operational) {
     Plant plant(alone(), 1);
     Traffic traffic;
     traffic.run(plant, 200ms);
-    plant.receive(network(wires::nmt_command::start, 0), plant.now());
+    give(plant, start(0));
     traffic.of.clear();
     traffic.run(plant, 1s);
     const std::map<std::uint32_t, std::pair<std::size_t, unsigned>> expected{
@@ -71,7 +77,7 @@ TEST(Nodes, send_at_their_rates_once_operational) {
         for (const can::Frame& sent : frames) EXPECT_EQ(sent.length, rate.second);
     }
     EXPECT_EQ(traffic.of[0x186].size(), 1U) << "the dobby introduces itself and then speaks on change";
-    EXPECT_EQ(traffic.of[0x701].back().data[0], wires::nmt_state::operational);
+    EXPECT_EQ(traffic.of[0x701].back().data[0], state(NmtState::operational));
     const auto& encoder = traffic.of[0x183];
     for (std::size_t i = 1; i < encoder.size(); ++i)
         EXPECT_EQ(sample_of(encoder[i]), sample_of(encoder[i - 1]) + 1);
@@ -81,28 +87,29 @@ TEST(Nodes, obey_the_network_one_by_one) {
     Plant plant(alone(), 2);
     Traffic traffic;
     traffic.run(plant, 200ms);
-    plant.receive(network(wires::nmt_command::start, wires::node::encoder), plant.now());
+    give(plant, start(wires::node::encoder));
     traffic.run(plant, 50ms);
     EXPECT_FALSE(traffic.of[0x183].empty());
     EXPECT_TRUE(traffic.of[0x184].empty());
-    plant.receive(network(wires::nmt_command::stop, 0), plant.now());
+    give(plant, configuration(0)); // for the heartbeats
+    give(plant, {canopen::nmt_frame(NmtCommand::stop, 0)});
     traffic.fetch(plant);
     traffic.of.clear();
     traffic.run(plant, 200ms);
     EXPECT_TRUE(traffic.of[0x183].empty());
-    EXPECT_EQ(traffic.of[0x703].back().data[0], wires::nmt_state::stopped);
-    plant.receive(network(wires::nmt_command::reset_node, wires::node::encoder), plant.now());
+    EXPECT_EQ(traffic.of[0x703].back().data[0], state(NmtState::stopped));
+    give(plant, {canopen::nmt_frame(NmtCommand::reset_node, wires::node::encoder)});
     traffic.of.clear();
     traffic.run(plant, 150ms);
     ASSERT_FALSE(traffic.of[0x703].empty());
-    EXPECT_EQ(traffic.of[0x703].front().data[0], wires::nmt_state::boot_up);
+    EXPECT_EQ(traffic.of[0x703].front().data[0], state(NmtState::boot_up));
 }
 
 TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
     Plant plant(alone(), 3);
     Traffic traffic;
     traffic.run(plant, 200ms);
-    plant.receive(network(wires::nmt_command::start, 0), plant.now());
+    give(plant, start(0));
     traffic.run(plant, 100ms);
     plant.inject({.fault = Fault::node_lost, .node = wires::node::encoder});
     traffic.fetch(plant);
@@ -114,7 +121,7 @@ TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
     plant.repair();
     traffic.run(plant, 300ms);
     ASSERT_FALSE(traffic.of[0x703].empty());
-    EXPECT_EQ(traffic.of[0x703].front().data[0], wires::nmt_state::boot_up);
+    EXPECT_EQ(traffic.of[0x703].front().data[0], state(NmtState::boot_up));
     EXPECT_TRUE(traffic.of[0x183].empty());
 }
 
@@ -128,7 +135,7 @@ TEST(Nodes, lost_for_a_time_come_back_by_themselves) {
     const auto& beats = traffic.of[0x704];
     std::vector<Time> boots;
     for (const can::Frame& sent : beats)
-        if (sent.data[0] == wires::nmt_state::boot_up) boots.push_back(sent.stamp);
+        if (sent.data[0] == state(NmtState::boot_up)) boots.push_back(sent.stamp);
     ASSERT_EQ(boots.size(), 2U);
     EXPECT_NEAR(to_seconds(boots[1] - Time{}), 0.8, 0.02);
 }
@@ -143,14 +150,14 @@ TEST(BadInput, changes_nothing) {
         frame.length = static_cast<std::uint8_t>(id % 2);
         plant.receive(frame, plant.now());
     }
-    plant.receive(network(wires::nmt_command::start, 77), plant.now());
-    plant.receive(network(0x55, 0), plant.now());
+    give(plant, {canopen::nmt_frame(NmtCommand::start, 77), canopen::nmt_frame(NmtCommand{0x55}, 0)});
+    give(plant, configuration(1)); // a heartbeat tells its state
     for (const unsigned line : {0U, 3U, 6U, 7U, 14U, 4'000'000'000U}) {
         plant.set_line(line, true, plant.now());
         EXPECT_FALSE(plant.line(line));
     }
     traffic.run(plant, 200ms);
-    EXPECT_EQ(traffic.of[0x701].back().data[0], wires::nmt_state::pre_operational);
+    EXPECT_EQ(traffic.of[0x701].back().data[0], state(NmtState::pre_operational));
     EXPECT_EQ(plant.speed_rpm(), 0.0);
     EXPECT_EQ(plant.report().damage.total(), 0U);
 }
@@ -165,6 +172,8 @@ TEST(BadInput, that_lies_in_the_past_is_taken_as_now) {
 
 TEST(Frames, that_nobody_fetches_are_counted) {
     Plant plant(alone(), 7);
+    plant.advance(at_ns(200'000'000));
+    give(plant, start(0));
     plant.advance(at_ns(20'000'000'000));
     EXPECT_GT(plant.report().frames_lost, 0U);
 }
@@ -216,7 +225,8 @@ TEST(Advancing, often_or_rarely_gives_the_same_run) {
     Plant rarely(settings, 9);
     for (Time now{}; now < at_ns(1'000'000'000); now += 37us) often.advance(now);
     for (Plant* plant : {&often, &rarely}) {
-        plant->receive(network(wires::nmt_command::start, 0), at_ns(1'000'000'000));
+        plant->advance(at_ns(1'000'000'000));
+        give(*plant, start(0));
         plant->set_line(wires::line::brake, true, at_ns(1'000'500'123));
     }
     while (often.now() < at_ns(2'000'000'000)) often.advance(often.next_event());

@@ -56,11 +56,13 @@ private:
 
     void take(const can::Frame& frame) {
         ++frames;
-        if (frame.id > wires::cob::emergency && frame.id < wires::cob::emergency + 16)
+        if (frame.id > canopen::cob::emergency && frame.id < canopen::cob::emergency + 16)
             emergencies.push_back(static_cast<std::uint16_t>(emergency_of(frame).code));
         const std::string_view name = wire.take(frame);
-        if (name.starts_with("heartbeat_") && wire.integer(name, "state") == wires::nmt_state::boot_up)
-            plant.receive(wire.network(wires::nmt_command::start, frame.id - wires::cob::heartbeat), now);
+        if (frame.id > canopen::cob::heartbeat && NmtState{frame.data[0]} == NmtState::boot_up)
+            for (const can::Frame& each :
+                 start(static_cast<std::uint8_t>(frame.id - canopen::cob::heartbeat)))
+                plant.receive(each, now);
         if (name == "main_drive") {
             main_status = static_cast<std::uint16_t>(wire.integer(name, "statusword"));
             const double rpm = static_cast<double>(wire.integer(name, "velocity")) / 10.0;
