@@ -1,0 +1,149 @@
+// A CiA 402 drive on a bus as a component: an axis with PLCopen's states, whose motions are commands.
+#pragma once
+
+#include "drivers/canopen/drive_motion.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/pieces/changed.hpp"
+
+namespace tappet::canopen {
+
+/// Effector: Axis<"mm">; velocities are in that unit each second. All real-time, each cycle of a periodic
+/// activity. The rows of its four inputs from the drive say stale_after(...): a silent drive is an error
+/// stop.
+template <text unit> struct Axis {
+    using AxisMode = motion::AxisMode;
+    static constexpr auto speed_unit = [] {
+        text<unit.view().size() + 2> both;
+        *std::copy_n(unit.characters, unit.view().size(), both.characters) = '/';
+        both.characters[unit.view().size() + 1] = 's';
+        return both;
+    }();
+
+    Input<std::int64_t> statusword, mode_display;
+    Input<double> position, velocity;
+    Input<double> set_point;
+    Output<std::int64_t> controlword, mode;
+    Output<double> target_position, target_velocity, target_torque, profile_velocity;
+    Output<AxisMode> state;
+    Output<bool> follows, lags, limited;
+    Event<> stopped_by_error;
+    Property<double> standing{1e-3};
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        motion_ = {};
+        standing_changed();
+        mode.write(static_cast<std::int64_t>(OperationMode::profile_position));
+        controlword.write(controlword::disable_voltage);
+        target_position.write(position.get());
+        write_speeds({});
+        tell();
+    }
+    void changed() noexcept TAPPET_REALTIME { standing_changed(); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (double wanted = 0; set_point.read(wanted) == Flow::fresh) motion_.follow(wanted);
+        const AxisMode before = motion_.state();
+        const bool heard = statusword.good() && mode_display.good() && position.good() && velocity.good();
+        const DriveOrder order = motion_.step({heard, static_cast<std::uint16_t>(statusword.get()),
+                                               mode_display.get(), position.get(), velocity.get()});
+        controlword.write(order.controlword);
+        mode.write(order.mode);
+        target_position.write(order.position);
+        write_speeds(order);
+        tell();
+        if (motion_.state() == AxisMode::error_stop && before != AxisMode::error_stop)
+            stopped_by_error.emit();
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        controlword.write(controlword::quick_stop);
+        write_speeds({});
+        motion_ = {};
+        tell();
+    }
+
+    void power_on() noexcept TAPPET_REALTIME { motion_.power(true); }
+    void power_off() noexcept TAPPET_REALTIME { motion_.power(false); }
+    void reset() noexcept TAPPET_REALTIME { motion_.reset(); }
+    void release() noexcept TAPPET_REALTIME { motion_.release(); }
+    /// 8 positions, 9 velocities, 10 torques.
+    bool synchronize(std::int64_t cyclic) noexcept TAPPET_REALTIME {
+        return cyclic >= 8 && cyclic <= 10 &&
+               motion_.synchronize(OperationMode{static_cast<std::int8_t>(cyclic)}).has_value();
+    }
+    bool home() noexcept TAPPET_REALTIME { return motion_.home().has_value(); }
+    bool move_to(double place, double at) noexcept TAPPET_REALTIME {
+        return place == place && at > 0 && motion_.move_to(place, at).has_value();
+    }
+    bool move_at(double at) noexcept TAPPET_REALTIME { return at == at && motion_.move_at(at).has_value(); }
+    bool halt() noexcept TAPPET_REALTIME { return motion_.halt().has_value(); }
+    bool stop_axis() noexcept TAPPET_REALTIME { return motion_.stop().has_value(); }
+    [[nodiscard]] CommandProgress homed() noexcept TAPPET_REALTIME { return until(AxisMode::homing); }
+    [[nodiscard]] CommandProgress moved(double, double) noexcept TAPPET_REALTIME {
+        return until(AxisMode::discrete_motion);
+    }
+    [[nodiscard]] CommandProgress halted() noexcept TAPPET_REALTIME {
+        return until(AxisMode::discrete_motion);
+    }
+    /// It stands, and is still held.
+    [[nodiscard]] CommandProgress is_stopped() noexcept TAPPET_REALTIME {
+        if (motion_.state() != AxisMode::stopping) return CommandProgress::failed;
+        return motion_.stands() ? CommandProgress::done : CommandProgress::executing;
+    }
+
+    // clang-format off
+    static constexpr auto interface() {
+        return facets(
+            input<&Axis::statusword>("statusword", "", "6041h"),
+            input<&Axis::mode_display>("mode_display", "", "6061h"),
+            input<&Axis::position>("position", unit.view(), "6064h, as it is"),
+            input<&Axis::velocity>("velocity", speed_unit.view(), "606Ch, as it is"),
+            input<&Axis::set_point>("set_point", "", "of the cyclic mode that it is in", optional),
+            output<&Axis::controlword>("controlword", "", "6040h"),
+            output<&Axis::mode>("mode", "", "6060h"),
+            output<&Axis::target_position>("target_position", unit.view(), "607Ah"),
+            output<&Axis::target_velocity>("target_velocity", speed_unit.view(), "60FFh"),
+            output<&Axis::profile_velocity>("profile_velocity", speed_unit.view(), "6081h, of a motion to a place"),
+            output<&Axis::target_torque>("target_torque", "", "6071h"),
+            output<&Axis::state>("state", "", "as PLCopen names it; written on change"),
+            output<&Axis::follows>("follows", "", "its set points, in a cyclic mode; written on change"),
+            output<&Axis::lags>("lags", "", "behind its set point; written on change"),
+            output<&Axis::limited>("limited", "", "held by a limit of the drive's; written on change"),
+            event<&Axis::stopped_by_error>("stopped_by_error", "a fault, a silence, or power that went away"),
+            property<&Axis::standing>("standing", speed_unit.view(), "slower than this it stands", range(0, 1e9)),
+            operation<&Axis::power_on>("power_on", "MC_Power"),
+            operation<&Axis::power_off>("power_off", "MC_Power, not enabled"),
+            operation<&Axis::reset>("reset", "MC_Reset: of one fault"),
+            operation<&Axis::release>("release", "lets a stop go"),
+            command<&Axis::home, &Axis::homed>("home", "MC_Home"),
+            command<&Axis::move_to, &Axis::moved>("move_to", "MC_MoveAbsolute: place, velocity"),
+            command<&Axis::move_at>("move_at", "MC_MoveVelocity"),
+            command<&Axis::synchronize>("synchronize", "with set points: 8 positions, 9 velocities, 10 torques"),
+            command<&Axis::halt, &Axis::halted>("halt", "MC_Halt"),
+            command<&Axis::stop_axis, &Axis::is_stopped>("stop", "MC_Stop: takes no motion before it is released"));
+    }
+    // clang-format on
+
+private:
+    void standing_changed() noexcept TAPPET_REALTIME { motion_.set_standing(standing.get()); }
+    void write_speeds(const DriveOrder& order) noexcept TAPPET_REALTIME {
+        const bool to_a_place = order.mode == static_cast<std::int64_t>(OperationMode::profile_position);
+        profile_velocity.write(to_a_place ? order.velocity : 0);
+        target_velocity.write(to_a_place ? 0 : order.velocity);
+        target_torque.write(order.torque);
+    }
+    void tell() noexcept TAPPET_REALTIME {
+        state_.write(state, motion_.state());
+        follows_.write(follows, motion_.follows());
+        lags_.write(lags, motion_.lags());
+        limited_.write(limited, motion_.is_limited());
+    }
+    [[nodiscard]] CommandProgress until(AxisMode under_way) const noexcept TAPPET_REALTIME {
+        if (motion_.state() == under_way) return CommandProgress::executing;
+        return motion_.state() == AxisMode::standstill ? CommandProgress::done : CommandProgress::failed;
+    }
+
+    DriveMotion motion_{};
+    Changed<AxisMode> state_{};
+    Changed<bool> follows_{}, lags_{}, limited_{};
+};
+
+} // namespace tappet::canopen

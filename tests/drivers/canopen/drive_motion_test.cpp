@@ -1,0 +1,286 @@
+// A drive as an axis, in every mode, against a simulated one whose frames take two cycles each way.
+#include "drivers/canopen/simulated_servo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+
+namespace tappet::canopen {
+namespace {
+
+using motion::AxisMode;
+
+struct Axis : testing::Test {
+    static constexpr double dt = 0.001;
+
+    void cycle() {
+        feedback.push_back({heard, servo.statusword(), servo.mode(), servo.position(), servo.velocity()});
+        DriveFeedback seen = feedback.front();
+        if (feedback.size() > 2) feedback.pop_front();
+        seen.heard = heard;
+        orders.push_back(axis.step(seen));
+        last = orders.back();
+        if (orders.size() > 2) {
+            servo.take(orders.front());
+            orders.pop_front();
+        }
+        servo.step(dt);
+        ++cycles;
+    }
+    void run(int count) {
+        for (int i = 0; i < count; ++i) cycle();
+    }
+    /// False: not within five seconds.
+    template <class Condition> bool until(Condition condition) {
+        for (int i = 0; i < 5000; ++i) {
+            if (condition()) return true;
+            cycle();
+        }
+        return condition();
+    }
+    bool reaches(AxisMode state) {
+        return until([&] { return axis.state() == state; });
+    }
+    void power() {
+        axis.power(true);
+        ASSERT_TRUE(reaches(AxisMode::standstill));
+    }
+
+    DriveMotion axis;
+    SimulatedServo servo;
+    bool heard = true;
+    DriveOrder last;
+    int cycles = 0;
+    std::deque<DriveFeedback> feedback;
+    std::deque<DriveOrder> orders;
+};
+
+TEST_F(Axis, has_power_when_the_drive_says_so_and_not_before) {
+    axis.power(true);
+    run(2);
+    EXPECT_EQ(axis.state(), AxisMode::disabled);
+    EXPECT_FALSE(axis.move_to(1, 10)) << "without power";
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_EQ(servo.state(), DriveState::operation_enabled);
+    axis.power(false);
+    EXPECT_EQ(axis.state(), AxisMode::disabled);
+    EXPECT_TRUE(until([&] { return servo.state() == DriveState::switch_on_disabled; }));
+}
+
+TEST_F(Axis, goes_to_a_place_by_the_handshake_of_pp) {
+    power();
+    ASSERT_TRUE(axis.move_to(25, 50));
+    EXPECT_EQ(axis.state(), AxisMode::discrete_motion);
+    const int from = cycles;
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), 25, 1e-9);
+    EXPECT_EQ(servo.set_points(), 1);
+    EXPECT_GT(cycles - from, 500) << "at 50 a second";
+    // "Target reached" of this motion is still there when the next begins.
+    ASSERT_TRUE(axis.move_to(0, 50));
+    run(3);
+    EXPECT_EQ(axis.state(), AxisMode::discrete_motion);
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), 0, 1e-9);
+    EXPECT_EQ(servo.set_points(), 2);
+}
+
+TEST_F(Axis, takes_a_new_place_while_it_moves) {
+    power();
+    ASSERT_TRUE(axis.move_to(50, 50));
+    run(200);
+    ASSERT_TRUE(axis.move_to(-10, 50));
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), -10, 1e-9);
+    EXPECT_EQ(servo.set_points(), 2);
+}
+
+TEST_F(Axis, raises_the_set_point_bit_again_only_when_the_last_one_is_let_go) {
+    power();
+    servo.faults.keeps_acknowledgement = true;
+    ASSERT_TRUE(axis.move_to(5, 50));
+    run(500);
+    EXPECT_EQ(axis.state(), AxisMode::discrete_motion)
+        << "the drive stands there, and the handshake is not over";
+    EXPECT_EQ(last.controlword & 0x10u, 0u);
+    ASSERT_TRUE(axis.move_to(9, 50));
+    run(500);
+    EXPECT_EQ(servo.set_points(), 1);
+    EXPECT_EQ(last.controlword & 0x10u, 0u);
+    servo.faults.keeps_acknowledgement = false;
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), 9, 1e-9);
+}
+
+TEST_F(Axis, ends_no_motion_that_the_drive_ignores) {
+    power();
+    servo.faults.ignores_set_points = true;
+    ASSERT_TRUE(axis.move_to(5, 50));
+    run(2000);
+    EXPECT_EQ(axis.state(), AxisMode::discrete_motion);
+    EXPECT_NE(last.controlword & 0x10u, 0u) << "it keeps asking";
+}
+
+TEST_F(Axis, does_not_go_on_with_an_old_place_after_a_halt) {
+    power();
+    ASSERT_TRUE(axis.move_to(50, 50));
+    run(300);
+    ASSERT_TRUE(axis.halt());
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    const double there = servo.position();
+    EXPECT_LT(there, 40);
+    run(1000);
+    EXPECT_EQ(servo.position(), there);
+    ASSERT_TRUE(axis.move_to(there + 1, 50));
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), there + 1, 1e-9);
+}
+
+TEST_F(Axis, turns_at_a_speed_until_it_is_halted) {
+    power();
+    ASSERT_TRUE(axis.move_at(-30));
+    EXPECT_EQ(axis.state(), AxisMode::continuous_motion);
+    EXPECT_TRUE(until([&] { return servo.velocity() == -30; }));
+    run(500);
+    EXPECT_EQ(axis.state(), AxisMode::continuous_motion);
+    ASSERT_TRUE(axis.halt());
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_EQ(servo.velocity(), 0);
+}
+
+TEST_F(Axis, takes_no_motion_while_it_is_stopped) {
+    power();
+    ASSERT_TRUE(axis.move_at(30));
+    run(200);
+    ASSERT_TRUE(axis.stop());
+    run(500);
+    EXPECT_EQ(axis.state(), AxisMode::stopping) << "until the stop is let go";
+    EXPECT_EQ(servo.velocity(), 0);
+    EXPECT_FALSE(axis.move_at(30));
+    axis.release();
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_TRUE(axis.move_at(30));
+}
+
+TEST_F(Axis, finds_its_home_and_does_not_take_an_old_one_for_it) {
+    servo.set_home(7);
+    power();
+    ASSERT_TRUE(axis.home());
+    EXPECT_EQ(axis.state(), AxisMode::homing);
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), 0, 1e-9);
+    ASSERT_TRUE(axis.move_to(3, 50));
+    ASSERT_TRUE(reaches(AxisMode::standstill));
+    ASSERT_TRUE(axis.home());
+    run(5);
+    EXPECT_EQ(axis.state(), AxisMode::homing) << "bits 12 and 10 are of the homing before";
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_NEAR(servo.position(), 0, 1e-9);
+}
+
+TEST_F(Axis, stops_by_a_homing_that_failed) {
+    servo.faults.fails_homing = true;
+    power();
+    ASSERT_TRUE(axis.home());
+    EXPECT_TRUE(reaches(AxisMode::error_stop));
+    EXPECT_TRUE(until([&] { return servo.state() != DriveState::operation_enabled; })) << "a quick stop";
+    axis.reset();
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+}
+
+TEST_F(Axis, follows_positions_velocities_and_torques_cycle_by_cycle) {
+    power();
+    EXPECT_FALSE(axis.synchronize(OperationMode::profile_position));
+    ASSERT_TRUE(axis.synchronize(OperationMode::cyclic_position));
+    ASSERT_TRUE(until([&] { return axis.follows(); }));
+    EXPECT_EQ(servo.position(), 0) << "no jump";
+    for (int i = 0; i < 1000; ++i) {
+        axis.follow(0.02 * i);
+        cycle();
+    }
+    EXPECT_NEAR(servo.position(), 20, 0.2);
+    axis.follow(std::nan(""));
+    run(50);
+    EXPECT_NEAR(servo.position(), 0.02 * 999, 1e-9) << "what is no number is no set point";
+    ASSERT_TRUE(axis.synchronize(OperationMode::cyclic_velocity));
+    axis.follow(12);
+    EXPECT_TRUE(until([&] { return servo.velocity() == 12; }));
+    ASSERT_TRUE(axis.synchronize(OperationMode::cyclic_torque));
+    axis.follow(-4);
+    run(1000);
+    EXPECT_NEAR(servo.velocity(), 8, 0.1);
+    ASSERT_TRUE(axis.halt());
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_EQ(servo.velocity(), 0);
+    EXPECT_FALSE(axis.follows());
+}
+
+TEST_F(Axis, waits_until_the_drive_shows_its_mode) {
+    power();
+    servo.faults.refuses_mode = true;
+    ASSERT_TRUE(axis.move_at(30));
+    run(1000);
+    EXPECT_EQ(servo.velocity(), 0);
+    servo.faults.refuses_mode = false;
+    EXPECT_TRUE(until([&] { return servo.velocity() == 30; }));
+}
+
+TEST_F(Axis, stops_by_a_fault_and_leaves_it_by_a_reset_alone) {
+    power();
+    ASSERT_TRUE(axis.move_at(30));
+    run(300);
+    ASSERT_TRUE(servo.trip());
+    EXPECT_TRUE(reaches(AxisMode::error_stop));
+    run(1000);
+    EXPECT_EQ(servo.state(), DriveState::fault) << "nobody reset it";
+    EXPECT_FALSE(axis.move_at(30));
+    axis.reset();
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    run(500);
+    EXPECT_EQ(servo.velocity(), 0) << "the motion before is forgotten";
+    EXPECT_TRUE(axis.move_at(30));
+}
+
+TEST_F(Axis, comes_to_rest_when_the_drive_takes_its_power_away) {
+    power();
+    ASSERT_TRUE(axis.move_at(30));
+    run(300);
+    servo.stop_quickly();
+    EXPECT_TRUE(reaches(AxisMode::error_stop)) << "quick stop active is no operation";
+    run(500);
+    EXPECT_NE(servo.state(), DriveState::operation_enabled) << "it is not enabled behind somebody's back";
+    axis.reset();
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    servo.lose_power();
+    EXPECT_TRUE(reaches(AxisMode::error_stop));
+}
+
+TEST_F(Axis, stops_by_a_drive_that_is_not_heard) {
+    power();
+    ASSERT_TRUE(axis.move_at(30));
+    run(100);
+    heard = false;
+    cycle();
+    EXPECT_EQ(axis.state(), AxisMode::error_stop);
+    EXPECT_EQ(last.controlword, controlword::disable_voltage);
+    axis.reset();
+    run(100);
+    EXPECT_EQ(axis.state(), AxisMode::error_stop);
+    heard = true;
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+}
+
+TEST_F(Axis, tells_a_lag_and_a_limit_of_the_drive) {
+    power();
+    ASSERT_TRUE(axis.move_to(5, 50));
+    servo.faults.is_blocked = servo.faults.is_at_limit = true;
+    EXPECT_TRUE(until([&] { return axis.lags(); }));
+    EXPECT_TRUE(axis.is_limited());
+    servo.faults.is_blocked = servo.faults.is_at_limit = false;
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+    EXPECT_FALSE(axis.lags());
+}
+
+} // namespace
+} // namespace tappet::canopen
