@@ -2,6 +2,9 @@
 // their headers, commands of the browser by their table.
 #include "drivers/can/bus.hpp"
 #include "drivers/can/restarter.hpp"
+#include "drivers/canopen/axis.hpp"
+#include "drivers/canopen/eds.hpp"
+#include "drivers/canopen/manager.hpp"
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/instruments/analog.hpp"
 #include "drivers/instruments/encoder.hpp"
@@ -40,6 +43,10 @@ constexpr auto frames = can::signal_map(
     can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                   can::signal("measure", 16, 16).times(0.1).in("mm"))
         .safe_by_silence());
+constexpr canopen::EdsSource eds{"node.eds",
+                                 "[1000]\nDataType=7\nAccessType=ro\n[1017]\nDataType=6\nAccessType=rw\n"};
+constexpr auto nodes = canopen::network(frames, canopen::manager(127),
+                                        canopen::node(9, "node", canopen::dictionary<eds>).heartbeat(100ms));
 constexpr auto cams = cam_table(300_rpm, cam("point", at(0_deg)), cam("window", window(80_deg, 120_deg)));
 constexpr auto lines = gpio::line_map(gpio::sensor("sensor"), gpio::output("output", gpio::safe(false)),
                                       gpio::actuator("actuator", gpio::safe(false)));
@@ -60,6 +67,9 @@ const Described components[] = {
     {"drivers/udp/peer_clock.hpp", "ClockAnswers", "udp::ClockAnswers", component_type<udp::ClockAnswers>},
     {"drivers/udp/peer_clock.hpp", "PeerClock", "udp::PeerClock", component_type<udp::PeerClock>},
     {"drivers/can/restarter.hpp", "Restarter", "can::Restarter", component_type<can::Restarter>},
+    {"drivers/canopen/manager.hpp", "Manager", "canopen::Manager<network>",
+     component_type<canopen::Manager<nodes>>},
+    {"drivers/canopen/axis.hpp", "Axis", "canopen::Axis<\"mm\">", component_type<canopen::Axis<"mm">>},
     {"drivers/modbus/client.hpp", "Client", "modbus::Client<register_map>",
      component_type<modbus::Client<registers>>},
     {"drivers/instruments/encoder.hpp", "Encoder", "instruments::Encoder<\"m\", 16>",

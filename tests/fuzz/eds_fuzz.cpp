@@ -1,0 +1,45 @@
+// Any bytes as an EDS file: it is refused with a sentence that names a line, or its objects are in order and
+// within what their types hold.
+#include "drivers/canopen/eds.hpp"
+
+#include <cstdlib>
+
+namespace {
+
+using namespace tappet::canopen;
+
+void demand(bool holds) {
+    if (!holds) std::abort();
+}
+
+constexpr std::size_t room = 600;
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text{reinterpret_cast<const char*>(data), size};
+    if (detail::eds_room(text) > room) return 0;
+    const detail::EdsReader<room> read{EdsSource{"x.eds", text}};
+    if (!read.fault.empty()) {
+        demand(read.fault.view().starts_with("x.eds:"));
+        demand(read.fault.size() < tappet::Sentence::capacity);
+        return 0;
+    }
+    const Dictionary dictionary{
+        "x.eds", read.product, read.node, read.identity, {read.objects.begin(), read.objects.size()}};
+    for (std::size_t i = 0; i < read.objects.size(); ++i) {
+        const Object& object = read.objects[i];
+        demand(i == 0 || read.objects[i - 1].at < object.at);
+        demand(dictionary.find(object.at) == &object);
+        for (const Number& each : {object.value, object.low, object.high})
+            demand(each.bits == low_bits(each.bits, bits_of(object.type)));
+        demand(!object.value.given || within_limits(object, object.value.of(1), 1));
+        tappet::Sentence name;
+        add_readable(name, object.name.substr(0, 60));
+        for (std::string_view rest = name.view(); !rest.empty();
+             rest.remove_prefix(tappet::utf8_length(rest)))
+            demand(tappet::utf8_length(rest) != 0);
+    }
+    demand(dictionary.find(0x1000) != nullptr);
+    return 0;
+}
