@@ -28,6 +28,7 @@ endif()
 file(WRITE "${TO}"
 "// The file ${PLACE} as a constant; made when it changed.
 #pragma once
+#pragma GCC system_header // a literal may be of any length here
 
 #include \"kernel/base/source_text.hpp\"
 

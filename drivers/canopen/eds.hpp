@@ -1,23 +1,19 @@
 // An object dictionary read from an EDS or DCF file (CiA 306) in a constant expression; a fault in the file
 // is an error of the build that says the file's own line.
 //
-//     tappet_eds(<target> servo.eds)                                       in CMakeLists.txt
-//     #include "<path>/servo.eds.hpp"                                      tappet::eds::servo, the text
-//     canopen::dictionary<eds::servo>                                      what is in it
+//     tappet_file(<target> servo.eds)                                       in CMakeLists.txt
+//     #include "<path>/servo.eds.hpp"                                      tappet::files::servo_eds, the text
+//     canopen::dictionary<files::servo_eds>                                      what is in it
 #pragma once
 
 #include "drivers/canopen/cp1252.hpp"
 #include "drivers/canopen/number_text.hpp"
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/source_text.hpp"
 
 #include <array>
 
 namespace tappet::canopen {
-
-struct EdsSource {
-    std::string_view name{}; ///< as messages call the file
-    std::string_view text{};
-};
 
 namespace detail {
 
@@ -69,7 +65,7 @@ constexpr std::size_t eds_room(std::string_view text) noexcept {
 /// Reads once through the text, and once more for what refers to other sections.
 template <std::size_t N> class EdsReader {
 public:
-    constexpr explicit EdsReader(const EdsSource& source) : source_{source} {
+    constexpr explicit EdsReader(const SourceText& source) : source_{source} {
         for (const auto step :
              {&EdsReader::read_sections, &EdsReader::order, &EdsReader::check_records,
               &EdsReader::read_references, &EdsReader::check_values, &EdsReader::find_identity})
@@ -412,7 +408,7 @@ private:
         }
     }
 
-    EdsSource source_;
+    SourceText source_;
     Bounded<Record, N> records_{};
     std::uint32_t device_line_ = 0;
 };
@@ -433,7 +429,7 @@ template <const auto& Source> struct CheckedDictionary {
 
 } // namespace detail
 
-/// Of a constant EdsSource at namespace scope.
+/// Of a constant SourceText at namespace scope.
 template <const auto& Source>
 inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<Source>::dictionary;
 

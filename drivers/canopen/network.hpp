@@ -2,13 +2,14 @@
 //
 //     inline constexpr auto press_network = canopen::network(press_signals,
 //         canopen::manager(127).sync(10ms),
-//         canopen::node(1, "drive", canopen::dictionary<eds::servo>)
+//         canopen::node(1, "drive", canopen::dictionary<files::servo_eds>)
 //             .heartbeat(100ms)
 //             .pdo("drive", canopen::on_event(5ms), {0x6041, 0x606C})   a frame of the signal map
 //             .pdo("drive_command", {0x6040, 0x60FF})
 //             .write(0x6060, 3));
 #pragma once
 
+#include "drivers/canopen/eds.hpp"
 #include "drivers/canopen/network_steps.hpp"
 
 namespace tappet::canopen {

@@ -220,7 +220,7 @@ constexpr Sentence node_fault(const ManagerRow& manager, const NodeRow& node) no
                         NodeRow::most_parameters,
                         " values to write; keep those in the device"};
     if (node.dictionary.objects.empty())
-        return Sentence{subject, " has no dictionary; name it: canopen::dictionary<eds::..>"};
+        return Sentence{subject, " has no dictionary; name it: canopen::dictionary<files::..>"};
     if (node.dictionary.node != 0 && node.dictionary.node != node.id)
         return Sentence{subject,
                         ": ",

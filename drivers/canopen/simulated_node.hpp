@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/can/frame.hpp"
+#include "drivers/canopen/eds.hpp"
 #include "drivers/canopen/simulated_objects.hpp"
 
 #include <algorithm>

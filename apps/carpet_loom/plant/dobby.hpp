@@ -49,7 +49,7 @@ private:
         node_.send_pdo(0, now, out);
     }
 
-    Node<canopen::dictionary<eds::dobby>> node_;
+    Node<canopen::dictionary<files::dobby_eds>> node_;
     std::uint32_t offered_ = 0;
     std::uint32_t taken_ = 0;
     std::uint16_t offered_pattern_ = 0;

@@ -41,7 +41,7 @@ public:
 private:
     void send_emergency(std::uint16_t code, Time now, Wire& wire) noexcept TAPPET_REALTIME;
 
-    Node<canopen::dictionary<eds::drive>> node_;
+    Node<canopen::dictionary<files::drive_eds>> node_;
     int velocity_per_rpm_;
     canopen::SimulatedDrive drive_;
     std::int32_t target_ = 0;

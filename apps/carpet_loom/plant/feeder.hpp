@@ -51,7 +51,7 @@ public:
 private:
     static constexpr std::uint32_t drum = 20; // windings it holds
 
-    Node<canopen::dictionary<eds::feeder>> node_;
+    Node<canopen::dictionary<files::feeder_eds>> node_;
     std::uint8_t colour_ = 0;
     std::uint32_t per_minute_ = 0;
     std::uint32_t wound_ = 0;

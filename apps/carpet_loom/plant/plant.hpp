@@ -151,8 +151,8 @@ private:
 
     Drive main_;
     Drive let_off_;
-    Node<canopen::dictionary<eds::encoder>> encoder_;
-    Node<canopen::dictionary<eds::load_cell>> load_cell_;
+    Node<canopen::dictionary<files::encoder_eds>> encoder_;
+    Node<canopen::dictionary<files::load_cell_eds>> load_cell_;
     Feeder feeder_;
     Dobby dobby_;
     MainShaft shaft_;

@@ -2,7 +2,7 @@
 // refused: servo.eds:9: DefaultValue 256 does not fit the 8 bits of 6060h:0; correct it or its DataType
 #include "drivers/canopen/eds.hpp"
 
-inline constexpr tappet::canopen::EdsSource servo{"servo.eds", R"([1000]
+inline constexpr tappet::SourceText servo{"servo.eds", R"([1000]
 DataType=0x0007
 AccessType=ro
 DefaultValue=0x00020192

@@ -5,7 +5,7 @@
 
 using namespace tappet;
 
-inline constexpr canopen::EdsSource servo{"servo.eds", R"([1000]
+inline constexpr SourceText servo{"servo.eds", R"([1000]
 DataType=7
 AccessType=ro
 [1017]

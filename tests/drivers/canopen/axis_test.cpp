@@ -33,14 +33,15 @@ constexpr auto servo_signals = can::signal_map(
                   can::signal("torque", 32, 16).as_signed().times(0.1))
         .safe_by_silence());
 
-constexpr auto servo_network = canopen::network(servo_signals, canopen::manager(127).sync(1ms),
-                                                canopen::node(9, "servo", canopen::dictionary<eds::servo>)
-                                                    .heartbeat(20ms)
-                                                    .pdo("status", synchronous(), {0x6041, 0x6061})
-                                                    .pdo("actual", synchronous(), {0x6064, 0x606C})
-                                                    .pdo("control", synchronous(), {0x6040, 0x6060})
-                                                    .pdo("target", synchronous(), {0x607A, 0x60FF})
-                                                    .pdo("profile", synchronous(), {0x6081, 0x6071}));
+constexpr auto servo_network =
+    canopen::network(servo_signals, canopen::manager(127).sync(1ms),
+                     canopen::node(9, "servo", canopen::dictionary<files::servo_eds>)
+                         .heartbeat(20ms)
+                         .pdo("status", synchronous(), {0x6041, 0x6061})
+                         .pdo("actual", synchronous(), {0x6064, 0x606C})
+                         .pdo("control", synchronous(), {0x6040, 0x6060})
+                         .pdo("target", synchronous(), {0x607A, 0x60FF})
+                         .pdo("profile", synchronous(), {0x6081, 0x6071}));
 
 /// Asks what a test asks.
 struct Client {
@@ -170,7 +171,7 @@ struct ServoAxis : testing::Test, WireRig<servo_machine, Bus> {
         return until([&] { return !in_flight(call.state()); }) && call.state() == CommandState::done;
     }
 
-    canopen::SimulatedDevice<canopen::dictionary<eds::servo>> node{9};
+    canopen::SimulatedDevice<canopen::dictionary<files::servo_eds>> node{9};
     canopen::SimulatedServo servo;
     Time next_step{};
     Manager* manager = instance.find<Manager>("network");

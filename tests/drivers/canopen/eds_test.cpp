@@ -1,5 +1,6 @@
 // Object dictionaries from EDS and DCF texts: what they hold, and each way in which they are refused.
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
+#include "drivers/canopen/eds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ const Object& at(const Dictionary& in, Address address) {
 }
 
 TEST(Eds, holds_the_objects_of_a_drive) {
-    const Dictionary& drive = dictionary<eds::drive>;
+    const Dictionary& drive = dictionary<files::drive_eds>;
     EXPECT_EQ(drive.file, "apps/carpet_loom/nodes/drive.eds");
     EXPECT_EQ(drive.product, "Velocity drive");
     EXPECT_EQ(drive.identity, (Identity{0x00020192, 0x3E7, 0x402, 0x00010002}));
@@ -45,7 +46,7 @@ TEST(Eds, holds_the_objects_of_a_drive) {
     "[1018sub0]\nDataType=5\nAccessType=const\nDefaultValue=1\n"                                             \
     "[1018sub1]\nDataType=7\nAccessType=ro\nDefaultValue=16\n"
 
-constexpr EdsSource odd{
+constexpr SourceText odd{
     "odd.dcf", "; a comment\r\n" DEVICE_TYPE IDENTITY "[2000]\r\nParameterName=Gr\xF6\xDF"
                "e \x80\r\nDataType=0x0003\r\nAccessType=RW\r\nDefaultValue=-3\r\n"
                "ParameterValue=017\r\nPDOMapping=1\r\n"
@@ -89,7 +90,7 @@ TEST(Eds, reads_reals_as_the_compiler_does) {
 
 /// The sentence for a text, read as a program would read a file.
 template <std::size_t room = 64> std::string fault_of(const std::string& text) {
-    return std::string{detail::EdsReader<room>{EdsSource{"x.eds", text}}.fault.view()};
+    return std::string{detail::EdsReader<room>{SourceText{"x.eds", text}}.fault.view()};
 }
 std::string with(const std::string& more) { return fault_of(DEVICE_TYPE IDENTITY + more); }
 std::string variable(const std::string& entries) { return with("[2000]\n" + entries + "\n"); }

@@ -23,13 +23,13 @@ inline constexpr auto signals = can::signal_map(
 
 inline constexpr auto nodes = canopen::network(
     signals, canopen::manager(127).heartbeat(100ms).sync(10ms, 20).time(1s),
-    canopen::node(5, "drive", canopen::dictionary<eds::drive>)
+    canopen::node(5, "drive", canopen::dictionary<files::drive_eds>)
         .heartbeat(50ms)
         .pdo("drive", {.type = 254, .event_timer = 5ms}, {0x6041, 0x606C}) // the peer knows no 255
         .pdo("drive_command", {0x6040, 0x60FF})
         .write(0x6060, 3)
         .write(0x605A, 2),
-    canopen::node(7, "encoder", canopen::dictionary<eds::encoder>)
+    canopen::node(7, "encoder", canopen::dictionary<files::encoder_eds>)
         .heartbeat(50ms, 120ms)
         .pdo("encoder", canopen::synchronous(), {0x2100, 0x2101}));
 
@@ -121,8 +121,8 @@ struct NetworkRig : WireRig<network_machine, Bus> {
         return some;
     }
 
-    canopen::SimulatedDevice<canopen::dictionary<eds::drive>> drive{5};
-    canopen::SimulatedDevice<canopen::dictionary<eds::encoder>> encoder{7};
+    canopen::SimulatedDevice<canopen::dictionary<files::drive_eds>> drive{5};
+    canopen::SimulatedDevice<canopen::dictionary<files::encoder_eds>> encoder{7};
     std::vector<canopen::SimulatedNode*> all{&drive, &encoder};
     int starts = 0;
     std::vector<can::Frame> heard;

@@ -11,8 +11,8 @@
 namespace tappet::canopen {
 namespace {
 
-constexpr const Dictionary& drive = dictionary<eds::drive>;
-constexpr const Dictionary& encoder = dictionary<eds::encoder>;
+constexpr const Dictionary& drive = dictionary<files::drive_eds>;
+constexpr const Dictionary& encoder = dictionary<files::encoder_eds>;
 
 constexpr can::Signal statusword = can::signal("statusword", 0, 16);
 constexpr can::Signal velocity = can::signal("velocity", 16, 32).as_signed();
@@ -76,7 +76,7 @@ TEST(NetworkTable, silences_the_pdos_that_nobody_maps) {
 }
 
 TEST(NetworkTable, takes_a_dcf_at_its_word_unless_a_row_says_otherwise) {
-    static constexpr EdsSource source{"own.dcf", R"([1000]
+    static constexpr SourceText source{"own.dcf", R"([1000]
 DataType=7
 AccessType=ro
 DefaultValue=5
@@ -146,7 +146,7 @@ TEST(NetworkTable, refuses_nodes_that_are_not_told_apart_or_not_watched) {
     EXPECT_EQ(fault_of(map, boss.sync(1ms, 241), whole),
               "manager: SYNC counts to 241; the standard allows 2 to 240");
     EXPECT_EQ(of_row(node(5, "drive", Dictionary{}).heartbeat(1s)),
-              "node 5 \"drive\" has no dictionary; name it: canopen::dictionary<eds::..>");
+              "node 5 \"drive\" has no dictionary; name it: canopen::dictionary<files::..>");
 }
 
 TEST(NetworkTable, refuses_pdos_that_the_device_or_the_map_has_not) {

@@ -67,7 +67,7 @@ TEST(PeerClient, reads_and_writes_our_simulated_node) {
             TAPPET_ESCAPE("a test keeps them", frames.push_back(frame));
         }
     } wire;
-    canopen::SimulatedDevice<canopen::dictionary<eds::drive>> drive{5};
+    canopen::SimulatedDevice<canopen::dictionary<files::drive_eds>> drive{5};
     drive.power_on(Time{2ms});
     Peer peer{"client 5"};
     for (std::int64_t ms = 0; ms < 400; ++ms) {
@@ -128,8 +128,8 @@ TEST(PeerEds, reads_the_same_values_out_of_a_file) {
         }
         EXPECT_GT(compared, 15u);
     };
-    compare(canopen::dictionary<eds::drive>, "drive.eds");
-    compare(canopen::dictionary<eds::encoder>, "encoder.eds");
+    compare(canopen::dictionary<files::drive_eds>, "drive.eds");
+    compare(canopen::dictionary<files::encoder_eds>, "encoder.eds");
 }
 
 } // namespace

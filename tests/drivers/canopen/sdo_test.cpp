@@ -10,7 +10,7 @@
 namespace tappet::canopen {
 namespace {
 
-constexpr EdsSource texts{"texts.eds", R"([1000]
+constexpr SourceText texts{"texts.eds", R"([1000]
 DataType=7
 AccessType=ro
 DefaultValue=1

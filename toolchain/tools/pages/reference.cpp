@@ -43,7 +43,7 @@ constexpr auto frames = can::signal_map(
     can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                   can::signal("measure", 16, 16).times(0.1).in("mm"))
         .safe_by_silence());
-constexpr canopen::EdsSource eds{"node.eds",
+constexpr SourceText eds{"node.eds",
                                  "[1000]\nDataType=7\nAccessType=ro\n[1017]\nDataType=6\nAccessType=rw\n"};
 constexpr auto nodes = canopen::network(frames, canopen::manager(127),
                                         canopen::node(9, "node", canopen::dictionary<eds>).heartbeat(100ms));
