@@ -35,7 +35,7 @@ template <const auto& map, const auto& services> struct AllIdentifiers {
     static constexpr auto receive = joined<map.received_count>(map.receives(), services.receive);
     static constexpr auto transmit = joined<map.transmitted_count>(map.transmits(), services.transmit);
     static constexpr auto safe = joined<map.safe_count>(map.safe_frames(), services.safe);
-    static constexpr Identifiers value{receive, transmit, safe};
+    static constexpr Identifiers value{receive, transmit, safe, map.frames, map.signals};
 };
 
 /// A port that is there when there are services.

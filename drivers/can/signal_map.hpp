@@ -100,7 +100,9 @@ constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Rate
 /// What one end of a bus takes and sends, and what it sends last.
 struct Identifiers {
     std::span<const Identifier> receive{}, transmit{};
-    std::span<const Frame> safe{}; ///< see SignalMap::safe_frames
+    std::span<const Frame> safe{};      ///< see SignalMap::safe_frames
+    std::span<const FrameRow> frames{}; ///< of a machine's end, for tools
+    std::span<const Signal> signals{};
 };
 
 /// Of all multiplexed frames of a map together, beyond one frame each.

@@ -70,7 +70,7 @@ const std::vector<Row> house{
 
     {"toolchain",         {"kernel/base"}},
     {"toolchain/machine", {"board", "drivers/plant", "toolchain/tools/chart"}},
-    {"toolchain/tools/chart", {"kernel/machine", "toolchain"}},
+    {"toolchain/tools/chart", {"kernel/machine", "toolchain", "drivers/can"}},
     {"toolchain/tools/bench", {}},
     {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},
     {"toolchain/tools/front", {"toolchain", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp", "toolchain/tools/image/options.hpp"}},

@@ -1,5 +1,7 @@
 // DBC files and frames of fixed seeds: what our reader and decoder make of them, beside canmatrix, to the
 // bit.
+#include "apps/carpet_loom/maps.hpp"
+#include "drivers/can/dbc/writer.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "tests/drivers/can/dbc_generator.hpp"
 #include "tests/drivers/can/dbc_on_host.hpp"
@@ -51,24 +53,56 @@ std::string order_of(const Frame& frame) {
     return std::to_string(frame.id) + (frame.extended ? " 1 " : " 0 ");
 }
 
-/// A file, and all that its node "us" takes; what that sends is silent when the machine is gone.
+/// A file, and all that its node takes; what that sends is silent when the machine is gone.
 struct Taken {
-    DbcGenerator generator;
-    std::string text;
-    std::vector<FrameRow> rows;
-    std::unique_ptr<DbcMap> read;
+    std::string text, node;
+    std::vector<std::string> own{};
+    std::vector<FrameRow> rows{};
+    std::unique_ptr<DbcMap> read{};
 
-    explicit Taken(std::uint64_t seed) : generator{seed}, text{generator.file()} {
-        for (const std::string& own : generator.own) {
-            FrameRow& row = rows.emplace_back();
-            row.name = own;
-            row.direction = Direction::transmit;
-            row.every = as_in_file.every;
-            row.silence_is_safe = true;
-        }
-        read = std::make_unique<DbcMap>(text, NodeView{"us", rows, {}});
+    explicit Taken(std::uint64_t seed) : node{"us"} {
+        DbcGenerator generator{seed};
+        text = generator.file();
+        own = generator.own;
+        for (const std::string& each : own) add(each, Direction::transmit, as_in_file);
+        read = std::make_unique<DbcMap>(text, NodeView{node, rows, {}});
+    }
+    /// What we wrote of a map.
+    template <std::size_t F, std::size_t S>
+    explicit Taken(const SignalMap<F, S>& map)
+        : text{dbc::to_dbc("the-machine", map.frames, map.signals)}, node{"the_machine"} {
+        for (const FrameRow& row : map.frames)
+            add(row.name, row.direction, row.every > Duration::zero() ? as_in_file : on_demand(row.apart));
+        read = std::make_unique<DbcMap>(text, NodeView{node, rows, {}});
+    }
+
+private:
+    void add(std::string_view name, Direction direction, const Rate& rate) {
+        FrameRow& row = rows.emplace_back();
+        row.name = name;
+        row.direction = direction;
+        row.every = rate.every;
+        row.apart = rate.apart;
+        row.silence_is_safe = direction == Direction::transmit;
     }
 };
+
+/// Multiplexed by hand, with names and both kinds of reals.
+constexpr ValueName page_names[] = {{0, "läuft"}, {3, "say \"stop\""}};
+constexpr auto by_hand =
+    signal_map(receive(extended(0x18FF0102), "pages", bytes(8), every(20ms),
+                       signal("page", 0, 4).named(page_names), signal("inner", 4, 4).when("page", 3),
+                       signal("real", 8, 32).as_float().in("l/min").when("page", 0, between(5, 6)),
+                       signal("far", 15, 40)
+                           .big_endian()
+                           .as_signed()
+                           .times(-0.1)
+                           .plus(3)
+                           .range(-7.5, 9)
+                           .when("inner", 1, 4)),
+               transmit(standard(2), "double", bytes(8), on_demand(5ms),
+                        signal("value", 0, 64).as_float().in("N m").safe(0)));
+TAPPET_ACCEPTED(by_hand.fault);
 
 /// One run of canmatrix over all files and frames; its answers, line by line.
 struct Asked {
@@ -81,12 +115,14 @@ struct Asked {
             std::filesystem::path{testing::TempDir()} / ("dbc_oracle." + std::to_string(getpid()));
         std::filesystem::create_directories(folder);
         std::ofstream orders{folder / "orders"};
-        for (std::size_t i = 0; i < files; ++i) {
+        for (std::size_t i = 0; i < files; ++i) taken.push_back(std::make_unique<Taken>(i + 1));
+        taken.push_back(std::make_unique<Taken>(by_hand));
+        taken.push_back(std::make_unique<Taken>(carpet::can_signals));
+        for (std::size_t i = 0; i < taken.size(); ++i) {
             const std::string path = (folder / (std::to_string(i) + ".dbc")).string();
-            taken.push_back(std::make_unique<Taken>(i + 1));
-            std::ofstream{path, std::ios::binary} << taken.back()->text;
+            std::ofstream{path, std::ios::binary} << taken[i]->text;
             orders << "file " << path << '\n';
-            ask(orders, *taken.back(), i);
+            ask(orders, *taken[i], i);
         }
         orders.close();
         std::system(("/usr/bin/python3 -W ignore " TAPPET_DBC_ORACLE " <" + (folder / "orders").string() +
@@ -150,7 +186,7 @@ public:
         const auto next = [&]() -> std::string {
             return line < asked().answers.size() ? asked().answers[line++] : "none";
         };
-        for (std::size_t i = 0; i < files; ++i) {
+        for (std::size_t i = 0; i < asked().taken.size(); ++i) {
             const DbcMap& read = *asked().taken[i]->read;
             Map map = read.map;
             spoil(map);
@@ -175,6 +211,7 @@ private:
     }
 
     void compare_file(const Map& map, const dbc::Sizes& sizes, const std::function<std::string()>& next) {
+        const std::string& us = asked().taken[file_]->node;
         std::size_t frames = 0, taken = 0;
         std::size_t f = no_such;
         std::string text = next();
@@ -192,13 +229,13 @@ private:
                 same(parts[4], "bytes", std::to_string(row.length), parts[3]);
                 same(parts[4], "cycle time", std::to_string(row.every / 1ms), parts[5]);
                 const auto senders = parts_of(parts[6], ',');
-                const bool is_ours = std::ranges::find(senders, "us") != senders.end();
+                const bool is_ours = std::ranges::find(senders, us) != senders.end();
                 same(parts[4], "sent", row.direction == Direction::transmit ? "1" : "0", is_ours ? "1" : "0");
             } else if (f != no_such) {
                 const std::size_t s = map.signal(std::string{map.frames[f].name} + "." + parts[1]);
                 const auto receivers = parts_of(parts[12], ',');
                 const bool named = map.frames[f].direction == Direction::transmit ||
-                                   std::ranges::find(receivers, "us") != receivers.end();
+                                   std::ranges::find(receivers, us) != receivers.end();
                 if (s == no_such) {
                     if (named) differ(parts[1], " is missing");
                     continue;
@@ -308,6 +345,44 @@ void expect_found(const std::function<bool(const Signal&)>& is_meant,
     }};
     EXPECT_GT(changed, 0u);
     EXPECT_GE(2 * comparison.differences.size(), changed) << "not each frame shows each of them";
+}
+
+/// What was written and read back is the map that was written, so canmatrix agrees with that.
+template <std::size_t F, std::size_t S> void expect_back(const SignalMap<F, S>& map, const Taken& taken) {
+    const auto& back = taken.read->map;
+    ASSERT_EQ(back.fault.view(), "");
+    ASSERT_EQ(taken.read->sizes.frames, F);
+    ASSERT_EQ(taken.read->sizes.signals, S);
+    for (std::size_t f = 0; f < F; ++f) {
+        EXPECT_EQ(back.frames[f].identifier, map.frames[f].identifier);
+        EXPECT_EQ(back.frames[f].name, map.frames[f].name);
+        EXPECT_EQ(back.frames[f].direction, map.frames[f].direction);
+        EXPECT_EQ(back.frames[f].length, map.frames[f].length);
+        EXPECT_EQ(back.frames[f].every, map.frames[f].every);
+    }
+    for (std::size_t s = 0; s < S; ++s) {
+        const Signal& ours = map.signals[s];
+        const Signal& read = back.signals[back.signal(std::string{map.frames[map.frame_of[s]].name} + "." +
+                                                      std::string{ours.name})];
+        EXPECT_EQ(read.start, ours.start);
+        EXPECT_EQ(read.bits, ours.bits);
+        EXPECT_EQ(read.order, ours.order);
+        EXPECT_EQ(read.kind, ours.kind);
+        EXPECT_EQ(read.factor, ours.factor);
+        EXPECT_EQ(read.offset, ours.offset);
+        EXPECT_EQ(read.unit, ours.unit);
+        EXPECT_EQ(read.has_range, ours.has_range);
+        EXPECT_EQ(read.least, ours.least);
+        EXPECT_EQ(read.most, ours.most);
+        EXPECT_EQ(read.multiplexor, ours.multiplexor);
+        EXPECT_EQ(read.selections.size(), ours.selections.size());
+        ASSERT_EQ(read.names.size(), ours.names.size());
+        for (std::size_t i = 0; i < ours.names.size(); ++i) EXPECT_EQ(read.names[i].name, ours.names[i].name);
+    }
+}
+TEST(DbcOracle, what_is_written_comes_back) {
+    expect_back(by_hand, *asked().taken[files]);
+    expect_back(carpet::can_signals, *asked().taken[files + 1]);
 }
 
 TEST(DbcOracle, finds_what_is_planted_in_ours) {

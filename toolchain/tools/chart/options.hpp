@@ -16,6 +16,7 @@ inline constexpr std::array chart_options{
 inline constexpr std::array chart_words{
     Option{"svg", "", "the table, each state machine and each program, drawn by the tools dot and plantuml"},
     Option{"bus", "", "what each bus carries, with its proven response times"},
+    Option{"dbc", "", "what stands on each CAN bus, as a DBC file"},
     Option{"dot", "", "the table as text for dot"},
     Option{"plantuml", "", "a UML state chart of each state machine and each program, as text for plantuml"},
     Option{"scxml", "", "each state machine"},

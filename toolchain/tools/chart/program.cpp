@@ -2,6 +2,7 @@
 // and the verification of the models.
 #include "toolchain/tools/chart/program.hpp"
 
+#include "drivers/can/dbc/writer.hpp"
 #include "toolchain/tools/chart/bus.hpp"
 #include "toolchain/tools/chart/options.hpp"
 #include "toolchain/tools/chart/plantuml.hpp"
@@ -71,6 +72,7 @@ public:
     bool make(std::string_view what) {
         if (what == "svg") return draw_all();
         if (what == "bus") return draw_buses();
+        if (what == "dbc") return write_buses();
         if (what == "dot") return write(stem_ + ".dot", to_dot(machine_));
         if (what == "plantuml") return !write_pictures().empty() || all_.charts.empty();
         bool good = true;
@@ -105,6 +107,18 @@ private:
             if (row.type->device_traffic.rows == 0) continue;
             good =
                 write(stem_ + "." + identifier(row.name) + ".svg", draw_bus(machine_, c, bit_rate_)) && good;
+        }
+        return good;
+    }
+
+    bool write_buses() {
+        bool good = true;
+        for (const ComponentRow& row : machine_.table.components) {
+            if (row.type->device_kind != "can") continue;
+            const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
+            good = write(stem_ + "." + identifier(row.name) + ".dbc",
+                         can::dbc::to_dbc(machine_.table.name, map.frames, map.signals)) &&
+                   good;
         }
         return good;
     }
