@@ -6,6 +6,7 @@
 #include "board/box/disk.hpp"
 #include "board/box/ears.hpp"
 #include "board/box/hardware.hpp"
+#include "board/box/layouts.hpp"
 #include "board/box/renewal.hpp"
 #include "board/box/service.hpp"
 #include "board/box/slot_check.hpp"
@@ -46,9 +47,6 @@ constexpr int starts_anew = 1;
 constexpr std::size_t longest_last_words = 240;
 constexpr double tell_trial_s = 5.0; // for who stands there to read why
 
-/// Where the data partition is mounted: settings, learned values, black boxes, what was said.
-constexpr const char* data_folder = "/var/lib/tappet";
-const std::string layout_file = std::string{data_folder} + "/layout";
 const std::string log_file = std::string{data_folder} + "/box.log";
 constexpr std::size_t told_of_log = 4000;
 constexpr std::uintmax_t least_free_bytes = 256 * 1024;
@@ -175,20 +173,9 @@ private:
         return {};
     }
 
-    /// Each layout of properties has its own, so that a version that knows fewer loses none of the others'.
-    static std::string properties_folder(const std::string& layout) {
-        return std::string{data_folder} + "/properties-" + layout;
-    }
-
-    /// The layout that was in use last, and proven. A trial that fails has changed nothing of it.
     void note_layout() {
-        const std::string layout = facts_.one("layout");
-        if (slots_.on_trial() || init::read_line(layout_file) == layout) return;
-        const std::string part = layout_file + ".new";
-        if (const auto kept = write_through(part, O_CREAT | O_TRUNC, layout + "\n"); !kept)
-            voice_.say(kept.error());
-        else if (::rename(part.c_str(), layout_file.c_str()) != 0)
-            voice_.say(init::failed("rename " + part).error());
+        if (slots_.on_trial()) return;
+        if (const auto kept = box::note_layout(facts_.one("layout")); !kept) voice_.say(kept.error());
     }
 
     void start_service() {
@@ -206,12 +193,7 @@ private:
         if (facts_.one("service").empty() || !has_all_) return;
         std::string text = "machine " + facts_.one("machine") + ", board " + facts_.one("board") + ", " +
                            (is_locked_down_ ? "Secure Boot" : "no Secure Boot") + "\n";
-        for (const Slot* slot : {&slots_.running(), &slots_.other()}) {
-            const Manifest manifest = manifest_of(slot->header);
-            text += std::string{slot == &slots_.running() ? "runs" : "other"} + ": version " +
-                    (manifest.version == 0 ? "unknown" : std::to_string(manifest.version)) + ", revision " +
-                    std::to_string(slot->state.revision) + ", " + standing_of(*slot) + "\n";
-        }
+        text += "runs: " + summary_of(slots_.running()) + "\nother: " + summary_of(slots_.other()) + "\n";
         text += std::string{"firmware: "} +
                 (firmware_ == no_firmware ? "does not run"
                  : is_armed_              ? "is armed"
@@ -245,7 +227,7 @@ private:
         start_s_ = uptime_s();
         outputs_are_safe_ = false;
         is_armed_ = false;
-        const std::string layout = facts_.one("layout"), last = init::read_line(layout_file);
+        const std::string layout = facts_.one("layout"), last = last_layout();
         std::vector<std::string> words{"/bin/firmware", "--properties", properties_folder(layout),
                                        "--black-box", data_folder};
         if (!last.empty() && last != layout)

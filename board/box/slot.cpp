@@ -3,6 +3,7 @@
 #include "board/box/slot.hpp"
 
 #include "board/box/facts.hpp"
+#include "board/box/update.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -48,6 +49,12 @@ std::string standing_of(const Slot& slot) {
     if (slot.record.standing == Standing::proven && slot.state.state != init::SlotState::failed)
         return std::string{init::name_of(init::SlotState::good)};
     return std::string{init::name_of(slot.state.state)};
+}
+
+std::string summary_of(const Slot& slot) {
+    const std::uint32_t version = manifest_of(slot.header).version;
+    return "version " + (version == 0 ? "unknown" : std::to_string(version)) + ", revision " +
+           std::to_string(slot.state.revision) + ", " + standing_of(slot);
 }
 
 bool is_fallback(const Slot& running, const Slot& other) {

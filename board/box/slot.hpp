@@ -40,6 +40,8 @@ struct Slot {
 
 /// For who asks.
 [[nodiscard]] std::string standing_of(const Slot& slot);
+/// "version 2, revision 3, good"
+[[nodiscard]] std::string summary_of(const Slot& slot);
 
 /// Whether the loader runs `running` because a start of the other one, which had proven itself, did not come
 /// to its end. A slot that runs as the newest is marked by the loader; one to which it falls back is not.

@@ -70,6 +70,8 @@ TEST(Standings, are_told_with_their_reason) {
     EXPECT_EQ(standing_of(slot(SlotState::installed, Standing::proven)), "good")
         << "what the loader does is its own";
     EXPECT_EQ(standing_of(slot(SlotState::testing, Standing::untried)), "on trial");
+    EXPECT_EQ(summary_of(slot(SlotState::testing, Standing::untried)),
+              "version unknown, revision 3, on trial");
     EXPECT_EQ(standing_of(slot(SlotState::failed, Standing::untried)), "failed");
     EXPECT_THAT(standing_of(slot(SlotState::failed, Standing::harmed)),
                 HasSubstr("given up: its kernel is not what"));
