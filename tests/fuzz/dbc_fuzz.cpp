@@ -1,0 +1,45 @@
+// Any bytes as a DBC file: the reader refuses with a sentence that has a line, or gives a map whose frames
+// come back as they were decoded; it never reads outside its text and never ends.
+#include "drivers/can/signal_store.hpp"
+#include "tests/drivers/can/dbc_on_host.hpp"
+
+#include <cstdlib>
+
+namespace {
+
+using namespace tappet::can;
+
+constexpr auto us = node("us");
+
+void demand(bool held) {
+    if (!held) std::abort();
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static_assert(us.frames.empty());
+    const DbcMap read{{reinterpret_cast<const char*>(data), size}, us.view()};
+    if (!read.map.fault.empty()) {
+        demand(read.map.fault.view().starts_with("t.dbc:") ||
+               read.map.fault.view() == "too large for this test");
+        return 0;
+    }
+    for (std::size_t f = 0; f < read.sizes.frames; ++f) {
+        SignalStore store{read.map};
+        Frame frame;
+        frame.id = read.map.frames[f].identifier.id;
+        frame.extended = read.map.frames[f].identifier.extended;
+        frame.length = read.map.frames[f].length;
+        frame.data.fill(0xA5);
+        std::size_t which = no_such;
+        demand(store.decode(frame, which) == Decoded::yes && which == f);
+        const Frame again = store.encode(f, {});
+        SignalStore second{read.map};
+        demand(second.decode(again) == Decoded::yes);
+        for (std::size_t s = read.map.frames[f].first;
+             s < read.map.frames[f].first + read.map.frames[f].signals; ++s)
+            demand(store.integer(s) == second.integer(s));
+    }
+    return 0;
+}
