@@ -38,17 +38,18 @@ struct Bus {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t signal_count = map.signals.size();
     static constexpr std::size_t frame_count = map.frames.size();
-    static_assert(map.transmitted_count <= TransmitQueue::capacity,
+    static_assert(AllFrames<map, protocol>::transmit.size() <= TransmitQueue::capacity,
                   "what is sent at one time fits the queue");
     static constexpr std::string_view device_kind = "can";
-    static constexpr Identifiers device_map = AllIdentifiers<map, protocol>::value;
+    static constexpr Identifiers device_map = AllFrames<map, protocol>::value;
     static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
-        return bus_traffic(map, use, into);
+        return bus_traffic(AllFrames<map, protocol>::traffic, use, into);
     }
     static Duration longest_seen(const void* bus, std::string_view frame) {
         return static_cast<const Bus*>(bus)->longest_response(frame);
     }
-    static constexpr DeviceTraffic device_traffic{frame_count, &analyse_traffic, &longest_seen};
+    static constexpr DeviceTraffic device_traffic{AllFrames<map, protocol>::traffic.size(), &analyse_traffic,
+                                                  &longest_seen};
     /// Frames taken in one cycle; more wait for the next one, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
     static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through
@@ -144,8 +145,9 @@ struct Bus {
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
     /// Of a frame that is sent: from the making of its contents until it was confirmed.
     [[nodiscard]] Duration longest_response(std::string_view frame) const noexcept {
-        const std::size_t f = map.frame(frame);
-        return f == no_such ? Duration::zero() : device_->longest_response(map.frames[f].identifier);
+        for (const FrameRow& row : AllFrames<map, protocol>::traffic)
+            if (row.name == frame) return device_->longest_response(row.identifier);
+        return Duration::zero();
     }
 
     static constexpr auto interface() {

@@ -49,9 +49,10 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
 
 } // namespace detail
 
-/// Of a map without a fault.
-template <std::size_t F, std::size_t S>
-constexpr Sentence bus_traffic(const SignalMap<F, S>& map, const DeviceUse& use, std::span<TrafficRow> rows) {
+/// Of the frames of a map without a fault, and of what else crosses its bus.
+template <std::size_t F>
+constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const DeviceUse& use,
+                               std::span<TrafficRow> rows) {
     if (F > BusAnalysis::most_frames)
         return Sentence{"its map has ", F, " frames, more than ", BusAnalysis::most_frames,
                         " that the analysis takes; make it two buses"};
@@ -60,13 +61,13 @@ constexpr Sentence bus_traffic(const SignalMap<F, S>& map, const DeviceUse& use,
     std::array<FrameTiming, F> frames{};
     const auto rank = [&](std::size_t f) {
         return arbitration(
-            Frame{.id = map.frames[f].identifier.id, .extended = map.frames[f].identifier.extended});
+            Frame{.id = crossing[f].identifier.id, .extended = crossing[f].identifier.extended});
     };
     for (std::size_t f = 0; f < F; ++f) by_rank[f] = f;
     std::ranges::sort(by_rank, {}, rank);
     std::int64_t load_ppm = 0;
     for (std::size_t i = 0; i < F; ++i) {
-        const FrameRow& row = map.frames[by_rank[i]];
+        const FrameRow& row = crossing[by_rank[i]];
         const bool own = row.direction == Direction::transmit;
         const std::int64_t apart = row.apart.count();
         frames[i] = {frame_time_ns(Format::classical, row.identifier.extended, row.length,
@@ -87,7 +88,7 @@ constexpr Sentence bus_traffic(const SignalMap<F, S>& map, const DeviceUse& use,
                            use.errors_every.count()}};
     Sentence fault;
     for (std::size_t i = 0; i < F; ++i) {
-        const FrameRow& row = map.frames[by_rank[i]];
+        const FrameRow& row = crossing[by_rank[i]];
         const FrameResponse found = bus.of(i);
         if (i < rows.size())
             rows[i] = {row.name,
@@ -97,7 +98,7 @@ constexpr Sentence bus_traffic(const SignalMap<F, S>& map, const DeviceUse& use,
                        Duration{frames[i].deadline_ns},
                        found.response.bounded ? Duration{found.response.worst_ns} : Duration::max()};
         if (!fault.empty() || found.response.within(frames[i].deadline_ns)) continue;
-        const std::string_view of = map.frames[by_rank[found.of]].name;
+        const std::string_view of = crossing[by_rank[found.of]].name;
         if (!found.response.bounded && found.largest_ns > 0)
             fault = Sentence{"frame \"",
                              row.name,

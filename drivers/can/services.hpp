@@ -8,34 +8,60 @@
 
 namespace tappet::can {
 
-/// The identifiers that a protocol keeps for itself, and the frames that make its nodes safe when the
-/// machine's process is no more.
-template <std::size_t R, std::size_t T, std::size_t S> struct Services {
-    std::array<Identifier, R> receive{};
-    std::array<Identifier, T> transmit{};
+/// The frames that a protocol keeps for itself, and those that make its nodes safe when the machine's process
+/// is no more. A row without a rate is no part of what the bus is proven for: it comes after a fault only.
+template <std::size_t N, std::size_t S> struct Services {
+    std::array<FrameRow, N> frames{};
     std::array<Frame, S> safe{};
-    static constexpr bool any = R + T + S != 0;
+    static constexpr bool any = N + S != 0;
 
     [[nodiscard]] constexpr bool takes(const Frame& frame) const noexcept TAPPET_REALTIME {
-        for (const Identifier& one : receive)
-            if (one.id == frame.id && one.extended == frame.extended) return !frame.remote;
+        for (const FrameRow& row : frames)
+            if (row.direction == Direction::receive && row.identifier == Identifier{frame.id, frame.extended})
+                return !frame.remote;
         return false;
     }
 };
-inline constexpr Services<0, 0, 0> no_services{};
+inline constexpr Services<0, 0> no_services{};
 
 /// What one end of the bus takes and sends, of a map and of services together.
-template <const auto& map, const auto& services> struct AllIdentifiers {
+template <const auto& map, const auto& services> struct AllFrames {
     template <std::size_t N, class T, std::size_t M>
     static constexpr auto joined(std::span<const T> first, const std::array<T, M>& second) {
         std::array<T, N + M> all{};
         std::copy(second.begin(), second.end(), std::copy(first.begin(), first.end(), all.begin()));
         return all;
     }
-    static constexpr auto receive = joined<map.received_count>(map.receives(), services.receive);
-    static constexpr auto transmit = joined<map.transmitted_count>(map.transmits(), services.transmit);
+    template <std::size_t N, class Wanted> static constexpr auto chosen(const Wanted& is_wanted) {
+        std::array<FrameRow, N> some{};
+        std::size_t n = 0;
+        for (const FrameRow& row : services.frames)
+            if (is_wanted(row)) some[n++] = row;
+        return some;
+    }
+    template <std::size_t N> static constexpr auto identifiers(Direction direction) {
+        std::array<Identifier, N> some{};
+        std::size_t n = 0;
+        for (const FrameRow& row : services.frames)
+            if (row.direction == direction) some[n++] = row.identifier;
+        return some;
+    }
+    static constexpr std::size_t count(Direction direction) {
+        return static_cast<std::size_t>(std::ranges::count(services.frames, direction, &FrameRow::direction));
+    }
+    static constexpr bool has_rate(const FrameRow& row) { return row.apart > Duration::zero(); }
+    static constexpr auto rated =
+        static_cast<std::size_t>(std::ranges::count_if(services.frames, &AllFrames::has_rate));
+
+    static constexpr auto receive = joined<map.received_count>(
+        map.receives(), identifiers<count(Direction::receive)>(Direction::receive));
+    static constexpr auto transmit = joined<map.transmitted_count>(
+        map.transmits(), identifiers<count(Direction::transmit)>(Direction::transmit));
     static constexpr auto safe = joined<map.safe_count>(map.safe_frames(), services.safe);
     static constexpr Identifiers value{receive, transmit, safe, map.frames, map.signals};
+    /// What the bus is proven for.
+    static constexpr auto traffic =
+        joined<map.frames.size()>(std::span<const FrameRow>{map.frames}, chosen<rated>(&AllFrames::has_rate));
 };
 
 /// A port that is there when there are services.

@@ -3,6 +3,7 @@
 
 #include "drivers/can/services.hpp"
 #include "drivers/canopen/network_rows.hpp"
+#include "kernel/component/facet_name.hpp"
 
 namespace tappet::canopen {
 
@@ -21,25 +22,66 @@ constexpr can::Frame heartbeat_frame(std::uint8_t node, NmtState state) noexcept
     return frame;
 }
 
+/// The least time between two SDO requests to one node, and between two NMT commands: the manager keeps it,
+/// and the bus is proven for it.
+inline constexpr Duration requests_apart = 5ms;
+inline constexpr Duration commands_apart = 10ms;
+
+namespace detail {
+
+/// "NODE.heartbeat" and the like, as charts and summaries name the services' frames.
+template <const auto& map> struct ServiceNames {
+    static constexpr std::array<std::string_view, 4> kinds{".emergency", ".sdo_answer", ".heartbeat",
+                                                           ".sdo_request"};
+    static constexpr auto names = [] {
+        std::array<FacetName, kinds.size() * map.nodes.size()> all{};
+        for (std::size_t n = 0; n < map.nodes.size(); ++n)
+            for (std::size_t k = 0; k < kinds.size(); ++k)
+                all[kinds.size() * n + k] = {map.nodes[n].name, kinds[k]};
+        return all;
+    }();
+};
+
+} // namespace detail
+
 /// For can::Bus<signals, frames<network>>. When the machine's process is no more, the nodes leave their
-/// operational state.
+/// operational state. An emergency message has no rate: it comes after a fault, and the bus is not proven for
+/// what follows one.
 template <const auto& map>
 inline constexpr auto frames = [] {
     constexpr std::size_t n = map.nodes.size();
-    constexpr bool beats = map.manager.beats != Duration{},
-                   synchronises = map.manager.sync_every != Duration{},
-                   tells_time = map.manager.time_every != Duration{};
-    can::Services<3 * n, n + 1 + (beats ? 1 : 0) + (synchronises ? 1 : 0) + (tells_time ? 1 : 0), 1> all;
-    std::size_t taken = 0, sent = 0;
-    for (const NodeRow& node : map.nodes) {
-        for (const std::uint32_t base : {cob::emergency, cob::sdo_answer, cob::heartbeat})
-            all.receive[taken++] = can::standard(base + node.id);
-        all.transmit[sent++] = can::standard(cob::sdo_request + node.id);
+    constexpr ManagerRow manager = map.manager;
+    constexpr bool beats = manager.beats != Duration{}, synchronises = manager.sync_every != Duration{},
+                   tells_time = manager.time_every != Duration{};
+    can::Services<4 * n + 1 + (beats ? 1 : 0) + (synchronises ? 1 : 0) + (tells_time ? 1 : 0), 1> all;
+    std::size_t used = 0;
+    // What is sent by the manager is on no grid of the bus's own: it has a rate, and no period there.
+    const auto add = [&](std::uint32_t id, std::string_view name, can::Direction direction,
+                         std::uint8_t length, Duration every, Duration apart) {
+        can::FrameRow& row = all.frames[used++];
+        row.identifier = can::standard(id);
+        row.name = name;
+        row.direction = direction;
+        row.length = length;
+        row.every = every;
+        row.apart = apart;
+    };
+    using enum can::Direction;
+    for (std::size_t i = 0; i < n; ++i) {
+        const NodeRow& node = map.nodes[i];
+        const auto name = [&](std::size_t kind) {
+            return detail::ServiceNames<map>::names[4 * i + kind].view();
+        };
+        add(cob::emergency + node.id, name(0), receive, 8, {}, {});
+        add(cob::sdo_answer + node.id, name(1), receive, 8, {}, requests_apart);
+        add(cob::heartbeat + node.id, name(2), receive, 1, node.beats, node.beats);
+        add(cob::sdo_request + node.id, name(3), transmit, 8, {}, requests_apart);
     }
-    all.transmit[sent++] = can::standard(cob::nmt);
-    if (beats) all.transmit[sent++] = can::standard(cob::heartbeat + map.manager.id);
-    if (synchronises) all.transmit[sent++] = can::standard(cob::sync);
-    if (tells_time) all.transmit[sent++] = can::standard(cob::time);
+    add(cob::nmt, "nmt", transmit, 2, {}, commands_apart);
+    if (beats) add(cob::heartbeat + manager.id, "manager.heartbeat", transmit, 1, {}, manager.beats);
+    if (synchronises)
+        add(cob::sync, "sync", transmit, manager.sync_overflow != 0 ? 1 : 0, {}, manager.sync_every);
+    if (tells_time) add(cob::time, "time", transmit, 6, {}, manager.time_every);
     all.safe[0] = nmt_frame(NmtCommand::enter_pre_operational, 0);
     return all;
 }();

@@ -55,13 +55,14 @@ template <const auto& map> struct Manager {
             watches_[i].start(nodes[i], steps_of(i), map.first_step[i], cycle.now);
             error_[i].write(errors[i], 0);
         }
-        next_beat_ = next_sync_ = next_time_ = cycle.now;
+        next_sync_ = next_time_ = cycle.now;
+        next_beat_ = cycle.now + map.manager.beats; // after the boot-up message
         counter_ = 0;
         emergencies_.clear();
         told_ = NodeTrouble{.step = no_step};
         if constexpr (map.manager.beats != Duration{})
             send(heartbeat_frame(map.manager.id, NmtState::boot_up), cycle.now);
-        send(nmt_frame(NmtCommand::reset_communication, 0), cycle.now);
+        send_command(NmtCommand::reset_communication, 0, cycle.now);
         tell();
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { operational_.write(operational, false); }
@@ -72,8 +73,8 @@ template <const auto& map> struct Manager {
         for (int n = 0; n < max_frames_per_cycle && received.pop(frame); ++n) take(frame, cycle.now);
         for (std::size_t i = 0; i < node_count; ++i) {
             watches_[i].tick(cycle.now);
-            if (NmtCommand command{}; watches_[i].next_command(command))
-                send(nmt_frame(command, nodes[i].id), cycle.now);
+            if (NmtCommand command{}; cycle.now >= may_command_ && watches_[i].next_command(command))
+                send_command(command, nodes[i].id, cycle.now);
         }
         send_requests(cycle.now);
         tell();
@@ -169,6 +170,11 @@ private:
         if (!to_send.push(frame)) ++lost_;
     }
 
+    void send_command(NmtCommand command, std::uint8_t node, Time now) noexcept TAPPET_REALTIME {
+        send(nmt_frame(command, node), now);
+        may_command_ = now + commands_apart;
+    }
+
     void take(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
         const std::uint32_t service = frame.id & ~std::uint32_t{most_nodes};
         const std::uint8_t length = service == cob::heartbeat ? 1 : 8;
@@ -219,7 +225,8 @@ private:
             if (is_due(next_beat_, row.beats, now)) send(heartbeat_frame(row.id, NmtState::operational), now);
         if constexpr (row.time_every != Duration{})
             if (is_due(next_time_, row.time_every, now)) send_time(now);
-        if (to_reset_ != 0) send(nmt_frame(NmtCommand::reset_node, to_reset_), now);
+        if (to_reset_ == 0 || now < may_command_) return;
+        send_command(NmtCommand::reset_node, to_reset_, now);
         to_reset_ = 0;
     }
     /// TIME_OF_DAY: milliseconds of the day in 28 bits, days since 1984 in 16. Nobody knows the time: none.
@@ -293,7 +300,7 @@ private:
     std::uint64_t malformed_ = 0;
     std::uint8_t counter_ = 0;
     std::uint8_t to_reset_ = 0;
-    Time next_beat_{}, next_sync_{}, next_time_{};
+    Time next_beat_{}, next_sync_{}, next_time_{}, may_command_{};
 };
 
 } // namespace tappet::canopen

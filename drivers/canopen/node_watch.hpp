@@ -130,9 +130,11 @@ public:
         command = command_.what;
         return true;
     }
-    [[nodiscard]] bool has_request() const noexcept TAPPET_REALTIME { return client_.has_request(); }
+    /// Not while a command waits, and not sooner after the last one than the bus is proven for.
     [[nodiscard]] bool next_request(sdo::Payload& request, Time now) noexcept TAPPET_REALTIME {
-        return client_.next(request, now);
+        if (command_.wanted || now < may_request_ || !client_.next(request, now)) return false;
+        may_request_ = now + requests_apart;
+        return true;
     }
 
 private:
@@ -208,6 +210,7 @@ private:
     Time heard_at_{};
     Time poll_at_{};
     Time start_again_{};
+    Time may_request_{};
     std::uint64_t reboots_ = 0;
 };
 

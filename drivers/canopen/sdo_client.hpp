@@ -32,7 +32,6 @@ public:
     }
 
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
-    [[nodiscard]] bool has_request() const noexcept TAPPET_REALTIME { return to_send_; }
     /// Why it was aborted, by whom ever.
     [[nodiscard]] SdoAbort why() const noexcept TAPPET_REALTIME { return why_; }
     /// What was read.

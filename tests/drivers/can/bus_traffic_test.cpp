@@ -19,7 +19,7 @@ constexpr auto sent(std::uint32_t id, std::string_view name, std::uint8_t length
 template <class... Rows> std::string refusal(const DeviceUse& use, const Rows&... rows) {
     const auto map = signal_map(rows...);
     EXPECT_EQ(map.fault.view(), "");
-    return std::string{bus_traffic(map, use, {}).view()};
+    return std::string{bus_traffic(map.frames, use, {}).view()};
 }
 
 TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
@@ -30,7 +30,7 @@ TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
     constexpr auto good = signal_map(heard(0x300, "slow", 8, 100ms), sent(0x201, "command", 6, every(2ms)),
                                      heard(0x181, "status", 6, 2ms));
     std::array<TrafficRow, 3> rows{};
-    EXPECT_EQ(bus_traffic(good, at(500'000), rows).view(), "");
+    EXPECT_EQ(bus_traffic(good.frames, at(500'000), rows).view(), "");
     EXPECT_EQ(rows[0].name, "status");
     EXPECT_FALSE(rows[0].sent);
     EXPECT_EQ(rows[0].worst, 230us + 270us);

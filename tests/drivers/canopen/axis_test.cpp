@@ -17,9 +17,9 @@ using canopen::synchronous;
 using motion::AxisMode;
 
 constexpr auto servo_signals = can::signal_map(
-    can::receive(can::standard(0x189), "status", can::bytes(3), can::signal("word", 0, 16),
+    can::receive(can::standard(0x189), "status", can::bytes(3), can::every(1ms), can::signal("word", 0, 16),
                  can::signal("mode", 16, 8).as_signed()),
-    can::receive(can::standard(0x289), "actual", can::bytes(8),
+    can::receive(can::standard(0x289), "actual", can::bytes(8), can::every(1ms),
                  can::signal("position", 0, 32).as_signed().times(0.001).in("mm"),
                  can::signal("velocity", 32, 32).as_signed().times(0.001).in("mm/s")),
     can::transmit(can::standard(0x209), "control", can::bytes(3), can::every(1ms),

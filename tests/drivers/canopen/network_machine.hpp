@@ -12,14 +12,15 @@
 
 namespace tappet::test {
 
-inline constexpr auto signals = can::signal_map(
-    can::receive(can::standard(0x185), "drive", can::bytes(6), can::signal("statusword", 0, 16),
-                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-    can::receive(can::standard(0x187), "encoder", can::bytes(4), can::signal("position", 0, 16),
-                 can::signal("sample", 16, 16)),
-    can::transmit(can::standard(0x205), "drive_command", can::bytes(6), can::every(2ms),
-                  can::signal("controlword", 0, 16).safe(2),
-                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)));
+inline constexpr auto signals =
+    can::signal_map(can::receive(can::standard(0x185), "drive", can::bytes(6), can::every(5ms),
+                                 can::signal("statusword", 0, 16),
+                                 can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
+                    can::receive(can::standard(0x187), "encoder", can::bytes(4), can::every(10ms),
+                                 can::signal("position", 0, 16), can::signal("sample", 16, 16)),
+                    can::transmit(can::standard(0x205), "drive_command", can::bytes(6), can::every(2ms),
+                                  can::signal("controlword", 0, 16).safe(2),
+                                  can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm").safe(0)));
 
 inline constexpr auto nodes = canopen::network(
     signals, canopen::manager(127).heartbeat(100ms).sync(10ms, 20).time(1s),

@@ -16,7 +16,8 @@ constexpr const Dictionary& encoder = dictionary<files::encoder_eds>;
 
 constexpr can::Signal statusword = can::signal("statusword", 0, 16);
 constexpr can::Signal velocity = can::signal("velocity", 16, 32).as_signed();
-constexpr auto drive_frame = can::receive(can::standard(0x185), "drive", can::bytes(6), statusword, velocity);
+constexpr auto drive_frame =
+    can::receive(can::standard(0x185), "drive", can::bytes(6), can::every(5ms), statusword, velocity);
 constexpr auto command_frame = can::transmit(can::standard(0x205), "command", can::bytes(2), can::every(2ms),
                                              can::signal("word", 0, 16).safe(0));
 constexpr auto map = can::signal_map(drive_frame, command_frame);
@@ -100,8 +101,8 @@ DefaultValue=14
 [DeviceComissioning]
 NodeID=5
 )"};
-    constexpr auto none = can::signal_map(
-        can::receive(can::extended(0x185), "no PDO", can::bytes(1), can::signal("byte", 0, 8)));
+    constexpr auto none = can::signal_map(can::receive(can::extended(0x185), "no PDO", can::bytes(1),
+                                                       can::every(5ms), can::signal("byte", 0, 8)));
     const auto table =
         network(none, boss, node(5, "own", dictionary<source>).heartbeat(100ms).write(0x2001, 15));
     ASSERT_EQ(table.fault.view(), "");
@@ -159,15 +160,17 @@ TEST(NetworkTable, refuses_pdos_that_the_device_or_the_map_has_not) {
               "node 6 \"drive\": frame \"drive\" has the identifier 185h, which is none of the node's PDOs; "
               "its first "
               "are 186h (it sends) and 206h (it receives)");
-    EXPECT_EQ(of_frame(can::receive(can::standard(0x205), "drive", can::bytes(2), can::signal("word", 0, 16)),
+    EXPECT_EQ(of_frame(can::receive(can::standard(0x205), "drive", can::bytes(2), can::every(5ms),
+                                    can::signal("word", 0, 16)),
                        bare.pdo("drive", {0x6040})),
               "node 5 \"drive\": frame \"drive\" is one that the node receives, by its identifier; exchange "
               "can::receive and can::transmit");
-    EXPECT_EQ(of_frame(can::receive(can::standard(0x285), "drive", can::bytes(2), statusword),
-                       bare.pdo("drive", {0x6041})),
-              "node 5 \"drive\": frame \"drive\" is a PDO that the device has not: "
-              "apps/carpet_loom/nodes/drive.eds "
-              "has no 1801h or no 1A01h; take another identifier");
+    EXPECT_EQ(
+        of_frame(can::receive(can::standard(0x285), "drive", can::bytes(2), can::every(5ms), statusword),
+                 bare.pdo("drive", {0x6041})),
+        "node 5 \"drive\": frame \"drive\" is a PDO that the device has not: "
+        "apps/carpet_loom/nodes/drive.eds "
+        "has no 1801h or no 1A01h; take another identifier");
     EXPECT_EQ(of_row(whole.pdo("drive", {0x6041})),
               "node 5 \"drive\": frame \"drive\" has 6 bytes, but its objects "
               "take 16 bits; correct one of them");
@@ -205,8 +208,9 @@ TEST(NetworkTable, refuses_objects_that_do_not_fit_the_frame) {
               "(apps/carpet_loom/nodes/drive.eds:" +
                   line(0x6041) + "); map it in the other direction");
     const auto with = [](auto... signals) {
-        return of_frame(can::receive(can::standard(0x185), "drive", can::bytes(6), signals...),
-                        bare.pdo("drive", {0x6041, 0x606C}));
+        return of_frame(
+            can::receive(can::standard(0x185), "drive", can::bytes(6), can::every(5ms), signals...),
+            bare.pdo("drive", {0x6041, 0x606C}));
     };
     EXPECT_EQ(with(can::signal("speed", 16, 32)), "node 5 \"drive\": signal \"drive.speed\" is unsigned, but "
                                                   "object 606Ch:0 \"Velocity actual value\" is "
@@ -250,8 +254,8 @@ TEST(NetworkTable, refuses_values_that_the_device_does_not_take) {
 
 TEST(NetworkTable, keeps_its_own_identifiers) {
     for (const std::uint32_t id : {0x000u, 0x080u, 0x0FFu, 0x100u, 0x585u, 0x605u, 0x705u}) {
-        const auto own = can::signal_map(
-            can::receive(can::standard(id), "mine", can::bytes(1), can::signal("byte", 0, 8)));
+        const auto own = can::signal_map(can::receive(can::standard(id), "mine", can::bytes(1),
+                                                      can::every(5ms), can::signal("byte", 0, 8)));
         EXPECT_EQ(fault_of(own, boss, bare),
                   "frame \"mine\" has the identifier " + std::string{hex(id, 3).view()} +
                       ", which is the network's own; take it out of the signal map");
