@@ -21,7 +21,7 @@ constexpr Duration node_beat = microseconds(wires::heartbeat_period_us);
 
 // clang-format off
 inline constexpr auto loom_network = canopen::network(can_signals,
-    canopen::manager(wires::node::machine).heartbeat(detail::node_beat),
+    canopen::manager(wires::node::machine), // no heartbeat of its own: drives stop without their commands
     canopen::node(wires::node::main_drive, "main", canopen::dictionary<files::drive_eds>).heartbeat(detail::node_beat)
         .pdo("main_drive", canopen::on_event(detail::microseconds(wires::drive_status_period_us)), {0x6041, 0x606C})
         .pdo("main_drive_command", {0x6040, 0x60FF})

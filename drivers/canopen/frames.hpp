@@ -22,9 +22,9 @@ constexpr can::Frame heartbeat_frame(std::uint8_t node, NmtState state) noexcept
     return frame;
 }
 
-/// The least time between two SDO requests to one node, and between two NMT commands: the manager keeps it,
-/// and the bus is proven for it.
-inline constexpr Duration requests_apart = 5ms;
+/// The least time between two SDO requests to one node, and between two NMT commands: the manager keeps both,
+/// and the bus is proven for the commands.
+inline constexpr Duration requests_apart = 1ms;
 inline constexpr Duration commands_apart = 10ms;
 
 namespace detail {
@@ -45,8 +45,8 @@ template <const auto& map> struct ServiceNames {
 } // namespace detail
 
 /// For can::Bus<signals, frames<network>>. When the machine's process is no more, the nodes leave their
-/// operational state. An emergency message has no rate: it comes after a fault, and the bus is not proven for
-/// what follows one.
+/// operational state. Emergency messages and SDO transfers have no rate, and the bus is not proven for them:
+/// they come before the network is operational, or after a node's fault.
 template <const auto& map>
 inline constexpr auto frames = [] {
     constexpr std::size_t n = map.nodes.size();
@@ -73,9 +73,9 @@ inline constexpr auto frames = [] {
             return detail::ServiceNames<map>::names[4 * i + kind].view();
         };
         add(cob::emergency + node.id, name(0), receive, 8, {}, {});
-        add(cob::sdo_answer + node.id, name(1), receive, 8, {}, requests_apart);
+        add(cob::sdo_answer + node.id, name(1), receive, 8, {}, {});
         add(cob::heartbeat + node.id, name(2), receive, 1, node.beats, node.beats);
-        add(cob::sdo_request + node.id, name(3), transmit, 8, {}, requests_apart);
+        add(cob::sdo_request + node.id, name(3), transmit, 8, {}, {});
     }
     add(cob::nmt, "nmt", transmit, 2, {}, commands_apart);
     if (beats) add(cob::heartbeat + manager.id, "manager.heartbeat", transmit, 1, {}, manager.beats);

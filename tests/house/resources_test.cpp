@@ -90,6 +90,8 @@ constexpr std::array exceptions{
     Exception{"drivers/gpio/lines.hpp", "std::unique_ptr", "holds libgpiod's request and its buffer, made while configuring"},
     Exception{"drivers/gpio/lines.cpp", "std::unique_ptr", "holds libgpiod's settings while configuring"},
     Exception{"drivers/gpio/lines.cpp", "std::string",     "the consumer's name, while configuring"},
+    Exception{"drivers/can/dbc/writer.hpp", "std::string",     "writes files for people; no firmware has it"},
+    Exception{"drivers/can/dbc/writer.cpp", "std::string",     "the same"},
     Exception{"drivers/modbus/far_end.hpp", "std::mutex",        "a simulated server's requests and its plant; neither is real-time, no firmware has it"},
     Exception{"drivers/plant/simulation.hpp", "std::vector",     "the host's twins, as many as the table names; no firmware has them"},
     Exception{"drivers/plant/simulation.hpp", "std::unique_ptr", "the same: they stay where they are"},

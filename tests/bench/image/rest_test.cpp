@@ -71,7 +71,8 @@ TEST(Box, whose_proven_kernel_does_not_boot_any_more_works_on_the_other_slot) {
     const std::string unified = kernel(),
                       compressed = image::read_file(cache_folder() / "kernel/box/vmlinuz");
     works_on_the_other_slot(box, unified.substr(0, 512), unified.find("PE"), "Cannot load specified kernel");
-    works_on_the_other_slot(box, compressed.substr(compressed.size() / 2, 512), 0, "Failed to decompress kernel");
+    works_on_the_other_slot(box, compressed.substr(compressed.size() / 2, 512), 0,
+                            "Failed to decompress kernel");
 }
 
 TEST(Box, whose_start_a_power_cut_ends_comes_back_to_the_same_version) {

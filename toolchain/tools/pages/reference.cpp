@@ -44,7 +44,7 @@ constexpr auto frames = can::signal_map(
                   can::signal("measure", 16, 16).times(0.1).in("mm"))
         .safe_by_silence());
 constexpr SourceText eds{"node.eds",
-                                 "[1000]\nDataType=7\nAccessType=ro\n[1017]\nDataType=6\nAccessType=rw\n"};
+                         "[1000]\nDataType=7\nAccessType=ro\n[1017]\nDataType=6\nAccessType=rw\n"};
 constexpr auto nodes = canopen::network(frames, canopen::manager(127),
                                         canopen::node(9, "node", canopen::dictionary<eds>).heartbeat(100ms));
 constexpr auto cams = cam_table(300_rpm, cam("point", at(0_deg)), cam("window", window(80_deg, 120_deg)));
