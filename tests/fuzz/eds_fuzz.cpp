@@ -19,7 +19,7 @@ constexpr std::size_t room = 600;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text{reinterpret_cast<const char*>(data), size};
     if (detail::eds_room(text) > room) return 0;
-    const detail::EdsReader<room> read{SourceText{"x.eds", text}};
+    const detail::EdsReader<room> read{tappet::SourceText{"x.eds", text}};
     if (!read.fault.empty()) {
         demand(read.fault.view().starts_with("x.eds:"));
         demand(read.fault.size() < tappet::Sentence::capacity);
