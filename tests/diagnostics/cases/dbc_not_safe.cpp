@@ -13,7 +13,7 @@ BO_ 385 drive: 3 drive
 BO_ 513 command: 2 controller
 )";
 constexpr SourceText file{"press.dbc", {press_text, sizeof press_text - 1}};
-constexpr auto controller = can::node("controller");
+constexpr auto controller = can::node("controller", can::receive("drive", can::every(10ms)));
 constexpr auto signals = can::from_dbc<file, controller>;
 constexpr auto table =
     machine("wrong-file", components(component<can::Bus<signals>>("can", device("bus"))),
