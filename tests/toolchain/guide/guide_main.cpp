@@ -70,7 +70,8 @@ int write_all(std::map<std::string, std::string>& options) {
                 const std::string from = (to / name / path).string();
                 if (path.ends_with(".osd") &&
                     std::system(("cmake '-DFROM=" + from + "' '-DTO=" + from + ".hpp' '-DPLACE=" + path +
-                                 "' -P '" + options["--scripts"] + "'")
+                                 "' '-DCONSTANT=scripts::" + fs::path{path}.stem().string() + "' -P '" +
+                                 options["--scripts"] + "'")
                                     .c_str()) != 0)
                     fail(from + ": no constant could be made of it");
             }

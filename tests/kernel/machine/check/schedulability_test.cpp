@@ -16,7 +16,6 @@ namespace {
 
 using namespace tappet;
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t huge = std::numeric_limits<std::int64_t>::max();
 
 constexpr TaskTiming task(std::int64_t budget, std::int64_t period) { return {period, budget, period}; }
