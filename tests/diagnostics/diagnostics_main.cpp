@@ -190,7 +190,9 @@ void judge(Case& each, const Options& options, const std::string& headers) {
                               options.flags + " -fsyntax-only '" + each.file.string() + "'");
     const auto [error, source] = first_error(output.text);
     const std::size_t lines = lines_of(output.text);
-    const bool is_script = each.file.stem().string().starts_with("script_");
+    const std::string stem = each.file.stem().string();
+    const bool is_script =
+        stem.starts_with("script_") || stem.starts_with("eds_") || stem.starts_with("network_");
     const std::size_t most = !options.lines.empty() ? std::stoul(options.lines)
                              : is_script            ? most_script_lines
                                                     : most_lines;

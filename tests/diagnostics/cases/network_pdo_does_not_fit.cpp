@@ -31,7 +31,7 @@ PDOMapping=1
 constexpr auto signals =
     can::signal_map(can::receive(can::standard(0x185), "drive", can::bytes(2), can::every(5ms),
                                  can::signal("velocity", 0, 16).as_signed()));
-constexpr auto nodes = canopen::network(
+constexpr auto net = canopen::network(
     signals, canopen::manager(127),
     canopen::node(5, "drive", canopen::dictionary<servo>).heartbeat(100ms).pdo("drive", {0x606C}));
-template struct canopen::Manager<nodes>;
+template struct canopen::Manager<net>;
