@@ -42,11 +42,11 @@ struct Operator {
     Output<std::int64_t> controlword{};
     Output<double> target{};
     Output<Duration> clock{};
-    std::vector<std::array<std::int64_t, 3>> emergencies{};
+    Bounded<std::array<std::int64_t, 3>, 32> emergencies{}; // the first ones
 
     void on_emergency(std::int64_t node, std::int64_t code, std::int64_t error_register) noexcept
         TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test keeps them", emergencies.push_back({node, code, error_register}));
+        static_cast<void>(emergencies.push({node, code, error_register}));
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         controlword.write(6);
