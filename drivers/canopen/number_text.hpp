@@ -3,6 +3,7 @@
 
 #include "drivers/canopen/ini.hpp"
 #include "drivers/canopen/object_dictionary.hpp"
+#include "kernel/base/digits.hpp"
 
 #include <bit>
 #include <optional>
@@ -75,10 +76,7 @@ constexpr std::optional<double> to_real(std::string_view text) noexcept {
         power += down ? -exponent : exponent;
     }
     if (power > 22 || power < -22) return {};
-    double scale = 1;
-    for (int i = 0; i < (power < 0 ? -power : power); ++i) scale *= 10;
-    const auto number = static_cast<double>(digits);
-    const double size = power < 0 ? number / scale : number * scale;
+    const double size = real_of(digits, power);
     return negative ? -size : size;
 }
 

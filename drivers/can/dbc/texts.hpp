@@ -2,19 +2,19 @@
 // here.
 #pragma once
 
+#include "kernel/base/code_page.hpp"
 #include "kernel/base/utf8.hpp"
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
 namespace tappet::can::dbc {
 
-/// Code points of the bytes 80 to 9f; the five that mean nothing stay as they are.
-inline constexpr std::array<std::uint16_t, 32> cp1252_high = {
-    0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
-    0x2039, 0x0152, 0x8D,   0x017D, 0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
-    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D,   0x017E, 0x0178};
+/// A byte that means nothing stays as it is.
+constexpr std::uint32_t code_point_of(std::uint8_t byte) noexcept {
+    const std::uint32_t code = code_point_of_1252(byte);
+    return code != 0 ? code : byte;
+}
 
 /// Calls put(piece) for the text's pieces. A text that is UTF-8 already, as some tools write it, stays so.
 template <class Put> constexpr void put_as_utf8(std::string_view raw, const Put& put) {
@@ -34,7 +34,7 @@ template <class Put> constexpr void put_as_utf8(std::string_view raw, const Put&
             continue;
         }
         char character[4] = {};
-        const std::size_t bytes = put_utf8(byte < 0xa0 ? cp1252_high[byte - 0x80u] : byte, character);
+        const std::size_t bytes = put_utf8(code_point_of(byte), character);
         put(std::string_view{character, bytes});
     }
 }

@@ -30,7 +30,7 @@ char byte_of(std::string_view character) {
     if (character.size() == 1) return character[0];
     for (unsigned byte = 0x80; byte < 0x100; ++byte) {
         char utf8[4] = {};
-        const std::size_t bytes = put_utf8(byte < 0xa0 ? cp1252_high[byte - 0x80] : byte, utf8);
+        const std::size_t bytes = put_utf8(code_point_of(static_cast<std::uint8_t>(byte)), utf8);
         if (std::string_view{utf8, bytes} == character) return static_cast<char>(byte);
     }
     return '?';
