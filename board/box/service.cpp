@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include <fcntl.h>
 #include <grp.h>
@@ -136,8 +137,8 @@ std::string take_order(const Words& words, const ServiceFacts& facts) {
 
 std::string what_waits() {
     std::string text;
-    for (const char* name : {offered_update, offered_order})
-        if (::access(name, F_OK) == 0) text += std::string{"an "} + name + " waits for the power button\n";
+    for (const auto& [file, what] : {std::pair{offered_update, "update"}, {offered_order, "order"}})
+        if (::access(file, F_OK) == 0) text += std::string{"an "} + what + " waits for the power button\n";
     return text;
 }
 

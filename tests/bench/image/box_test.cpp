@@ -65,7 +65,7 @@ TEST(Box, says_what_is_missing_and_goes_back_when_the_new_version_refuses_to_wor
     box.switch_on({"-object", "can-bus,id=bus", "-device", "kvaser_pci,canbus=bus"});
     const std::string said = box.await_end(); // the end of the old version's plant
     SCOPED_TRACE(said);
-    EXPECT_THAT(said, HasSubstr("CAN interface can0 at 500000 bit/s is up"));
+    EXPECT_THAT(said, HasSubstr("CAN interface can0 at 1000000 bit/s is up"));
     EXPECT_THAT(said, HasSubstr("network eth0 as 192.168.7.1/24 is up"));
     EXPECT_THAT(said, HasSubstr("data partition at /var/lib/tappet is up"));
     EXPECT_THAT(said, HasSubstr("GPIO chip INTC1020:00 is missing; check its label in the board"));
