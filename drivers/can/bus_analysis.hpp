@@ -93,6 +93,10 @@ public:
         return frames_[index].own ? of_own(index) : of_another_node(index);
     }
 
+    /// Of one of ours: how much later than its queue says it may come to the wire, behind less urgent ones in
+    /// flight. To other nodes it is one more jitter.
+    [[nodiscard]] constexpr std::int64_t late_ns(std::size_t index) const noexcept { return late_ns_[index]; }
+
 private:
     using Span = analysis::Span;
 

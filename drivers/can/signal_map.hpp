@@ -13,7 +13,11 @@
 
 namespace tappet::can {
 
-enum class Direction : std::uint8_t { receive, transmit };
+enum class Direction : std::uint8_t {
+    receive,
+    transmit,
+    passing ///< between other nodes: no more than a part of what the bus is proven for
+};
 
 /// A row of the table.
 struct FrameRow {

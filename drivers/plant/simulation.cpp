@@ -26,8 +26,10 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
     ports_.clear();
     const std::span<const ProvidedDevice> own = plant_.devices();
     provided_.assign(own.begin(), own.end());
+    provided_.insert(provided_.end(), lent_.begin(), lent_.end());
     std::vector<ProvidedDevice> far;
     for (const ComponentRow& row : machine.table.components) {
+        if (std::ranges::any_of(lent_, [&](const auto& each) { return each.name == row.device; })) continue;
         if (drives(row, "can")) {
             if (auto added = add_bus(row); !added) return added;
             far.push_back(

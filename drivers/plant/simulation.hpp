@@ -26,6 +26,8 @@ public:
     /// Before open(): frames take their time on the wire; 0: none.
     void set_bit_rate(std::uint32_t bits_per_second) noexcept { bit_rate_ = bits_per_second; }
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
+    /// Before open(): a device that somebody else simulates, as a wire to other machines.
+    void lend(const ProvidedDevice& device) { lent_.push_back(device); }
     /// The machine's ends of the buses anew, as a new process has them: a bus that was off is on again. Lines
     /// stay as they were left.
     std::expected<void, Sentence> open_again();
@@ -93,6 +95,7 @@ private:
     std::vector<std::unique_ptr<Chip>> chips_{};
     std::vector<std::unique_ptr<Server>> servers_{};
     std::vector<std::unique_ptr<udp::Twin>> ports_{};
+    std::vector<ProvidedDevice> lent_{};
     std::vector<ProvidedDevice> provided_{};
 };
 

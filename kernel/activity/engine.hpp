@@ -146,7 +146,7 @@ struct EngineStatistics {
 
 class Engine {
 public:
-    static constexpr std::int64_t max_wakes_watched = 16;
+    static constexpr std::int64_t max_wakes_watched = 32;
 
     /// Asked to stop the machine; the first call wins. Real-time, any thread.
     using StopCall = void (*)(void* context, StopReason, std::uint64_t detail, const Engine& from) noexcept

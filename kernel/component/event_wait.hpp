@@ -82,6 +82,14 @@ private:
     std::atomic<bool> interrupted_{false};
 };
 
+/// An EventWait of whatever arguments, for a component that has it because a table says so.
+class PackedEventWait : public EventWaitState {
+public:
+    PackedEventWait() = default;
+    /// The packed arguments of the oldest emission that waits, until the next call; null: there is none.
+    [[nodiscard]] const std::byte* take() noexcept TAPPET_REALTIME { return next(); }
+};
+
 /// A member of a component, told by a row of its own: when("shaft.beat_up", tell("console.beat")). Used in
 /// its component's activity only.
 template <class... A>

@@ -69,6 +69,11 @@ struct PortOperations {
     /// `looks`: what is fresh there stays fresh.
     Flow (*read)(void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME;
     void (*write)(void* output, const std::byte* value) noexcept TAPPET_REALTIME;
+    /// Of a value that was true at `stamp`.
+    void (*write_at)(void* output, const std::byte* value, Time stamp) noexcept TAPPET_REALTIME;
+    // For a component that has such ports because a table says so: room for one, on a line of its own.
+    std::size_t input_bytes, output_bytes;
+    void (*construct)(void* memory, bool is_input);
 };
 
 struct BufferOperations {
@@ -94,6 +99,8 @@ struct EventOperations {
     const void* count; ///< of a reaction that counts in a std::atomic<std::uint64_t>, likewise
     /// With packed arguments, for emitters that know no C++ type.
     void (*emit)(void* event, const std::byte* packed) noexcept TAPPET_REALTIME;
+    std::size_t event_bytes; ///< and construct(): as of a port
+    void (*construct)(void* memory);
 };
 
 struct OperationOperations {
@@ -270,6 +277,21 @@ struct PortAccess {
                 std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
                 static_cast<Output<T>*>(output)->write(value);
             },
+        .write_at =
+            [](void* output, const std::byte* bytes, Time stamp) noexcept TAPPET_REALTIME {
+                T value = default_value<T>();
+                std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
+                static_cast<Output<T>*>(output)->write(value, stamp);
+            },
+        .input_bytes = sizeof(Input<T>),
+        .output_bytes = sizeof(Output<T>),
+        .construct =
+            [](void* memory, bool is_input) {
+                if (is_input)
+                    new (memory) Input<T>;
+                else
+                    new (memory) Output<T>;
+            },
     };
 
     /// Where a ring's storage begins after the ring itself.
@@ -351,6 +373,8 @@ struct PortAccess {
         .count = &count<A...>,
         .emit = [](void* event, const std::byte* packed) noexcept
         TAPPET_REALTIME { detail::emit_packed<A...>(*static_cast<Event<A...>*>(event), packed); },
+        .event_bytes = sizeof(Event<A...>),
+        .construct = [](void* memory) { new (memory) Event<A...>; },
     };
 };
 

@@ -64,6 +64,9 @@ public:
     /// process that may leap. None before now.
     [[nodiscard]] Time quiet_until(const void* process) const;
 
+    /// When the next engine or process runs: for who moves several worlds by turns.
+    [[nodiscard]] Time next_time() const { return quiet(nullptr, never); }
+
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
 
 private:
@@ -86,7 +89,6 @@ private:
     void work_until(Time now);
     void run_engine(std::size_t activity, bool woken);
     void sleep_until(std::size_t activity, Time time);
-    [[nodiscard]] Time next_time() const { return quiet(nullptr, never); }
     [[nodiscard]] Time quiet(const void* but, Time end) const;
     void run_engines(Time now);
     /// Processes and engines of an instant.

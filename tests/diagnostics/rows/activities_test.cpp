@@ -71,10 +71,10 @@ constexpr Fault activity_faults[] = {
      R"(loom: activity "logic": at_most needs at least one wake; write at_most(1, ...))"},
     {"activity_with_too_many_wakes",
      [](Table& m) {
-         m.put(activity("logic", on_work(), at_most(17, 10ms), deadline(2ms), budget(80us),
+         m.put(activity("logic", on_work(), at_most(33, 10ms), deadline(2ms), budget(80us),
                         runs("weft", "lamps")));
      },
-     R"(loom: activity "logic" promises more than 16 wakes in one window; shorten the window of at_most)"},
+     R"(loom: activity "logic" promises more than 32 wakes in one window; shorten the window of at_most)"},
     {"activity_deadline",
      [](Table& m) {
          m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(-2ms), budget(80us),

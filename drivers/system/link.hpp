@@ -1,0 +1,568 @@
+// A node's end of the wire: the stand-ins for what its machine tells others and hears of them. They have the
+// types of the two ends and the meaning that a row inside the machine has; the machine knows nothing else.
+#pragma once
+
+#include "drivers/can/device.hpp"
+#include "drivers/system/node_rows.hpp"
+#include "drivers/system/wire_protocol.hpp"
+#include "kernel/base/bounded_text.hpp"
+#include "kernel/component/component.hpp"
+#include "kernel/system/protection.hpp"
+
+namespace tappet::systems {
+
+/// A command call of whatever signature.
+struct PackedCommandCall {
+    static constexpr std::size_t most_bytes = 16;
+    CommandSlot slot{};
+    std::array<std::byte, most_bytes> values{};
+    static constexpr CommandCallOperations operations{
+        [](void* call) { return &static_cast<PackedCommandCall*>(call)->slot; },
+        [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
+};
+
+/// All real-time, in the activity of its bus, and behind it. A node is there from its first beat on and gone
+/// when no beat came for silent_after, or when it says so. A row works once both ends have heard from the
+/// other that it looks the same there, in this start of it: another version's row of the same name that does
+/// not is refused, by name, and the others go on.
+template <const auto& system, std::size_t n>
+struct Link {
+    using Rows = NodeRows<system, n>;
+    static constexpr auto& plan = Rows::plan;
+    static constexpr std::size_t node_count = system.nodes.size();
+    static constexpr std::size_t row_count = Rows::row_count;
+    static constexpr std::size_t frame_count = Rows::plan.frames.size();
+    static constexpr int max_frames_per_cycle = 64;
+
+    Link() {
+        for (std::size_t i = 0; i < Rows::port_count; ++i)
+            Rows::ports[i].facet->port->construct(storage_.data() + Rows::ports[i].at,
+                                                  Rows::ports[i].is_input);
+        for (std::size_t i = 0; i < row_count; ++i)
+            if (Rows::rows[i].event_at != nowhere)
+                Rows::facet_from(i).event->construct(storage_.data() + Rows::rows[i].event_at);
+    }
+    Link(const Link&) = delete;
+    Link& operator=(const Link&) = delete;
+
+    static constexpr std::string_view device_kind = "can";
+    static constexpr bool shares_device = true;
+
+    BufferInput<can::Frame> received{};
+    std::array<Output<bool>, node_count> is_there{};
+    std::array<PackedEventWait, row_count> emitted{};
+    std::array<Event<>, row_count> lost{};
+    std::array<PackedCommandCall, row_count> calls{};
+    Output<Text<160>> refused{};
+    Output<std::int64_t> events_lost{};
+    Output<std::int64_t> frames_refused{};
+    Output<std::int64_t> beyond{};
+    Output<std::int64_t> not_sent{};
+    Timer next{};
+
+    Sentence configure(Setup& setup) {
+        device_ = setup.device<can::Device>();
+        waiter_ = setup.waiter;
+        return device_ == nullptr ? setup.no_device() : Sentence{};
+    }
+    void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        can::Frame forgotten;
+        for (int k = 0; k < max_frames_per_cycle && received.pop(forgotten);) ++k;
+        epoch_ = static_cast<std::uint16_t>(to_ns(cycle.now) / 1'000'000 % 0xFFFF + 1);
+        peers_ = {};
+        state_ = {};
+        for (std::size_t i = 0; i < row_count; ++i) {
+            const Crossing& row = Rows::crossing(i);
+            state_[i].sender.configure(row.within - system.wire.service.deadline, row.within / 2);
+        }
+        for (std::size_t f = 0; f < due_.size(); ++f) due_[f] = Rows::is_periodic(f) ? cycle.now : never;
+        checks_ = {};
+        told_row_ = 0;
+        for (auto& each : is_there) each.write(false);
+        refused.write({});
+        serve(cycle.now);
+    }
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        can::Frame frame;
+        for (int k = 0; k < max_frames_per_cycle && received.pop(frame); ++k) take(frame, cycle.now);
+        serve(cycle.now);
+    }
+    void fire(const Cycle& cycle) noexcept TAPPET_REALTIME { serve(cycle.now); }
+    /// The others need not wait for its silence.
+    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        Payload payload{};
+        put_beat(payload, {.runs = false, .epoch = epoch_});
+        send(Rows::beat_frame, payload, cycle.now);
+        device_->service(cycle.now);
+    }
+
+    /// For tests and summaries.
+    [[nodiscard]] const SendCounts& sent(std::size_t crossing) const noexcept {
+        return state_[Rows::row_of(crossing)].sender.count;
+    }
+    [[nodiscard]] const ReceiveCounts& served(std::size_t crossing) const noexcept {
+        return state_[Rows::row_of(crossing)].receiver.count;
+    }
+    [[nodiscard]] bool works(std::size_t crossing) const noexcept {
+        return state_[Rows::row_of(crossing)].agreed;
+    }
+
+    static constexpr auto interface() { return interface_list(); }
+
+private:
+    /// Another node, as it is heard.
+    struct Peer {
+        bool there = false;
+        std::uint16_t epoch = 0;
+        Time silent_at = never;
+    };
+    /// Of a command that was sent from here.
+    enum class Call : std::uint8_t { none, wanted, offered, done, failed };
+    struct RowState;
+    static bool is_under_way(const RowState& row) noexcept TAPPET_REALTIME {
+        return row.call == Call::wanted || row.call == Call::offered;
+    }
+    struct RowState {
+        bool agreed = false;
+        bool is_refused = false;
+        ChannelSender sender{};     ///< of events and commands to others, and of replies
+        ChannelReceiver receiver{}; ///< the other way
+        Call call = Call::none;
+        std::uint8_t asked = 0;   ///< the number by which it was sent
+        bool serves = false;      ///< a command of another node is under way here,
+        std::uint8_t serving = 0; ///< sent by this number
+        bool refuses = false;     ///< another one came meanwhile,
+        std::uint8_t refused = 0; ///< by this one
+        std::array<std::byte, PackedCommandCall::most_bytes> values{};
+    };
+
+    // ---- what comes
+
+    void take(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
+        const std::size_t f = frame.id - system.wire.first_identifier;
+        if (frame.extended || frame.remote || f >= plan.frames.size()) return;
+        const WireFrame& what = plan.frames[f];
+        if (what.node == n) return; // somebody else sends what is ours; the bus counts it
+        if (frame.length != what.bytes() || !is_good(f, frame)) {
+            frames_refused.write(++refused_frames_);
+            return;
+        }
+        if (what.kind == WireFrameKind::beat) {
+            take_beat(what.node, beat_of(frame.data), now);
+        } else if (what.kind == WireFrameKind::data) {
+            take_data(f, frame);
+        } else {
+            take_channel(what, frame.data, now);
+        }
+    }
+
+    bool is_good(std::size_t f, const can::Frame& frame) noexcept TAPPET_REALTIME {
+        return checks_[f].check(std::span{frame.data}.first(frame.length), plan.frames[f].data_id);
+    }
+
+    void take_beat(std::size_t node, const Beat& beat, Time now) noexcept TAPPET_REALTIME {
+        Peer& peer = peers_[node];
+        if (!beat.runs) {
+            if (peer.there && peer.epoch == beat.epoch) lose(node);
+            return;
+        }
+        if (!peer.there || peer.epoch != beat.epoch) begin(node, beat.epoch);
+        peer.silent_at = now + system.wire.silent_after;
+        for (std::size_t i = 0; i < row_count; ++i) {
+            if (Rows::rows[i].name != beat.row || Rows::other(i) != node) continue;
+            if (Rows::rows[i].layout == beat.layout) {
+                state_[i].agreed = true;
+            } else if (!state_[i].is_refused) {
+                state_[i].is_refused = true;
+                refused.write(Rows::refusal(i));
+            }
+        }
+    }
+    /// The other node is heard, again or in a new start of it; then whatever was under way to the one before
+    /// is over. After a silence of the same start both ends go on where they were.
+    void begin(std::size_t node, std::uint16_t epoch) noexcept TAPPET_REALTIME {
+        if (peers_[node].there) end_rows(node);
+        const bool is_new = peers_[node].epoch != epoch;
+        peers_[node] = {true, epoch, never};
+        for (std::size_t i = 0; is_new && i < row_count; ++i) {
+            if (Rows::other(i) != node) continue;
+            state_[i].sender.begin();
+            state_[i].receiver.begin();
+            state_[i].serves = state_[i].refuses =
+                false; // what it executes goes on; nobody waits for its end
+        }
+        is_there[node].write(true);
+    }
+    void lose(std::size_t node) noexcept TAPPET_REALTIME {
+        end_rows(node);
+        peers_[node].there = false;
+        is_there[node].write(false);
+    }
+    void end_rows(std::size_t node) noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < row_count; ++i) {
+            if (Rows::other(i) != node) continue;
+            RowState& row = state_[i];
+            row.agreed = row.is_refused = false;
+            if (Rows::sends_events(i) && row.sender.state() == ChannelSender::State::sends) tell_loss(i);
+            row.sender.give_up();
+            if (is_under_way(row)) row.call = Call::failed;
+        }
+    }
+
+    void take_data(std::size_t f, const can::Frame& frame) noexcept TAPPET_REALTIME {
+        for (std::size_t p = 0; p < Rows::port_count; ++p) {
+            const PortPlace& port = Rows::ports[p];
+            if (port.is_input || port.frame != f || !state_[port.row].agreed) continue;
+            std::array<std::byte, 56> value{};
+            on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
+            // What was old when it was told is so here.
+            const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0;
+            const Time stamp = is_valid ? frame.stamp : frame.stamp - port.max_age - 1ns;
+            if (is_valid || port.max_age > Duration::zero())
+                port.facet->port->write_at(storage_.data() + port.at, value.data(), stamp);
+        }
+    }
+
+    void take_channel(const WireFrame& what, Contents payload, Time now) noexcept TAPPET_REALTIME {
+        const std::size_t i = Rows::row_of(what.crossing);
+        if (i == nowhere) return;
+        RowState& row = state_[i];
+        const ChannelHead head = head_of(payload);
+        const bool is_message = what.kind == WireFrameKind::message || what.kind == WireFrameKind::reply;
+        const std::uint16_t other = peers_[what.node].epoch;
+        if (!row.agreed ||
+            head.session != (is_message ? session_of(other, epoch_) : session_of(epoch_, other)))
+            return;
+        if (!is_message) {
+            row.sender.taken(head.number, payload[4]);
+            return;
+        }
+        const bool serves = row.receiver.take(head.word, head.number);
+        if (what.kind == WireFrameKind::message) {
+            if (serves && Rows::is_command(i))
+                begin_command(i, head.number, payload);
+            else if (serves)
+                emit(i, payload);
+            answer(i, plan.place[what.crossing].answer, now);
+        } else {
+            take_reply(i, serves, payload);
+            answer(i, plan.place[what.crossing].received, now);
+        }
+    }
+    void emit(std::size_t i, Contents payload) noexcept TAPPET_REALTIME {
+        std::array<std::byte, 56> packed{};
+        on_wire::hear(payload, channel_bits, Rows::index(i).value, packed.data());
+        Rows::facet_from(i).event->emit(storage_.data() + Rows::rows[i].event_at, packed.data());
+    }
+    void begin_command(std::size_t i, std::uint8_t number, Contents payload) noexcept TAPPET_REALTIME {
+        PackedCommandCall& call = calls[i];
+        RowState& row = state_[i];
+        if (row.serves || !call.slot.is_mine()) { // one of before is still executed
+            row.refuses = true, row.refused = number;
+            return;
+        }
+        row.serves = true, row.serving = number;
+        call.values = {};
+        on_wire::hear(payload, channel_bits, Rows::index(i).value, call.values.data());
+        if (!call.slot.send()) row.serves = false, row.refuses = true, row.refused = number;
+    }
+    /// Of a command that was sent from here.
+    void take_reply(std::size_t i, bool serves, Contents payload) noexcept TAPPET_REALTIME {
+        RowState& row = state_[i];
+        if (row.call != Call::offered) return;
+        // A reply that is lost may have been this one's.
+        if (serves && (payload[4] >> 3) != (row.asked & 31u)) return;
+        const auto how = static_cast<CommandState>(payload[4] & 7u);
+        if (serves && how == CommandState::done) {
+            on_wire::hear(payload, channel_bits + 8, Rows::index(i).result,
+                          row.values.data() + Rows::index(i).value.bytes);
+            row.call = Call::done;
+        } else {
+            row.call = Call::failed; // rejected, failed, or the reply was lost
+        }
+    }
+
+    // ---- what goes
+
+    void serve(Time now) noexcept TAPPET_REALTIME {
+        for (std::size_t node = 0; node < node_count; ++node)
+            if (peers_[node].there && now >= peers_[node].silent_at) lose(node);
+        for (std::size_t i = 0; i < row_count; ++i) {
+            if (Rows::sends_events(i)) take_emissions(i, now);
+            if (Rows::serves_command(i)) follow_command(i, now);
+            if (state_[i].call == Call::wanted) {
+                state_[i].call = Call::offered;
+                offer(i, state_[i].values.data(), now);
+                state_[i].asked = state_[i].sender.number();
+            }
+            send_channel(i, now);
+        }
+        for (std::size_t f = 0; f < due_.size(); ++f) {
+            if (due_[f] > now) continue;
+            due_[f] += ((now - due_[f]) / plan.frames[f].apart + 1) * plan.frames[f].apart;
+            plan.frames[f].kind == WireFrameKind::beat ? send_beat(now) : send_data(f, now);
+        }
+        const can::State before = device_->state();
+        device_->service(now);
+        if (device_->state() != before) waiter_->wake(); // the bus tells it
+        arm();
+    }
+    void arm() noexcept TAPPET_REALTIME {
+        Time first = device_->next_service();
+        for (const Time due : due_) first = std::min(first, due);
+        for (const Peer& peer : peers_)
+            if (peer.there) first = std::min(first, peer.silent_at);
+        for (const RowState& row : state_)
+            if (row.agreed) first = std::min(first, row.sender.next());
+        next.arm(first);
+    }
+
+    void take_emissions(std::size_t i, Time now) noexcept TAPPET_REALTIME {
+        RowState& row = state_[i];
+        for (int k = 0; k < max_frames_per_cycle; ++k) {
+            if (row.agreed && !row.sender.is_free()) return;
+            const std::byte* packed = emitted[i].take();
+            if (packed == nullptr) return;
+            if (!row.agreed) {
+                tell_loss(i);
+                continue;
+            }
+            offer(i, packed, now);
+        }
+    }
+    void offer(std::size_t i, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
+        Payload arguments{};
+        const WireValue& as = Rows::index(i).value;
+        if (on_wire::tell(packed, as, arguments, 0) != on_wire::Told::well) beyond.write(++beyond_);
+        state_[i].sender.offer(std::span{arguments}.first((as.bits + 7u) / 8u), now);
+    }
+    void tell_loss(std::size_t i) noexcept TAPPET_REALTIME {
+        events_lost.write(++lost_events_);
+        lost[i].emit();
+    }
+    /// Commands of another node, here.
+    void follow_command(std::size_t i, Time now) noexcept TAPPET_REALTIME {
+        RowState& row = state_[i];
+        if (!row.sender.is_free()) return;
+        if (row.refuses) {
+            row.refuses = false;
+            reply(i, CommandState::rejected, row.refused, now);
+        } else if (row.serves && calls[i].slot.is_mine()) {
+            row.serves = false;
+            reply(i, calls[i].slot.state(), row.serving, now);
+        }
+    }
+    void reply(std::size_t i, CommandState how, std::uint8_t number, Time now) noexcept TAPPET_REALTIME {
+        Payload payload{};
+        static_assert(static_cast<unsigned>(CommandState::done) < 8,
+                      "a state has three bits, the number the others");
+        payload[0] = static_cast<std::uint8_t>(static_cast<unsigned>(how) | number << 3);
+        const CrossingIndex& index = Rows::index(i);
+        static_cast<void>(
+            on_wire::tell(calls[i].values.data() + index.value.bytes, index.result, payload, 8));
+        state_[i].sender.offer(std::span{payload}.first(1 + (index.result.bits + 7u) / 8u), now);
+    }
+    void send_channel(std::size_t i, Time now) noexcept TAPPET_REALTIME {
+        RowState& row = state_[i];
+        if (!row.agreed) return;
+        const bool was_sending = row.sender.state() == ChannelSender::State::sends;
+        ChannelSender::Frame frame;
+        const bool has_frame = row.sender.due(now, frame);
+        if (was_sending && row.sender.state() == ChannelSender::State::gives_up) {
+            if (Rows::sends_events(i)) tell_loss(i);
+            if (row.call == Call::offered) row.call = Call::failed;
+        }
+        if (!has_frame) return;
+        Payload payload{};
+        put_head(payload, {frame.word, frame.number, session_of(epoch_, peers_[Rows::other(i)].epoch)});
+        std::copy(frame.bytes.begin(), frame.bytes.end(), payload.begin() + channel_bits / 8);
+        send(Rows::message_frame(i), payload, now);
+    }
+    void answer(std::size_t i, std::size_t f, Time now) noexcept TAPPET_REALTIME {
+        Payload payload{};
+        put_head(payload, {ChannelWord::taken, state_[i].receiver.last(),
+                           session_of(peers_[Rows::other(i)].epoch, epoch_)});
+        payload[4] = state_[i].receiver.lost();
+        send(f, payload, now);
+    }
+    void send_beat(Time now) noexcept TAPPET_REALTIME {
+        Payload payload{};
+        Beat beat{.runs = true, .epoch = epoch_};
+        if constexpr (row_count > 0) {
+            beat.row = Rows::rows[told_row_].name, beat.layout = Rows::rows[told_row_].layout;
+            told_row_ = (told_row_ + 1) % row_count;
+        }
+        put_beat(payload, beat);
+        send(Rows::beat_frame, payload, now);
+    }
+    void send_data(std::size_t f, Time now) noexcept TAPPET_REALTIME {
+        Payload payload{};
+        for (std::size_t p = 0; p < Rows::port_count; ++p) {
+            const PortPlace& port = Rows::ports[p];
+            if (!port.is_input || port.frame != f) continue;
+            std::array<std::byte, 56> value{};
+            const Flow flow = port.facet->port->read(storage_.data() + port.at, true, false, value.data());
+            const on_wire::Told told = on_wire::tell(value.data(), port.value, payload, port.bit + 1u);
+            if (told == on_wire::Told::beyond) beyond.write(++beyond_);
+            const bool is_valid =
+                (flow == Flow::fresh || flow == Flow::old) && told != on_wire::Told::no_number;
+            on_wire::put_bits(payload, port.bit, 1, is_valid ? 1 : 0);
+        }
+        send(f, payload, now);
+    }
+    void send(std::size_t f, const Payload& payload, Time now) noexcept TAPPET_REALTIME {
+        can::Frame frame;
+        frame.id = plan.frames[f].id;
+        frame.length = plan.frames[f].bytes();
+        std::copy(payload.begin(), payload.end(), frame.data.begin());
+        frame.stamp = now;
+        protectors_[f].protect(std::span{frame.data}.first(frame.length), plan.frames[f].data_id);
+        // A faulted bus sends nothing; what is told next is new.
+        const can::Send sent = device_->send(frame, can::Keep::every);
+        if (sent != can::Send::queued && sent != can::Send::replaced) not_sent.write(++not_sent_);
+    }
+
+    // ---- commands that are sent from here
+
+    template <std::size_t i>
+    static bool begin_call(void* self, std::byte* values) noexcept TAPPET_REALTIME {
+        auto& link = *static_cast<Link*>(self);
+        RowState& row = link.state_[i];
+        if (!row.agreed || !row.sender.is_free()) return false;
+        row.call = Call::wanted;
+        std::copy_n(values, Rows::index(i).value.bytes, row.values.data());
+        link.next.arm(Time{}); // at the engine's next look
+        return true;
+    }
+    template <std::size_t i>
+    static CommandProgress call_progress(void* self, std::byte* values) noexcept TAPPET_REALTIME {
+        RowState& row = static_cast<Link*>(self)->state_[i];
+        if (is_under_way(row)) return CommandProgress::executing;
+        const bool is_done = row.call == Call::done;
+        row.call = Call::none;
+        if (!is_done) return CommandProgress::failed;
+        const CrossingIndex& index = Rows::index(i);
+        std::copy_n(row.values.data() + index.value.bytes, index.result.bytes, values + index.value.bytes);
+        return CommandProgress::done;
+    }
+
+    // ---- facets
+
+    template <std::size_t... i>
+    static constexpr auto command_operations(std::index_sequence<i...>) {
+        return std::array<CommandOperations, sizeof...(i)>{CommandOperations{
+            Rows::is_command(i) ? Rows::command(i).arguments : nullptr,
+            Rows::is_command(i) ? Rows::command(i).results : nullptr,
+            Rows::is_command(i) ? Rows::command(i).argument_bytes : 0,
+            Rows::is_command(i) ? Rows::command(i).result_bytes : 0, &begin_call<i>, &call_progress<i>}...};
+    }
+    static constexpr auto commands = command_operations(std::make_index_sequence<row_count>{});
+
+    static constexpr Facet port_facet(std::size_t p) {
+        const PortPlace& port = Rows::ports[p];
+        Facet facet{.name = Rows::port_names[p].view(),
+                    .unit = port.facet->unit,
+                    .doc = port.is_input ? "told to other nodes" : "as another node tells it",
+                    .kind = port.is_input ? FacetKind::input : FacetKind::output,
+                    .type = port.facet->type,
+                    .index = p,
+                    .at = [](void* self, std::size_t i) noexcept -> void* {
+                        return static_cast<Link*>(self)->storage_.data() + Rows::ports[i].at;
+                    },
+                    .port = port.facet->port};
+        return facet;
+    }
+    static constexpr std::size_t add_row(std::size_t i, std::span<Facet> into) {
+        const Facet& from = Rows::facet_from(i);
+        Facet facet{.name = Rows::row_names[i].view(), .index = i};
+        if (Rows::sends_events(i)) {
+            facet.doc = "goes to another node";
+            facet.kind = FacetKind::wait;
+            facet.type = from.type;
+            facet.at = [](void* self, std::size_t k) noexcept -> void* {
+                return static_cast<EventWaitState*>(&static_cast<Link*>(self)->emitted[k]);
+            };
+            into[0] = facet;
+            into[1] =
+                tappet::event<&Link::any_event>(Rows::loss_names[i].view(), "nobody has answered in time");
+            into[1].at = [](void* self, std::size_t k) noexcept -> void* {
+                return &static_cast<Link*>(self)->lost[k];
+            };
+            into[1].index = i;
+            return 2;
+        }
+        if (!Rows::is_command(i)) {
+            facet.doc = "comes from another node";
+            facet.kind = FacetKind::event;
+            facet.type = from.type;
+            facet.at = [](void* self, std::size_t k) noexcept -> void* {
+                return static_cast<Link*>(self)->storage_.data() + Rows::rows[k].event_at;
+            };
+            facet.event = from.event;
+        } else if (Rows::serves_command(i)) {
+            facet.doc = "sent by another node";
+            facet.kind = FacetKind::command_call;
+            facet.type = from.type;
+            facet.at = [](void* self, std::size_t k) noexcept -> void* {
+                return &static_cast<Link*>(self)->calls[k];
+            };
+            facet.command_call = &PackedCommandCall::operations;
+        } else {
+            facet.doc = "done by another node";
+            facet.kind = FacetKind::command;
+            facet.type = from.type;
+            facet.command = &commands[i];
+        }
+        into[0] = facet;
+        return 1;
+    }
+    static constexpr auto interface_list() {
+        constexpr std::size_t fixed = 7;
+        std::array<Facet, fixed + node_count - 1 + Rows::port_count + Rows::facet_count> list{};
+        std::size_t k = 0;
+        for (const Facet& facet : {
+                 input<&Link::received>("received", "", "frames of the wire"),
+                 output<&Link::refused>("refused", "",
+                                        "the row that another node has otherwise; written on change"),
+                 output<&Link::events_lost>("events_lost", "",
+                                            "that nobody answered in time; written on change"),
+                 output<&Link::frames_refused>("frames_refused", "",
+                                               "damaged, or of another version; written on change"),
+                 output<&Link::beyond>("beyond", "", "values that their bits cannot hold; written on change"),
+                 output<&Link::not_sent>("not_sent", "",
+                                         "frames that a faulted or full bus did not take; written on change"),
+                 timer<&Link::next, &Link::fire>("next", "the next frame, or the next silence"),
+             })
+            list[k++] = facet;
+        for (std::size_t node = 0; node < node_count; ++node)
+            if (node != n)
+                list[k++] = {.name = Rows::presence_names[node].view(),
+                             .doc = "it is heard; written on change",
+                             .kind = FacetKind::output,
+                             .type = type_id<bool>,
+                             .index = node,
+                             .at = [](void* self, std::size_t i) noexcept -> void* {
+                                 return &static_cast<Link*>(self)->is_there[i];
+                             },
+                             .port = &PortAccess::data<bool>};
+        for (std::size_t p = 0; p < Rows::port_count; ++p) list[k++] = port_facet(p);
+        for (std::size_t i = 0; i < row_count; ++i)
+            if (Rows::crossing(i).kind != CrossingKind::data) k += add_row(i, std::span{list}.subspan(k));
+        return list;
+    }
+
+    can::Device* device_ = nullptr;
+    os::Waiter* waiter_ = nullptr;
+    alignas(64) std::array<std::byte, Rows::storage_bytes> storage_{};
+    Event<> any_event{}; ///< names the type of those in `lost`
+    std::array<Peer, node_count> peers_{};
+    std::array<RowState, row_count> state_{};
+    std::array<Time, frame_count> due_{};
+    std::array<ProtectionCheck, frame_count> checks_{};
+    std::array<Protector, frame_count> protectors_{};
+    std::uint16_t epoch_ = 0;
+    std::size_t told_row_ = 0;
+    std::int64_t refused_frames_ = 0, lost_events_ = 0, beyond_ = 0, not_sent_ = 0;
+};
+
+} // namespace tappet::systems

@@ -1,0 +1,228 @@
+// The rows of a system that one node has a part in, and where their stand-ins stand in its end of the wire.
+#pragma once
+
+#include "drivers/system/wire_analysis.hpp"
+#include "kernel/component/facet_name.hpp"
+#include "kernel/system/promises.hpp"
+
+namespace tappet::systems {
+
+/// Of a system at namespace scope: computed once.
+template <const auto& system>
+inline constexpr auto plan_of = plan_system(system, &analyse_can);
+
+/// What each promise of the system was proven to take; or the first that is not kept.
+template <const auto& system>
+inline constexpr auto promises_of = [] {
+    struct {
+        Sentence fault{};
+        std::array<Duration, system.promises.size()> proven{};
+    } all;
+    if (plan_of<system>.fault.empty()) {
+        all.fault = check_promises(system.view(), plan_of<system>, all.proven);
+        if (!all.fault.empty()) all.fault = Sentence{system.name, ": ", all.fault};
+    }
+    return all;
+}();
+
+/// A port of the node's end: an input for what its machine tells, an output for what it hears.
+struct PortPlace {
+    const Facet* facet = nullptr; ///< the port that it stands in for
+    bool is_input = false;
+    std::size_t crossing = nowhere; ///< the first of those that share it
+    std::size_t row = nowhere;
+    std::size_t frame = nowhere;
+    std::uint16_t bit = 0; ///< of the bit that says whether it is valid; the value stands behind it
+    WireValue value{};
+    Duration max_age{}; ///< the longest that a reader allows
+    std::size_t at = 0; ///< in the storage
+};
+
+/// An event, a command, or a value; presences need none.
+struct RowPlace {
+    std::size_t crossing = nowhere;
+    std::uint16_t name = 0, layout = 0;
+    std::size_t event_at = nowhere; ///< in the storage, of an event that comes
+};
+
+template <const auto& system, std::size_t n>
+struct NodeRows {
+    static constexpr auto& plan = plan_of<system>;
+    TAPPET_ACCEPTED(plan.fault);
+    TAPPET_ACCEPTED(promises_of<system>.fault);
+    static constexpr std::size_t crossing_count = system.crossings.size();
+
+    static constexpr bool has_part(std::size_t x) {
+        return system.crossings[x].kind != CrossingKind::presence &&
+               (plan.index[x].from.node == n || plan.index[x].to.node == n);
+    }
+    static constexpr std::size_t row_count = [] {
+        std::size_t count = 0;
+        for (std::size_t x = 0; x < crossing_count; ++x) count += has_part(x) ? 1u : 0u;
+        return count;
+    }();
+    /// Readers of one value share its port.
+    static constexpr bool is_first_port(std::size_t x) {
+        for (std::size_t before = 0; before < x; ++before)
+            if (system.crossings[before].kind == CrossingKind::data && has_part(before) &&
+                system.crossings[before].data.from == system.crossings[x].data.from)
+                return false;
+        return true;
+    }
+    static constexpr std::size_t port_count = [] {
+        std::size_t count = 0;
+        for (std::size_t x = 0; x < crossing_count; ++x)
+            count +=
+                system.crossings[x].kind == CrossingKind::data && has_part(x) && is_first_port(x) ? 1u : 0u;
+        return count;
+    }();
+
+private:
+    struct Places {
+        std::array<PortPlace, port_count> ports{};
+        std::array<RowPlace, row_count> rows{};
+        std::array<std::size_t, crossing_count> row_of{};
+        std::size_t bytes = 64; // none is of no size
+    };
+    static constexpr std::size_t on_a_line(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
+    static constexpr Places places = [] {
+        Places all;
+        std::size_t row = 0, port = 0;
+        for (std::size_t x = 0; x < crossing_count; ++x) {
+            all.row_of[x] = nowhere;
+            if (!has_part(x)) continue;
+            const Crossing& crossing = system.crossings[x];
+            const CrossingIndex& index = plan.index[x];
+            all.row_of[x] = row;
+            RowPlace& place = all.rows[row];
+            place = {x, index.name, index.layout, nowhere};
+            if (crossing.kind == CrossingKind::event && index.to.node == n) {
+                place.event_at = all.bytes;
+                all.bytes += on_a_line(index.from.facet->event->event_bytes);
+            }
+            if (crossing.kind == CrossingKind::data && is_first_port(x)) {
+                const bool is_input = index.from.node == n;
+                const PortOperations& operations = *index.from.facet->port;
+                all.ports[port++] = {index.from.facet,
+                                     is_input,
+                                     x,
+                                     row,
+                                     plan.place[x].frame,
+                                     plan.place[x].at,
+                                     index.value,
+                                     crossing.data.max_age,
+                                     all.bytes};
+                all.bytes += on_a_line(is_input ? operations.input_bytes : operations.output_bytes);
+            }
+            ++row;
+        }
+        for (PortPlace& each : all.ports)
+            for (std::size_t x = 0; x < crossing_count; ++x)
+                if (has_part(x) && system.crossings[x].kind == CrossingKind::data &&
+                    system.crossings[x].data.from == system.crossings[each.crossing].data.from)
+                    each.max_age = std::max(each.max_age, system.crossings[x].data.max_age);
+        return all;
+    }();
+
+public:
+    static constexpr auto& ports = places.ports;
+    static constexpr auto& rows = places.rows;
+    static constexpr std::size_t storage_bytes = places.bytes;
+
+    static constexpr std::size_t row_of(std::size_t x) noexcept TAPPET_REALTIME {
+        return x < crossing_count ? places.row_of[x] : nowhere;
+    }
+    static constexpr const Crossing& crossing(std::size_t i) noexcept TAPPET_REALTIME {
+        return system.crossings[rows[i].crossing];
+    }
+    static constexpr const CrossingIndex& index(std::size_t i) noexcept TAPPET_REALTIME {
+        return plan.index[rows[i].crossing];
+    }
+    static constexpr const Facet& facet_from(std::size_t i) { return *index(i).from.facet; }
+    static constexpr const CommandOperations& command(std::size_t i) { return *index(i).to.facet->command; }
+    static constexpr bool is_from_here(std::size_t i) noexcept TAPPET_REALTIME {
+        return index(i).from.node == n;
+    }
+    static constexpr std::size_t other(std::size_t i) noexcept TAPPET_REALTIME {
+        return is_from_here(i) ? index(i).to.node : index(i).from.node;
+    }
+    static constexpr bool is_command(std::size_t i) noexcept TAPPET_REALTIME {
+        return crossing(i).kind == CrossingKind::command;
+    }
+    static constexpr bool sends_events(std::size_t i) noexcept TAPPET_REALTIME {
+        return crossing(i).kind == CrossingKind::event && is_from_here(i);
+    }
+    static constexpr bool serves_command(std::size_t i) noexcept TAPPET_REALTIME {
+        return is_command(i) && !is_from_here(i);
+    }
+    /// By which the row's messages leave this node.
+    static constexpr std::size_t message_frame(std::size_t i) noexcept TAPPET_REALTIME {
+        const CrossingPlace& place = plan.place[rows[i].crossing];
+        return is_from_here(i) ? place.frame : place.reply;
+    }
+    static constexpr bool is_periodic(std::size_t f) noexcept TAPPET_REALTIME {
+        const WireFrame& frame = plan.frames[f];
+        return frame.node == n && (frame.kind == WireFrameKind::beat || frame.kind == WireFrameKind::data);
+    }
+    static constexpr std::size_t beat_frame = [] {
+        std::size_t found = 0;
+        while (plan.frames[found].kind != WireFrameKind::beat || plan.frames[found].node != n) ++found;
+        return found;
+    }();
+
+    // ---- names: what is told by its path in the machine, what comes by the other node's
+
+    static constexpr auto port_names = [] {
+        std::array<FacetName, port_count> names{};
+        for (std::size_t p = 0; p < port_count; ++p) {
+            const std::string_view path = system.crossings[ports[p].crossing].data.from;
+            names[p] = {ports[p].is_input ? in_node(path) : path};
+        }
+        return names;
+    }();
+    /// Of an event or a command: "station.out>drill.station.in" where it leaves, "saw.station.out>station.in"
+    /// where it comes.
+    static constexpr FacetName row_name(std::size_t i, std::string_view end) {
+        const Crossing& row = crossing(i);
+        if (row.kind == CrossingKind::data) return {};
+        return {is_from_here(i) ? in_node(row.from()) : row.from(), ">",
+                is_from_here(i) ? row.to() : in_node(row.to()), end};
+    }
+    static constexpr auto row_names = [] {
+        std::array<FacetName, row_count> names{};
+        for (std::size_t i = 0; i < row_count; ++i) names[i] = row_name(i, "");
+        return names;
+    }();
+    static constexpr auto loss_names = [] {
+        std::array<FacetName, row_count> names{};
+        for (std::size_t i = 0; i < row_count; ++i) names[i] = row_name(i, " lost");
+        return names;
+    }();
+    static constexpr auto presence_names = [] {
+        std::array<FacetName, system.nodes.size()> names{};
+        for (std::size_t node = 0; node < names.size(); ++node)
+            names[node] = {system.nodes[node].name, ".is_there"};
+        return names;
+    }();
+    /// How many facets the events and commands have.
+    static constexpr std::size_t facet_count = [] {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < row_count; ++i)
+            count += crossing(i).kind == CrossingKind::data ? 0u : sends_events(i) ? 2u : 1u;
+        return count;
+    }();
+
+    static Text<160> refusal(std::size_t i) noexcept TAPPET_REALTIME {
+        Text<160> text;
+        text.append("node \"");
+        text.append(system.nodes[other(i)].name);
+        text.append("\" has another row \"");
+        text.append(crossing(i).from());
+        text.append("\" -> \"");
+        text.append(crossing(i).to());
+        text.append("\": give both one version of the system");
+        return text;
+    }
+};
+
+} // namespace tappet::systems

@@ -1,0 +1,225 @@
+// The machine of one node: its own table, and behind it the wire with its end. And the same system without a
+// wire, in one machine: what is local and what is cut behaves alike.
+#pragma once
+
+#include "drivers/can/bus.hpp"
+#include "drivers/system/link.hpp"
+#include "kernel/system/joined.hpp"
+
+namespace tappet::systems {
+
+/// A bus that carries the system's frames only.
+inline constexpr auto no_signals = can::signal_map();
+
+template <const auto& system, std::size_t n>
+struct StationRows {
+    using Rows = NodeRows<system, n>;
+    static constexpr auto& plan = Rows::plan;
+    static constexpr std::size_t frame_count = plan.frames.size();
+
+    // ---- the frames, for the bus and what proves it
+
+    static constexpr bool is_heard(const WireFrame& frame) {
+        if (frame.node == n) return false;
+        if (frame.kind == WireFrameKind::beat) return true;
+        if (frame.kind != WireFrameKind::data) return Rows::has_part(frame.crossing);
+        for (std::size_t x = 0; x < system.crossings.size(); ++x)
+            if (system.crossings[x].kind == CrossingKind::data &&
+                &plan.frames[plan.place[x].frame] == &frame && plan.index[x].to.node == n)
+                return true;
+        return false;
+    }
+    using FrameName = Text<96>;
+    static constexpr auto frame_names = [] {
+        std::array<FrameName, frame_count> names{};
+        for (std::size_t f = 0; f < frame_count; ++f) {
+            const WireFrame& frame = plan.frames[f];
+            constexpr std::string_view what[] = {"beat of ",   "data of ",  "",
+                                                 "answer to ", "reply to ", "taken: "};
+            names[f].append(what[static_cast<std::size_t>(frame.kind)]);
+            names[f].append(frame.crossing == nowhere           ? system.nodes[frame.node].name
+                            : frame.kind == WireFrameKind::data ? system.crossings[frame.crossing].from()
+                                                                : system.crossings[frame.crossing].to());
+        }
+        return names;
+    }();
+    static constexpr auto services = [] {
+        can::Services<frame_count, 0> all{};
+        for (std::size_t f = 0; f < frame_count; ++f) {
+            const WireFrame& frame = plan.frames[f];
+            can::FrameRow& row = all.frames[f];
+            row.identifier = can::standard(frame.id);
+            row.name = frame_names[f].view();
+            row.direction = frame.node == n   ? can::Direction::transmit
+                            : is_heard(frame) ? can::Direction::receive
+                                              : can::Direction::passing;
+            row.length = frame.bytes();
+            row.every = frame.kind == WireFrameKind::beat || frame.kind == WireFrameKind::data ? frame.apart
+                                                                                               : Duration{};
+            row.apart = frame.apart;
+            row.jitter = frame.jitter;
+        }
+        return all;
+    }();
+    /// How often its activity is woken at most within its own deadline: by each frame that is heard or
+    /// confirmed, as many as the wire has room for, by its timers and by what its machine emits.
+    static constexpr std::int64_t wakes = [] {
+        const Duration window = system.wire.service.deadline;
+        std::int64_t on_wire = 0, timers = 0;
+        Duration shortest = Duration::max();
+        for (const WireFrame& frame : plan.frames) {
+            if (frame.node != n && !is_heard(frame)) continue;
+            on_wire += (window + frame.jitter) / frame.apart + 1;
+            // Without any stuffing.
+            const std::int64_t bits = 47 + 8 * std::int64_t{frame.bytes()};
+            shortest = std::min(shortest, Duration{bits * 1'000'000'000 / system.wire.rate.bits_per_second});
+            if (frame.node == n && frame.kind != WireFrameKind::answer &&
+                frame.kind != WireFrameKind::received)
+                timers += window / frame.apart + 1;
+        }
+        std::int64_t events = 1;
+        for (std::size_t i = 0; i < Rows::row_count; ++i)
+            if (Rows::is_command(i) || Rows::sends_events(i)) ++events;
+        return std::min(on_wire, window / shortest + 1) + timers + events;
+    }();
+
+    // ---- the rows
+
+    using Path = Text<127>;
+    static constexpr Path path(std::string_view facet, std::string_view end_of_component = "") {
+        Path text;
+        text.append(system.wire.name);
+        text.append(end_of_component);
+        text.append(".");
+        text.append(facet);
+        return text;
+    }
+    static constexpr auto bus_name = [] {
+        Text<64> text;
+        text.append(system.wire.name);
+        text.append("_can");
+        return text;
+    }();
+    static constexpr auto bus_services = path("services", "_can"), received = path("received");
+    static constexpr auto port_paths = [] {
+        std::array<Path, Rows::port_count> all{};
+        for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view());
+        return all;
+    }();
+    static constexpr auto row_paths = [] {
+        std::array<Path, Rows::row_count> all{};
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::row_names[i].view());
+        return all;
+    }();
+    static constexpr auto loss_paths = [] {
+        std::array<Path, Rows::row_count> all{};
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::loss_names[i].view());
+        return all;
+    }();
+    static constexpr auto presence_paths = [] {
+        std::array<Path, system.nodes.size()> all{};
+        for (std::size_t node = 0; node < all.size(); ++node)
+            all[node] = path(Rows::presence_names[node].view());
+        return all;
+    }();
+
+    static constexpr std::string_view port_path(std::size_t x) {
+        for (std::size_t p = 0; p < Rows::port_count; ++p)
+            if (system.crossings[Rows::ports[p].crossing].data.from == system.crossings[x].data.from)
+                return port_paths[p].view();
+        return {};
+    }
+    static constexpr std::size_t connection_count = [] {
+        std::size_t count = 1;
+        for (const PortPlace& port : Rows::ports) count += port.is_input ? 1u : 0u;
+        for (std::size_t x = 0; x < system.crossings.size(); ++x)
+            count += plan.index[x].to.node == n && (system.crossings[x].kind == CrossingKind::data ||
+                                                    system.crossings[x].kind == CrossingKind::presence)
+                         ? 1u
+                         : 0u;
+        return count;
+    }();
+    static constexpr auto connections = [] {
+        std::array<ConnectionRow, connection_count> all{};
+        std::size_t k = 0;
+        all[k++] = buffer<64>(bus_services.view(), received.view());
+        for (std::size_t p = 0; p < Rows::port_count; ++p) {
+            if (!Rows::ports[p].is_input) continue;
+            ConnectionRow& row = all[k++];
+            row = data(in_node(system.crossings[Rows::ports[p].crossing].data.from), port_paths[p].view());
+            if (Rows::ports[p].max_age > Duration::zero()) row.max_age = Rows::ports[p].max_age;
+        }
+        for (std::size_t x = 0; x < system.crossings.size(); ++x) {
+            const Crossing& crossing = system.crossings[x];
+            if (plan.index[x].to.node != n) continue;
+            if (crossing.kind != CrossingKind::data && crossing.kind != CrossingKind::presence) continue;
+            ConnectionRow& row = all[k++];
+            row = crossing.data;
+            row.from = crossing.kind == CrossingKind::data ? port_path(x)
+                                                           : presence_paths[plan.index[x].from.node].view();
+            row.to = in_node(crossing.data.to);
+        }
+        return all;
+    }();
+
+    static constexpr std::size_t reaction_count = [] {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < Rows::row_count; ++i) {
+            const Crossing& row = Rows::crossing(i);
+            if (row.kind == CrossingKind::data) continue;
+            count +=
+                row.kind == CrossingKind::event && Rows::is_from_here(i) && !row.if_lost.empty() ? 2u : 1u;
+        }
+        return count;
+    }();
+    static constexpr auto reactions = [] {
+        std::array<ReactionRow, reaction_count> all{};
+        std::size_t k = 0;
+        for (std::size_t i = 0; i < Rows::row_count; ++i) {
+            const Crossing& row = Rows::crossing(i);
+            const std::string_view here = row_paths[i].view();
+            if (row.kind == CrossingKind::command) {
+                all[k++] =
+                    Rows::is_from_here(i) ? uses(in_node(row.from()), here) : uses(here, in_node(row.to()));
+            } else if (row.kind == CrossingKind::event) {
+                ReactionTarget target = row.reaction.target;
+                target.operation = Rows::is_from_here(i) ? here : in_node(row.to());
+                all[k++] = when(Rows::is_from_here(i) ? in_node(row.from()) : here, target);
+                if (Rows::is_from_here(i) && !row.if_lost.empty())
+                    all[k++] = when(loss_paths[i].view(), tell(in_node(row.if_lost)));
+            }
+        }
+        return all;
+    }();
+    static constexpr std::array<ComponentRow, 2> components{
+        component<can::Bus<no_signals, services>>(bus_name.view(), device(system.wire.name)),
+        component<Link<system, n>>(system.wire.name, device(system.wire.name))};
+    static constexpr std::array<ActivityRow, 1> activities{
+        activity(system.wire.name, on_device(bus_name.view()), at_most(wakes, system.wire.service.deadline),
+                 runs(bus_name.view(), system.wire.name), deadline(system.wire.service.deadline),
+                 budget(system.wire.service.budget))};
+};
+
+/// The number of a node; a name that the system has not does not compile.
+template <const auto& system>
+constexpr std::size_t number_of(std::string_view name) {
+    return find_node(system.view(), name);
+}
+
+} // namespace tappet::systems
+
+namespace tappet {
+
+/// What the node's firmware is made of: `table` is that which its row of the system names.
+template <const auto& system, text name, const auto& table>
+inline constexpr auto station = [] {
+    constexpr std::size_t n = systems::number_of<system>(name.view());
+    static_assert(n != nowhere, "the system has no node of that name");
+    static_assert(system.nodes[n].table.components.data() == table.components.data(),
+                  "that node's row of the system names another table");
+    using Rows = systems::StationRows<system, n>;
+    return systems::joined(system.nodes[n].name, table, Rows::components, Rows::activities, Rows::connections,
+                           Rows::reactions);
+}();
+
+} // namespace tappet

@@ -1,0 +1,59 @@
+// Whether all frames of a system come through its CAN wire in time: each is proven as one of its own node's,
+// with the queue that it really waits in there, and the frames of other nodes come as late as theirs let
+// them.
+#pragma once
+
+#include "drivers/can/bus_analysis.hpp"
+#include "drivers/can/frame_time.hpp"
+#include "drivers/can/transmitter.hpp"
+#include "kernel/system/plan.hpp"
+
+namespace tappet::systems {
+
+/// A WireAnalysis.
+constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> frames) {
+    constexpr std::size_t most = can::BusAnalysis::most_frames;
+    if (frames.size() > most) return 0;
+    std::array<can::FrameTiming, most> timing{};
+    std::array<std::int64_t, most>
+        late{}; // behind less urgent ones of its own node that are in flight already
+    const std::uint32_t rate = s.wire.rate.bits_per_second;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+        timing[f].wire_ns = can::frame_time_ns(can::Format::classical, false, frames[f].bytes(), {rate, 0});
+        frames[f].on_wire = Duration{timing[f].wire_ns};
+        timing[f].period_ns = frames[f].apart.count();
+        timing[f].deadline_ns = frames[f].deadline.count();
+    }
+    const std::int64_t served = s.wire.service.deadline.count();
+    // What is late at one node is one more jitter for the others, until nothing grows any more.
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t n = 0; n < s.nodes.size(); ++n) {
+            std::int64_t shortest = std::numeric_limits<std::int64_t>::max();
+            for (std::size_t f = 0; f < frames.size(); ++f) {
+                timing[f].own = frames[f].node == n;
+                timing[f].jitter_ns = served + (timing[f].own ? 0 : late[f]);
+                if (timing[f].own) shortest = std::min(shortest, timing[f].wire_ns);
+            }
+            const can::BusAnalysis bus{std::span{timing}.first(frames.size()),
+                                       {(1'000'000'000 + rate - 1) / rate,
+                                        can::frames_in_flight(s.wire.service.deadline, Duration{shortest}),
+                                        served, s.wire.errors.at_once, s.wire.errors.every.count()}};
+            for (std::size_t f = 0; f < frames.size(); ++f) {
+                if (!timing[f].own) continue;
+                const can::FrameResponse found = bus.of(f);
+                frames[f].worst =
+                    found.response.bounded ? Duration{found.response.worst_ns} : Duration::max();
+                if (!found.response.bounded) return f;
+                if (const std::int64_t behind = bus.late_ns(f); behind > late[f])
+                    late[f] = behind, again = true;
+            }
+        }
+    }
+    for (std::size_t f = 0; f < frames.size(); ++f) frames[f].jitter = Duration{served + late[f]};
+    for (std::size_t f = 0; f < frames.size(); ++f)
+        if (frames[f].worst > frames[f].deadline) return f;
+    return frames.size();
+}
+
+} // namespace tappet::systems

@@ -1,0 +1,171 @@
+// How the values of a row stand on the wire: whole numbers of so many bits, or the bytes that they are. The
+// sender packs several of them into one frame, bit after bit, little end first.
+#pragma once
+
+#include "kernel/base/type_tag.hpp"
+#include "kernel/system/rows.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace tappet {
+
+/// What one value becomes.
+struct WireValue {
+    std::uint16_t bits = 0;
+    ValueKind kind = ValueKind::opaque; ///< boolean: one bit; opaque: as it is
+    std::uint8_t bytes = 0;             ///< of the value in the machine
+    bool is_signed = true;
+    double step = 1;
+    constexpr bool operator==(const WireValue&) const = default;
+};
+
+/// Of a value of that type, or of an argument list; of none the bits are 0, and `fault` says why.
+constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& fault) {
+    if (type->kind == ValueKind::arguments && type->elements.size() == 1) type = type->elements[0];
+    WireValue value{.bits = static_cast<std::uint16_t>(8 * type->size),
+                    .bytes = static_cast<std::uint8_t>(type->size),
+                    .is_signed = encoding.is_signed,
+                    .step = encoding.step};
+    if (type->size > 56) {
+        fault = Sentence{"a value of type ", type->name, " has ", type->size,
+                         " bytes, and no frame takes them; tell a part of it"};
+        value.bits = 0;
+    }
+    if (encoding.bits == 0) {
+        if (type->kind == ValueKind::boolean) value.kind = ValueKind::boolean, value.bits = 1;
+        return value;
+    }
+    const bool is_number = (type->kind == ValueKind::integer || type->kind == ValueKind::natural ||
+                            type->kind == ValueKind::real) &&
+                           type->size >= 4;
+    if (!is_number) {
+        fault = Sentence{"a value of type ", type->name,
+                         " is no number of at least 4 bytes: remove in_bits(...), and it goes as it is"};
+        value.bits = 0;
+    } else if (encoding.bits > 56 || !(encoding.step > 0)) {
+        fault = Sentence{"in_bits takes 1 to 56 bits and a step above 0"};
+        value.bits = 0;
+    } else {
+        value.kind = type->kind;
+        value.bits = encoding.bits;
+    }
+    return value;
+}
+
+namespace on_wire {
+
+/// `bits` of `from`, beginning at bit `at`; 56 at most. Real-time, as all below.
+constexpr std::uint64_t take_bits(std::span<const std::uint8_t> from, std::size_t at,
+                                  std::size_t bits) noexcept TAPPET_REALTIME {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < bits; ++i)
+        value |= static_cast<std::uint64_t>(from[(at + i) / 8] >> (at + i) % 8 & 1u) << i;
+    return value;
+}
+constexpr void put_bits(std::span<std::uint8_t> into, std::size_t at, std::size_t bits,
+                        std::uint64_t value) noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < bits; ++i) {
+        std::uint8_t& byte = into[(at + i) / 8];
+        const auto mask = static_cast<std::uint8_t>(1u << (at + i) % 8);
+        byte = static_cast<std::uint8_t>((value >> i & 1u) != 0 ? byte | mask : byte & ~mask);
+    }
+}
+
+/// What telling a value found.
+enum class Told : std::uint8_t { well, beyond, no_number };
+
+/// The whole number nearest to value / step that the bits can hold.
+inline Told to_steps(double value, const WireValue& as, std::int64_t& steps) noexcept TAPPET_REALTIME {
+    const double wanted = value / as.step;
+    if (!(wanted == wanted)) return Told::no_number;
+    const std::int64_t most = (std::int64_t{1} << (as.bits - (as.is_signed ? 1 : 0))) - 1;
+    const std::int64_t least = as.is_signed ? -most - 1 : 0;
+    if (wanted >= static_cast<double>(most) + 0.5) return steps = most, Told::beyond;
+    if (wanted <= static_cast<double>(least) - 0.5) return steps = least, Told::beyond;
+    steps = static_cast<std::int64_t>(std::floor(wanted + 0.5));
+    return Told::well;
+}
+
+/// Puts the value's bytes, as the machine has them, into a frame at bit `at`.
+inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uint8_t> into,
+                 std::size_t at) noexcept TAPPET_REALTIME {
+    if (as.kind == ValueKind::boolean) {
+        bool truth = false;
+        std::memcpy(&truth, value, sizeof truth);
+        put_bits(into, at, 1, truth ? 1 : 0);
+        return Told::well;
+    }
+    if (as.kind == ValueKind::opaque) {
+        for (std::size_t i = 0; i < as.bytes; ++i)
+            put_bits(into, at + 8 * i, 8, std::to_integer<std::uint64_t>(value[i]));
+        return Told::well;
+    }
+    std::int64_t steps = 0;
+    Told told = Told::well;
+    if (as.kind == ValueKind::real) {
+        double number = 0;
+        if (as.bytes == sizeof(float)) {
+            float single = 0;
+            std::memcpy(&single, value, sizeof single);
+            number = static_cast<double>(single);
+        } else {
+            std::memcpy(&number, value, sizeof number);
+        }
+        told = to_steps(number, as, steps);
+    } else {
+        std::int64_t whole = 0;
+        if (as.bytes == 4 && as.kind == ValueKind::integer) {
+            std::int32_t small = 0;
+            std::memcpy(&small, value, sizeof small);
+            whole = small;
+        } else {
+            std::memcpy(&whole, value, as.bytes);
+        }
+        const std::int64_t most = (std::int64_t{1} << (as.bits - (as.is_signed ? 1 : 0))) - 1;
+        const std::int64_t least = as.is_signed ? -most - 1 : 0;
+        if (as.step == 1) {
+            steps = std::clamp(whole, least, most);
+            told = steps == whole ? Told::well : Told::beyond;
+        } else {
+            told = to_steps(static_cast<double>(whole), as, steps);
+        }
+    }
+    if (told != Told::no_number) put_bits(into, at, as.bits, static_cast<std::uint64_t>(steps));
+    return told;
+}
+
+/// The way back.
+inline void hear(std::span<const std::uint8_t> from, std::size_t at, const WireValue& as,
+                 std::byte* value) noexcept TAPPET_REALTIME {
+    if (as.kind == ValueKind::boolean) {
+        const bool truth = take_bits(from, at, 1) != 0;
+        std::memcpy(value, &truth, sizeof truth);
+        return;
+    }
+    if (as.kind == ValueKind::opaque) {
+        for (std::size_t i = 0; i < as.bytes; ++i)
+            value[i] = static_cast<std::byte>(take_bits(from, at + 8 * i, 8));
+        return;
+    }
+    auto steps = static_cast<std::int64_t>(take_bits(from, at, as.bits));
+    if (as.is_signed && (steps >> (as.bits - 1) & 1) != 0) steps -= std::int64_t{1} << as.bits;
+    if (as.kind == ValueKind::real) {
+        const double number = static_cast<double>(steps) * as.step;
+        if (as.bytes == sizeof(float)) {
+            const auto single = static_cast<float>(number);
+            std::memcpy(value, &single, sizeof single);
+        } else {
+            std::memcpy(value, &number, sizeof number);
+        }
+        return;
+    }
+    const std::int64_t whole =
+        as.step == 1 ? steps
+                     : static_cast<std::int64_t>(std::floor(static_cast<double>(steps) * as.step + 0.5));
+    std::memcpy(value, &whole, as.bytes); // little end first, as the machine has it
+}
+
+} // namespace on_wire
+
+} // namespace tappet

@@ -1,0 +1,357 @@
+// What the compiler derives from a system table: the frames on the wire, what they hold and in which order
+// they win it; how each row is told from another version's; and whether everything that was promised holds.
+#pragma once
+
+#include "kernel/base/digest.hpp"
+#include "kernel/base/response.hpp"
+#include "kernel/system/resolve.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+/// What a frame is for.
+enum class WireFrameKind : std::uint8_t {
+    beat,     ///< of a node: it lives, and so one of its rows looks
+    data,     ///< values of one node, of one period
+    message,  ///< an event, or a command that was sent
+    answer,   ///< to those
+    reply,    ///< how a command went
+    received, ///< the answer to that
+};
+
+struct WireFrame {
+    std::size_t node = nowhere; ///< who sends it
+    WireFrameKind kind = WireFrameKind::beat;
+    std::size_t crossing = nowhere; ///< of data the first one in it
+    Duration apart{};               ///< the least time between two
+    Duration on_wire{};             ///< the longest that one takes there
+    Duration deadline{};    ///< from its release, which its node serves in time, to its end on the wire
+    Duration worst{};       ///< likewise, proven
+    Duration jitter{};      ///< by how much it may be late, for other nodes
+    std::uint16_t bits = 0; ///< of its contents, protection included
+    std::uint32_t id = 0;
+    std::uint16_t data_id = 0; ///< protects it against being taken for another one
+
+    [[nodiscard]] constexpr std::uint8_t bytes() const noexcept {
+        return static_cast<std::uint8_t>((bits + 7) / 8);
+    }
+};
+
+/// A frame of classical CAN holds 8 bytes; the first 12 bits are its protection: CRC and counter.
+inline constexpr std::size_t most_wire_bits = 64;
+inline constexpr std::size_t protection_bits = 12;
+/// Of a channel's frame: what it is, its number and session.
+inline constexpr std::size_t channel_bits = 32;
+
+/// Where a row stands on the wire.
+struct CrossingPlace {
+    std::size_t frame = nowhere; ///< data, or the message
+    std::size_t answer = nowhere, reply = nowhere, received = nowhere;
+    std::uint16_t at = 0; ///< of data: its first bit
+};
+
+/// Proves frames that stand in the order in which they win the wire. `worst` of each is written; the answer
+/// is the first that is not within its deadline, or how many there are.
+using WireAnalysis = std::size_t (*)(const SystemView&, std::span<WireFrame>);
+
+template <std::size_t N, std::size_t X>
+struct SystemPlan {
+    static constexpr std::size_t most_frames = N + 4 * X;
+    Sentence fault{}; ///< empty when everything about the wire is right
+    std::array<CrossingIndex, X> index{};
+    std::array<CrossingPlace, X> place{};
+    Bounded<WireFrame, most_frames> frames{}; ///< the most urgent first
+};
+
+namespace systems {
+
+constexpr std::uint16_t folded(const Digest& digest) noexcept {
+    const std::uint64_t value = digest.value();
+    return static_cast<std::uint16_t>(value ^ value >> 16 ^ value >> 32 ^ value >> 48);
+}
+constexpr void add_text(Digest& digest, std::string_view text) noexcept {
+    for (const char each : text) digest.add(std::uint64_t{static_cast<unsigned char>(each)});
+    digest.add(std::uint64_t{text.size()});
+}
+constexpr void add_value(Digest& digest, const WireValue& value) noexcept {
+    digest.add(std::uint64_t{value.bits});
+    digest.add(static_cast<std::uint64_t>(value.kind));
+    digest.add(std::uint64_t{value.is_signed ? 1u : 0u});
+    digest.add(std::bit_cast<std::uint64_t>(value.step));
+}
+
+/// The deadline of the activity that runs a component of a node: proven by that machine's own check.
+constexpr Duration deadline_at(const SystemView& s, const NodeEnd& end) {
+    const MachineView& table = s.nodes[end.node].table;
+    const std::size_t a = activity_of(table, table.components[end.at.component].name);
+    return a == nowhere ? Duration{} : table.activities[a].deadline();
+}
+/// From the arrival of a value until the component there has seen it.
+constexpr Duration read_within(const SystemView& s, const NodeEnd& end, bool wakes) {
+    const MachineView& table = s.nodes[end.node].table;
+    const std::size_t a = activity_of(table, table.components[end.at.component].name);
+    if (a == nowhere) return {};
+    const ActivityRow& row = table.activities[a];
+    return row.deadline() + (row.periodic() && !wakes ? row.period : Duration{});
+}
+
+/// What a row's time has besides its frame on the wire.
+constexpr Duration around_wire(const SystemView& s, const Crossing& row, const CrossingIndex& index) {
+    const Duration served = s.wire.service.deadline;
+    return row.kind == CrossingKind::data ? row.every + served : served + deadline_at(s, index.to);
+}
+
+template <std::size_t N, std::size_t X>
+constexpr Sentence add_frame(SystemPlan<N, X>& plan, const WireFrame& frame, std::size_t& at) {
+    at = plan.frames.size();
+    static_cast<void>(plan.frames.push(frame));
+    return {};
+}
+
+/// Values of one node and one period share frames, the widest first, each where it fits first.
+template <std::size_t N, std::size_t X>
+constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
+    std::array<std::size_t, X> by_width{};
+    std::size_t count = 0;
+    for (std::size_t x = 0; x < X; ++x)
+        if (s.crossings[x].kind == CrossingKind::data) by_width[count++] = x;
+    std::sort(by_width.begin(), by_width.begin() + static_cast<std::ptrdiff_t>(count),
+              [&](std::size_t a, std::size_t b) {
+                  return plan.index[a].value.bits != plan.index[b].value.bits
+                             ? plan.index[a].value.bits > plan.index[b].value.bits
+                             : a < b;
+              });
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t x = by_width[i];
+        const Crossing& row = s.crossings[x];
+        const auto bits = static_cast<std::uint16_t>(plan.index[x].value.bits + 1); // whether it is valid
+        if (protection_bits + bits > most_wire_bits)
+            return of_crossing(
+                row, ": its value takes ", unsigned{bits},
+                " bits with the one that says whether it is valid, and a frame has ",
+                most_wire_bits - protection_bits,
+                " for values; tell it in fewer: in_bits(32, 0.001) of a number, or a part of a record");
+        CrossingPlace& place = plan.place[x];
+        for (std::size_t before = 0; before < i && place.frame == nowhere; ++before) {
+            const std::size_t b = by_width[before]; // the same value, for another reader
+            if (s.crossings[b].data.from != row.data.from) continue;
+            if (s.crossings[b].every != row.every || plan.index[b].value != plan.index[x].value)
+                return of_crossing(row, " is told otherwise than to \"", s.crossings[b].to(),
+                                   "\"; give all rows of one output the same every(...) and the same bits");
+            place = plan.place[b];
+        }
+        if (place.frame != nowhere) continue;
+        for (std::size_t f = 0; f < plan.frames.size() && place.frame == nowhere; ++f) {
+            const WireFrame& frame = plan.frames[f];
+            if (frame.kind == WireFrameKind::data && frame.node == plan.index[x].from.node &&
+                frame.apart == row.every && frame.bits + bits <= most_wire_bits)
+                place.frame = f;
+        }
+        if (place.frame == nowhere)
+            add_frame(plan,
+                      {.node = plan.index[x].from.node,
+                       .kind = WireFrameKind::data,
+                       .crossing = x,
+                       .apart = row.every,
+                       .deadline = row.every,
+                       .bits = protection_bits},
+                      place.frame);
+        WireFrame& frame = plan.frames[place.frame];
+        place.at = frame.bits;
+        frame.bits = static_cast<std::uint16_t>(frame.bits + bits);
+        if (row.within != Duration::zero())
+            frame.deadline = std::min(frame.deadline, row.within - around_wire(s, row, plan.index[x]));
+    }
+    return {};
+}
+
+template <std::size_t N, std::size_t X>
+constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std::size_t x) {
+    const Crossing& row = s.crossings[x];
+    const CrossingIndex& index = plan.index[x];
+    const Duration left = row.within - around_wire(s, row, index);
+    if (left <= Duration::zero())
+        return of_crossing(
+            row, " is to be served within ", row.within.count() / 1000, " us, but ",
+            around_wire(s, row, index).count() / 1000,
+            " us of that are the deadlines of the activities that serve the wire and the operation; "
+            "shorten those, or say a longer within(...)");
+    const Duration again = row.within / 2;
+    const auto frame = [&](std::size_t node, WireFrameKind kind, std::size_t bits) {
+        return WireFrame{.node = node,
+                         .kind = kind,
+                         .crossing = x,
+                         .apart = again,
+                         .deadline = std::min(left, again),
+                         .bits = static_cast<std::uint16_t>(bits)};
+    };
+    if (channel_bits + index.value.bits > most_wire_bits)
+        return of_crossing(row, ": its arguments take ", unsigned{index.value.bits},
+                           " bits, and a frame has ", most_wire_bits - channel_bits,
+                           " for them; tell a number by in_bits(...), or the rest by data(...)");
+    add_frame(plan, frame(index.from.node, WireFrameKind::message, channel_bits + index.value.bits),
+              plan.place[x].frame);
+    add_frame(plan, frame(index.to.node, WireFrameKind::answer, channel_bits + 8), plan.place[x].answer);
+    if (row.kind != CrossingKind::command) return {};
+    if (channel_bits + 8 + index.result.bits > most_wire_bits)
+        return of_crossing(row, ": its results take ", unsigned{index.result.bits}, " bits, and a frame has ",
+                           most_wire_bits - channel_bits - 8, " for them; tell them by data(...)");
+    add_frame(plan, frame(index.to.node, WireFrameKind::reply, channel_bits + 8 + index.result.bits),
+              plan.place[x].reply);
+    add_frame(plan, frame(index.from.node, WireFrameKind::received, channel_bits + 8),
+              plan.place[x].received);
+    return {};
+}
+
+/// Moves the frame at `from` to `to`; places follow.
+template <std::size_t N, std::size_t X>
+constexpr void renumber(SystemPlan<N, X>& plan, std::span<const std::size_t> new_place) {
+    const auto moved = [&](std::size_t& frame) {
+        if (frame != nowhere) frame = new_place[frame];
+    };
+    for (CrossingPlace& place : plan.place) {
+        moved(place.frame), moved(place.answer), moved(place.reply), moved(place.received);
+    }
+    const auto before = plan.frames;
+    for (std::size_t f = 0; f < before.size(); ++f) plan.frames[new_place[f]] = before[f];
+}
+
+/// Deadline-monotonic first, which is right for most; where that fails, Audsley's assignment (1991): the
+/// lowest place goes to a frame that bears it, then the next lowest. The answer is the frame that bears none.
+template <std::size_t N, std::size_t X>
+constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAnalysis analysis) {
+    const std::size_t count = plan.frames.size();
+    std::array<std::size_t, SystemPlan<N, X>::most_frames> order{}, new_place{};
+    for (std::size_t f = 0; f < count; ++f) order[f] = f;
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+              [&](std::size_t a, std::size_t b) {
+                  const WireFrame &l = plan.frames[a], &r = plan.frames[b];
+                  return l.deadline != r.deadline ? l.deadline < r.deadline : a < b;
+              });
+    auto trial = plan.frames;
+    const auto tries = [&] {
+        for (std::size_t f = 0; f < count; ++f) trial[f] = plan.frames[order[f]];
+        return analysis(s, std::span{trial.items}.first(count));
+    };
+    std::size_t bad = tries();
+    if (bad < count) {
+        const auto monotonic = order;
+        const std::size_t first_bad = order[bad];
+        for (std::size_t level = count; level-- > 0 && bad < count;) {
+            bool found = false;
+            for (std::size_t candidate = level + 1; candidate-- > 0 && !found;) {
+                std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
+                            order.begin() + static_cast<std::ptrdiff_t>(candidate) + 1,
+                            order.begin() + static_cast<std::ptrdiff_t>(level) + 1);
+                static_cast<void>(tries());
+                found = trial[level].worst <= trial[level].deadline;
+                if (!found)
+                    std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
+                                order.begin() + static_cast<std::ptrdiff_t>(level),
+                                order.begin() + static_cast<std::ptrdiff_t>(level) + 1);
+            }
+            if (!found) break;
+        }
+        bad = tries();
+        if (bad < count) {
+            order = monotonic;
+            static_cast<void>(tries());
+            bad = first_bad;
+        }
+    }
+    for (std::size_t f = 0; f < count; ++f) new_place[order[f]] = f;
+    const std::size_t answer = bad < count ? new_place[bad] : count;
+    for (std::size_t f = 0; f < count; ++f) plan.frames[order[f]] = trial[f];
+    renumber(plan, std::span{new_place}.first(count));
+    return answer;
+}
+
+} // namespace systems
+
+/// Of a system.
+template <std::size_t N, std::size_t X, std::size_t P>
+constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysis analysis) {
+    SystemPlan<N, X> plan;
+    const SystemView s = table.view();
+    const auto refuse = [&](const Sentence& fault) { plan.fault = Sentence{s.name, ": ", fault}; };
+    if (Sentence fault = systems::check_nodes(s); !fault.empty()) return refuse(fault), plan;
+    for (std::size_t x = 0; x < X; ++x)
+        if (Sentence fault = systems::resolve_crossing(s, s.crossings[x], plan.index[x]); !fault.empty())
+            return refuse(fault), plan;
+    std::size_t ignored = 0;
+    for (std::size_t n = 0; n < N; ++n)
+        systems::add_frame(plan,
+                           {.node = n,
+                            .kind = WireFrameKind::beat,
+                            .apart = s.wire.beats,
+                            .deadline = s.wire.beats,
+                            .bits = most_wire_bits},
+                           ignored);
+    if (Sentence fault = systems::pack_data(s, plan); !fault.empty()) return refuse(fault), plan;
+    for (std::size_t x = 0; x < X; ++x) {
+        const CrossingKind kind = s.crossings[x].kind;
+        if (kind != CrossingKind::event && kind != CrossingKind::command) continue;
+        if (Sentence fault = systems::add_channels(s, plan, x); !fault.empty()) return refuse(fault), plan;
+    }
+    const std::size_t bad = systems::assign(s, plan, analysis);
+    for (std::size_t f = 0; f < plan.frames.size(); ++f)
+        plan.frames[f].id = s.wire.first_identifier + static_cast<std::uint32_t>(f);
+    for (std::size_t x = 0; x < X; ++x) {
+        const Crossing& row = s.crossings[x];
+        const CrossingPlace& place = plan.place[x];
+        CrossingIndex& index = plan.index[x];
+        Digest name, layout;
+        systems::add_text(name, row.kind == CrossingKind::presence ? row.node : row.from());
+        systems::add_text(name, row.to());
+        index.name = systems::folded(name);
+        layout.add(static_cast<std::uint64_t>(row.kind));
+        systems::add_value(layout, index.value);
+        systems::add_value(layout, index.result);
+        layout.add(std::uint64_t{place.at});
+        for (const std::size_t f : {place.frame, place.answer, place.reply, place.received})
+            if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id} << 8 | plan.frames[f].bytes());
+        layout.add(static_cast<std::uint64_t>(row.every.count()));
+        layout.add(static_cast<std::uint64_t>(row.within.count()));
+        index.layout = systems::folded(layout);
+        for (std::size_t other = 0; other < x; ++other)
+            if (row.kind != CrossingKind::presence && plan.index[other].name == index.name)
+                return refuse(systems::of_crossing(
+                           row, " is told by the same number as \"", s.crossings[other].from(), "\" -> \"",
+                           s.crossings[other].to(), "\", or stands twice; remove it, or rename a node")),
+                       plan;
+    }
+    for (WireFrame& frame : plan.frames) {
+        Digest id;
+        systems::add_text(id, s.name);
+        systems::add_text(id, s.nodes[frame.node].name);
+        id.add(static_cast<std::uint64_t>(frame.kind));
+        if (frame.crossing != nowhere) id.add(std::uint64_t{plan.index[frame.crossing].name});
+        frame.data_id = systems::folded(id);
+    }
+    if (bad < plan.frames.size()) {
+        const WireFrame& frame = plan.frames[bad];
+        const Sentence what = frame.kind == WireFrameKind::beat
+                                  ? Sentence{"the beat of node \"", s.nodes[frame.node].name, "\""}
+                                  : systems::of_crossing(s.crossings[frame.crossing]);
+        std::int64_t load_ppm = 0;
+        for (const WireFrame& each : plan.frames)
+            load_ppm += each.on_wire.count() * 1'000'000 / each.apart.count();
+        constexpr std::string_view cure =
+            "; tell less, or less often, run the wire faster, or give it more time";
+        if (load_ppm >= 1'000'000)
+            refuse(Sentence{what, ": a frame of it may never come through wire \"", s.wire.name,
+                            "\", which all frames together load by ", load_ppm / 10'000, " % at ",
+                            s.wire.rate.bits_per_second,
+                            " bit/s; tell less, or less often, or run the wire faster"});
+        else if (frame.worst == Duration::max())
+            refuse(Sentence{what, ": a frame of it may still wait for wire \"", s.wire.name,
+                            "\" when the next one follows, ", frame.apart.count() / 1000, " us later", cure});
+        else
+            refuse(Sentence{what, ": a frame of it may take ", frame.worst.count() / 1000, " us on wire \"",
+                            s.wire.name, "\" and has ", frame.deadline.count() / 1000, " us", cure});
+    }
+    return plan;
+}
+
+} // namespace tappet

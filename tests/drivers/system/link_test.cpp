@@ -1,0 +1,96 @@
+// Two machines on one wire: what crosses arrives as if it were local, and what does not is known.
+#include "tests/drivers/system/pair.hpp"
+#include "toolchain/machine/system_run.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::pair {
+namespace {
+
+struct LinkTest : testing::Test {
+    void SetUp() override {
+        const auto started = run.start();
+        ASSERT_TRUE(started) << started.error().view();
+        ASSERT_TRUE(run.run_until(
+            [&] { return giver().other_is_there.get() && taker().other_is_there.get(); }, 200ms));
+        ASSERT_TRUE(run.run_for(200ms)); // each row was told
+    }
+    void TearDown() override { run.stop(); }
+
+    Giver& giver() { return *run.instance(0).find<Giver>("giver"); }
+    Taker& taker() { return *run.instance(1).find<Taker>("taker"); }
+    systems::Link<pair, 0>& from() { return *run.instance(0).find<systems::Link<pair, 0>>("wire"); }
+    systems::Link<pair, 1>& to() { return *run.instance(1).find<systems::Link<pair, 1>>("wire"); }
+
+    std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
+    SystemRun run{pair.view(), machines, {}, 1};
+};
+
+TEST_F(LinkTest, tells_a_value_in_the_bits_that_its_row_says) {
+    giver().tells = 123.456;
+    run.run_for(30ms);
+    double value = 0;
+    EXPECT_EQ(taker().level.read(value), Flow::fresh);
+    EXPECT_DOUBLE_EQ(value, 123.5);
+    giver().tells = 1e9;
+    run.run_for(30ms);
+    EXPECT_DOUBLE_EQ(taker().level.get(), 838860.7) << "the last one that fits";
+}
+
+TEST_F(LinkTest, a_value_grows_stale_when_its_node_is_gone) {
+    run.run_for(30ms);
+    EXPECT_TRUE(taker().level.good());
+    run.kill(0);
+    run.run_for(100ms);
+    EXPECT_EQ(taker().level.flow(), Flow::stale);
+    EXPECT_FALSE(taker().other_is_there.get());
+}
+
+TEST_F(LinkTest, serves_each_event_once_and_in_order) {
+    for (int i = 1; i <= 20; ++i) {
+        giver().to_send.push_back(i);
+        run.run_for(50ms);
+    }
+    std::vector<std::int32_t> all(20);
+    for (int i = 0; i < 20; ++i) all[static_cast<std::size_t>(i)] = i + 1;
+    EXPECT_EQ(taker().got, all);
+    EXPECT_EQ(from().sent(1), (SendCounts{.offered = 20, .delivered = 20}));
+    EXPECT_EQ(to().served(1), (ReceiveCounts{.served = 20}));
+}
+
+TEST_F(LinkTest, a_command_goes_through_its_whole_life) {
+    giver().asks = 21;
+    taker().busy_for = 3;
+    giver().states.clear();
+    run.run_for(200ms);
+    EXPECT_EQ(giver().doubled.state(), CommandState::done);
+    EXPECT_EQ(giver().doubled.result<0>(), 42);
+    EXPECT_EQ(giver().states.back(), CommandState::done);
+}
+
+TEST_F(LinkTest, a_command_that_is_refused_there_fails_here) {
+    giver().asks = 1;
+    taker().refuses = true;
+    run.run_for(200ms);
+    EXPECT_EQ(giver().doubled.state(), CommandState::failed);
+}
+
+TEST_F(LinkTest, a_command_to_a_node_that_dies_fails) {
+    giver().asks = 1;
+    taker().busy_for = 1000;
+    run.run_for(50ms);
+    EXPECT_EQ(giver().doubled.state(), CommandState::executing);
+    run.kill(1);
+    run.run_for(100ms);
+    EXPECT_EQ(giver().doubled.state(), CommandState::failed);
+}
+
+TEST_F(LinkTest, an_event_for_a_node_that_is_gone_is_known_to_be_lost) {
+    run.kill(1);
+    giver().to_send = {7};
+    run.run_for(60ms);
+    EXPECT_EQ(giver().losses, 1);
+}
+
+} // namespace
+} // namespace tappet::pair

@@ -1,0 +1,100 @@
+// Two machines and what crosses between them: a value, an event, a command, and whether the other is there.
+#pragma once
+
+#include "board/host/board.hpp"
+#include "drivers/system/station.hpp"
+#include "kernel/machine/firmware.hpp"
+
+#include <vector>
+
+namespace tappet::pair {
+
+/// Tells what its test gives it.
+struct Giver {
+    Output<double> level{};
+    Event<std::int32_t> sent{};
+    CommandCall<std::int32_t, std::int32_t&> doubled{};
+    Input<bool> other_is_there{};
+
+    double tells = 0;
+    std::vector<std::int32_t> to_send{};
+    std::int64_t losses = 0;
+    std::int32_t asks = 0;
+    std::vector<CommandState> states{};
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        level.write(tells);
+        if (!to_send.empty()) {
+            sent.emit(to_send.front());
+            TAPPET_ESCAPE("a test's list", to_send.erase(to_send.begin()));
+        }
+        if (asks != 0 && !in_flight(doubled.state())) static_cast<void>(doubled.send(std::exchange(asks, 0)));
+        if (states.empty() || states.back() != doubled.state())
+            TAPPET_ESCAPE("a test's list", states.push_back(doubled.state()));
+    }
+    void not_taken() noexcept TAPPET_REALTIME { ++losses; }
+
+    static constexpr auto interface() {
+        return facets(output<&Giver::level>("level", "mm", "as the test has it"),
+                      event<&Giver::sent>("sent", "a number"),
+                      sends<&Giver::doubled>("doubled", "twice a number"),
+                      input<&Giver::other_is_there>("other_is_there", "", "the taker is heard"),
+                      operation<&Giver::not_taken>("not_taken", "an event was lost"));
+    }
+};
+
+struct Taker {
+    Input<double> level{};
+    Input<bool> other_is_there{};
+    std::vector<std::int32_t> got{};
+    int busy_for = 0; ///< cycles that a command takes
+    bool refuses = false;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    void take(std::int32_t number) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a test's list", got.push_back(number));
+    }
+    bool twice(std::int32_t, std::int32_t&) noexcept TAPPET_REALTIME { return !refuses; }
+    CommandProgress twice_done(std::int32_t number, std::int32_t& result) noexcept TAPPET_REALTIME {
+        if (busy_for-- > 0) return CommandProgress::executing;
+        result = 2 * number;
+        return CommandProgress::done;
+    }
+
+    static constexpr auto interface() {
+        return facets(input<&Taker::level>("level", "mm", "as the giver tells it"),
+                      input<&Taker::other_is_there>("other_is_there", "", "the giver is heard"),
+                      operation<&Taker::take>("take", "a number"),
+                      command<&Taker::twice, &Taker::twice_done>("twice", "twice a number"));
+    }
+};
+
+// clang-format off
+inline constexpr auto giver_table = machine("giver",
+    components(component<Giver>("giver")),
+    activities(activity("giving", every(5ms), runs("giver"), budget(50us))),
+    connections(), reactions(), behaviours());
+inline constexpr auto taker_table = machine("taker",
+    components(component<Taker>("taker")),
+    activities(activity("taking", every(5ms), runs("taker"), budget(50us))),
+    connections(), reactions(), behaviours());
+
+inline constexpr auto pair = system("pair",
+    nodes(node<giver_table>("a"), node<taker_table>("b")),
+    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
+    crossings(
+        across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
+        across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), if_lost("a.giver.not_taken")),
+        across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24)),
+        presence("b", "a.giver.other_is_there"),
+        presence("a", "b.taker.other_is_there")),
+    promises(
+        reaction("a.giver.sent", "b.taker.take", within(12ms)),
+        reaction("a.giver.level", "b.taker.level", within(25ms)),
+        stops("a", "b.taker.other_is_there", within(85ms))));
+// clang-format on
+
+using GiverFirmware = Firmware<station<pair, "a", giver_table>, board::host>;
+using TakerFirmware = Firmware<station<pair, "b", taker_table>, board::host>;
+
+} // namespace tappet::pair

@@ -1,0 +1,184 @@
+// What a system's table may not say: one sentence each, which names the row, what is wrong and the cure.
+#include "tests/drivers/system/pair.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::pair {
+namespace {
+
+constexpr auto good_wire =
+    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)));
+constexpr auto both_nodes = nodes(node<giver_table>("a"), node<taker_table>("b"));
+
+template <std::size_t N, std::size_t X, std::size_t P = 0>
+std::string refusal(const Section<SystemNode, N>& n, const WireRow& w, const Section<Crossing, X>& x,
+                    const Section<PromiseRow, P>& p = {}) {
+    const auto table = system("lane", n, w, x, p);
+    const auto plan = plan_system(table, &systems::analyse_can);
+    if (!plan.fault.empty()) return std::string{plan.fault.view()};
+    std::array<Duration, P> proven{};
+    return std::string{systems::check_promises(table.view(), plan, proven).view()};
+}
+template <class... Rows>
+std::string refusal(const Rows&... rows) {
+    return refusal(both_nodes, good_wire, crossings(rows...));
+}
+constexpr auto level =
+    across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1));
+constexpr auto sent = across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms));
+constexpr auto doubled =
+    across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24));
+
+TEST(SystemRefusals, a_good_one_is_accepted) {
+    EXPECT_EQ(refusal(level, sent, doubled, presence("b", "a.giver.other_is_there")), "");
+}
+
+TEST(SystemRefusals, of_nodes_and_wire) {
+    EXPECT_EQ(refusal(nodes(node<giver_table>("a")), good_wire, crossings()),
+              "lane: a system has two nodes at least; add node<table>(\"name\")");
+    EXPECT_EQ(refusal(nodes(node<giver_table>("a"), node<taker_table>("a")), good_wire, crossings()),
+              "lane: node \"a\" stands twice; rename one of them");
+    EXPECT_EQ(refusal(nodes(node<giver_table>("a.b"), node<taker_table>("b")), good_wire, crossings()),
+              "lane: node \"a.b\": a node's name is not empty and has no dot; rename it");
+    EXPECT_EQ(refusal(both_nodes, wire("wire"), crossings(level)),
+              "lane: wire \"wire\" has no bit rate; add bit_rate(500'000)");
+    EXPECT_EQ(refusal(both_nodes, wire("giver", bit_rate(500'000)), crossings(level)),
+              "lane: node \"a\" has a component \"giver\", which is the wire's name; rename one of them");
+    EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(500'000), beats(20ms), silent_after(30ms)),
+                      crossings(level)),
+              "lane: wire \"wire\": a node is silent after 30000 us, but one lost beat must not make it so, "
+              "and beats "
+              "come every 20000 us; say silent_after(...) of more than twice that");
+}
+
+TEST(SystemRefusals, of_names) {
+    EXPECT_EQ(refusal(across(data("c.giver.level", "b.taker.level"), every(10ms))),
+              "lane: crossing \"c.giver.level\" -> \"b.taker.level\": there is no node \"c\"; add it to "
+              "nodes(...)");
+    EXPECT_EQ(refusal(across(data("a.giver.levle", "b.taker.level"), every(10ms))),
+              "lane: crossing \"a.giver.levle\" -> \"b.taker.level\": in node \"a\" component \"giver\" has "
+              "no output "
+              "\"levle\"; did you mean \"level\"?");
+    EXPECT_EQ(refusal(across(data("a.giver.level", "b"), every(10ms))),
+              "lane: crossing \"a.giver.level\" -> \"b\": \"b\" is not of the form \"node.component.facet\"; "
+              "name all three");
+    EXPECT_EQ(refusal(presence("c", "a.giver.other_is_there")),
+              "lane: presence of \"c\" -> \"a.giver.other_is_there\": there is no node \"c\"; add it to "
+              "nodes(...)");
+    EXPECT_EQ(
+        refusal(presence("a", "b.taker.level")),
+        "lane: presence of \"a\" -> \"b.taker.level\": \"b.taker.level\" is no input of type bool; name one");
+    EXPECT_EQ(refusal(level, level), "lane: crossing \"a.giver.level\" -> \"b.taker.level\" is told by the "
+                                     "same number as \"a.giver.level\" -> "
+                                     "\"b.taker.level\", or stands twice; remove it, or rename a node");
+}
+
+TEST(SystemRefusals, of_values) {
+    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"))),
+              "lane: crossing \"a.giver.level\" -> \"b.taker.level\" does not say how often it is told; add "
+              "every(10ms)");
+    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms))),
+              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": its value takes 65 bits with the one "
+              "that says "
+              "whether it is valid, and a frame has 52 for values; tell it in fewer: in_bits(32, 0.001) of a "
+              "number, or a "
+              "part of a record");
+    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms), in_bits(24, 0))),
+              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": in_bits takes 1 to 56 bits and a step "
+              "above 0");
+    EXPECT_EQ(
+        refusal(across(buffer<4>("a.giver.level", "b.taker.level"), every(10ms))),
+        "lane: crossing \"a.giver.level\" -> \"b.taker.level\": a buffer does not cross a wire: emit an "
+        "event for "
+        "each value, which crosses with when(\"...\", tell(\"...\")), or tell the last one by data(...)");
+    EXPECT_EQ(refusal(across(data("b.taker.level", "a.giver.level"), every(10ms))),
+              "lane: crossing \"b.taker.level\" -> \"a.giver.level\": connection \"b.taker.level\" -> "
+              "\"a.giver.level\" "
+              "runs from an input to an output; exchange the two");
+    EXPECT_EQ(
+        refusal(across(data("a.giver.level", "a.giver.other_is_there"), every(10ms))),
+        "lane: crossing \"a.giver.level\" -> \"a.giver.other_is_there\": connection \"a.giver.level\" -> "
+        "\"a.giver.other_is_there\": \"a.giver.level\" is of type double but \"a.giver.other_is_there\" is "
+        "of type "
+        "bool; connect ports of one type");
+}
+
+TEST(SystemRefusals, of_events_and_commands) {
+    EXPECT_EQ(refusal(across(when("a.giver.sent", call("b.taker.take")), at_most(1, 40ms), within(30ms))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": call(...) runs in the emitter, which is "
+              "another "
+              "machine's; write tell(...)");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), within(30ms))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" does not say how often it may happen; add "
+              "at_most(1, "
+              "100ms)");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(3, 40ms), within(30ms))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" says at_most(3, ...): one is under way at "
+              "a time; write "
+              "at_most(1, ...) with the least time between two");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" does not say by when it must be served; "
+              "add within(20ms)");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 20ms), within(30ms))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" may follow after 20000 us, while the one "
+              "before it may "
+              "still be under way for 30000 us; say within(...) no longer than at_most(1, ...)");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 6ms), within(6ms))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" is to be served within 6000 us, but 6000 "
+              "us of that are "
+              "the deadlines of the activities that serve the wire and the operation; shorten those, or say "
+              "a longer "
+              "within(...)");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms),
+                             if_lost("b.taker.take"))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": if_lost(\"b.taker.take\") names no "
+              "operation without "
+              "arguments of the emitter's node; name one");
+    EXPECT_EQ(refusal(across(uses("a.giver.doubled", "b.taker.take"), at_most(1, 100ms), within(20ms))),
+              "lane: crossing \"a.giver.doubled\" -> \"b.taker.take\": \"b.taker.take\" is an operation, not "
+              "a command");
+    EXPECT_EQ(refusal(across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms))),
+              "lane: crossing \"a.giver.doubled\" -> \"b.taker.twice\": its results take 32 bits, and a "
+              "frame has 24 for "
+              "them; tell them by data(...)");
+}
+
+TEST(SystemRefusals, of_promises_and_of_a_wire_that_is_too_slow) {
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level, sent),
+                      promises(reaction("a.giver.sent", "b.taker.take", within(5ms)))),
+              "reaction \"a.giver.sent\" -> \"b.taker.take\" may take 8562 us, but is promised within 5000 "
+              "us; most of it, "
+              "5000 us, is the deadline of activity \"taking\" at node \"b\"; shorten that, or promise less");
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level),
+                      promises(reaction("a.giver.sent", "b.taker.take", within(50ms)))),
+              "reaction \"a.giver.sent\" -> \"b.taker.take\": no row leads from \"a.giver.sent\" to "
+              "\"b.taker.take\"; add "
+              "it, or name what lies between with via(\"in\", \"out\")");
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level),
+                      promises(stops("b", "a.giver.other_is_there", within(1s)))),
+              "stops \"b\" -> \"a.giver.other_is_there\": nothing of node \"b\" reaches "
+              "\"a.giver.other_is_there\"; add "
+              "presence(\"b\", \"a.giver.other_is_there\")");
+    EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(10'000), beats(20ms), silent_after(70ms)),
+                      crossings(level)),
+              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": a frame of it may never come through "
+              "wire \"wire\", "
+              "which all frames together load by 240 % at 10000 bit/s; tell less, or less often, or run the "
+              "wire faster");
+    constexpr auto slow = wire("wire", bit_rate(125'000), beats(20ms), silent_after(70ms));
+    EXPECT_EQ(refusal(both_nodes, slow,
+                      crossings(level, across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms),
+                                              within(8ms)))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": a frame of it may still wait for wire "
+              "\"wire\" when the "
+              "next one follows, 4000 us later; tell less, or less often, run the wire faster, or give it "
+              "more time");
+    EXPECT_EQ(
+        refusal(level, across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(7ms))),
+        "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": a frame of it may take 2772 us on wire "
+        "\"wire\" and has "
+        "1000 us; tell less, or less often, run the wire faster, or give it more time");
+}
+
+} // namespace
+} // namespace tappet::pair
