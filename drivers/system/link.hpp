@@ -21,8 +21,8 @@ struct PackedCommandCall {
         [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
 };
 
-/// All real-time, in the activity of its bus, and behind it. A node is there from its first beat on and gone
-/// when no beat came for silent_after, or when it says so. A row works once both ends have heard from the
+/// All real-time, in the activity of its bus, and behind it. A node is there once its rows are known, and gone when
+/// no beat came for silent_after, or when it says so. A row works once both ends have heard from the
 /// other that it looks the same there, in this start of it: another version's row of the same name that does
 /// not is refused, by name, and the others go on.
 template <const auto& system, std::size_t n>
@@ -177,6 +177,12 @@ private:
                 refused.write(Rows::refusal(i));
             }
         }
+        if (!is_there[node].last() && knows_rows_of(node)) is_there[node].write(true);
+    }
+    [[nodiscard]] bool knows_rows_of(std::size_t node) const noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < row_count; ++i)
+            if (Rows::other(i) == node && !state_[i].agreed && !state_[i].is_refused) return false;
+        return true;
     }
     /// The other node is heard, again or in a new start of it; then whatever was under way to the one before
     /// is over. After a silence of the same start both ends go on where they were.

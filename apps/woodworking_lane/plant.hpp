@@ -1,0 +1,127 @@
+// The lane's other end: one belt with boards on it, and what each machine's wires have of it. Somebody lays boards on
+// the belt, acknowledges, and takes out what nobody worked on.
+#pragma once
+
+#include "apps/woodworking_lane/maps.hpp"
+#include "drivers/can/far_end.hpp"
+#include "drivers/gpio/far_end.hpp"
+#include "drivers/plant/plant.hpp"
+#include "kernel/base/random.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+namespace woodworking {
+
+/// A board, as it really is.
+struct Board {
+    Ticket ticket = 0;
+    double laid_at = 0; ///< the belt had gone so far, mm
+    std::array<Duration, station_count> worked{};
+    std::array<double, station_count> off_by{}; ///< mm: how far from its place it stood at the worst
+    bool harmed = false;                        ///< a tool worked on it while it moved
+    bool left = false;
+};
+
+/// What all plants of the lane share; one thread. Times are true ones.
+class Hall {
+public:
+    explicit Hall(std::uint64_t seed) : random_{seed} {}
+
+    static constexpr double apart = 7000.0; ///< mm between the fronts of two boards
+    static constexpr double length = 1200.0;
+    static constexpr double end = 90'000.0;
+
+    int wanted = 12; ///< boards that are laid on
+    std::array<bool, station_count> tools{};
+    double command = 0; ///< mm/s
+    double gone = 0, speed = 0; ///< of the belt, mm and mm/s
+    std::vector<Board> boards{};
+    bool acknowledges = false;
+
+    /// Once a millisecond of the conveyor's time.
+    void move(Duration step) {
+        const double dt = to_seconds(step);
+        const double change = belt_brakes * dt, before = speed;
+        speed += std::clamp(command - speed, -change, change);
+        gone += (before + speed) / 2 * dt;
+        scanned_ = 0;
+        if (static_cast<int>(boards.size()) < wanted && speed > 100.0 &&
+            (boards.empty() || gone - boards.back().laid_at > apart + spread_)) {
+            const auto number = static_cast<std::int32_t>(boards.size() + 1);
+            const auto programme = static_cast<std::int32_t>(random_.below(1u << station_count));
+            boards.push_back({.ticket = ticket(number, programme), .laid_at = gone});
+            scanned_ = boards.back().ticket;
+            spread_ = static_cast<double>(random_.below(3000));
+        }
+        for (Board& board : boards) {
+            const double at = gone - board.laid_at;
+            board.left |= at > end;
+            for (int s = 0; s < station_count; ++s) {
+                const auto i = static_cast<std::size_t>(s);
+                if (!tools[i] || at < stands_at(s) - barrier_before || at - length > stands_at(s)) continue;
+                board.worked[i] += step;
+                board.off_by[i] = std::max(board.off_by[i], std::abs(at - stands_at(s)));
+                board.harmed |= speed > 1.0;
+            }
+        }
+    }
+    [[nodiscard]] Ticket scanned() const { return scanned_; }
+    [[nodiscard]] bool barrier(int station) const {
+        for (const Board& board : boards) {
+            const double at = gone - board.laid_at - (stands_at(station) - barrier_before);
+            if (at >= 0 && at < length) return true;
+        }
+        return false;
+    }
+    [[nodiscard]] int left() const {
+        return static_cast<int>(std::ranges::count_if(boards, [](const Board& each) { return each.left; }));
+    }
+
+private:
+    Random random_;
+    double spread_ = 0;
+    Ticket scanned_ = 0;
+};
+
+/// The conveyor's drive and scanner, and who acknowledges.
+class ConveyorPlant final : public Plant {
+public:
+    explicit ConveyorPlant(Hall& hall) : hall_{hall} { can.send_every("drive", 5ms); }
+    Time move(Time now) override {
+        hall_.command = can.get("drive_command.speed");
+        hall_.move(step());
+        can.set_integer("drive.position", static_cast<std::uint64_t>(std::llround(hall_.gone)));
+        can.set_integer("drive.speed", static_cast<std::uint64_t>(std::llround(hall_.speed)));
+        if (hall_.scanned() != 0) {
+            can.set_integer("scanner.code", static_cast<std::uint64_t>(hall_.scanned()));
+            can.send("scanner");
+        }
+        io.set("acknowledge", hall_.acknowledges);
+        return now + 1ms;
+    }
+
+private:
+    Hall& hall_;
+    can::FarEnd<belt_signals> can{ends, "belt-can"};
+    gpio::FarEnd<belt_lines> io{ends, "belt-io"};
+};
+
+class StationPlant final : public Plant {
+public:
+    StationPlant(Hall& hall, int station) : hall_{hall}, station_{station} {}
+    Time move(Time now) override {
+        hall_.tools[static_cast<std::size_t>(station_)] = io.get("tool");
+        io.set("board", hall_.barrier(station_));
+        return now + 1ms;
+    }
+
+private:
+    Hall& hall_;
+    int station_;
+    gpio::FarEnd<station_lines> io{ends, "station-io"};
+};
+
+} // namespace woodworking
