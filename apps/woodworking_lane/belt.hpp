@@ -63,7 +63,9 @@ struct Belt {
     [[nodiscard]] bool all_are_there() noexcept TAPPET_REALTIME {
         return saw_is_there.get() && drill_is_there.get() && polish_is_there.get() && glue_is_there.get();
     }
-    [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME { return !all_are_there() || bus_faulted.get(); }
+    [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME {
+        return !all_are_there() || bus_faulted.get();
+    }
     [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return !is_in_danger(); }
     [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
         if (bus_faulted.get()) return "the drive's bus cannot be relied on";
@@ -76,24 +78,25 @@ struct Belt {
     void enter_running() noexcept TAPPET_REALTIME { become(true); }
 
     static constexpr auto interface() {
-        return facets(input<&Belt::drive_position>("drive_position", "mm", "as its encoder has it"),
-                      input<&Belt::drive_speed>("drive_speed", "mm/s", "likewise"),
-                      input<&Belt::code>("code", "", "the board that was scanned last"),
-                      input<&Belt::bus_faulted>("bus_faulted", "", "the drive is not heard"),
-                      input<&Belt::saw_is_there>("saw_is_there", "", "it is heard on the wire"),
-                      input<&Belt::drill_is_there>("drill_is_there", "", "likewise"),
-                      input<&Belt::polish_is_there>("polish_is_there", "", "likewise"),
-                      input<&Belt::glue_is_there>("glue_is_there", "", "likewise"),
-                      output<&Belt::speed_command>("speed_command", "mm/s", "of the drive"),
-                      output<&Belt::position>("position", "mm", "so far the belt has gone"),
-                      output<&Belt::lamp>("lamp", "", "the belt may run"),
-                      output<&Belt::boards_in>("boards_in", "", "that were scanned; written on change"),
-                      output<&Belt::boards_out>("boards_out", "", "that left the last station; written on change"),
-                      event<&Belt::board_in>("board_in", "a board lies on the belt"),
-                      command<&Belt::stop_at, &Belt::stopped_at>("stop_at", "the belt stands there, mm"),
-                      operation<&Belt::go>("go", "a station has done its work"),
-                      operation<&Belt::board_leaves>("board_leaves", "a board left the last station"),
-                      operation<&Belt::scanned>("scanned", "the scanner has read a board"));
+        return facets(
+            input<&Belt::drive_position>("drive_position", "mm", "as its encoder has it"),
+            input<&Belt::drive_speed>("drive_speed", "mm/s", "likewise"),
+            input<&Belt::code>("code", "", "the board that was scanned last"),
+            input<&Belt::bus_faulted>("bus_faulted", "", "the drive is not heard"),
+            input<&Belt::saw_is_there>("saw_is_there", "", "it is heard on the wire"),
+            input<&Belt::drill_is_there>("drill_is_there", "", "likewise"),
+            input<&Belt::polish_is_there>("polish_is_there", "", "likewise"),
+            input<&Belt::glue_is_there>("glue_is_there", "", "likewise"),
+            output<&Belt::speed_command>("speed_command", "mm/s", "of the drive"),
+            output<&Belt::position>("position", "mm", "so far the belt has gone"),
+            output<&Belt::lamp>("lamp", "", "the belt may run"),
+            output<&Belt::boards_in>("boards_in", "", "that were scanned; written on change"),
+            output<&Belt::boards_out>("boards_out", "", "that left the last station; written on change"),
+            event<&Belt::board_in>("board_in", "a board lies on the belt"),
+            command<&Belt::stop_at, &Belt::stopped_at>("stop_at", "the belt stands there, mm"),
+            operation<&Belt::go>("go", "a station has done its work"),
+            operation<&Belt::board_leaves>("board_leaves", "a board left the last station"),
+            operation<&Belt::scanned>("scanned", "the scanner has read a board"));
     }
 
 private:

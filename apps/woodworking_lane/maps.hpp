@@ -1,4 +1,5 @@
-// The machines' own wires: the conveyor's drive and scanner on CAN, a station's light barrier and tool on lines.
+// The machines' own wires: the conveyor's drive and scanner on CAN, a station's light barrier and tool on
+// lines.
 #pragma once
 
 #include "apps/woodworking_lane/values.hpp"

@@ -1,5 +1,5 @@
-// The lane's other end: one belt with boards on it, and what each machine's wires have of it. Somebody lays boards on
-// the belt, acknowledges, and takes out what nobody worked on.
+// The lane's other end: one belt with boards on it, and what each machine's wires have of it. Somebody lays
+// boards on the belt, acknowledges, and takes out what nobody worked on.
 #pragma once
 
 #include "apps/woodworking_lane/maps.hpp"
@@ -36,7 +36,7 @@ public:
 
     int wanted = 12; ///< boards that are laid on
     std::array<bool, station_count> tools{};
-    double command = 0; ///< mm/s
+    double command = 0;         ///< mm/s
     double gone = 0, speed = 0; ///< of the belt, mm and mm/s
     std::vector<Board> boards{};
     bool acknowledges = false;

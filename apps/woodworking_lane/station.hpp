@@ -93,20 +93,21 @@ struct Station {
     void not_handed_on() noexcept TAPPET_REALTIME { boards_missed.write(++missed_); }
 
     static constexpr auto interface() {
-        return facets(input<&Station::belt_position>("belt_position", "mm", "so far the belt has gone"),
-                      input<&Station::belt_is_there>("belt_is_there", "", "the conveyor is heard"),
-                      output<&Station::tool>("tool", "", "it works"),
-                      output<&Station::phase>("phase", "", "what it is about; written on change"),
-                      output<&Station::boards_done>("boards_done", "", "written on change"),
-                      output<&Station::boards_missed>("boards_missed", "", "that nobody worked on; written on change"),
-                      event<&Station::board_out>("board_out", "a board goes on"),
-                      event<&Station::done>("done", "the belt may run, of this station's"),
-                      sends<&Station::stop_belt>("stop_belt", "the belt stands there, mm"),
-                      operation<&Station::board_comes>("board_comes", "a board is on its way"),
-                      operation<&Station::board_seen>("board_seen", "the light barrier sees it"),
-                      operation<&Station::not_handed_on>("not_handed_on", "a board's ticket was lost"),
-                      property<&Station::number>("number", "", "in the boards' programmes", range(0, 7)),
-                      property<&Station::takes>("takes", "s", "on one board"));
+        return facets(
+            input<&Station::belt_position>("belt_position", "mm", "so far the belt has gone"),
+            input<&Station::belt_is_there>("belt_is_there", "", "the conveyor is heard"),
+            output<&Station::tool>("tool", "", "it works"),
+            output<&Station::phase>("phase", "", "what it is about; written on change"),
+            output<&Station::boards_done>("boards_done", "", "written on change"),
+            output<&Station::boards_missed>("boards_missed", "", "that nobody worked on; written on change"),
+            event<&Station::board_out>("board_out", "a board goes on"),
+            event<&Station::done>("done", "the belt may run, of this station's"),
+            sends<&Station::stop_belt>("stop_belt", "the belt stands there, mm"),
+            operation<&Station::board_comes>("board_comes", "a board is on its way"),
+            operation<&Station::board_seen>("board_seen", "the light barrier sees it"),
+            operation<&Station::not_handed_on>("not_handed_on", "a board's ticket was lost"),
+            property<&Station::number>("number", "", "in the boards' programmes", range(0, 7)),
+            property<&Station::takes>("takes", "s", "on one board"));
     }
 
 private:
@@ -128,13 +129,14 @@ private:
         std::int64_t told_at = 0; ///< the belt had gone so far
         bool operator==(const Coming&) const = default;
     };
-    /// Whose front is at the barrier: by how far the belt has gone since its ticket came. Of those before it nobody
-    /// knows.
+    /// Whose front is at the barrier: by how far the belt has gone since its ticket came. Of those before it
+    /// nobody knows.
     bool find(std::int64_t position) noexcept TAPPET_REALTIME {
         const std::size_t count = coming_.size();
         std::size_t first = count;
         for (std::size_t i = count; i-- > 0;)
-            if (std::abs(position - coming_[i].told_at - (between_stations - barrier_before)) <= tolerance) first = i;
+            if (std::abs(position - coming_[i].told_at - (between_stations - barrier_before)) <= tolerance)
+                first = i;
         if (first == count) return false;
         here_ = coming_[first].ticket;
         for (std::size_t i = first + 1; i < count; ++i) coming_[i - first - 1] = coming_[i];

@@ -21,10 +21,10 @@ struct PackedCommandCall {
         [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
 };
 
-/// All real-time, in the activity of its bus, and behind it. A node is there once its rows are known, and gone when
-/// no beat came for silent_after, or when it says so. A row works once both ends have heard from the
-/// other that it looks the same there, in this start of it: another version's row of the same name that does
-/// not is refused, by name, and the others go on.
+/// All real-time, in the activity of its bus, and behind it. A node is there once its rows are known, and
+/// gone when no beat came for silent_after, or when it says so. A row works once both ends have heard from
+/// the other that it looks the same there, in this start of it: another version's row of the same name that
+/// does not is refused, by name, and the others go on.
 template <const auto& system, std::size_t n>
 struct Link {
     using Rows = NodeRows<system, n>;
@@ -76,7 +76,7 @@ struct Link {
             state_[i].sender.configure(row.within - system.wire.service.deadline, row.within / 2);
         }
         for (std::size_t f = 0; f < due_.size(); ++f) due_[f] = Rows::is_periodic(f) ? cycle.now : never;
-        checks_ = {};
+        for (ProtectionCheck& each : checks_) each.reset();
         told_row_ = 0;
         for (auto& each : is_there) each.write(false);
         refused.write({});
@@ -157,7 +157,9 @@ private:
     }
 
     bool is_good(std::size_t f, const can::Frame& frame) noexcept TAPPET_REALTIME {
-        return checks_[f].check(std::span{frame.data}.first(frame.length), plan.frames[f].data_id);
+        const ProtectionVerdict verdict = checks_[f].check(std::span{frame.data}.first(frame.length));
+        // Channels and beats know themselves what is old; of values the last one counts.
+        return verdict.kind != ProtectionVerdict::Kind::wrong_crc;
     }
 
     void take_beat(std::size_t node, const Beat& beat, Time now) noexcept TAPPET_REALTIME {
@@ -422,7 +424,8 @@ private:
         frame.length = plan.frames[f].bytes();
         std::copy(payload.begin(), payload.end(), frame.data.begin());
         frame.stamp = now;
-        protectors_[f].protect(std::span{frame.data}.first(frame.length), plan.frames[f].data_id);
+        static_cast<void>(
+            protectors_[f].protect(std::span{frame.data}.first(frame.length))); // it fits: see protected_by
         // A faulted bus sends nothing; what is told next is new.
         const can::Send sent = device_->send(frame, can::Keep::every);
         if (sent != can::Send::queued && sent != can::Send::replaced) not_sent.write(++not_sent_);
@@ -557,6 +560,17 @@ private:
         return list;
     }
 
+    /// A profile for frames of 8 bytes (AUTOSAR E2E P11).
+    static constexpr Protection protected_by(std::size_t f) {
+        return {.form = Protection::Form::id_both, .id = plan.frames[f].data_id};
+    }
+    static constexpr std::make_index_sequence<frame_count> each_frame{};
+    template <class End, std::size_t... f>
+    static constexpr std::array<End, frame_count> of_each_frame(std::index_sequence<f...>) {
+        static_assert((protection_fault(protected_by(f), plan.frames[f].bytes()).empty() && ...));
+        return {End{protected_by(f)}...};
+    }
+
     can::Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
     alignas(64) std::array<std::byte, Rows::storage_bytes> storage_{};
@@ -564,8 +578,8 @@ private:
     std::array<Peer, node_count> peers_{};
     std::array<RowState, row_count> state_{};
     std::array<Time, frame_count> due_{};
-    std::array<ProtectionCheck, frame_count> checks_{};
-    std::array<Protector, frame_count> protectors_{};
+    std::array<ProtectionCheck, frame_count> checks_ = of_each_frame<ProtectionCheck>(each_frame);
+    std::array<Protector, frame_count> protectors_ = of_each_frame<Protector>(each_frame);
     std::uint16_t epoch_ = 0;
     std::size_t told_row_ = 0;
     std::int64_t refused_frames_ = 0, lost_events_ = 0, beyond_ = 0, not_sent_ = 0;

@@ -1,36 +1,188 @@
+// End-to-end protection of a payload on its way between two machines: a checksum over the contents and over
+// whose they are, and a counter, as AUTOSAR has them (E2E profile 11 for classic CAN, profile 5 for CAN FD).
+// Whatever carries the payload need not be trusted.
 #pragma once
-#include "kernel/base/realtime.hpp"
-#include <array>
+
+#include "kernel/base/crc.hpp"
+#include "kernel/base/text.hpp"
+
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+
 namespace tappet {
-namespace temp {
-constexpr std::uint8_t crc(std::uint8_t c, std::uint8_t byte) noexcept TAPPET_REALTIME {
-    c ^= byte;
-    for (int i = 0; i < 8; ++i) c = static_cast<std::uint8_t>((c & 0x80) ? (c << 1) ^ 0x1D : c << 1);
-    return c;
+
+/// How one connection's payloads are protected; both ends have the same.
+struct Protection {
+    enum class Form : std::uint8_t {
+        id_both,   ///< profile 11: a byte of checksum, four bits of counter; both bytes of the id in the sum
+        id_low,    ///< profile 1: only the low byte of the id in the sum
+        id_nibble, ///< profile 11: the low byte in the sum, the next four bits beside the counter
+        wide,      ///< profile 5: two bytes of checksum, the lower first, and one of counter
+    };
+    Form form = Form::id_both;
+    std::uint16_t id = 0; ///< one for each connection of the system
+    std::size_t at = 0;   ///< the byte where the header begins
+    /// Counter steps from one payload to the next that are taken for losses; more are out of order.
+    std::uint8_t most_steps = 3;
+
+    [[nodiscard]] constexpr bool is_wide() const noexcept TAPPET_REALTIME { return form == Form::wide; }
+    [[nodiscard]] constexpr unsigned counters() const noexcept TAPPET_REALTIME {
+        return is_wide() ? 256 : 15;
+    }
+    [[nodiscard]] constexpr std::size_t checksum_bytes() const noexcept TAPPET_REALTIME {
+        return is_wide() ? 2 : 1;
+    }
+    /// From bit 8 `at` on; the four above the 12 of id_both and id_low are the payload's.
+    [[nodiscard]] constexpr unsigned header_bits() const noexcept {
+        return is_wide() ? 24 : form == Form::id_nibble ? 16 : 12;
+    }
+    [[nodiscard]] constexpr bool fits(std::size_t bytes) const noexcept TAPPET_REALTIME {
+        return bytes > checksum_bytes() && at < bytes - checksum_bytes();
+    }
+};
+
+/// Why the payloads of so many bytes cannot be protected so; empty: they can.
+constexpr Sentence protection_fault(const Protection& by, std::size_t bytes) {
+    if (!by.fits(bytes))
+        return Sentence{"a header of ",
+                        by.checksum_bytes() + 1,
+                        " bytes at byte ",
+                        by.at,
+                        " does not fit into ",
+                        bytes,
+                        " bytes: move it or lengthen those"};
+    if (by.form == Protection::Form::id_nibble && by.id > 0x0FFF)
+        return Sentence{"the id ", unsigned{by.id},
+                        " has more than the 12 bits that are sent and summed: "
+                        "give one up to 4095, or take id_both"};
+    if (by.form == Protection::Form::id_low && by.id > 0x00FF)
+        return Sentence{"the id ", unsigned{by.id},
+                        " has more than the 8 bits that are summed: "
+                        "give one up to 255, or take id_both"};
+    if (by.most_steps == 0 || by.most_steps >= by.counters())
+        return Sentence{"most_steps is ", unsigned{by.most_steps}, ": write one from 1 to ",
+                        by.counters() - 1};
+    return {};
 }
-constexpr std::uint8_t of(std::span<const std::uint8_t> d, std::uint16_t id) noexcept TAPPET_REALTIME {
-    std::uint8_t c = crc(crc(0, static_cast<std::uint8_t>(id)), static_cast<std::uint8_t>(id >> 8));
-    for (std::size_t i = 1; i < d.size(); ++i) c = crc(c, d[i]);
-    return c;
+
+namespace detail {
+
+/// Of all but the checksum itself. The payload fits.
+constexpr std::uint16_t protection_sum(std::span<const std::uint8_t> bytes, const Protection& by) noexcept
+    TAPPET_REALTIME {
+    const auto low = static_cast<std::uint8_t>(by.id & 0xFF);
+    const auto high = static_cast<std::uint8_t>(by.id >> 8);
+    const auto before = bytes.first(by.at);
+    const auto behind = bytes.subspan(by.at + by.checksum_bytes());
+    if (by.is_wide()) {
+        const std::uint16_t sum = crc16_ccitt.steps(crc16_ccitt.steps(crc16_ccitt.first(), before), behind);
+        return crc16_ccitt.step(crc16_ccitt.step(sum, low), high);
+    }
+    // The standard's first value and its last exclusive or take each other away: it begins with 0.
+    std::uint8_t sum = crc8_j1850.step(0, low);
+    if (by.form == Protection::Form::id_both) sum = crc8_j1850.step(sum, high);
+    if (by.form == Protection::Form::id_nibble) sum = crc8_j1850.step(sum, 0);
+    return crc8_j1850.steps(crc8_j1850.steps(sum, before), behind);
 }
-} // namespace temp
+constexpr std::uint16_t checksum_in(std::span<const std::uint8_t> bytes, const Protection& by) noexcept
+    TAPPET_REALTIME {
+    const unsigned high = by.is_wide() ? bytes[by.at + 1] : 0U;
+    return static_cast<std::uint16_t>(bytes[by.at] | high << 8);
+}
+
+} // namespace detail
+
+/// Writes the header; everything else of the payload is there already. `counter` is below by.counters().
+/// False, and nothing is written: the payload is too short, or there is no such counter. Wait-free: one step
+/// a byte.
+[[nodiscard]] constexpr bool protect(std::span<std::uint8_t> bytes, const Protection& by,
+                                     std::uint8_t counter) noexcept TAPPET_REALTIME {
+    if (!by.fits(bytes.size()) || counter >= by.counters()) return false;
+    std::uint8_t& beside = bytes[by.at + by.checksum_bytes()];
+    if (by.is_wide())
+        beside = counter;
+    else if (by.form == Protection::Form::id_nibble)
+        beside = static_cast<std::uint8_t>((by.id >> 8 & 0x0F) << 4 | counter);
+    else
+        beside = static_cast<std::uint8_t>((beside & 0xF0) | counter);
+    const std::uint16_t sum = detail::protection_sum(bytes, by);
+    bytes[by.at] = static_cast<std::uint8_t>(sum & 0xFF);
+    if (by.is_wide()) bytes[by.at + 1] = static_cast<std::uint8_t>(sum >> 8);
+    return true;
+}
+
+/// The sender's end: counts by itself. Real-time, of one activity.
 class Protector {
 public:
-    void protect(std::span<std::uint8_t> d, std::uint16_t id) noexcept TAPPET_REALTIME {
-        d[1] = static_cast<std::uint8_t>((d[1] & 0xF0) | counter_);
-        counter_ = static_cast<std::uint8_t>(counter_ == 14 ? 0 : counter_ + 1);
-        d[0] = temp::of(d, id);
+    explicit constexpr Protector(const Protection& by) noexcept : by_{by} {}
+    /// False: as protect(); the counter stays.
+    [[nodiscard]] constexpr bool protect(std::span<std::uint8_t> bytes) noexcept TAPPET_REALTIME {
+        if (!tappet::protect(bytes, by_, next_)) return false;
+        next_ = static_cast<std::uint8_t>((next_ + 1U) % by_.counters());
+        return true;
     }
 
 private:
-    std::uint8_t counter_ = 0;
+    Protection by_;
+    std::uint8_t next_ = 0;
 };
+
+/// What the receiver is to think of what it got.
+struct ProtectionVerdict {
+    enum class Kind : std::uint8_t {
+        ok,          ///< the one after the last one
+        some_lost,   ///< usable; `lost` before it never came
+        initial,     ///< right, and the first one: nobody knows what was before
+        repeated,    ///< the last one again
+        wrong_order, ///< an old one, or more were lost than may be, or its sender began anew
+        wrong_crc,   ///< spoilt, cut, or of another connection
+        no_new_data, ///< nothing came
+    };
+    Kind kind = Kind::no_new_data;
+    std::uint8_t lost = 0;
+
+    /// Its contents may be used.
+    [[nodiscard]] constexpr bool usable() const noexcept TAPPET_REALTIME { return kind <= Kind::initial; }
+    constexpr bool operator==(const ProtectionVerdict&) const = default;
+};
+
+/// The receiver's end. A whole turn of the counter that is lost is not seen here, but by the age of the last
+/// usable one. Real-time, of one activity.
 class ProtectionCheck {
 public:
-    bool check(std::span<const std::uint8_t> d, std::uint16_t id) noexcept TAPPET_REALTIME {
-        return d[0] == temp::of(d, id);
+    explicit constexpr ProtectionCheck(const Protection& by) noexcept : by_{by} {}
+
+    /// Once a cycle, with what came; with nothing when nothing came. As the standard has it, one that is out
+    /// of order is the last one from then on: the one after it is ok again.
+    [[nodiscard]] constexpr ProtectionVerdict check(std::span<const std::uint8_t> bytes) noexcept
+        TAPPET_REALTIME {
+        using enum ProtectionVerdict::Kind;
+        if (bytes.empty()) return {no_new_data};
+        if (!by_.fits(bytes.size()) || detail::checksum_in(bytes, by_) != detail::protection_sum(bytes, by_))
+            return {wrong_crc};
+        const std::uint8_t beside = bytes[by_.at + by_.checksum_bytes()];
+        const unsigned counter = by_.is_wide() ? beside : beside & 0x0FU;
+        const bool other_id = by_.form == Protection::Form::id_nibble && beside >> 4 != (by_.id >> 8 & 0x0F);
+        if (counter >= by_.counters() || other_id) return {wrong_crc};
+        const unsigned steps = (counter + by_.counters() - last_) % by_.counters();
+        last_ = counter;
+        if (!known_) {
+            known_ = true;
+            return {initial};
+        }
+        if (steps == 0) return {repeated};
+        if (steps > by_.most_steps) return {wrong_order};
+        return {steps == 1 ? ok : some_lost, static_cast<std::uint8_t>(steps - 1)};
     }
+    /// The connection begins anew.
+    constexpr void reset() noexcept TAPPET_REALTIME { known_ = false; }
+
+private:
+    Protection by_;
+    unsigned last_ = 0;
+    bool known_ = false;
 };
+
 } // namespace tappet

@@ -43,6 +43,7 @@ const std::vector<Row> house{
     {"kernel/limits",     {"kernel/machine/instance"}},
     {"kernel/control",    {"kernel/machine/instance"}},
     {"kernel/services",   {"kernel/machine/worlds"}},
+    {"kernel/system",     {"kernel/machine/check"}},
 
     {"drivers/twin",      {"kernel/component"}},
     {"drivers/can",       {"kernel/component", "drivers/twin"}},
@@ -51,6 +52,7 @@ const std::vector<Row> house{
     {"drivers/udp",       {"kernel/component", "drivers/twin"}},
     {"drivers/canopen",   {"drivers/can", "kernel/pieces", "kernel/motion"}},
     {"drivers/instruments", {"kernel/component"}},
+    {"drivers/system",    {"kernel/system", "drivers/can"}},
     {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/udp"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
@@ -59,7 +61,7 @@ const std::vector<Row> house{
     {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen", "drivers/instruments"}},
     // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by; a plant may
     // contain another machine.
-    {"apps",              {"board", "drivers/plant", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
+    {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/command_line.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "apps/carpet_loom/network.hpp", "drivers/canopen"}},
 
@@ -69,7 +71,7 @@ const std::vector<Row> house{
                            "kernel/services/browsing/protocol.hpp"}},
 
     {"toolchain",         {"kernel/base"}},
-    {"toolchain/machine", {"board", "drivers/plant", "toolchain/tools/chart"}},
+    {"toolchain/machine", {"board", "drivers/plant", "kernel/system", "toolchain/tools/chart"}},
     {"toolchain/tools/chart", {"kernel/machine", "toolchain", "drivers/can"}},
     {"toolchain/tools/bench", {}},
     {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},

@@ -8,9 +8,10 @@
 namespace woodworking {
 
 std::array<AcceptedMachine, node_count> machines() {
-    return {Firmware<at_conveyor::table, board::host>::machine(), Firmware<at_saw::table, board::host>::machine(),
-            Firmware<at_drill::table, board::host>::machine(), Firmware<at_polish::table, board::host>::machine(),
-            Firmware<at_glue::table, board::host>::machine()};
+    return {
+        Firmware<at_conveyor::table, board::host>::machine(), Firmware<at_saw::table, board::host>::machine(),
+        Firmware<at_drill::table, board::host>::machine(), Firmware<at_polish::table, board::host>::machine(),
+        Firmware<at_glue::table, board::host>::machine()};
 }
 const SystemView& lane_view() {
     static const SystemView view = lane.view();
@@ -56,15 +57,20 @@ Sentence fault_of(const Hall& hall, int& missed) {
     missed = 0;
     for (const Board& board : hall.boards) {
         if (!board.left) continue;
-        if (board.harmed) return Sentence{"a tool worked on board ", number_of(board.ticket), " while it moved"};
+        if (board.harmed)
+            return Sentence{"a tool worked on board ", number_of(board.ticket), " while it moved"};
         for (int s = 0; s < station_count; ++s) {
             const auto i = static_cast<std::size_t>(s);
             if (!has_work(board.ticket, s) && board.worked[i] > Duration::zero())
                 return Sentence{"station ", s, " worked on board ", number_of(board.ticket),
                                 ", which its programme does not ask for"};
             if (board.off_by[i] > 40.0)
-                return Sentence{"board ", number_of(board.ticket), " stood ", static_cast<int>(board.off_by[i]),
-                                " mm from its place at station ", s};
+                return Sentence{"board ",
+                                number_of(board.ticket),
+                                " stood ",
+                                static_cast<int>(board.off_by[i]),
+                                " mm from its place at station ",
+                                s};
             if (has_work(board.ticket, s) && board.worked[i] + 20ms < takes[i]) ++missed;
         }
     }

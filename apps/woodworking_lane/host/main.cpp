@@ -11,8 +11,16 @@ namespace {
 using namespace woodworking;
 
 constexpr std::array options{
-    Option{.name = "--seed", .value = "N", .help = "of the boards, the clocks and the wire (default 1)", .is_number = true},
-    Option{.name = "--boards", .value = "N", .help = "are laid on (default 12)", .is_number = true, .least = 1, .most = 1000},
+    Option{.name = "--seed",
+           .value = "N",
+           .help = "of the boards, the clocks and the wire (default 1)",
+           .is_number = true},
+    Option{.name = "--boards",
+           .value = "N",
+           .help = "are laid on (default 12)",
+           .is_number = true,
+           .least = 1,
+           .most = 1000},
     Option{"--silence", "NODE", "that machine is killed after 40 s and started again after 50 s"},
     Option{"--picture", "FILE", "draws boards over time and position, as SVG"},
     Option{"--help", "", "this text"}};
@@ -26,7 +34,8 @@ int run_lane(const CommandLine& given) {
     LaneRun lane{given.number("--seed", 1), static_cast<int>(given.number("--boards", 12))};
     const std::string_view silent = given.text("--silence");
     const std::size_t node = silent.empty() ? 0 : tappet::find_node(lane_view(), silent);
-    if (!silent.empty() && node >= node_count) return fail("--silence: name conveyor, saw, drill, polish or glue");
+    if (!silent.empty() && node >= node_count)
+        return fail("--silence: name conveyor, saw, drill, polish or glue");
     if (const auto started = lane.start(); !started) return fail(started.error().view());
     if (!silent.empty()) {
         lane.run_for(40s);
@@ -44,9 +53,11 @@ int run_lane(const CommandLine& given) {
         out << picture_of(lane);
         if (!out.flush()) return fail(Sentence{"--picture: ", file, " cannot be written"}.view());
     }
-    std::printf("{\"boards\": %d, \"left\": %d, \"works_missed\": %d, \"seconds\": %.1f, \"digest\": \"%016llx\", \"fault\": \"%s\"}\n",
+    std::printf("{\"boards\": %d, \"left\": %d, \"works_missed\": %d, \"seconds\": %.1f, \"digest\": "
+                "\"%016llx\", \"fault\": \"%s\"}\n",
                 lane.hall.wanted, lane.hall.left(), missed, to_seconds(lane.system.now() - Time{}),
-                static_cast<unsigned long long>(lane.system.digest()), fault.empty() ? "" : std::string{fault.view()}.c_str());
+                static_cast<unsigned long long>(lane.system.digest()),
+                fault.empty() ? "" : std::string{fault.view()}.c_str());
     lane.system.stop();
     return all_left && fault.empty() ? 0 : 1;
 }
@@ -58,7 +69,8 @@ int main(int count, char** words) {
     const auto line = read_command_line(options, given, Others::refused);
     if (!line) return fail(line.error());
     if (line->has("--help")) {
-        std::printf("woodworking_lane: five machines on one wire, in virtual time\n%s", usage_of(options).c_str());
+        std::printf("woodworking_lane: five machines on one wire, in virtual time\n%s",
+                    usage_of(options).c_str());
         return 0;
     }
     return run_lane(*line);

@@ -7,7 +7,8 @@ namespace woodworking {
 namespace {
 
 constexpr double left = 90, top = 50, width = 1100, height = 620, right = width - 30; // px
-constexpr std::array<std::string_view, 6> colours{"#5b8def", "#c8202a", "#2e8b57", "#b8860b", "#8a2be2", "#444"};
+constexpr std::array<std::string_view, 6> colours{"#5b8def", "#c8202a", "#2e8b57",
+                                                  "#b8860b", "#8a2be2", "#444"};
 
 } // namespace
 
@@ -17,9 +18,12 @@ std::string picture_of(const LaneRun& run) {
     const double begin_s = run.moments.front().at_s, end_s = run.moments.back().at_s;
     const auto x = [&](double at_s) { return left + (at_s - begin_s) / (end_s - begin_s) * (right - left); };
     const auto y = [](double mm) { return top + height - mm / Hall::end * height; };
-    svg.words(left, 25, "The lane: boards over time (s) and position (m); bars: a station works; grey: a node is silent");
+    svg.words(
+        left, 25,
+        "The lane: boards over time (s) and position (m); bars: a station works; grey: a node is silent");
     for (int metres = 0; metres <= 90; metres += 10) {
-        svg.line(left, y(metres * 1000.0), right, y(metres * 1000.0), "stroke=\"#000\" stroke-opacity=\"0.08\"");
+        svg.line(left, y(metres * 1000.0), right, y(metres * 1000.0),
+                 "stroke=\"#000\" stroke-opacity=\"0.08\"");
         svg.words(left - 40, y(metres * 1000.0) + 4, Sentence{metres, " m"}.view());
     }
     for (int s = static_cast<int>(begin_s) / 10 * 10; s <= static_cast<int>(end_s); s += 10)
@@ -31,14 +35,17 @@ std::string picture_of(const LaneRun& run) {
         for (std::size_t m = 1; m < run.moments.size(); ++m) {
             const Moment &before = run.moments[m - 1], &now = run.moments[m];
             if (!now.alive[n])
-                svg.rectangle(x(before.at_s), row - 9, x(now.at_s) - x(before.at_s), 18, "fill=\"#999\" fill-opacity=\"0.5\"");
+                svg.rectangle(x(before.at_s), row - 9, x(now.at_s) - x(before.at_s), 18,
+                              "fill=\"#999\" fill-opacity=\"0.5\"");
             if (n > 0 && now.tools[n - 1])
                 svg.rectangle(x(before.at_s), row - 6, x(now.at_s) - x(before.at_s), 12, "fill=\"#f0a030\"");
         }
     }
     for (std::size_t b = 0; b < run.hall.boards.size(); ++b) {
         const Board& board = run.hall.boards[b];
-        svg.raw("<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"").raw(colours[b % colours.size()]).raw("\" points=\"");
+        svg.raw("<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"")
+            .raw(colours[b % colours.size()])
+            .raw("\" points=\"");
         for (const Moment& each : run.moments) {
             const double at = each.gone - board.laid_at;
             if (at < 0 || at > Hall::end) continue;
