@@ -3,23 +3,13 @@
 #pragma once
 
 #include "drivers/can/device.hpp"
-#include "drivers/system/node_rows.hpp"
+#include "drivers/system/link_facets.hpp"
 #include "drivers/system/wire_protocol.hpp"
 #include "kernel/base/bounded_text.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/system/protection.hpp"
 
 namespace tappet::systems {
-
-/// A command call of whatever signature.
-struct PackedCommandCall {
-    static constexpr std::size_t most_bytes = 16;
-    CommandSlot slot{};
-    std::array<std::byte, most_bytes> values{};
-    static constexpr CommandCallOperations operations{
-        [](void* call) { return &static_cast<PackedCommandCall*>(call)->slot; },
-        [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
-};
 
 /// All real-time, in the activity of its bus, and behind it. A node is there once its rows are known, and
 /// gone when no beat came for silent_after, or when it says so. A row works once both ends have heard from
@@ -28,6 +18,7 @@ struct PackedCommandCall {
 template <const auto& system, std::size_t n>
 struct Link {
     using Rows = NodeRows<system, n>;
+    static constexpr std::size_t this_node = n;
     static constexpr auto& plan = Rows::plan;
     static constexpr std::size_t node_count = system.nodes.size();
     static constexpr std::size_t row_count = Rows::row_count;
@@ -107,9 +98,11 @@ struct Link {
         return state_[Rows::row_of(crossing)].agreed;
     }
 
-    static constexpr auto interface() { return interface_list(); }
+    static constexpr auto interface() { return LinkFacets<Link>::list(); }
 
 private:
+    friend struct LinkFacets<Link>;
+
     /// Another node, as it is heard.
     struct Peer {
         bool there = false;
@@ -364,7 +357,7 @@ private:
         Payload payload{};
         static_assert(static_cast<unsigned>(CommandState::done) < 8,
                       "a state has three bits, the number the others");
-        payload[0] = static_cast<std::uint8_t>(static_cast<unsigned>(how) | number << 3);
+        payload[0] = static_cast<std::uint8_t>(static_cast<unsigned>(how) | unsigned{number} << 3);
         const CrossingIndex& index = Rows::index(i);
         static_cast<void>(
             on_wire::tell(calls[i].values.data() + index.value.bytes, index.result, payload, 8));
@@ -453,111 +446,6 @@ private:
         const CrossingIndex& index = Rows::index(i);
         std::copy_n(row.values.data() + index.value.bytes, index.result.bytes, values + index.value.bytes);
         return CommandProgress::done;
-    }
-
-    // ---- facets
-
-    template <std::size_t... i>
-    static constexpr auto command_operations(std::index_sequence<i...>) {
-        return std::array<CommandOperations, sizeof...(i)>{CommandOperations{
-            Rows::is_command(i) ? Rows::command(i).arguments : nullptr,
-            Rows::is_command(i) ? Rows::command(i).results : nullptr,
-            Rows::is_command(i) ? Rows::command(i).argument_bytes : 0,
-            Rows::is_command(i) ? Rows::command(i).result_bytes : 0, &begin_call<i>, &call_progress<i>}...};
-    }
-    static constexpr auto commands = command_operations(std::make_index_sequence<row_count>{});
-
-    static constexpr Facet port_facet(std::size_t p) {
-        const PortPlace& port = Rows::ports[p];
-        Facet facet{.name = Rows::port_names[p].view(),
-                    .unit = port.facet->unit,
-                    .doc = port.is_input ? "told to other nodes" : "as another node tells it",
-                    .kind = port.is_input ? FacetKind::input : FacetKind::output,
-                    .type = port.facet->type,
-                    .index = p,
-                    .at = [](void* self, std::size_t i) noexcept -> void* {
-                        return static_cast<Link*>(self)->storage_.data() + Rows::ports[i].at;
-                    },
-                    .port = port.facet->port};
-        return facet;
-    }
-    static constexpr std::size_t add_row(std::size_t i, std::span<Facet> into) {
-        const Facet& from = Rows::facet_from(i);
-        Facet facet{.name = Rows::row_names[i].view(), .index = i};
-        if (Rows::sends_events(i)) {
-            facet.doc = "goes to another node";
-            facet.kind = FacetKind::wait;
-            facet.type = from.type;
-            facet.at = [](void* self, std::size_t k) noexcept -> void* {
-                return static_cast<EventWaitState*>(&static_cast<Link*>(self)->emitted[k]);
-            };
-            into[0] = facet;
-            into[1] =
-                tappet::event<&Link::any_event>(Rows::loss_names[i].view(), "nobody has answered in time");
-            into[1].at = [](void* self, std::size_t k) noexcept -> void* {
-                return &static_cast<Link*>(self)->lost[k];
-            };
-            into[1].index = i;
-            return 2;
-        }
-        if (!Rows::is_command(i)) {
-            facet.doc = "comes from another node";
-            facet.kind = FacetKind::event;
-            facet.type = from.type;
-            facet.at = [](void* self, std::size_t k) noexcept -> void* {
-                return static_cast<Link*>(self)->storage_.data() + Rows::rows[k].event_at;
-            };
-            facet.event = from.event;
-        } else if (Rows::serves_command(i)) {
-            facet.doc = "sent by another node";
-            facet.kind = FacetKind::command_call;
-            facet.type = from.type;
-            facet.at = [](void* self, std::size_t k) noexcept -> void* {
-                return &static_cast<Link*>(self)->calls[k];
-            };
-            facet.command_call = &PackedCommandCall::operations;
-        } else {
-            facet.doc = "done by another node";
-            facet.kind = FacetKind::command;
-            facet.type = from.type;
-            facet.command = &commands[i];
-        }
-        into[0] = facet;
-        return 1;
-    }
-    static constexpr auto interface_list() {
-        constexpr std::size_t fixed = 7;
-        std::array<Facet, fixed + node_count - 1 + Rows::port_count + Rows::facet_count> list{};
-        std::size_t k = 0;
-        for (const Facet& facet : {
-                 input<&Link::received>("received", "", "frames of the wire"),
-                 output<&Link::refused>("refused", "",
-                                        "the row that another node has otherwise; written on change"),
-                 output<&Link::events_lost>("events_lost", "",
-                                            "that nobody answered in time; written on change"),
-                 output<&Link::frames_refused>("frames_refused", "",
-                                               "damaged, or of another version; written on change"),
-                 output<&Link::beyond>("beyond", "", "values that their bits cannot hold; written on change"),
-                 output<&Link::not_sent>("not_sent", "",
-                                         "frames that a faulted or full bus did not take; written on change"),
-                 timer<&Link::next, &Link::fire>("next", "the next frame, or the next silence"),
-             })
-            list[k++] = facet;
-        for (std::size_t node = 0; node < node_count; ++node)
-            if (node != n)
-                list[k++] = {.name = Rows::presence_names[node].view(),
-                             .doc = "it is heard; written on change",
-                             .kind = FacetKind::output,
-                             .type = type_id<bool>,
-                             .index = node,
-                             .at = [](void* self, std::size_t i) noexcept -> void* {
-                                 return &static_cast<Link*>(self)->is_there[i];
-                             },
-                             .port = &PortAccess::data<bool>};
-        for (std::size_t p = 0; p < Rows::port_count; ++p) list[k++] = port_facet(p);
-        for (std::size_t i = 0; i < row_count; ++i)
-            if (Rows::crossing(i).kind != CrossingKind::data) k += add_row(i, std::span{list}.subspan(k));
-        return list;
     }
 
     /// A profile for frames of 8 bytes (AUTOSAR E2E P11).

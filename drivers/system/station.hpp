@@ -86,7 +86,7 @@ struct StationRows {
     // ---- the rows
 
     using Path = Text<127>;
-    static constexpr Path path(std::string_view facet, std::string_view end_of_component = "") {
+    static constexpr Path path(std::string_view facet, std::string_view end_of_component) {
         Path text;
         text.append(system.wire.name);
         text.append(end_of_component);
@@ -100,26 +100,26 @@ struct StationRows {
         text.append("_can");
         return text;
     }();
-    static constexpr auto bus_services = path("services", "_can"), received = path("received");
+    static constexpr auto bus_services = path("services", "_can"), received = path("received", "");
     static constexpr auto port_paths = [] {
         std::array<Path, Rows::port_count> all{};
-        for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view());
+        for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view(), "");
         return all;
     }();
     static constexpr auto row_paths = [] {
         std::array<Path, Rows::row_count> all{};
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::row_names[i].view());
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::row_names[i].view(), "");
         return all;
     }();
     static constexpr auto loss_paths = [] {
         std::array<Path, Rows::row_count> all{};
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::loss_names[i].view());
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::loss_names[i].view(), "");
         return all;
     }();
     static constexpr auto presence_paths = [] {
         std::array<Path, system.nodes.size()> all{};
         for (std::size_t node = 0; node < all.size(); ++node)
-            all[node] = path(Rows::presence_names[node].view());
+            all[node] = path(Rows::presence_names[node].view(), "");
         return all;
     }();
 
