@@ -43,16 +43,21 @@ Need awaited(const std::string& what, const std::string& cure, std::function<boo
     return {what, cure, std::move(is_there), nothing_to_do};
 }
 
-Need can_bus(const std::string& name, const std::string& bit_rate, bool is_emulated) {
+/// Its name, its bit rate, and that of CAN FD's data phase where the board has CAN FD.
+Need can_bus(const Words& bus, bool is_emulated) {
+    const std::string& name = bus[0];
     if (is_emulated)
         return {"CAN interface " + name, "add vcan to the board's modules", [] { return true; },
                 [name] { return init::create_can(name); }};
-    return {"CAN interface " + name + " at " + bit_rate + " bit/s",
+    const auto rate_of = [&](std::size_t which) {
+        return which < bus.size() ? static_cast<std::uint32_t>(std::strtoul(bus[which].c_str(), nullptr, 10))
+                                  : 0;
+    };
+    return {"CAN interface " + name + " at " + bus[1] + (bus.size() > 2 ? " and " + bus[2] : "") + " bit/s",
             "check its card, and that the board's modules name its driver",
             [name] { return init::has_interface(name); },
-            [name, bit_rate]() -> init::Done {
-                const auto rate = static_cast<std::uint32_t>(std::strtoul(bit_rate.c_str(), nullptr, 10));
-                if (auto set = init::set_bit_rate(name, rate); !set) return set;
+            [name, nominal = rate_of(1), data = rate_of(2)]() -> init::Done {
+                if (auto set = init::set_bit_rates(name, nominal, data); !set) return set;
                 return init::set_link(name, true);
             }};
 }
@@ -82,7 +87,7 @@ Need network(const std::string& name, const std::string& address) {
 std::vector<Need> needs_of(const Facts& facts) {
     const bool is_emulated = facts.one("world") == "bench";
     std::vector<Need> needs;
-    for (const Words& each : facts.all("can")) needs.push_back(can_bus(each[0], each[1], is_emulated));
+    for (const Words& each : facts.all("can")) needs.push_back(can_bus(each, is_emulated));
     for (const Words& each : facts.all("gpio")) needs.push_back(gpio_chip(each[0], each[1], is_emulated));
     for (const Words& each : facts.all("serial"))
         needs.push_back(awaited("serial port " + each[0], "check the board's devices",

@@ -9,6 +9,7 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <linux/can.h>
 #include <linux/can/netlink.h>
 #include <linux/if_link.h>
 #include <linux/rtnetlink.h>
@@ -168,7 +169,7 @@ Done set_address(const std::string& name, const std::string& address) {
     return request.send() ? Done{} : failed("set address " + address + " of interface " + name);
 }
 
-Done set_bit_rate(const std::string& name, std::uint32_t bits_per_second) {
+Done set_bit_rates(const std::string& name, std::uint32_t bits_per_second, std::uint32_t in_data_phase) {
     ifinfomsg body{};
     body.ifi_index = static_cast<int>(::if_nametoindex(name.c_str()));
     LinkRequest request{RTM_NEWLINK, body, 0};
@@ -180,18 +181,27 @@ Done set_bit_rate(const std::string& name, std::uint32_t bits_per_second) {
     can_bittiming timing{};
     timing.bitrate = bits_per_second;
     request.bytes(IFLA_CAN_BITTIMING, &timing, sizeof timing);
+    if (in_data_phase != 0) {
+        timing.bitrate = in_data_phase;
+        request.bytes(IFLA_CAN_DATA_BITTIMING, &timing, sizeof timing);
+        const can_ctrlmode fd{CAN_CTRLMODE_FD, CAN_CTRLMODE_FD};
+        request.bytes(IFLA_CAN_CTRLMODE, &fd, sizeof fd);
+    }
     const std::uint32_t restart_ms = 0;
     request.bytes(IFLA_CAN_RESTART_MS, &restart_ms, sizeof restart_ms);
     request.end(data);
     request.end(info);
-    return request.send()
-               ? Done{}
-               : failed("set " + std::to_string(bits_per_second) + " bit/s on CAN interface " + name);
+    if (request.send()) return {};
+    return failed("set " + std::to_string(bits_per_second) + " bit/s" +
+                  (in_data_phase == 0 ? "" : ", CAN FD at " + std::to_string(in_data_phase) + " bit/s,") +
+                  " on CAN interface " + name);
 }
 
 Done create_can(const std::string& name) {
     LinkRequest request{RTM_NEWLINK, ifinfomsg{}, NLM_F_CREATE | NLM_F_EXCL};
     request.text(IFLA_IFNAME, name);
+    const std::uint32_t mtu = CANFD_MTU;
+    request.bytes(IFLA_MTU, &mtu, sizeof mtu);
     const std::size_t info = request.begin(IFLA_LINKINFO);
     request.text(IFLA_INFO_KIND, "vcan");
     request.end(info);

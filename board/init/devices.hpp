@@ -27,11 +27,12 @@ enum class Signature : std::uint8_t { on, off };
 [[nodiscard]] Done set_link(const std::string& name, bool up);
 /// "192.168.7.1/24".
 [[nodiscard]] Done set_address(const std::string& name, const std::string& address);
-/// Of a CAN controller that is down; a bus that goes off stays off, since that is a fault which its machine
-/// handles.
-[[nodiscard]] Done set_bit_rate(const std::string& name, std::uint32_t bits_per_second);
+/// Of a CAN controller that is down, which is set to CAN FD when `in_data_phase` is not 0; a bus that goes
+/// off stays off, since that is a fault which its machine handles.
+[[nodiscard]] Done set_bit_rates(const std::string& name, std::uint32_t bits_per_second,
+                                 std::uint32_t in_data_phase);
 
-/// A virtual CAN interface, up.
+/// A virtual CAN interface, up; it takes CAN FD.
 [[nodiscard]] Done create_can(const std::string& name);
 /// A chip is reached by its name on both sides: /dev/NAME is the character device a driver opens, /sim/NAME
 /// is the folder in which the outside world pulls inputs and reads outputs (sim_gpioN/pull, sim_gpioN/value).

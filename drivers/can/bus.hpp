@@ -172,8 +172,9 @@ struct Bus {
                 output<&Bus::frames_lost>("frames_lost", "",
                                           "arrived but never read, since its start; written on change"),
                 output<&Bus::frames_received>("frames_received", "", "since its start; written on change"),
-                output<&Bus::wrong_lengths>("wrong_lengths", "",
-                                            "frames of another length than the map's; written on change"),
+                output<&Bus::wrong_lengths>(
+                    "wrong_lengths", "",
+                    "frames of another length or format than the map's; written on change"),
                 output<&Bus::sent_too_often>(
                     "sent_too_often", "",
                     "frames on demand that followed sooner than the map says; written on change"),

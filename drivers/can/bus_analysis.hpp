@@ -3,7 +3,7 @@
 // machine with the queue that they really wait in.
 #pragma once
 
-#include "drivers/can/frame.hpp"
+#include "drivers/can/frame_time.hpp"
 #include "kernel/base/response.hpp"
 #include "kernel/component/device_traffic.hpp"
 

@@ -56,6 +56,12 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
     if (F > BusAnalysis::most_frames)
         return Sentence{"its map has ", F, " frames, more than ", BusAnalysis::most_frames,
                         " that the analysis takes; make it two buses"};
+    for (const FrameRow& row : crossing)
+        if (row.format != Format::classical && use.data_bit_rate == 0)
+            return Sentence{"frame \"", row.name,
+                            "\" is CAN FD, and no bit rate of CAN FD's data phase is said; add it to the "
+                            "device's row, bit_rate(",
+                            use.bit_rate, ", 2'000'000), or make the frame a classical one, bytes(8)"};
     constexpr Settings sending;
     std::array<std::size_t, F> by_rank{};
     std::array<FrameTiming, F> frames{};
@@ -70,13 +76,13 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
         const FrameRow& row = crossing[by_rank[i]];
         const bool own = row.direction == Direction::transmit;
         const std::int64_t apart = row.apart.count();
-        frames[i] = {frame_time_ns(Format::classical, row.identifier.extended, row.length,
-                                   {use.bit_rate, use.data_bit_rate}),
-                     apart,
-                     own ? use.response.count() : row.jitter.count(),
-                     own ? std::min(apart, sending.max_age.count()) : apart,
-                     own,
-                     own && row.every > Duration::zero()};
+        frames[i] = {
+            frame_time_ns(row.format, row.identifier.extended, row.length, {use.bit_rate, use.data_bit_rate}),
+            apart,
+            own ? use.response.count() : row.jitter.count(),
+            own ? std::min(apart, sending.max_age.count()) : apart,
+            own,
+            own && row.every > Duration::zero()};
         load_ppm += frames[i].wire_ns * 1'000'000 / apart;
     }
     Duration shortest_sent = Duration::max();

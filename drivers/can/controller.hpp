@@ -15,6 +15,7 @@ public:
         transmitter_ = {};
         transmitter_.configure(settings);
         transmit_ = settings.transmit;
+        takes_fd_ = settings.takes_fd;
         recovery.reset(settings.restarts_allowed);
         state_ = state;
         count = {};
@@ -22,7 +23,7 @@ public:
     }
     Send accept(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
         if (faulted(state_)) return refuse(Send::refused_fault);
-        if (!ours(frame)) return refuse(Send::refused_invalid);
+        if (!ours(frame) || (frame.fd && !takes_fd_)) return refuse(Send::refused_invalid);
         return transmitter_.push(frame, keep, count);
     }
     /// Takes a finished restart into use, notices missing acknowledgements, drops what is too old.
@@ -97,6 +98,7 @@ private:
     }
     Transmitter transmitter_{};
     std::span<const Identifier> transmit_{};
+    bool takes_fd_ = false;
     std::array<Duration, TransmitQueue::capacity> longest_{}; // of transmit_, from making to confirmation
     State state_ = State::active;
 };

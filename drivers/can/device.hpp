@@ -25,7 +25,7 @@ enum class Send : std::uint8_t {
     refused_full,    ///< the queue is full
     refused_fault,   ///< the bus is faulted: nothing is sent before restart()
     refused_stale,   ///< made before the last restart, or older than max_age
-    refused_invalid, ///< identifier or length out of range
+    refused_invalid, ///< identifier or length out of range, or CAN FD on a bus without it
 };
 
 /// What happens to an older frame of the same identifier that still waits.
@@ -46,7 +46,7 @@ struct Counters {
     std::uint64_t sent = 0;           ///< confirmed by the controller: somebody acknowledged
     std::uint64_t lost_in_kernel = 0; ///< arrived and dropped for want of room
     std::uint64_t error_frames = 0;
-    std::uint64_t malformed = 0;     ///< not a classic frame; never handed on
+    std::uint64_t malformed = 0;     ///< no frame, or of a length that there is not; never handed on
     std::uint64_t impostors = 0;     ///< others sent an identifier that is ours to send
     std::uint64_t refused = 0;       ///< sends not accepted
     std::uint64_t replaced = 0;      ///< sends that overtook their predecessor
@@ -66,7 +66,9 @@ struct Settings {
     Duration max_age = 20ms;                ///< a frame older than this is not sent any more
     Duration confirm_within = 50ms;         ///< an unconfirmed frame older than this is a fault
     std::uint32_t restarts_allowed = 3;
-    std::uint32_t bit_rate = 0;         ///< what the controller must be set to, as the board says
+    std::uint32_t bit_rate = 0;      ///< what the controller must be set to, as the board says
+    std::uint32_t data_bit_rate = 0; ///< likewise of CAN FD's data phase; 0: the board has classical CAN only
+    bool takes_fd = false;           ///< CAN FD frames are received and sent: there is one in the map
     int receive_buffer_bytes = 1 << 20; ///< the default of Linux holds 278 frames
 };
 

@@ -1,5 +1,4 @@
-// A classic CAN frame (ISO 11898-1) as the machine sees it, its place in arbitration and its length on the
-// wire.
+// A CAN frame (ISO 11898-1), classical or CAN FD, as the machine sees it, and its place in arbitration.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -43,12 +42,31 @@ struct BusError {
     bool operator==(const BusError&) const = default;
 };
 
+enum class Format : std::uint8_t {
+    classical,      ///< up to 8 bytes
+    flexible,       ///< CAN FD in one bit rate, up to 64 bytes
+    flexible_faster ///< CAN FD that switches to the data bit rate
+};
+
+/// What a frame holds of so many bytes: CAN FD knows no other lengths above 8. -1: more than any frame.
+constexpr int padded_length(unsigned bytes) noexcept {
+    for (const int length : {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64})
+        if (bytes <= static_cast<unsigned>(length)) return length;
+    return -1;
+}
+
+/// Of the longest frame; behind a shorter one's length nothing is meant.
+using Payload = std::array<std::uint8_t, 64>;
+
 struct Frame {
     std::uint32_t id = 0; ///< 11 bits, or 29 when extended
     bool extended = false;
     bool remote = false;
+    bool fd = false;
+    bool bit_rate_switch = false;       ///< of CAN FD
+    bool error_state_indicator = false; ///< of CAN FD, received: its sender is error passive
     std::uint8_t length = 0;
-    std::array<std::uint8_t, 8> data{};
+    Payload data{};
     Time stamp{};     ///< received: when it arrived; to send: when its contents were made
     BusError error{}; ///< in error frames only
     bool operator==(const Frame&) const = default;
@@ -64,8 +82,19 @@ struct Identifier {
 constexpr bool valid(Identifier identifier) noexcept {
     return identifier.id <= (identifier.extended ? 0x1FFF'FFFFu : 0x7FFu);
 }
+/// CAN FD has no remote frames, and classical CAN no second bit rate.
 constexpr bool valid(const Frame& frame) noexcept {
-    return valid(Identifier{frame.id, frame.extended}) && frame.length <= 8;
+    if (!valid(Identifier{frame.id, frame.extended})) return false;
+    return frame.fd ? !frame.remote && padded_length(frame.length) == frame.length
+                    : frame.length <= 8 && !frame.bit_rate_switch;
+}
+constexpr Format format_of(const Frame& frame) noexcept {
+    if (!frame.fd) return Format::classical;
+    return frame.bit_rate_switch ? Format::flexible_faster : Format::flexible;
+}
+constexpr void set_format(Frame& frame, Format format) noexcept {
+    frame.fd = format != Format::classical;
+    frame.bit_rate_switch = format == Format::flexible_faster;
 }
 
 /// The bits of arbitration as a number: the lower one wins the bus.
@@ -73,17 +102,6 @@ constexpr bool valid(const Frame& frame) noexcept {
 constexpr std::uint32_t arbitration(const Frame& frame) noexcept {
     if (!frame.extended) return (frame.id << 21) | ((frame.remote ? 1u : 0u) << 20);
     return ((frame.id >> 18) << 21) | (3u << 19) | ((frame.id & 0x3FFFFu) << 1) | (frame.remote ? 1u : 0u);
-}
-
-/// Flag, its echo, delimiter and gap: what an error takes besides the frame that it spoilt.
-inline constexpr std::uint32_t error_frame_bits = 31;
-
-/// The most bits a frame takes on the wire, worst stuffing and interframe space included (Davis et al.,
-/// 2007).
-constexpr std::uint32_t worst_bits(const Frame& frame) noexcept {
-    const std::uint32_t stuffable = frame.extended ? 54 : 34;
-    const std::uint32_t payload = frame.remote ? 0 : 8u * frame.length;
-    return payload + stuffable + 13 + (stuffable + payload - 1) / 4;
 }
 
 } // namespace tappet::can

@@ -1,7 +1,7 @@
 // How long a frame can take on the wire: worst stuffing, and the gap after it.
 #pragma once
 
-#include <cstdint>
+#include "drivers/can/frame.hpp"
 
 namespace tappet::can {
 
@@ -11,18 +11,9 @@ struct BitRates {
     std::int64_t data = 0;    ///< bit/s; 0: classical CAN only
 };
 
-enum class Format : std::uint8_t {
-    classical,      ///< ISO 11898-1, up to 8 bytes
-    flexible,       ///< CAN FD in one bit rate, up to 64 bytes
-    flexible_faster ///< CAN FD that switches to the data bit rate
-};
-
-/// What a frame holds of so many bytes: CAN FD knows no other lengths above 8. -1: more than any frame.
-constexpr int padded_length(unsigned bytes) noexcept {
-    for (const int length : {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64})
-        if (bytes <= static_cast<unsigned>(length)) return length;
-    return -1;
-}
+/// Flag, its echo, delimiter and gap: what an error takes besides the frame that it spoilt, in arbitration's
+/// rate.
+inline constexpr std::uint32_t error_frame_bits = 31;
 
 /// In nanoseconds, rounded up; -1: there is no such frame on such a bus. Classical: Davis, Burns, Bril and
 /// Lukkien 2007. CAN FD: 32 (55 with a 29-bit identifier) bits of arbitration and, behind the switch,
@@ -46,6 +37,11 @@ constexpr std::int64_t frame_time_ns(Format format, bool extended, unsigned byte
         return (bits * 1'000'000'000 + rate - 1) / rate;
     };
     return time(slow_bits, slow) + time(fast_bits, fast);
+}
+
+/// Of one frame; a remote one carries nothing, whatever its length says.
+constexpr std::int64_t frame_time_ns(const Frame& frame, BitRates rates) noexcept {
+    return frame_time_ns(format_of(frame), frame.extended, frame.remote ? 0u : frame.length, rates);
 }
 
 } // namespace tappet::can

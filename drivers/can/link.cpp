@@ -46,9 +46,10 @@ void read_can_attributes(const std::byte* at, std::size_t left, Link& link) {
             link.state = to_state(told);
         }
         can_bittiming timing{};
-        if (type == IFLA_CAN_BITTIMING && length >= sizeof timing) {
+        const bool is_data = type == IFLA_CAN_DATA_BITTIMING;
+        if ((type == IFLA_CAN_BITTIMING || is_data) && length >= sizeof timing) {
             std::memcpy(&timing, payload, sizeof timing);
-            link.bit_rate = timing.bitrate;
+            (is_data ? link.data_bit_rate : link.bit_rate) = timing.bitrate;
         }
     });
 }
@@ -83,6 +84,8 @@ std::expected<Link, Sentence> read_link(std::string_view interface, std::span<co
     each_attribute(answer.data() + head, answer.size() - head,
                    [&](int type, const std::byte* payload, std::size_t length) {
                        if (type == IFLA_LINKINFO) read_link_info(payload, length, link);
+                       if (type == IFLA_MTU && length >= sizeof link.mtu)
+                           std::memcpy(&link.mtu, payload, sizeof link.mtu);
                    });
     return link;
 }
@@ -108,7 +111,16 @@ std::expected<Link, Sentence> find_link(std::string_view interface) {
     return read_link(interface, netlink.data());
 }
 
-std::expected<void, Sentence> fit(const Link& link, std::string_view interface, std::uint32_t bit_rate) {
+std::expected<void, Sentence> fit_for_fd(const Link& link, std::string_view interface) {
+    if (link.takes_fd()) return {};
+    return std::unexpected{
+        Sentence{"CAN interface \"", interface, "\" carries classical frames only (mtu ", link.mtu,
+                 ", of CAN FD 72), and its bus has CAN FD: set it down, and up again after ip link set ",
+                 interface, link.is_virtual ? " mtu 72" : " type can bitrate ... dbitrate ... fd on",
+                 link.is_virtual ? "" : "; its controller must be one for CAN FD"}};
+}
+
+std::expected<void, Sentence> fit(const Link& link, std::string_view interface, const Settings& settings) {
     const Sentence who{"CAN interface \"", interface, "\""};
     if (!link.up)
         return std::unexpected{Sentence{who, " is down: set it up (ip link set ", interface, " up",
@@ -117,13 +129,24 @@ std::expected<void, Sentence> fit(const Link& link, std::string_view interface, 
         return std::unexpected{
             Sentence{who, " restarts by itself ", link.restart_ms,
                      " ms after bus-off, and a machine restarts it deliberately: set restart-ms 0"}};
-    if (bit_rate == 0)
+    if (settings.bit_rate == 0)
         return std::unexpected{
             Sentence{who, " is opened without its bit rate: the board says it, bit_rate(500'000)"}};
-    if (!link.is_virtual && link.bit_rate != bit_rate)
-        return std::unexpected{Sentence{who, " runs at ", link.bit_rate, " bit/s, the board says ", bit_rate,
-                                        ": correct one of them (ip link set ", interface,
+    if (settings.takes_fd && settings.data_bit_rate == 0)
+        return std::unexpected{Sentence{who,
+                                        " is opened for CAN FD without its data bit rate: the board says "
+                                        "it, bit_rate(500'000, 2'000'000)"}};
+    if (!link.is_virtual && link.bit_rate != settings.bit_rate)
+        return std::unexpected{Sentence{who, " runs at ", link.bit_rate, " bit/s, the board says ",
+                                        settings.bit_rate, ": correct one of them (ip link set ", interface,
                                         " type can bitrate ...)"}};
+    if (settings.takes_fd || (!link.is_virtual && settings.data_bit_rate != 0))
+        if (auto good = fit_for_fd(link, interface); !good) return good;
+    if (!link.is_virtual && settings.data_bit_rate != 0 && link.data_bit_rate != settings.data_bit_rate)
+        return std::unexpected{Sentence{who, " runs at ", link.data_bit_rate,
+                                        " bit/s in CAN FD's data phase, the board says ",
+                                        settings.data_bit_rate, ": correct one of them (ip link set ",
+                                        interface, " type can dbitrate ... fd on)"}};
     if (faulted(link.state))
         return std::unexpected{Sentence{who, link.state == State::bus_off ? " is bus-off" : " is stopped",
                                         ": look at its wiring and at the other nodes' power, then restart it "

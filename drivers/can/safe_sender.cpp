@@ -5,6 +5,7 @@
 #include "drivers/can/link.hpp"
 #include "drivers/can/wire.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -33,15 +34,23 @@ std::expected<void, Sentence> SafeSender::open(std::string_view interface, std::
     can_filter filters[64];
     for (std::size_t i = 0; i < frames.size(); ++i)
         filters[i] = wire::exactly({frames[i].id, frames[i].extended});
+    const bool sends_fd = std::ranges::any_of(frames, &Frame::fd);
+    if (sends_fd)
+        if (auto good = fit_for_fd(*link, interface); !good) {
+            close();
+            return good;
+        }
     const int yes = 1;
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = link->index;
-    const bool good = fd_ >= 0 &&
-                      ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
-                                   static_cast<socklen_t>(frames.size() * sizeof filters[0])) == 0 &&
-                      ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &yes, sizeof yes) == 0 &&
-                      ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    const bool good =
+        fd_ >= 0 &&
+        ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
+                     static_cast<socklen_t>(frames.size() * sizeof filters[0])) == 0 &&
+        ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &yes, sizeof yes) == 0 &&
+        (!sends_fd || ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &yes, sizeof yes) == 0) &&
+        ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     if (!good) return refused(strerrordesc_np(errno));
     return {};
 }
@@ -55,9 +64,11 @@ void SafeSender::close() noexcept {
 void SafeSender::send(Purpose purpose) noexcept {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
         if ((confirmed_ >> i & 1u) != 0) continue;
-        const can_frame raw = wire::encode(frames_[i]);
+        canfd_frame raw;
+        wire::encode(frames_[i], raw);
         // What the kernel does not take now goes out at the next repetition.
-        [[maybe_unused]] const auto n = ::write(fd_, &raw, purpose == Purpose::earnest ? sizeof raw : 0);
+        [[maybe_unused]] const auto n =
+            ::write(fd_, &raw, purpose == Purpose::earnest ? wire::bytes_of(frames_[i]) : 0);
     }
 }
 
@@ -66,19 +77,20 @@ std::size_t SafeSender::left() noexcept {
     // between is told once.
     bool was_down = false;
     for (int n = 0; n < 65536; ++n) {
-        can_frame raw{};
+        canfd_frame raw{};
         iovec part{&raw, sizeof raw};
         msghdr message{};
         message.msg_iov = &part;
         message.msg_iovlen = 1;
         const ssize_t got = ::recvmsg(fd_, &message, MSG_DONTWAIT);
         if (got < 0 && errno == ENETDOWN && !std::exchange(was_down, true)) continue;
-        if (got != static_cast<ssize_t>(sizeof raw)) break;
+        if (got != CAN_MTU && got != CANFD_MTU) break;
         if ((message.msg_flags & MSG_CONFIRM) == 0) continue; // of the machine, while it lived
-        for (std::size_t i = 0; i < frames_.size(); ++i) {
-            const can_frame ours = wire::encode(frames_[i]);
-            if (raw.can_id == ours.can_id) confirmed_ |= std::uint64_t{1} << i;
-        }
+        Frame sent;
+        if (!wire::decode(raw, static_cast<std::size_t>(got), State::active, sent)) continue;
+        for (std::size_t i = 0; i < frames_.size(); ++i)
+            if (sent.id == frames_[i].id && sent.extended == frames_[i].extended)
+                confirmed_ |= std::uint64_t{1} << i;
     }
     return frames_.size() - static_cast<std::size_t>(std::popcount(confirmed_));
 }

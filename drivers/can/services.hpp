@@ -18,7 +18,7 @@ template <std::size_t N, std::size_t S> struct Services {
     [[nodiscard]] constexpr bool takes(const Frame& frame) const noexcept TAPPET_REALTIME {
         for (const FrameRow& row : frames)
             if (row.direction == Direction::receive && row.identifier == Identifier{frame.id, frame.extended})
-                return !frame.remote;
+                return !frame.remote && format_of(frame) == row.format;
         return false;
     }
 };
@@ -58,7 +58,9 @@ template <const auto& map, const auto& services> struct AllFrames {
     static constexpr auto transmit = joined<map.transmitted_count>(
         map.transmits(), identifiers<count(Direction::transmit)>(Direction::transmit));
     static constexpr auto safe = joined<map.safe_count>(map.safe_frames(), services.safe);
-    static constexpr Identifiers value{receive, transmit, safe, map.frames, map.signals};
+    static constexpr bool has_fd =
+        std::ranges::any_of(map.frames, [](Format f) { return f != Format::classical; }, &FrameRow::format);
+    static constexpr Identifiers value{receive, transmit, has_fd, safe, map.frames, map.signals};
     /// What the bus is proven for.
     static constexpr auto traffic =
         joined<map.frames.size()>(std::span<const FrameRow>{map.frames}, chosen<rated>(&AllFrames::has_rate));

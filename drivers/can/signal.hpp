@@ -1,13 +1,15 @@
 // One signal inside a CAN frame: where its bits lie and what they mean, as the DBC format numbers them.
 #pragma once
 
+#include "drivers/can/frame.hpp"
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/realtime.hpp"
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string_view>
 
@@ -161,10 +163,7 @@ constexpr bool is_integer(const Signal& s) noexcept {
            (s.kind == Kind::unsigned_integer || s.kind == Kind::signed_integer);
 }
 
-using Payload = std::array<std::uint8_t, 8>;
-
 /// The place of the signal's i-th bit, counted from the least significant, as 8 * byte + position. Real-time.
-/// Beyond 63 when it lies outside a frame.
 constexpr unsigned bit_place(const Signal& s, unsigned i) noexcept TAPPET_REALTIME {
     if (s.order == Order::intel) return s.start + i;
     // Read a byte from its left end and the bits of a Motorola signal follow each other: count in that
@@ -173,33 +172,94 @@ constexpr unsigned bit_place(const Signal& s, unsigned i) noexcept TAPPET_REALTI
     return 8u * (from_left / 8u) + (7u - from_left % 8u);
 }
 
-namespace detail {
-/// Where a signal lies in the eight bytes read as one number: the first byte the lowest, of a Motorola signal
-/// the highest. Its bits follow each other there.
-constexpr unsigned shift_of(const Signal& s) noexcept TAPPET_REALTIME {
-    if (s.order == Order::intel) return s.start;
-    return 64u - (8u * (s.start / 8u) + (7u - s.start % 8u)) - s.bits;
+/// Where a signal lies in eight bytes of its frame that are read as one number: the first byte the lowest, of
+/// a Motorola signal the highest. Its bits follow each other there. Of a signal of more than 57 bits some may
+/// go on in a ninth byte.
+struct Place {
+    std::uint8_t byte = 0;  ///< the first of the eight, which end within the longest frame
+    std::uint8_t shift = 0; ///< of its lowest bit in the eight
+    std::uint8_t over = 0;  ///< bits in the ninth: the highest ones, of a Motorola signal the lowest
+    std::uint8_t bits = 1;
+    Order order = Order::intel;
+};
+/// Of a signal that lies inside its frame.
+constexpr Place place_of(const Signal& s) noexcept TAPPET_REALTIME {
+    constexpr unsigned last = sizeof(Payload) - 8;
+    const bool is_intel = s.order == Order::intel;
+    // A Motorola signal's bits are counted from the left end of each byte.
+    const unsigned at = is_intel ? s.start : s.start ^ 7u;
+    const unsigned byte = std::min(at / 8u, last);
+    const unsigned from = at - 8u * byte, end = from + s.bits;
+    const unsigned over = end > 64u ? end - 64u : 0u;
+    return {static_cast<std::uint8_t>(byte), static_cast<std::uint8_t>(is_intel ? from : 64u + over - end),
+            static_cast<std::uint8_t>(over), s.bits, s.order};
 }
-constexpr std::uint64_t in_order(std::uint64_t bytes, const Signal& s) noexcept TAPPET_REALTIME {
+
+namespace detail {
+constexpr std::uint64_t in_order(std::uint64_t bytes, Order order) noexcept TAPPET_REALTIME {
     constexpr bool little = std::endian::native == std::endian::little;
-    return little == (s.order == Order::intel) ? bytes : std::byteswap(bytes);
+    return little == (order == Order::intel) ? bytes : std::byteswap(bytes);
+}
+constexpr std::uint64_t mask_of(unsigned bits) noexcept TAPPET_REALTIME {
+    return ~std::uint64_t{0} >> (64u - bits);
 }
 constexpr std::uint64_t mask_of(const Signal& s) noexcept TAPPET_REALTIME {
-    return s.bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << s.bits) - 1;
+    return s.bits == 0 ? 0 : mask_of(s.bits);
+}
+constexpr std::uint64_t eight_bytes(const std::uint8_t* from) noexcept TAPPET_REALTIME {
+    std::array<std::uint8_t, 8> bytes{};
+    if consteval {
+        for (std::size_t i = 0; i < 8; ++i) bytes[i] = from[i];
+    } else {
+        std::memcpy(bytes.data(), from, 8);
+    }
+    return std::bit_cast<std::uint64_t>(bytes);
+}
+constexpr void put_eight_bytes(std::uint64_t number, std::uint8_t* to) noexcept TAPPET_REALTIME {
+    const auto bytes = std::bit_cast<std::array<std::uint8_t, 8>>(number);
+    if consteval {
+        for (std::size_t i = 0; i < 8; ++i) to[i] = bytes[i];
+    } else {
+        std::memcpy(to, bytes.data(), 8);
+    }
 }
 } // namespace detail
 
-/// The raw bits, as many as the signal has. Real-time; the signal lies inside the frame.
+/// The raw bits of a signal that lies there. Real-time.
+constexpr std::uint64_t extract(const Payload& data, Place at) noexcept TAPPET_REALTIME {
+    const std::uint64_t whole = detail::in_order(detail::eight_bytes(&data[at.byte]), at.order);
+    const std::uint64_t mask = detail::mask_of(at.bits);
+    if (at.over == 0) [[likely]]
+        return whole >> at.shift & mask;
+    const std::uint64_t ninth = data[at.byte + 8u];
+    return (at.order == Order::intel ? whole >> at.shift | ninth << (64u - at.shift)
+                                     : whole << at.over | ninth >> (8u - at.over)) &
+           mask;
+}
+/// The same of a signal that lies inside the frame.
 constexpr std::uint64_t extract(const Payload& data, const Signal& s) noexcept TAPPET_REALTIME {
-    const std::uint64_t whole = detail::in_order(std::bit_cast<std::uint64_t>(data), s);
-    return whole >> detail::shift_of(s) & detail::mask_of(s);
+    return extract(data, place_of(s));
 }
 
+/// Bits beyond the signal's width are cut. Real-time.
+constexpr void insert(Payload& data, Place at, std::uint64_t raw) noexcept TAPPET_REALTIME {
+    std::uint64_t mask = detail::mask_of(at.bits);
+    raw &= mask;
+    if (at.over != 0) [[unlikely]] {
+        const bool is_intel = at.order == Order::intel;
+        const unsigned place = is_intel ? 0u : 8u - at.over;
+        const unsigned those = (1u << at.over) - 1u;
+        const auto set = static_cast<unsigned>(is_intel ? raw >> (64u - at.shift) : raw) & those;
+        std::uint8_t& ninth = data[at.byte + 8u];
+        ninth = static_cast<std::uint8_t>((ninth & ~(those << place)) | set << place);
+        if (!is_intel) raw >>= at.over, mask >>= at.over;
+    }
+    const std::uint64_t whole = detail::in_order(detail::eight_bytes(&data[at.byte]), at.order);
+    const std::uint64_t set = (whole & ~(mask << at.shift)) | raw << at.shift;
+    detail::put_eight_bytes(detail::in_order(set, at.order), &data[at.byte]);
+}
 constexpr void insert(Payload& data, const Signal& s, std::uint64_t raw) noexcept TAPPET_REALTIME {
-    const std::uint64_t mask = detail::mask_of(s);
-    const std::uint64_t whole = detail::in_order(std::bit_cast<std::uint64_t>(data), s);
-    const unsigned shift = detail::shift_of(s);
-    data = std::bit_cast<Payload>(detail::in_order((whole & ~(mask << shift)) | (raw & mask) << shift, s));
+    insert(data, place_of(s), raw);
 }
 
 /// Raw bits as a whole number, sign extended. Real-time.

@@ -33,6 +33,7 @@ struct FrameRow {
     bool silence_is_safe = false; ///< transmit: it is not sent when the machine's process is no more
     bool multiplexed = false;     ///< not all of its signals are in every frame
     std::string_view in_file{};   ///< its name in its DBC file, where a row gives it another
+    Format format = Format::classical;
 };
 
 /// A row together with its signals, before the map flattens them.
@@ -62,9 +63,16 @@ constexpr Identifier extended(std::uint32_t id) noexcept { return {id, true}; }
 
 struct Bytes {
     std::uint8_t count = 0;
+    Format format = Format::classical;
+
+    /// Of CAN FD: without the switch to the data bit rate.
+    constexpr Bytes in_one_rate() const noexcept { return {count, Format::flexible}; }
 };
 /// Length of the frame, 8 at most.
-constexpr Bytes bytes(std::uint8_t count) noexcept { return {count}; }
+constexpr Bytes bytes(std::uint8_t count) noexcept { return {count, Format::classical}; }
+/// Of a CAN FD frame that switches to the data bit rate: 0 to 8, 12, 16, 20, 24, 32, 48 or 64. What no signal
+/// covers is sent as 0.
+constexpr Bytes fd_bytes(std::uint8_t count) noexcept { return {count, Format::flexible_faster}; }
 /// How often a frame comes, which the bus's response times are computed from.
 struct Rate {
     Duration every{}, apart{}, jitter{};
@@ -75,14 +83,30 @@ constexpr Rate every(Duration period, Duration jitter = {}) noexcept { return {p
 /// something to tell. Two of them are believed to be so far apart; of what is sent a breach is counted.
 constexpr Rate on_demand(Duration apart) noexcept { return {{}, apart, {}}; }
 
+namespace detail {
+template <class... Signals>
+constexpr auto row(Identifier id, std::string_view name, Direction direction, Bytes length, Rate rate,
+                   const Signals&... signals) noexcept {
+    FrameWithSignals<sizeof...(Signals)> whole{{}, {signals...}};
+    whole.row.identifier = id;
+    whole.row.name = name;
+    whole.row.direction = direction;
+    whole.row.length = length.count;
+    whole.row.format = length.format;
+    whole.row.every = rate.every;
+    whole.row.apart = rate.apart;
+    whole.row.jitter = rate.jitter;
+    whole.row.signals = sizeof...(Signals);
+    return whole;
+}
+} // namespace detail
+
 /// receive(standard(0x181), "main_drive", bytes(6), every(2ms), signal("statusword", 0, 16), ...)
 /// How old a value may grow is said by the connection's row that reads it.
 template <class... Signals>
 constexpr auto receive(Identifier id, std::string_view name, Bytes length, Rate rate,
                        const Signals&... signals) noexcept {
-    return FrameWithSignals<sizeof...(Signals)>{{id, name, Direction::receive, length.count, rate.every,
-                                                 rate.apart, rate.jitter, 0, sizeof...(Signals)},
-                                                {signals...}};
+    return detail::row(id, name, Direction::receive, length, rate, signals...);
 }
 /// Without its rate, which the map's check asks for.
 template <class... Signals>
@@ -96,14 +120,13 @@ constexpr auto receive(Identifier id, std::string_view name, Bytes length,
 template <class... Signals>
 constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Rate rate,
                         const Signals&... signals) noexcept {
-    return FrameWithSignals<sizeof...(Signals)>{{id, name, Direction::transmit, length.count, rate.every,
-                                                 rate.apart, rate.jitter, 0, sizeof...(Signals)},
-                                                {signals...}};
+    return detail::row(id, name, Direction::transmit, length, rate, signals...);
 }
 
 /// What one end of a bus takes and sends, and what it sends last.
 struct Identifiers {
     std::span<const Identifier> receive{}, transmit{};
+    bool has_fd = false;                ///< there is a CAN FD frame among them
     std::span<const Frame> safe{};      ///< see SignalMap::safe_frames
     std::span<const FrameRow> frames{}; ///< of a machine's end, for tools
     std::span<const Signal> signals{};
@@ -117,6 +140,7 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<Signal, S> signals{};
     std::array<std::size_t, S> frame_of{}; ///< the frame that holds a signal
     std::array<std::size_t, S> multiplexor_of{};
+    std::array<Place, S> places{};
     std::array<Identifier, F> received{}; ///< the first `received_count` are valid
     std::array<Identifier, F> transmitted{};
     /// What makes the receivers safe when the machine's process is no more: the cyclic ones first, whose
@@ -285,9 +309,33 @@ constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
                     nearest.best().empty() ? "; write it there" : "\"?"};
 }
 
+constexpr Sentence length_fault(const FrameRow& frame) noexcept {
+    const Sentence who{"frame \"", frame.name, "\" has ", unsigned{frame.length}, " bytes: "};
+    if (frame.format == Format::classical)
+        return frame.length <= 8
+                   ? Sentence{}
+                   : Sentence{who, "a classical frame holds 8 at most; make it CAN FD by fd_bytes(..), "
+                                   "in a DBC file by VFrameFormat"};
+    const int padded = padded_length(frame.length);
+    if (padded == frame.length) return {};
+    if (padded < 0) return Sentence{who, "a CAN FD frame holds 64 at most; make it two"};
+    return Sentence{who, "CAN FD has no such length; make it ", padded,
+                    ", and what no signal covers is padding"};
+}
+
+/// The bits of a signal in its frame.
+using Covered = std::array<std::uint64_t, sizeof(Payload) / 8>;
+/// The first bit of both, or one behind the frame's `bytes`.
+constexpr unsigned first_shared(const Covered& a, const Covered& b, unsigned bytes) noexcept {
+    for (unsigned word = 0; 8u * word < bytes; ++word)
+        if (const std::uint64_t shared = a[word] & b[word]; shared != 0)
+            return 64u * word + static_cast<unsigned>(std::countr_zero(shared));
+    return 8u * bytes;
+}
+
 template <std::size_t F, std::size_t S>
 constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noexcept {
-    std::array<std::uint64_t, S> places{}; // of a signal's bits, as 8 * byte + position
+    std::array<Covered, S> covered{}; // by its signals
     for (std::size_t f = 0; f < frames; ++f) {
         const FrameRow& row = map.frames[f];
         const Sentence who{"frame \"", row.name, "\""};
@@ -300,9 +348,7 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
             return {Sentence{who, " has the identifier ", row.identifier.id,
                              ": a standard one ends at 2047, an extended one at 536870911"},
                     f};
-        if (row.length > 8)
-            return {Sentence{who, " has ", unsigned{row.length}, " bytes: a classic frame holds 8 at most"},
-                    f};
+        if (const Sentence fault = length_fault(row); !fault.empty()) return {fault, f};
         for (std::size_t other = 0; other < f; ++other) {
             if (map.frames[other].name == row.name)
                 return {Sentence{who, " is there twice: rename one of them"}, f};
@@ -318,16 +364,18 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
             if (const Sentence fault = multiplexor_fault(row, signal, before); !fault.empty())
                 return {fault, f, s};
             if (const Sentence fault = safe_fault(row, signal); !fault.empty()) return {fault, f, s};
-            for (unsigned i = 0; i < signal.bits; ++i) places[s] |= std::uint64_t{1} << bit_place(signal, i);
+            for (unsigned i = 0; i < signal.bits; ++i) {
+                const unsigned bit = bit_place(signal, i);
+                covered[s][bit / 64u] |= std::uint64_t{1} << bit % 64u;
+            }
             for (std::size_t other = row.first; other < s; ++other) {
                 if (map.signals[other].name == signal.name)
                     return {Sentence{who, " has two signals \"", signal.name, "\": rename one of them"}, f,
                             s};
-                const std::uint64_t shared = places[s] & places[other];
-                if (shared != 0 && !map.multiplexing().exclude_each_other(s, other))
+                const unsigned shared = first_shared(covered[s], covered[other], row.length);
+                if (shared < 8u * row.length && !map.multiplexing().exclude_each_other(s, other))
                     return {Sentence{"signal \"", row.name, ".", signal.name, "\" overlaps \"",
-                                     map.signals[other].name, "\" at bit ",
-                                     static_cast<unsigned>(std::countr_zero(shared)), ": move one of them"},
+                                     map.signals[other].name, "\" at bit ", shared, ": move one of them"},
                             f, s};
             }
         }
@@ -351,9 +399,10 @@ constexpr Frame safe_frame(const SignalMap<F, S>& map, const FrameRow& row, std:
     frame.id = row.identifier.id;
     frame.extended = row.identifier.extended;
     frame.length = row.length;
+    set_format(frame, row.format);
     for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
         if (!map.holds(row, s, [&](std::size_t m) { return raw[m]; })) continue;
-        insert(frame.data, map.signals[s], raw[s]);
+        insert(frame.data, map.places[s], raw[s]);
         held[s] = true;
     }
     return frame;
@@ -381,6 +430,7 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
         FrameRow& row = map.frames[f];
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
             map.frame_of[s] = f;
+            map.places[s] = place_of(map.signals[s]);
             row.multiplexed |= !map.signals[s].multiplexor.empty();
             for (std::size_t other = row.first; other < s; ++other)
                 if (map.signals[other].name == map.signals[s].multiplexor) map.multiplexor_of[s] = other;

@@ -10,7 +10,7 @@ enum class Decoded : std::uint8_t { yes, unknown_identifier, wrong_length };
 struct DecodeCounters {
     std::uint64_t decoded = 0;
     std::uint64_t unknown_identifiers = 0; ///< never decoded
-    std::uint64_t wrong_lengths = 0;       ///< never decoded
+    std::uint64_t wrong_lengths = 0;       ///< or of another format than the row's; never decoded
     std::uint64_t saturated = 0;           ///< values to send that were out of their signal's range
     std::uint64_t refused = 0;             ///< values to send that were no numbers; the value before stays
     bool operator==(const DecodeCounters&) const = default;
@@ -30,12 +30,12 @@ public:
             return Decoded::unknown_identifier;
         }
         const FrameRow& row = map_->frames[f];
-        if (frame.length != row.length) {
+        if (frame.length != row.length || format_of(frame) != row.format) {
             ++count.wrong_lengths;
             return Decoded::wrong_length;
         }
         for (std::size_t s = row.first; s < row.first + row.signals; ++s)
-            if (is_in(row, s, frame)) raw_[s] = extract(frame.data, map_->signals[s]);
+            if (is_in(row, s, frame)) raw_[s] = extract(frame.data, map_->places[s]);
         ++count.decoded;
         which = f;
         return Decoded::yes;
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] constexpr bool is_in(const FrameRow& row, std::size_t s, const Frame& frame) const noexcept
         TAPPET_REALTIME {
         return map_->holds(row, s, [&](std::size_t m) noexcept TAPPET_REALTIME {
-            return extract(frame.data, map_->signals[m]);
+            return extract(frame.data, map_->places[m]);
         });
     }
     /// The frame of a row with the values as they are, of a multiplexed one those that they select; its stamp
@@ -59,10 +59,11 @@ public:
         frame.id = row.identifier.id;
         frame.extended = row.identifier.extended;
         frame.length = row.length;
+        set_format(frame, row.format);
         frame.stamp = now;
         for (std::size_t s = row.first; s < row.first + row.signals; ++s)
             if (map_->holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME { return raw_[m]; }))
-                insert(frame.data, map_->signals[s], raw_[s]);
+                insert(frame.data, map_->places[s], raw_[s]);
         return frame;
     }
     [[nodiscard]] constexpr double physical(std::size_t s) const noexcept TAPPET_REALTIME {

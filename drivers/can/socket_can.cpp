@@ -52,7 +52,7 @@ void SocketCan::Batch::read_from(int fd) noexcept {
 
 /// A frame, and what the kernel says of it.
 struct SocketCan::Raw {
-    const can_frame& frame;
+    const canfd_frame& frame;
     std::size_t bytes = 0;
     int flags = 0;
     bool stamped = false;
@@ -60,9 +60,10 @@ struct SocketCan::Raw {
     bool drops_known = false;
     std::uint32_t drops = 0;
 
-    Raw(const can_frame& read, mmsghdr& message) noexcept TAPPET_REALTIME : frame{read},
-                                                                            bytes{message.msg_len},
-                                                                            flags{message.msg_hdr.msg_flags} {
+    Raw(const canfd_frame& read, mmsghdr& message) noexcept TAPPET_REALTIME
+        : frame{read},
+          bytes{message.msg_len},
+          flags{message.msg_hdr.msg_flags} {
         for (cmsghdr* c = CMSG_FIRSTHDR(&message.msg_hdr); c != nullptr; c = following(message.msg_hdr, c)) {
             if (c->cmsg_level != SOL_SOCKET) continue;
             if (c->cmsg_type == SO_RXQ_OVFL) {
@@ -91,7 +92,7 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings) {
 std::expected<void, Sentence> SocketCan::open(const Settings& settings, const Link& link) {
     close();
     const std::string_view name = settings.interface;
-    if (auto good = fit(link, name, settings.bit_rate); !good) return good;
+    if (auto good = fit(link, name, settings); !good) return good;
     fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
     if (fd_ < 0)
         return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
@@ -104,7 +105,9 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings, const Li
     if (link.is_virtual)
         found_.add("is virtual: it has no bit rate to compare with the board's ").add(settings.bit_rate);
     else
-        found_.add("runs at ").add(link.bit_rate).add(" bit/s, error ").add(to_text(link.state));
+        found_.add("runs at ").add(link.bit_rate).add(" bit/s");
+    if (!link.is_virtual && link.takes_fd()) found_.add(", CAN FD at ").add(link.data_bit_rate).add(" bit/s");
+    if (!link.is_virtual) found_.add(", error ").add(to_text(link.state));
     auto done = set_options(settings);
     if (done) {
         sockaddr_can address{};
@@ -142,6 +145,7 @@ std::expected<void, Sentence> SocketCan::set_options(const Settings& settings) {
         set(SOL_CAN_RAW, CAN_RAW_FILTER, used == 0 ? nullptr : filters.data(), used * sizeof(can_filter));
     ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, static_cast<int>(wire::error_mask));
     ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1);
+    ok = ok && (!settings.takes_fd || set_int(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1));
     ok = ok && set_int(SOL_SOCKET, SO_RXQ_OVFL, 1);
     ok = ok &&
          set_int(SOL_SOCKET, SO_SNDBUF, 0); // the kernel raises it to its least: EAGAIN comes before ENOBUFS
@@ -149,7 +153,8 @@ std::expected<void, Sentence> SocketCan::set_options(const Settings& settings) {
         return std::unexpected{
             failure(settings.interface, "a socket option is refused", "is the kernel 5.10 or newer?")};
     // Without these the machine still works: frames count as arrived when read, and the buffer is Linux's
-    // default.
+    // default. Stamps are the kernel's, not the controller's: what CAN drivers count by has no clock that
+    // Linux relates to its own (none has a PTP clock), and runs away from it with the controller's crystal.
     set_int(SOL_SOCKET, SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE);
     if (!set_int(SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes))
         set_int(SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes);
@@ -198,7 +203,7 @@ Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME 
     const Time now = read(CLOCK_MONOTONIC);
     const Time arrived = raw.stamped ? arrivals_.of(to_time(raw.stamp), read(CLOCK_REALTIME), now) : now;
     Frame candidate;
-    if (raw.bytes != CAN_MTU || !wire::decode(raw.frame, controller_.state(), candidate)) {
+    if (!wire::decode(raw.frame, raw.bytes, controller_.state(), candidate)) {
         ++controller_.count.malformed;
         return answer;
     }
@@ -240,13 +245,14 @@ void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < most_in_flight && fd_ >= 0; ++i) {
         const Frame* frame = controller_.next(now);
         if (frame == nullptr) return;
-        const can_frame raw = wire::encode(*frame);
+        canfd_frame raw;
+        wire::encode(*frame, raw);
+        const std::size_t bytes = wire::bytes_of(*frame);
         ssize_t written = 0;
         int error = 0;
-        TAPPET_ESCAPE("the driver's own write, which does not block",
-                      written = ::write(fd_, &raw, sizeof raw);
+        TAPPET_ESCAPE("the driver's own write, which does not block", written = ::write(fd_, &raw, bytes);
                       error = errno);
-        if (written == static_cast<ssize_t>(sizeof raw)) {
+        if (written == static_cast<ssize_t>(bytes)) {
             controller_.handed_over(now);
             continue;
         }

@@ -52,7 +52,7 @@ private:
             cmsghdr aligned;
             char bytes[192];
         };
-        std::array<can_frame, size> frames{};
+        std::array<canfd_frame, size> frames{};
         std::array<iovec, size> parts{};
         std::array<Told, size> told{};
         std::array<mmsghdr, size> messages{};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/can/transmit_queue.hpp"
+#include "kernel/base/bounded.hpp"
 
 #include <algorithm>
 

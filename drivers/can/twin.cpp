@@ -24,7 +24,7 @@ void Twin::set_listener(Listener ready, void* context) noexcept {
 }
 
 bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
-    if (frame.remote) return false;
+    if (frame.remote || (frame.fd && !settings_.takes_fd)) return false;
     for (const auto list : {settings_.receive, settings_.transmit})
         for (const Identifier& one : list)
             if (one.id == frame.id && one.extended == frame.extended) return true;
@@ -34,39 +34,44 @@ bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
 Receive Twin::receive(Frame& frame) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     for (std::size_t i = 0; i < inbox; ++i) { // confirmations and what is not for us are no answers
-        Arrival arrival;
-        if (!inbox_.pop(arrival)) return {};
-        Receive answer;
-        answer.lost = arrival.lost - lost_seen_;
-        lost_seen_ = arrival.lost;
-        controller_.count.lost_in_kernel += answer.lost;
-        switch (arrival.what) {
-        case Happened::confirmed:
-            controller_.confirmed(arrival.frame.stamp);
-            hand_over(arrival.frame.stamp);
-            if (answer.lost == 0) continue;
-            return answer;
-        case Happened::error:
-            controller_.report(arrival.frame.error);
-            answer.what = Received::error_frame;
-            break;
-        case Happened::frame:
-            if (!valid(arrival.frame)) {
-                ++controller_.count.malformed;
-                continue;
-            }
-            if (controller_.ours(arrival.frame)) {
-                ++controller_.count.impostors;
-                continue;
-            }
-            ++controller_.count.received;
-            answer.what = Received::frame;
-            break;
-        }
-        frame = arrival.frame;
-        return answer;
+        const Arrival* arrival = inbox_.front();
+        if (arrival == nullptr) return {};
+        const Receive answer = judge(*arrival, frame);
+        inbox_.drop();
+        if (answer.what != Received::none || answer.lost != 0) return answer;
     }
     return {};
+}
+
+Receive Twin::judge(const Arrival& arrival, Frame& frame) noexcept TAPPET_REALTIME {
+    Receive answer;
+    answer.lost = arrival.lost - lost_seen_;
+    lost_seen_ = arrival.lost;
+    controller_.count.lost_in_kernel += answer.lost;
+    switch (arrival.what) {
+    case Happened::confirmed:
+        controller_.confirmed(arrival.frame.stamp);
+        hand_over(arrival.frame.stamp);
+        return answer;
+    case Happened::error:
+        controller_.report(arrival.frame.error);
+        answer.what = Received::error_frame;
+        break;
+    case Happened::frame:
+        if (!valid(arrival.frame)) {
+            ++controller_.count.malformed;
+            return answer;
+        }
+        if (controller_.ours(arrival.frame)) {
+            ++controller_.count.impostors;
+            return answer;
+        }
+        ++controller_.count.received;
+        answer.what = Received::frame;
+        break;
+    }
+    frame = arrival.frame;
+    return answer;
 }
 
 Send Twin::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
@@ -84,10 +89,15 @@ void Twin::hand_over(Time now) noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < most_in_flight; ++i) {
         const Frame* frame = controller_.next(now);
         if (frame == nullptr) return;
-        if (!outbox_.push({*frame, now, generation_.load(std::memory_order_acquire)})) {
+        Departure* const leaving = outbox_.room();
+        if (leaving == nullptr) {
             ++controller_.count.back_pressure;
             return;
         }
+        leaving->frame = *frame;
+        leaving->handed_over = now;
+        leaving->generation = generation_.load(std::memory_order_acquire);
+        outbox_.add();
         controller_.handed_over(now);
     }
 }
@@ -102,10 +112,16 @@ Restart Twin::restart() noexcept {
 }
 
 void Twin::arrive(Happened what, const Frame& frame) noexcept TAPPET_REALTIME {
-    if (inbox_.push({what, frame, lost_}))
-        arrived_ = true;
-    else
+    Arrival* const arriving = inbox_.room();
+    if (arriving == nullptr) {
         ++lost_;
+        return;
+    }
+    arriving->what = what;
+    arriving->frame = frame;
+    arriving->lost = lost_;
+    inbox_.add();
+    arrived_ = true;
 }
 
 const Twin::Departure* Twin::head() noexcept TAPPET_REALTIME {
@@ -115,8 +131,7 @@ const Twin::Departure* Twin::head() noexcept TAPPET_REALTIME {
         const Departure* first = outbox_.front();
         if (first == nullptr) return nullptr;
         if (!off && first->generation == generation) return first;
-        Departure forgotten;
-        if (!outbox_.pop(forgotten)) return nullptr;
+        outbox_.drop();
     }
     return nullptr;
 }

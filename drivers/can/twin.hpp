@@ -58,6 +58,7 @@ private:
         std::uint32_t generation = 0;
     };
 
+    Receive judge(const Arrival& arrival, Frame& frame) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool wants(const Frame& frame) const noexcept TAPPET_REALTIME;
     void hand_over(Time now) noexcept TAPPET_REALTIME;
     // The bus's side.

@@ -2,6 +2,17 @@
 #include "drivers/can/twin_bus.hpp"
 
 namespace tappet::can {
+namespace {
+
+/// The length below it that a frame can have; above the lowest one.
+std::uint8_t next_to(std::uint8_t length) noexcept TAPPET_REALTIME {
+    if (length == 0) return 1;
+    do --length;
+    while (padded_length(length) != length);
+    return length;
+}
+
+} // namespace
 
 void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     now_ = now;
@@ -11,10 +22,10 @@ void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     for (std::size_t i = 0; acknowledged_ && i < 4 * most_ends * Twin::outbox; ++i) {
         const auto winner = arbitrate(now);
         if (!winner) break;
-        const Time finish = winner->start + wire_time(worst_bits(winner->frame));
+        const Time finish = winner->start + wire_time(*winner->frame);
         if (finish > now) break;
-        if (strikes(faults.spoil, winner->frame)) {
-            free_at_ = finish + wire_time(error_frame_bits);
+        if (strikes(faults.spoil, *winner->frame)) {
+            free_at_ = finish + error_time();
             continue;
         }
         release_delayed(finish);
@@ -41,12 +52,12 @@ std::optional<TwinBus::Contender> TwinBus::arbitrate(Time now) noexcept TAPPET_R
     if (earliest > now) return std::nullopt;
     const Time start = std::max(free_at_, earliest);
     std::optional<Contender> best;
-    if (next_babble_ <= start) best = Contender{nullptr, babble_, start};
+    if (next_babble_ <= start) best = Contender{nullptr, &babble_, start};
     for (Twin* end : ends_) {
         const auto* head = end->head();
         if (head == nullptr || head->handed_over > start) continue;
-        if (!best || arbitration(head->frame) < arbitration(best->frame))
-            best = Contender{end, head->frame, start};
+        if (!best || arbitration(head->frame) < arbitration(*best->frame))
+            best = Contender{end, &head->frame, start};
     }
     return best;
 }
@@ -54,13 +65,13 @@ std::optional<TwinBus::Contender> TwinBus::arbitrate(Time now) noexcept TAPPET_R
 void TwinBus::transmit(const Contender& winner, Time finish) noexcept TAPPET_REALTIME {
     free_at_ = finish;
     ++frames_on_wire_;
-    Frame frame = winner.frame;
+    Frame frame = *winner.frame;
     frame.stamp = finish;
     if (winner.end == nullptr) {
         next_babble_ += babble_every_;
     } else {
-        Twin::Departure gone;
-        if (winner.end->outbox_.pop(gone)) winner.end->arrive(Twin::Happened::confirmed, frame);
+        winner.end->outbox_.drop();
+        winner.end->arrive(Twin::Happened::confirmed, frame);
         if (winner.end->starved_) tell(*winner.end, {.state = State::active}, finish);
         winner.end->starved_ = false;
     }
@@ -69,17 +80,19 @@ void TwinBus::transmit(const Contender& winner, Time finish) noexcept TAPPET_REA
     const bool doubled = strikes(faults.duplicate, frame);
     const bool corrupted = strikes(faults.corrupt_length, frame);
     const bool late = strikes(faults.delay, frame);
-    if (corrupted)
-        frame.length = frame.length == 0 ? std::uint8_t{1} : static_cast<std::uint8_t>(frame.length - 1);
+    if (corrupted) frame.length = next_to(frame.length);
     if (lost) {
         ++frames_lost_;
         return;
     }
-    Frame delayed = frame;
-    delayed.stamp = finish + faults.delay_by;
-    const bool put_off = late && delayed_.push({delayed, winner.end});
+    const bool put_off = late && put_off_until(finish + faults.delay_by, frame, winner.end);
     if (!put_off) hand_out(frame, winner.end);
     if (doubled) hand_out(frame, winner.end);
+}
+
+bool TwinBus::put_off_until(Time when, Frame frame, Twin* from) noexcept TAPPET_REALTIME {
+    frame.stamp = when;
+    return delayed_.push({frame, from});
 }
 
 void TwinBus::hand_out(const Frame& frame, const Twin* from) noexcept TAPPET_REALTIME {
@@ -109,9 +122,13 @@ bool TwinBus::strikes(Chance& chance, const Frame& frame) noexcept TAPPET_REALTI
     return true;
 }
 
-Duration TwinBus::wire_time(std::uint32_t bits) const noexcept TAPPET_REALTIME {
-    if (bit_rate_ == 0) return 0ns;
-    return Duration{std::int64_t{bits} * 1'000'000'000 / bit_rate_};
+Duration TwinBus::wire_time(const Frame& frame) const noexcept TAPPET_REALTIME {
+    return rates_.nominal == 0 ? 0ns : Duration{std::max<std::int64_t>(frame_time_ns(frame, rates_), 0)};
+}
+
+Duration TwinBus::error_time() const noexcept TAPPET_REALTIME {
+    return rates_.nominal == 0 ? 0ns
+                               : Duration{error_frame_bits * std::int64_t{1'000'000'000} / rates_.nominal};
 }
 
 void TwinBus::tell(Twin& end, const BusError& error, Time now) noexcept TAPPET_REALTIME {

@@ -2,6 +2,7 @@
 // demand.
 #pragma once
 
+#include "drivers/can/frame_time.hpp"
 #include "drivers/can/twin.hpp"
 #include "kernel/base/random.hpp"
 
@@ -19,7 +20,7 @@ struct BusFaults {
     Chance spoil{};          ///< an error on the wire: behind an error frame it is sent again
     Chance lose{};           ///< acknowledged by another node, but it never reaches ours
     Chance duplicate{};      ///< delivered twice: a sender that missed the last bit repeats
-    Chance corrupt_length{}; ///< arrives one byte short, or one byte long when empty
+    Chance corrupt_length{}; ///< arrives with the next shorter length, or one byte long when empty
     Chance delay{};
     Duration delay_by = 5ms;
     std::optional<Identifier> only{}; ///< strikes this identifier only
@@ -28,14 +29,17 @@ struct BusFaults {
 /// One thread, the bus's, calls deliver_until and the faults; it is real-time.
 class TwinBus {
 public:
-    /// bit_rate 0: frames take no time on the wire.
-    explicit TwinBus(std::uint64_t seed, std::uint32_t bit_rate = 0) noexcept
-        : random_{seed}, bit_rate_{bit_rate} {}
-    void set_bit_rate(std::uint32_t bits_per_second) noexcept TAPPET_REALTIME { bit_rate_ = bits_per_second; }
+    /// A nominal rate of 0: frames take no time on the wire. A data rate of 0: it is the nominal one.
+    explicit TwinBus(std::uint64_t seed, BitRates rates = {}) noexcept : random_{seed} {
+        set_bit_rates(rates);
+    }
+    void set_bit_rates(BitRates rates) noexcept TAPPET_REALTIME {
+        rates_ = {rates.nominal, rates.data != 0 ? rates.data : rates.nominal};
+    }
     /// When the next frame is through the wire; never: none waits, or none takes time.
     [[nodiscard]] Time next() noexcept TAPPET_REALTIME {
-        const auto winner = bit_rate_ == 0 || !acknowledged_ ? std::nullopt : arbitrate(never - 1ns);
-        return winner ? winner->start + wire_time(worst_bits(winner->frame)) : never;
+        const auto winner = rates_.nominal == 0 || !acknowledged_ ? std::nullopt : arbitrate(never - 1ns);
+        return winner ? winner->start + wire_time(*winner->frame) : never;
     }
 
     static constexpr std::size_t most_ends = 8;
@@ -65,7 +69,7 @@ public:
     }
     /// Nothing is on its way that the next deliver_until() could bring.
     [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
-        return acknowledged_ && bit_rate_ == 0 && next_babble_ == never && delayed_.empty();
+        return acknowledged_ && rates_.nominal == 0 && next_babble_ == never && delayed_.empty();
     }
     [[nodiscard]] std::uint64_t frames_on_wire() const noexcept TAPPET_REALTIME { return frames_on_wire_; }
     [[nodiscard]] std::uint64_t frames_lost() const noexcept TAPPET_REALTIME { return frames_lost_; }
@@ -78,19 +82,21 @@ private:
     };
     struct Contender {
         Twin* end = nullptr; // none: the babbler
-        Frame frame{};
+        const Frame* frame = nullptr;
         Time start{};
     };
     [[nodiscard]] std::optional<Contender> arbitrate(Time now) noexcept TAPPET_REALTIME;
     void transmit(const Contender& winner, Time finish) noexcept TAPPET_REALTIME;
+    bool put_off_until(Time when, Frame frame, Twin* from) noexcept TAPPET_REALTIME;
     void hand_out(const Frame& frame, const Twin* from) noexcept TAPPET_REALTIME;
     void release_delayed(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool strikes(Chance& chance, const Frame& frame) noexcept TAPPET_REALTIME;
-    [[nodiscard]] Duration wire_time(std::uint32_t bits) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Duration wire_time(const Frame& frame) const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Duration error_time() const noexcept TAPPET_REALTIME;
     void tell(Twin& end, const BusError& error, Time now) noexcept TAPPET_REALTIME;
 
     Random random_;
-    std::uint32_t bit_rate_;
+    BitRates rates_{};
     Bounded<Twin*, most_ends> ends_{};
     Bounded<Delayed, 64> delayed_{};
     bool acknowledged_ = true;

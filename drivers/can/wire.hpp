@@ -1,9 +1,12 @@
-// Frames as Linux writes them (struct can_frame), to and from the machine's.
+// Frames as Linux writes them (struct canfd_frame, whose beginning is a struct can_frame), to and from the
+// machine's.
 #pragma once
 
 #include "drivers/can/frame.hpp"
 #include "kernel/base/realtime.hpp"
 
+#include <cstddef>
+#include <cstring>
 #include <linux/can.h>
 #include <linux/can/error.h>
 
@@ -20,16 +23,27 @@ constexpr can_filter exactly(Identifier one) noexcept {
                         : can_filter{one.id, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK};
 }
 
-inline can_frame encode(const Frame& frame) noexcept TAPPET_REALTIME {
-    can_frame raw{};
+static_assert(offsetof(canfd_frame, len) == offsetof(can_frame, len) &&
+              offsetof(canfd_frame, data) == offsetof(can_frame, data));
+
+/// How many bytes the kernel takes and gives for it.
+constexpr std::size_t bytes_of(const Frame& frame) noexcept TAPPET_REALTIME {
+    return frame.fd ? CANFD_MTU : CAN_MTU;
+}
+
+/// As many of its bytes as bytes_of() says are written.
+inline void encode(const Frame& frame, canfd_frame& raw) noexcept TAPPET_REALTIME {
     raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
     raw.len = frame.length;
-    for (std::size_t i = 0; i < frame.length; ++i) raw.data[i] = frame.data[i];
-    return raw;
+    raw.flags = frame.bit_rate_switch ? std::uint8_t{CANFD_BRS} : std::uint8_t{0};
+    raw.__res0 = raw.__res1 = 0;
+    // Two lengths that the compiler knows, instead of one that it does not.
+    std::memcpy(raw.data, frame.data.data(), CAN_MAX_DLEN);
+    if (frame.fd) std::memcpy(raw.data, frame.data.data(), CANFD_MAX_DLEN);
 }
 
 /// The state that an error frame leaves, from the one before it.
-inline BusError decode_error(const can_frame& raw, State before) noexcept TAPPET_REALTIME {
+inline BusError decode_error(const canfd_frame& raw, State before) noexcept TAPPET_REALTIME {
     BusError error{.state = before};
     if ((raw.can_id & CAN_ERR_CRTL) != 0) {
         const unsigned what = raw.data[1];
@@ -46,9 +60,12 @@ inline BusError decode_error(const can_frame& raw, State before) noexcept TAPPET
     return error;
 }
 
-/// False for what is no classic frame.
-inline bool decode(const can_frame& raw, State before, Frame& frame) noexcept TAPPET_REALTIME {
-    if (raw.len > CAN_MAX_DLEN) return false;
+/// Into a frame that is as it was made. `bytes`, as the kernel gave them, say which kind it is; false for
+/// what is none.
+inline bool decode(const canfd_frame& raw, std::size_t bytes, State before, Frame& frame) noexcept
+    TAPPET_REALTIME {
+    frame.fd = bytes == CANFD_MTU;
+    if ((!frame.fd && bytes != CAN_MTU) || raw.len > (frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN)) return false;
     frame.length = raw.len;
     if ((raw.can_id & CAN_ERR_FLAG) != 0) {
         frame.id = raw.can_id & CAN_ERR_MASK;
@@ -58,8 +75,14 @@ inline bool decode(const can_frame& raw, State before, Frame& frame) noexcept TA
         frame.remote = (raw.can_id & CAN_RTR_FLAG) != 0;
         frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
     }
-    for (std::size_t i = 0; i < 8; ++i) frame.data[i] = raw.data[i];
-    return true;
+    if (!frame.fd) {
+        std::memcpy(frame.data.data(), raw.data, CAN_MAX_DLEN);
+        return true;
+    }
+    frame.bit_rate_switch = (raw.flags & CANFD_BRS) != 0;
+    frame.error_state_indicator = (raw.flags & CANFD_ESI) != 0;
+    std::memcpy(frame.data.data(), raw.data, CANFD_MAX_DLEN);
+    return valid(frame);
 }
 
 } // namespace tappet::can::wire

@@ -136,6 +136,8 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
                         " or no ",
                         hex(place.mapping(), 4),
                         "; take another identifier"};
+    if (frame.format != can::Format::classical)
+        return Sentence{subject, " is CAN FD, and CANopen has classical frames; write bytes(8) or less"};
     unsigned bits = 0;
     for (const Address& at : row.objects) {
         if (const Sentence fault = mapping_fault(node, row, place, at); !fault.empty()) return fault;

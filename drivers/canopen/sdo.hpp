@@ -105,14 +105,14 @@ constexpr Payload with_address(unsigned command, Address at, std::uint32_t rest 
     TAPPET_REALTIME {
     Payload frame{static_cast<std::uint8_t>(command), static_cast<std::uint8_t>(at.index & 0xFF),
                   static_cast<std::uint8_t>(at.index >> 8), at.sub};
-    to_bytes(rest, std::span{frame}.subspan(4));
+    to_bytes(rest, std::span{frame}.subspan(4, 4));
     return frame;
 }
 constexpr Payload abort_frame(Address at, SdoAbort why) noexcept TAPPET_REALTIME {
     return with_address(0x80, at, static_cast<std::uint32_t>(why));
 }
 constexpr SdoAbort abort_in(const Payload& frame) noexcept TAPPET_REALTIME {
-    return static_cast<SdoAbort>(from_bytes(std::span{frame}.subspan(4)));
+    return static_cast<SdoAbort>(from_bytes(std::span{frame}.subspan(4, 4)));
 }
 
 } // namespace sdo

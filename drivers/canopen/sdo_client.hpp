@@ -132,7 +132,7 @@ private:
             for (std::size_t i = 0; i < size_; ++i) bytes_[i] = answer[4 + i];
             return end(State::done, SdoAbort::none);
         }
-        if (says_size && from_bytes(std::span{answer}.subspan(4)) > sdo::most_bytes)
+        if (says_size && from_bytes(std::span{answer}.subspan(4, 4)) > sdo::most_bytes)
             return fail(SdoAbort::out_of_memory);
         step_ = Step::read_segment;
         to_send_ = true;

@@ -63,7 +63,7 @@ private:
             if (why != SdoAbort::none) return refuse(at, why, answer);
             transfer_ = Transfer::none;
         } else {
-            const std::uint64_t size = from_bytes(std::span{request}.subspan(4));
+            const std::uint64_t size = from_bytes(std::span{request}.subspan(4, 4));
             if (says_size && size > sdo::most_bytes) return refuse(at, SdoAbort::too_long, answer);
             begin(at, Transfer::writing);
             announced_ = says_size ? static_cast<std::size_t>(size) : 0;

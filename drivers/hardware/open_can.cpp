@@ -12,6 +12,8 @@ std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to
     can::Settings settings;
     settings.interface = to.address();
     settings.bit_rate = to.device->bit_rate.bits_per_second;
+    settings.data_bit_rate = to.device->bit_rate.in_data_phase;
+    settings.takes_fd = map.has_fd;
     settings.receive = map.receive;
     settings.transmit = map.transmit;
     std::array<TrafficRow, most_traffic_rows> rows{};

@@ -96,11 +96,12 @@ void SimulatedDevices::write_safe_registers() noexcept {
 
 std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row) {
     Bus& bus = *buses_.emplace_back(std::make_unique<Bus>(row.device, seed_));
-    bus.bus.set_bit_rate(bit_rate_);
+    bus.bus.set_bit_rates(bit_rates_);
     const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
     bus.settings.interface = row.device;
     bus.settings.receive = map.receive;
     bus.settings.transmit = map.transmit;
+    bus.settings.takes_fd = map.has_fd;
     bus.safe = map.safe;
     if (auto opened = bus.machine.open(bus.settings); !opened) return opened;
     can::Settings settings = bus.settings;

@@ -24,7 +24,7 @@ public:
     explicit SimulatedDevices(Plant& plant, std::uint64_t seed) : plant_{plant}, seed_{seed} {}
 
     /// Before open(): frames take their time on the wire; 0: none.
-    void set_bit_rate(std::uint32_t bits_per_second) noexcept { bit_rate_ = bits_per_second; }
+    void set_bit_rates(can::BitRates rates) noexcept { bit_rates_ = rates; }
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
     /// Before open(): a device that somebody else simulates, as a wire to other machines.
     void lend(const ProvidedDevice& device) { lent_.push_back(device); }
@@ -88,7 +88,7 @@ private:
 
     Plant& plant_;
     std::uint64_t seed_;
-    std::uint32_t bit_rate_ = 0;
+    can::BitRates bit_rates_{};
     Time next_{};
     // What a twin is given stays where it is.
     std::vector<std::unique_ptr<Bus>> buses_{};

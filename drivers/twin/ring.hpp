@@ -16,12 +16,20 @@ template <class T, std::size_t N> class Ring {
     static_assert(N > 0 && (N & (N - 1)) == 0, "the free-running indices wrap only with a power of two");
 
 public:
+    /// Where the writer fills in the next item, which add() then hands over; nothing when it is full.
+    [[nodiscard]] T* room() noexcept TAPPET_REALTIME {
+        const std::uint32_t end = end_.load(std::memory_order_relaxed);
+        return end - begin_.load(std::memory_order_acquire) == N ? nullptr : &items_[end % N];
+    }
+    void add() noexcept TAPPET_REALTIME {
+        end_.store(end_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    }
     /// False, and nothing stored, when it is full.
     [[nodiscard]] bool push(const T& item) noexcept TAPPET_REALTIME {
-        const std::uint32_t end = end_.load(std::memory_order_relaxed);
-        if (end - begin_.load(std::memory_order_acquire) == N) return false;
-        items_[end % N] = item;
-        end_.store(end + 1, std::memory_order_release);
+        T* const free = room();
+        if (free == nullptr) return false;
+        *free = item;
+        add();
         return true;
     }
     /// False, and `item` untouched, when it is empty.
@@ -31,6 +39,10 @@ public:
         item = items_[begin % N];
         begin_.store(begin + 1, std::memory_order_release);
         return true;
+    }
+    /// The reader's next item, looked at by front(), is done with.
+    void drop() noexcept TAPPET_REALTIME {
+        begin_.store(begin_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
     /// The reader's next item, or nothing; valid until the reader's next pop.
     [[nodiscard]] const T* front() const noexcept TAPPET_REALTIME {

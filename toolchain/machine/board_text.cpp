@@ -60,7 +60,10 @@ void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void*
         if (const BoardDevice* device = checks::find_named(board.devices, bound.at); device != nullptr) {
             const std::size_t value =
                 device->kind == "can" ? device->bit_rate.bits_per_second : device->lines;
-            say(device->kind, " ", device->address, " ", value);
+            if (device->bit_rate.in_data_phase != 0)
+                say(device->kind, " ", device->address, " ", value, " ", device->bit_rate.in_data_phase);
+            else
+                say(device->kind, " ", device->address, " ", value);
         }
     for (const BoardNetwork& each : board.image.networks) say("network ", each.name, " ", each.address);
     if (board.image.interrupt_priority != 0) say("interrupts ", board.image.interrupt_priority);

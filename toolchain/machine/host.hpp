@@ -31,9 +31,9 @@ public:
     void browse_in(std::string_view directory) noexcept { browsed_in_ = directory; }
     /// Before start(): cycles take times that the seed draws, up to their budgets, and frames theirs on the
     /// wire.
-    void take_times(std::uint64_t seed, std::uint32_t bit_rate) {
+    void take_times(std::uint64_t seed, can::BitRates rates) {
         timed_by_ = seed;
-        devices_.set_bit_rate(bit_rate);
+        devices_.set_bit_rates(rates);
     }
     [[nodiscard]] MachineInstance& instance() noexcept { return machine_->instance; }
     /// Opens the twins, configures and starts. An error is the first refusal.

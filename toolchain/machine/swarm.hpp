@@ -47,7 +47,7 @@ public:
     SwarmRun(const SwarmRun&) = delete;
     SwarmRun& operator=(const SwarmRun&) = delete;
     /// Before go(): cycles and frames take time, see VirtualRun.
-    void take_times(std::uint64_t seed, std::uint32_t bit_rate) { run_.take_times(seed, bit_rate); }
+    void take_times(std::uint64_t seed, can::BitRates rates) { run_.take_times(seed, rates); }
     /// Before go(): nothing fails.
     void be_calm() { is_calm_ = true; }
     [[nodiscard]] SwarmVerdict go();

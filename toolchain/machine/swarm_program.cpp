@@ -36,6 +36,12 @@ constexpr std::array options{
            .is_number = true,
            .least = 1,
            .most = 1'000'000},
+    Option{.name = "--data-bit-rate",
+           .value = "N",
+           .help = "of CAN FD's data phase (as --bit-rate)",
+           .is_number = true,
+           .least = 1,
+           .most = 10'000'000},
     Option{"--calm", "", "nothing fails: for the responses of a machine that works"},
     Option{.name = "--seed",
            .value = "SEED",
@@ -139,11 +145,14 @@ int run_swarm(const SwarmOf& of, int count, char** words) {
     const bool timed = given->has("--bit-rate");
     do {
         replay = Sentence{"replay it: ", words[0], " --seed ", seed};
-        if (timed) replay.add(" --bit-rate ").add(given->text("--bit-rate"));
+        for (const char* rate : {"--bit-rate", "--data-bit-rate"})
+            if (given->has(rate)) replay.add(" ").add(rate).add(" ").add(given->text(rate));
         if (given->has("--calm")) replay.add(" --calm");
         replay.add("\n");
         SwarmRun run{of, seed, tell};
-        if (timed) run.take_times(seed, static_cast<std::uint32_t>(given->number("--bit-rate", 0)));
+        if (timed)
+            run.take_times(seed, {static_cast<std::int64_t>(given->number("--bit-rate", 0)),
+                                  static_cast<std::int64_t>(given->number("--data-bit-rate", 0))});
         if (given->has("--calm")) run.be_calm();
         const SwarmVerdict verdict = run.go();
         totals.add(seed, verdict);

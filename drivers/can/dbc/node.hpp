@@ -12,16 +12,12 @@ inline constexpr Rate as_in_file{Duration{-1}, Duration{-1}, {}};
 /// node as a receiver is taken all the same, alone all of its signals, otherwise those named.
 template <std::same_as<Signal>... Signals>
 constexpr auto receive(std::string_view name, Rate rate, const Signals&... signals) noexcept {
-    return FrameWithSignals<sizeof...(Signals)>{
-        {{}, name, Direction::receive, 0, rate.every, rate.apart, rate.jitter, 0, sizeof...(Signals)},
-        {signals...}};
+    return detail::row({}, name, Direction::receive, Bytes{}, rate, signals...);
 }
 /// transmit("command", every(2ms), signal("speed").safe(0))
 template <std::same_as<Signal>... Signals>
 constexpr auto transmit(std::string_view name, Rate rate, const Signals&... signals) noexcept {
-    return FrameWithSignals<sizeof...(Signals)>{
-        {{}, name, Direction::transmit, 0, rate.every, rate.apart, rate.jitter, 0, sizeof...(Signals)},
-        {signals...}};
+    return detail::row({}, name, Direction::transmit, Bytes{}, rate, signals...);
 }
 /// Likewise with the file's cycle time.
 template <std::same_as<Signal>... Signals>

@@ -124,6 +124,12 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
         return of_binding(board, bound.name, "device \"", device->name,
                           "\" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the "
                           "board's row");
+    if (device->kind == "can" && device->bit_rate.in_data_phase != 0 &&
+        device->bit_rate.in_data_phase < device->bit_rate.bits_per_second)
+        return of_binding(board, bound.name, "device \"", device->name, "\" has a data phase of ",
+                          device->bit_rate.in_data_phase,
+                          " bit/s, slower than its arbitration; write the "
+                          "faster one as the second, bit_rate(500'000, 2'000'000)");
     if (device->kind == "gpio" && device->lines == 0)
         return of_binding(board, bound.name, "device \"", device->name,
                           "\" states no number of lines; add lines(32), or how many it has, to the board's "

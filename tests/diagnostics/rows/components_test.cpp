@@ -376,6 +376,9 @@ constexpr Fault board_faults[] = {
      R"(loom: binding to board "old box": place("hall") stands there twice; remove one)"},
     {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0"); },
      R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): device "can0" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the board's row)"},
+    {"board_can_data_bit_rate",
+     [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0", bit_rate(500'000, 250'000)); },
+     R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): device "can0" has a data phase of 250000 bit/s, slower than its arbitration; write the faster one as the second, bit_rate(500'000, 2'000'000))"},
     {"traffic_too_much",
      [](Table& m) {
          m.add(component<SlowBus>("slow", device("slow-can")));

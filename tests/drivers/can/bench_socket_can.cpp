@@ -71,7 +71,7 @@ TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
     ASSERT_EQ(got.size(), 2u);
     EXPECT_EQ(got[0].id, 0x123u);
     EXPECT_EQ(got[0].length, 4);
-    EXPECT_EQ(got[0].data, (std::array<std::uint8_t, 8>{0xDE, 0xAD, 0xBE, 0xEF}));
+    EXPECT_EQ(got[0].data, (Payload{0xDE, 0xAD, 0xBE, 0xEF}));
     EXPECT_EQ(got[1].id, 0x18FF0102u);
     EXPECT_TRUE(got[1].extended);
     for (const Frame& f : got) {

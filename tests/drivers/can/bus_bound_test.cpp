@@ -75,7 +75,8 @@ struct Release {
 
 class BusRun {
 public:
-    BusRun(const World& world, Random& random) : world_{world}, random_{random}, bus_{1, world.bit_rate} {
+    BusRun(const World& world, Random& random)
+        : world_{world}, random_{random}, bus_{1, {world.bit_rate, 0}} {
         nodes_.reserve(TwinBus::most_ends);
         nodes_.emplace_back().is_machine = true;
         for (const Row& row : world_.rows) {

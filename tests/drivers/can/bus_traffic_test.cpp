@@ -102,6 +102,31 @@ TEST(BusTraffic, is_refused_when_the_machine_is_too_slow_to_hand_over) {
         "that drives the bus");
 }
 
+TEST(BusTraffic, of_can_fd_is_proven_by_both_rates) {
+    constexpr auto map = signal_map(
+        receive(standard(0x181), "fast", fd_bytes(64), every(2ms), signal("a", 0, 8)),
+        receive(standard(0x182), "slow", fd_bytes(64).in_one_rate(), every(10ms), signal("a", 0, 8)),
+        receive(standard(0x183), "old", bytes(8), every(10ms), signal("a", 0, 8)));
+    std::array<TrafficRow, 3> rows{};
+    EXPECT_EQ(bus_traffic(map.frames, {"can0", 500'000, 2'000'000, 0, 100ms, 0us}, rows).view(), "");
+    EXPECT_EQ(rows[0].wire_time, 403us);
+    EXPECT_EQ(rows[0].worst, 1420us + 403us);
+    EXPECT_EQ(rows[1].wire_time, 1420us);
+    EXPECT_EQ(rows[2].wire_time, 270us);
+    const auto often = receive(standard(0x181), "fast", fd_bytes(64), every(700us), signal("a", 0, 8));
+    EXPECT_EQ(refusal({"can0", 250'000, 2'000'000, 0, 100ms, 0us}, often), "") << "128 us and 339 us";
+    EXPECT_EQ(
+        refusal({"can0", 500'000, 1'000'000, 0, 100ms, 0us}, often),
+        "frame \"fast\" may never come through: what is more urgent, and itself, fill the bus, which all "
+        "frames together load by 106 % at 500000 bit/s; send less often, or run the bus faster");
+}
+TEST(BusTraffic, of_can_fd_is_refused_where_the_board_says_no_data_bit_rate) {
+    for (const Bytes length : {fd_bytes(8), fd_bytes(8).in_one_rate()})
+        EXPECT_EQ(refusal(at(500'000), receive(standard(1), "scan", length, every(10ms), signal("a", 0, 8))),
+                  "frame \"scan\" is CAN FD, and no bit rate of CAN FD's data phase is said; add it to the "
+                  "device's row, bit_rate(500000, 2'000'000), or make the frame a classical one, bytes(8)");
+}
+
 TEST(BusTraffic, of_what_is_sent_ends_when_it_would_be_too_old) {
     const std::string refused = refusal(at(10'000), sent(0x100, "slow", 8, every(100ms)));
     EXPECT_TRUE(refused.starts_with("frame \"slow\" may take 27000 us but is due within 20000 us"))

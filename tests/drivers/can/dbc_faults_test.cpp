@@ -135,7 +135,9 @@ TEST(DbcFaults, places) {
               "")
         << "what the node does not take is not its business";
     EXPECT_EQ(fault(with("BO_ 3 more: 12 them\n SG_ c : 90|4@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:7:7: frame \"more\" has 12 bytes: a classic frame holds 8 at most");
+              "t.dbc:7:7: frame \"more\" has 12 bytes: a classical frame holds 8 at most; make it CAN FD by "
+              "fd_bytes(..), in a "
+              "DBC file by VFrameFormat");
     EXPECT_EQ(fault(with("BO_ 3 more: 1785 them\n SG_ c : 90|4@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:7:7: message \"more\" has 1785 bytes, which no frame holds; a transport protocol is "
               "needed for it");

@@ -50,6 +50,7 @@ struct Controller {
     std::uint32_t state = CAN_STATE_ERROR_ACTIVE;
     std::uint32_t bit_rate = 500'000;
     std::uint32_t restart_ms = 0;
+    std::uint32_t data_bit_rate = 0; ///< not 0: it is set to CAN FD
     unsigned flags = IFF_UP;
     unsigned short type = ARPHRD_CAN;
 };
@@ -58,7 +59,11 @@ struct Controller {
 Bytes answer(const Controller& of, std::uint32_t sequence = 1) {
     can_bittiming timing{};
     timing.bitrate = of.bit_rate;
+    can_bittiming fast{};
+    fast.bitrate = of.data_bit_rate;
+    const std::uint32_t mtu = of.data_bit_rate == 0 ? 16 : 72;
     const Bytes data = joined({attribute(IFLA_CAN_BITTIMING, bytes_of(timing)),
+                               attribute(IFLA_CAN_DATA_BITTIMING, bytes_of(fast)),
                                attribute(IFLA_CAN_STATE, bytes_of(of.state)),
                                attribute(IFLA_CAN_RESTART_MS, bytes_of(of.restart_ms))});
     const Bytes info = joined({attribute(IFLA_INFO_KIND, text(of.kind)), attribute(IFLA_INFO_DATA, data)});
@@ -66,8 +71,8 @@ Bytes answer(const Controller& of, std::uint32_t sequence = 1) {
     interface.ifi_type = of.type;
     interface.ifi_index = 7;
     interface.ifi_flags = of.flags;
-    Bytes body =
-        joined({bytes_of(interface), attribute(IFLA_IFNAME, text("can0")), attribute(IFLA_LINKINFO, info)});
+    Bytes body = joined({bytes_of(interface), attribute(IFLA_IFNAME, text("can0")),
+                         attribute(IFLA_MTU, bytes_of(mtu)), attribute(IFLA_LINKINFO, info)});
     nlmsghdr head{};
     head.nlmsg_len = static_cast<std::uint32_t>(sizeof head + body.size());
     head.nlmsg_type = RTM_NEWLINK;
@@ -79,8 +84,10 @@ Link link_of(const Controller& controller) {
     EXPECT_TRUE(link) << link.error().view();
     return link.value_or(Link{});
 }
-std::string refusal(const Controller& controller, std::uint32_t bit_rate = 500'000) {
-    const auto good = fit(link_of(controller), "can0", bit_rate);
+std::string refusal(const Controller& controller, std::uint32_t bit_rate = 500'000,
+                    std::uint32_t data_bit_rate = 0, bool takes_fd = false) {
+    const auto good = fit(link_of(controller), "can0",
+                          {.bit_rate = bit_rate, .data_bit_rate = data_bit_rate, .takes_fd = takes_fd});
     return good ? "" : std::string{good.error().view()};
 }
 
@@ -124,6 +131,38 @@ TEST(CanLink, fits_when_its_controller_runs_at_the_rate_of_the_board) {
 
 TEST(CanLink, has_no_rate_to_compare_when_it_is_virtual) {
     EXPECT_EQ(refusal({.kind = "vcan", .bit_rate = 0}), "");
+}
+
+TEST(CanLink, knows_whether_it_takes_can_fd_and_at_which_rate) {
+    const Link link = link_of({.data_bit_rate = 2'000'000});
+    EXPECT_EQ(link.mtu, 72u);
+    EXPECT_EQ(link.data_bit_rate, 2'000'000u);
+    EXPECT_TRUE(link.takes_fd());
+    EXPECT_FALSE(link_of({}).takes_fd());
+}
+
+TEST(CanLink, fits_a_map_with_can_fd_frames_when_it_is_set_to_that) {
+    EXPECT_EQ(refusal({.data_bit_rate = 2'000'000}, 500'000, 2'000'000, true), "");
+    EXPECT_EQ(refusal({.kind = "vcan", .data_bit_rate = 1}, 500'000, 2'000'000, true), "");
+    EXPECT_EQ(refusal({}, 500'000, 2'000'000, true),
+              "CAN interface \"can0\" carries classical frames only (mtu 16, of CAN FD 72), and its bus has "
+              "CAN FD: set it down, and up again after ip link set can0 type can bitrate ... dbitrate ... fd "
+              "on; its controller must be one for CAN FD");
+    EXPECT_EQ(refusal({.kind = "vcan"}, 500'000, 2'000'000, true),
+              "CAN interface \"can0\" carries classical frames only (mtu 16, of CAN FD 72), and its bus has "
+              "CAN FD: set it down, and up again after ip link set can0 mtu 72");
+    EXPECT_EQ(refusal({.data_bit_rate = 1'000'000}, 500'000, 2'000'000, true),
+              "CAN interface \"can0\" runs at 1000000 bit/s in CAN FD's data phase, the board says 2000000: "
+              "correct one of them (ip link set can0 type can dbitrate ... fd on)");
+    EXPECT_NE(refusal({.data_bit_rate = 2'000'000}, 500'000, 0, true).find("without its data bit rate"),
+              std::string::npos);
+}
+
+TEST(CanLink, is_set_to_can_fd_where_the_board_says_so_though_the_map_has_classical_frames_only) {
+    EXPECT_NE(refusal({}, 500'000, 2'000'000).find("carries classical frames only"), std::string::npos)
+        << "its controller would spoil the others' frames";
+    EXPECT_EQ(refusal({.kind = "vcan"}, 500'000, 2'000'000), "");
+    EXPECT_EQ(refusal({.data_bit_rate = 2'000'000}), "") << "more than is asked for";
 }
 
 TEST(CanLink, does_not_fit_while_its_controller_is_off_the_bus) {

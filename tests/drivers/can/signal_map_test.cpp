@@ -72,6 +72,36 @@ TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
     }
 }
 
+// By hand, bit for bit, in all 64 bytes; beyond 57 bits some reach into a ninth byte.
+TEST(Signals, lie_anywhere_in_64_bytes) {
+    Random random{4};
+    for (int round = 0; round < 5000; ++round) {
+        const auto bits = static_cast<std::uint8_t>(random.between(1, 64));
+        const bool motorola = random.one_in(2);
+        const auto first = static_cast<unsigned>(random.between(0, 512 - bits));
+        const unsigned start = motorola ? 8 * (first / 8) + 7 - first % 8 : first;
+        const Signal s =
+            placed(static_cast<std::uint16_t>(start), bits, motorola ? Order::motorola : Order::intel, false);
+        Payload before{};
+        for (auto& each : before) each = static_cast<std::uint8_t>(random.next());
+        Payload data = before;
+        const std::uint64_t raw = random.next();
+        insert(data, s, raw);
+        std::uint64_t found = 0;
+        for (unsigned i = 0; i < bits; ++i) {
+            const unsigned at = bit_place(s, i);
+            found |= std::uint64_t{data[at / 8] >> at % 8 & 1u} << i;
+            const auto mask = static_cast<std::uint8_t>(1u << at % 8);
+            data[at / 8] = static_cast<std::uint8_t>((data[at / 8] & ~mask) | (before[at / 8] & mask));
+        }
+        ASSERT_EQ(found, raw & ~std::uint64_t{0} >> (64 - bits))
+            << "start " << start << ", bits " << int{bits};
+        ASSERT_EQ(data, before) << "no other bit was touched";
+        insert(data, s, raw);
+        ASSERT_EQ(extract(data, s), found);
+    }
+}
+
 TEST(Signals, apply_the_sign_before_factor_and_offset) {
     const Signal s = signal("t", 0, 8).as_signed().times(0.5).plus(10);
     EXPECT_EQ(to_physical(s, 0xFF), 9.5);
@@ -267,6 +297,104 @@ TEST(SignalMap, refuses_signals_outside_their_frame) {
     EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 65))), "");
     EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 0))), "");
     EXPECT_NE(fault(receive(standard(1), "f", bytes(9), every(1ms), signal("a", 0, 8))), "");
+}
+
+constexpr auto fast = signal_map(
+    receive(standard(0x321), "scan", fd_bytes(64), every(5ms), signal("count", 0, 8), signal("first", 8, 16),
+            signal("across", 61, 64), signal("last", 487, 32).big_endian().as_signed()),
+    transmit(standard(0x322), "pages", fd_bytes(24).in_one_rate(), every(5ms), signal("page", 0, 8).safe(1),
+             signal("low", 128, 64).when("page", 0).safe(7),
+             signal("high", 128, 32).when("page", 1).as_signed().safe(-1)));
+static_assert(fast.fault.empty());
+
+TEST(SignalMap, has_can_fd_rows_with_signals_anywhere_in_them) {
+    SignalStore store{fast};
+    Frame f;
+    f.id = 0x321;
+    f.length = 64;
+    set_format(f, Format::flexible_faster);
+    insert(f.data, fast.signals[0], 200);
+    insert(f.data, fast.signals[2], 0x8877'6655'4433'2211);
+    insert(f.data, fast.signals[3], 0xFFFF'FFFE);
+    EXPECT_EQ(f.data[60], 0xFF);
+    EXPECT_EQ(f.data[63], 0xFE);
+    ASSERT_EQ(store.decode(f), Decoded::yes);
+    EXPECT_EQ(store.integer(fast.signal("scan.count")), 200);
+    EXPECT_EQ(static_cast<std::uint64_t>(store.integer(fast.signal("scan.across"))), 0x8877'6655'4433'2211);
+    EXPECT_EQ(store.integer(fast.signal("scan.last")), -2);
+}
+
+TEST(SignalMap, takes_a_can_fd_row_for_no_frame_of_another_format_or_length) {
+    SignalStore store{fast};
+    Frame f;
+    f.id = 0x321;
+    for (const int length : {0, 8, 48, 63})
+        for (const Format format : {Format::classical, Format::flexible, Format::flexible_faster}) {
+            f.length = static_cast<std::uint8_t>(length);
+            set_format(f, format);
+            EXPECT_EQ(store.decode(f), Decoded::wrong_length);
+        }
+    f.length = 64;
+    set_format(f, Format::flexible);
+    EXPECT_EQ(store.decode(f), Decoded::wrong_length) << "it takes longer on the wire than was proven";
+    EXPECT_EQ(store.count.wrong_lengths, 13u);
+
+    SignalStore classical{map};
+    Frame drive = drive_frame();
+    drive.fd = true;
+    EXPECT_EQ(classical.decode(drive), Decoded::wrong_length);
+}
+
+TEST(SignalMap, sends_the_pages_of_a_can_fd_row_with_zeros_between_and_both_when_the_machine_is_gone) {
+    SignalStore store{fast};
+    store.set_bits(fast.signal("pages.low"), ~std::uint64_t{0});
+    store.set_bits(fast.signal("pages.high"), 0x12345678);
+    Frame f = store.encode(fast.frame("pages"), {});
+    EXPECT_EQ(format_of(f), Format::flexible);
+    EXPECT_EQ(f.length, 24);
+    Payload expected{};
+    for (std::size_t i = 16; i < 24; ++i) expected[i] = 0xFF;
+    EXPECT_EQ(f.data, expected);
+    store.set_bits(fast.signal("pages.page"), 1);
+    f = store.encode(fast.frame("pages"), {});
+    expected = {1};
+    expected[16] = 0x78, expected[17] = 0x56, expected[18] = 0x34, expected[19] = 0x12;
+    EXPECT_EQ(f.data, expected);
+    ASSERT_EQ(fast.safe_frames().size(), 2u);
+    EXPECT_EQ(fast.safe_frames()[0].data[16], 7);
+    EXPECT_EQ(fast.safe_frames()[1].data[19], 0xFF);
+    for (const Frame& each : fast.safe_frames()) EXPECT_EQ(format_of(each), Format::flexible);
+}
+
+TEST(SignalMap, refuses_lengths_that_there_are_not) {
+    const auto row = [](Bytes length) {
+        return receive(standard(1), "f", length, every(1ms), signal("a", 0, 8));
+    };
+    EXPECT_EQ(fault(row(fd_bytes(13))),
+              "frame \"f\" has 13 bytes: CAN FD has no such length; make it 16, and "
+              "what no signal covers is padding");
+    EXPECT_EQ(fault(row(fd_bytes(65))),
+              "frame \"f\" has 65 bytes: a CAN FD frame holds 64 at most; make it two");
+    EXPECT_EQ(fault(row(bytes(12))),
+              "frame \"f\" has 12 bytes: a classical frame holds 8 at most; make it CAN "
+              "FD by fd_bytes(..), in a DBC file by VFrameFormat");
+    for (const int length : {1, 8, 12, 16, 20, 24, 32, 48, 64})
+        EXPECT_EQ(fault(row(fd_bytes(static_cast<std::uint8_t>(length)))), "");
+}
+
+TEST(SignalMap, refuses_what_overlaps_or_reaches_outside_behind_the_eighth_byte) {
+    EXPECT_EQ(
+        fault(receive(standard(1), "f", fd_bytes(64), every(1ms), signal("a", 300, 64), signal("b", 363, 8))),
+        "signal \"f.b\" overlaps \"a\" at bit 363: move one of them");
+    EXPECT_EQ(
+        fault(receive(standard(1), "f", fd_bytes(64), every(1ms), signal("a", 300, 64), signal("b", 364, 8))),
+        "");
+    EXPECT_EQ(
+        fault(receive(standard(1), "f", fd_bytes(48), every(1ms), signal("a", 376, 9))),
+        "signal \"f.a\" reaches outside its frame of 48 bytes: it starts at bit 376 (its lowest) and goes "
+        "up 9 bits; move it or lengthen the frame");
+    EXPECT_NE(fault(receive(standard(1), "f", fd_bytes(48), every(1ms), signal("a", 383, 9).big_endian())),
+              "");
 }
 
 TEST(SignalMap, refuses_doubled_names_and_identifiers) {

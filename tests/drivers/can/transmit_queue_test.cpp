@@ -32,17 +32,6 @@ TEST(Arbitration, lets_data_win_over_remote_and_standard_over_extended_of_the_sa
     EXPECT_LT(arbitration(long_remote), arbitration(frame(0x101)));
 }
 
-TEST(WorstBits, agree_with_the_published_lengths_of_classic_frames) {
-    Frame f = frame(1);
-    f.length = 8;
-    EXPECT_EQ(worst_bits(f), 135u); // Davis et al. 2007: 55 + 10 n for 11-bit identifiers
-    f.length = 0;
-    EXPECT_EQ(worst_bits(f), 55u);
-    f.extended = true;
-    f.length = 8;
-    EXPECT_EQ(worst_bits(f), 160u); // 80 + 10 n for 29-bit identifiers
-}
-
 TEST(TransmitQueue, gives_frames_in_the_order_of_arbitration) {
     TransmitQueue queue;
     for (const std::uint32_t id : {0x300u, 0x100u, 0x200u})

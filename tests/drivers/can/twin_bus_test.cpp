@@ -94,7 +94,7 @@ TEST_F(TwinBusTest, counts_an_impostor_and_hands_it_to_nobody) {
 }
 
 TEST_F(TwinBusTest, takes_bit_times_and_serves_the_lower_identifier_first) {
-    TwinBus slow{1, 1'000'000};
+    TwinBus slow{1, {1'000'000, 0}};
     Twin a, b;
     constexpr std::array low{standard(0x100)};
     constexpr std::array high{standard(0x200)};
@@ -290,7 +290,7 @@ TEST_F(TwinBusTest, recovers_by_itself_from_error_passive) {
 }
 
 TEST_F(TwinBusTest, starves_lower_priorities_when_a_node_babbles) {
-    TwinBus busy{1, 125'000};
+    TwinBus busy{1, {125'000, 0}};
     Twin a, b;
     constexpr std::array sends{standard(0x400)};
     constexpr std::array nothing = std::array<Identifier, 0>{};
@@ -308,6 +308,131 @@ TEST_F(TwinBusTest, starves_lower_priorities_when_a_node_babbles) {
     busy.babble({}, 0ns, Time{});
 }
 
+/// The same bus between two ends that take CAN FD.
+struct TwinBusFd : testing::Test {
+    TwinBusFd() {
+        EXPECT_TRUE(machine.open(
+            {.interface = "machine", .receive = plant_sends, .transmit = machine_sends, .takes_fd = true}));
+        EXPECT_TRUE(plant.open(
+            {.interface = "plant", .receive = machine_sends, .transmit = plant_sends, .takes_fd = true}));
+        EXPECT_TRUE(bus.attach(machine));
+        EXPECT_TRUE(bus.attach(plant));
+    }
+    static Frame frame(std::uint32_t id, Time made, std::uint8_t length = 64) {
+        Frame f;
+        f.id = id;
+        f.length = length;
+        f.stamp = made;
+        set_format(f, Format::flexible_faster);
+        for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(i + 1);
+        return f;
+    }
+    void step(Time now) {
+        machine.service(now);
+        plant.service(now);
+        bus.deliver_until(now);
+    }
+    TwinBus bus{1, {500'000, 2'000'000}};
+    Twin machine;
+    Twin plant;
+};
+
+TEST_F(TwinBusFd, carries_64_bytes_in_the_times_of_two_rates) {
+    const Frame sent = frame(0x201, Time{1ms});
+    EXPECT_EQ(machine.send(sent), Send::queued);
+    machine.service(Time{1ms});
+    EXPECT_EQ(bus.next(), Time{1ms + 403us});
+    bus.deliver_until(Time{1ms + 402us});
+    EXPECT_TRUE(TwinBusTest::drain(plant).empty());
+    bus.deliver_until(Time{1ms + 403us});
+    const auto arrived = TwinBusTest::drain(plant);
+    ASSERT_EQ(arrived.size(), 1u);
+    EXPECT_EQ(arrived[0].data, sent.data);
+    EXPECT_EQ(format_of(arrived[0]), Format::flexible_faster);
+    TwinBusTest::drain(machine);
+    EXPECT_EQ(machine.counters().sent, 1u);
+}
+
+TEST_F(TwinBusFd, takes_longer_without_the_switch_and_with_classical_frames_between) {
+    Frame slow = frame(0x201, Time{1ms});
+    slow.bit_rate_switch = false;
+    Frame classical = frame(0x202, Time{1ms}, 8);
+    classical.fd = classical.bit_rate_switch = false;
+    EXPECT_EQ(machine.send(slow), Send::queued);
+    EXPECT_EQ(machine.send(classical), Send::queued);
+    step(Time{1ms});
+    bus.deliver_until(Time{4ms});
+    const auto arrived = TwinBusTest::drain(plant);
+    ASSERT_EQ(arrived.size(), 2u);
+    EXPECT_EQ(arrived[0].stamp, Time{1ms + 1420us});
+    EXPECT_EQ(arrived[1].stamp, Time{1ms + 1420us + 270us});
+}
+
+TEST_F(TwinBusFd, has_every_fault_of_a_classical_bus) {
+    bus.faults.spoil.next = 1;
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
+    step(Time{1ms});
+    bus.deliver_until(Time{2ms});
+    auto arrived = TwinBusTest::drain(plant);
+    ASSERT_EQ(arrived.size(), 1u);
+    EXPECT_EQ(arrived[0].stamp, Time{1ms + 403us + 62us + 403us}) << "an error frame is of the slow rate";
+    TwinBusTest::drain(machine);
+
+    bus.faults.lose.next = 1;
+    EXPECT_EQ(machine.send(frame(0x201, Time{3ms})), Send::queued);
+    step(Time{3ms});
+    bus.deliver_until(Time{4ms});
+    EXPECT_TRUE(TwinBusTest::drain(plant).empty());
+    TwinBusTest::drain(machine);
+    EXPECT_EQ(machine.counters().sent, 2u) << "somebody else acknowledged";
+
+    bus.faults.duplicate.next = 1;
+    bus.faults.delay.next = 1;
+    EXPECT_EQ(machine.send(frame(0x201, Time{5ms})), Send::queued);
+    step(Time{5ms});
+    bus.deliver_until(Time{6ms});
+    EXPECT_EQ(TwinBusTest::drain(plant).size(), 1u);
+    bus.deliver_until(Time{11ms});
+    EXPECT_EQ(TwinBusTest::drain(plant).size(), 1u) << "the other one is late";
+}
+
+TEST_F(TwinBusFd, corrupts_a_length_into_another_one_that_there_is) {
+    Time now{};
+    for (const auto& [sent, corrupted] : {std::pair{64, 48}, {48, 32}, {12, 8}, {8, 7}, {0, 1}}) {
+        bus.faults.corrupt_length.next = 1;
+        now += 2ms;
+        EXPECT_EQ(machine.send(frame(0x201, now, static_cast<std::uint8_t>(sent))), Send::queued);
+        step(now);
+        bus.deliver_until(now + 1ms);
+        const auto arrived = TwinBusTest::drain(plant);
+        ASSERT_EQ(arrived.size(), 1u) << sent;
+        EXPECT_EQ(arrived[0].length, corrupted);
+        TwinBusTest::drain(machine);
+    }
+    EXPECT_EQ(plant.counters().malformed, 0u);
+}
+
+TEST_F(TwinBusFd, is_not_for_an_end_that_has_classical_can_only) {
+    Twin classical;
+    constexpr std::array own{standard(0x300)};
+    ASSERT_TRUE(classical.open({.interface = "old", .receive = machine_sends, .transmit = own}));
+    ASSERT_TRUE(bus.attach(classical));
+    EXPECT_EQ(classical.send(frame(0x300, Time{1ms})), Send::refused_invalid);
+    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
+    step(Time{1ms});
+    bus.deliver_until(Time{2ms});
+    EXPECT_TRUE(TwinBusTest::drain(classical).empty());
+    EXPECT_EQ(TwinBusTest::drain(plant).size(), 1u);
+}
+
+TEST_F(TwinBusFd, refuses_what_is_no_frame) {
+    Frame wrong = frame(0x201, Time{1ms}, 9);
+    EXPECT_EQ(machine.send(wrong), Send::refused_invalid);
+    wrong.length = 8;
+    wrong.remote = true;
+    EXPECT_EQ(machine.send(wrong), Send::refused_invalid);
+}
+
 TEST_F(TwinBusTest, calls_the_listener_once_per_delivery) {
     int calls = 0;
     machine.set_listener([](void* n) noexcept TAPPET_REALTIME { ++*static_cast<int*>(n); }, &calls);
@@ -322,7 +447,7 @@ TEST_F(TwinBusTest, calls_the_listener_once_per_delivery) {
 
 /// The identifiers that arrive under random faults, as one number.
 std::uint64_t run_of(std::uint64_t seed) {
-    TwinBus bus{seed, 1'000'000};
+    TwinBus bus{seed, {1'000'000, 0}};
     Twin a, b;
     EXPECT_TRUE(a.open({.interface = "a", .transmit = machine_sends}));
     EXPECT_TRUE(b.open({.interface = "b", .receive = machine_sends}));

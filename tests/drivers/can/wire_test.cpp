@@ -29,37 +29,86 @@ TEST(Filter, lets_exactly_one_extended_identifier_through) {
     EXPECT_FALSE(passes(filter, 0x18FF'0102 | CAN_EFF_FLAG | CAN_RTR_FLAG));
 }
 
+Frame back_from(const Frame& f) {
+    canfd_frame raw;
+    wire::encode(f, raw);
+    Frame back;
+    EXPECT_TRUE(wire::decode(raw, wire::bytes_of(f), State::active, back));
+    return back;
+}
+Frame numbered(std::uint8_t length) {
+    Frame f;
+    f.id = 0x123;
+    f.length = length;
+    for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(i + 1);
+    return f;
+}
+
 TEST(Wire, carries_frames_both_ways) {
     for (const bool is_extended : {false, true})
         for (const bool is_remote : {false, true}) {
-            Frame f;
-            f.id = 0x123;
+            Frame f = numbered(8);
             f.extended = is_extended;
             f.remote = is_remote;
-            f.length = 8;
-            f.data = {1, 2, 3, 4, 5, 6, 7, 8};
-            Frame back;
-            ASSERT_TRUE(wire::decode(wire::encode(f), State::active, back));
-            EXPECT_EQ(back, f);
+            EXPECT_EQ(wire::bytes_of(f), 16u);
+            EXPECT_EQ(back_from(f), f);
         }
 }
 
-TEST(Wire, refuses_a_length_that_no_classic_frame_has) {
-    can_frame raw{};
-    raw.len = 9;
+TEST(Wire, carries_can_fd_frames_of_every_length) {
+    for (const int length : {0, 1, 8, 12, 16, 20, 24, 32, 48, 64})
+        for (const Format format : {Format::flexible, Format::flexible_faster}) {
+            Frame f = numbered(static_cast<std::uint8_t>(length));
+            set_format(f, format);
+            EXPECT_EQ(wire::bytes_of(f), 72u);
+            EXPECT_EQ(back_from(f), f) << length;
+        }
+}
+
+TEST(Wire, says_that_the_sender_is_error_passive) {
+    canfd_frame raw{};
+    raw.len = 8;
+    raw.flags = CANFD_ESI;
     Frame f;
-    EXPECT_FALSE(wire::decode(raw, State::active, f));
+    ASSERT_TRUE(wire::decode(raw, CANFD_MTU, State::active, f));
+    EXPECT_TRUE(f.error_state_indicator);
+    EXPECT_FALSE(f.bit_rate_switch);
+}
+
+TEST(Wire, reads_no_flags_in_a_classical_frame) { // that byte is padding there
+    canfd_frame raw{};
+    raw.len = 8;
+    raw.flags = 0xFF;
+    Frame f;
+    ASSERT_TRUE(wire::decode(raw, CAN_MTU, State::active, f));
+    EXPECT_EQ(format_of(f), Format::classical);
+    EXPECT_FALSE(f.error_state_indicator);
+}
+
+TEST(Wire, refuses_a_length_that_no_frame_has) {
+    for (const auto& [bytes, length] : {std::pair<std::size_t, int>{CAN_MTU, 9},
+                                        {CANFD_MTU, 9},
+                                        {CANFD_MTU, 63},
+                                        {CANFD_MTU, 65},
+                                        {CAN_MTU - 1, 8},
+                                        {CANFD_MTU + 1, 8},
+                                        {0, 0}}) {
+        canfd_frame raw{};
+        raw.len = static_cast<std::uint8_t>(length);
+        Frame f;
+        EXPECT_FALSE(wire::decode(raw, bytes, State::active, f)) << bytes << ", " << length;
+    }
 }
 
 TEST(ErrorFrame, says_bus_off) {
-    can_frame raw{};
+    canfd_frame raw{};
     raw.can_id = 0x2000'0040; // as vcan hands it on when it is injected
     raw.len = 8;
     EXPECT_EQ(wire::decode_error(raw, State::passive).state, State::bus_off);
 }
 
 TEST(ErrorFrame, says_how_bad_it_is_and_keeps_the_state_it_does_not_mention) {
-    can_frame raw{};
+    canfd_frame raw{};
     raw.can_id = CAN_ERR_FLAG | CAN_ERR_CRTL;
     raw.len = 8;
     raw.data[6] = 130;

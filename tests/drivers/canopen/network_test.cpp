@@ -160,6 +160,12 @@ TEST(NetworkTable, refuses_pdos_that_the_device_or_the_map_has_not) {
               "node 6 \"drive\": frame \"drive\" has the identifier 185h, which is none of the node's PDOs; "
               "its first "
               "are 186h (it sends) and 206h (it receives)");
+    EXPECT_EQ(
+        of_frame(can::receive(can::standard(0x185), "drive", can::fd_bytes(6), can::every(5ms), statusword,
+                              velocity),
+                 bare.pdo("drive", {0x6041, 0x606C})),
+        "node 5 \"drive\": frame \"drive\" is CAN FD, and CANopen has classical frames; write bytes(8) or "
+        "less");
     EXPECT_EQ(of_frame(can::receive(can::standard(0x205), "drive", can::bytes(2), can::every(5ms),
                                     can::signal("word", 0, 16)),
                        bare.pdo("drive", {0x6040})),

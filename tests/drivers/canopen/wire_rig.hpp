@@ -28,7 +28,7 @@ template <const auto& table, class Bus> struct WireRig : canopen::FrameSink {
                            .transmit = Bus::device_map.receive})
                     .has_value();
         good &= wire.attach(twin) && wire.attach(far_end);
-        wire.set_bit_rate(bit_rate);
+        wire.set_bit_rates({bit_rate, 0});
         const ProvidedDevice provided{type_id<can::Device>, "wire", static_cast<can::Device*>(&twin)};
         good &= instance.configure({&provided, 1}).has_value();
     }

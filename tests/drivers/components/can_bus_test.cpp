@@ -86,7 +86,7 @@ TEST_F(CanBus, counts_demands_that_follow_sooner_than_its_map_says) {
 TEST_F(CanBus, keeps_the_longest_response_of_what_it_sent) {
     run_until(40ms);
     EXPECT_EQ(bus->longest_response("drive_command"), Duration{}) << "the wire of this machine takes no time";
-    wire.set_bit_rate(125'000);
+    wire.set_bit_rates({125'000, 0});
     run_until(80ms);
     EXPECT_GE(bus->longest_response("drive_command"), 115 * 8us) << "6 bytes, 115 bits";
     EXPECT_EQ(bus->longest_response("nmt"), Duration{}) << "nobody demanded it";

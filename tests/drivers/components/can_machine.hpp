@@ -187,7 +187,7 @@ struct CanMachine : testing::Test {
             if (!frame.error.restarted) heard.push_back(frame);
     }
     /// From the far end, at the next tick.
-    void send(std::uint32_t id, std::uint8_t length, std::array<std::uint8_t, 8> data) {
+    void send(std::uint32_t id, std::uint8_t length, can::Payload data) {
         can::Frame frame;
         frame.id = id;
         frame.length = length;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "drivers/can/device.hpp"
+#include "drivers/can/signal_map.hpp"
 #include "kernel/base/text.hpp"
 
 #include <expected>
-#include <span>
 
 namespace tappet {
 
@@ -15,8 +15,8 @@ public:
     CanEnd() = default;
     ~CanEnd() override;
 
-    /// `received`: what the machine sends. The error says what is wrong and how to cure it.
-    std::expected<void, Sentence> open(std::string_view interface, std::span<const can::Identifier> received);
+    /// The other end of `machine`. The error says what is wrong and how to cure it.
+    std::expected<void, Sentence> open(std::string_view interface, const can::Identifiers& machine);
     /// Tells every listener of error frames that the bus is off.
     void announce_bus_off();
 

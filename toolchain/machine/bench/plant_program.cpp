@@ -162,8 +162,7 @@ private:
         if (drives(row, "can")) {
             auto& end = *buses_.emplace_back(std::make_unique<CanEnd>());
             wires_.push_back({type_id<can::Device>, row.device, static_cast<can::Device*>(&end)});
-            opened = end.open(device->address,
-                              static_cast<const can::Identifiers*>(row.type->device_map)->transmit);
+            opened = end.open(device->address, *static_cast<const can::Identifiers*>(row.type->device_map));
         } else if (drives(row, "gpio")) {
             auto& end = *chips_.emplace_back(std::make_unique<LineEnd>());
             wires_.push_back({type_id<gpio::Wires>, row.device, static_cast<gpio::Wires*>(&end)});

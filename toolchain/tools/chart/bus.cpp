@@ -20,12 +20,13 @@ Sentence in_us(Duration time) {
 
 } // namespace
 
-std::string draw_bus(const AcceptedMachine& machine, std::size_t component, std::uint32_t bit_rate) {
+std::string draw_bus(const AcceptedMachine& machine, std::size_t component, std::uint32_t bit_rate,
+                     std::uint32_t data_bit_rate) {
     const ComponentRow& row = machine.table.components[component];
     const auto worst =
         checks::worst_responses_ns(machine.table, *machine.board, *machine.binding, machine.index);
     constexpr BusErrors errors;
-    const DeviceUse use{row.device,     bit_rate,     0,
+    const DeviceUse use{row.device,     bit_rate,     data_bit_rate,
                         errors.at_once, errors.every, Duration{worst[machine.index.activity[component]]}};
     std::vector<TrafficRow> frames(row.type->device_traffic.rows);
     const Sentence fault = row.type->device_traffic.analyse(use, frames);

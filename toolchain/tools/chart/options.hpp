@@ -10,6 +10,8 @@ namespace tappet::chart {
 inline constexpr std::array chart_options{
     Option{"--to", "DIR", "where the files go (default: here; of tappet chart: build/charts)"},
     Option{"--bit-rate", "N", "of the buses that are drawn, bit/s (default: 1000000)", true, 1, 1'000'000},
+    Option{"--data-bit-rate", "N", "likewise, of CAN FD's data phase (default: 2000000)", true, 1,
+           10'000'000},
     Option{"--help", "", "this text"}};
 
 /// Its words; none: svg.

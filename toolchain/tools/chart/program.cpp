@@ -63,9 +63,10 @@ bool verify(const std::string& name, const std::string& model) {
 class Program {
 public:
     Program(const AcceptedMachine& machine, std::span<const ModelRow> model, std::string_view to,
-            std::uint32_t bit_rate)
+            std::uint32_t bit_rate, std::uint32_t data_bit_rate)
         : machine_{machine},
           bit_rate_{bit_rate},
+          data_bit_rate_{data_bit_rate},
           all_{charts_of(machine.table), machine.table, model},
           stem_{std::string{to} + "/" + identifier(machine.table.name)} {}
 
@@ -105,8 +106,9 @@ private:
         for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
             const ComponentRow& row = machine_.table.components[c];
             if (row.type->device_traffic.rows == 0) continue;
-            good =
-                write(stem_ + "." + identifier(row.name) + ".svg", draw_bus(machine_, c, bit_rate_)) && good;
+            good = write(stem_ + "." + identifier(row.name) + ".svg",
+                         draw_bus(machine_, c, bit_rate_, data_bit_rate_)) &&
+                   good;
         }
         return good;
     }
@@ -151,6 +153,7 @@ private:
 
     const AcceptedMachine& machine_;
     std::uint32_t bit_rate_;
+    std::uint32_t data_bit_rate_;
     Composition all_;
     std::string stem_;
 };
@@ -173,7 +176,8 @@ int run_chart(const AcceptedMachine& machine, std::span<const ModelRow> model, i
     const std::string to{line->text("--to", ".")};
     std::error_code error;
     fs::create_directories(to, error);
-    Program program{machine, model, to, static_cast<std::uint32_t>(line->number("--bit-rate", 1'000'000))};
+    Program program{machine, model, to, static_cast<std::uint32_t>(line->number("--bit-rate", 1'000'000)),
+                    static_cast<std::uint32_t>(line->number("--data-bit-rate", 2'000'000))};
     bool good = true;
     for (const std::string_view what : line->words) good = program.make(what) && good;
     return good ? 0 : 1;

@@ -1,0 +1,73 @@
+// What a frame can be, classical and CAN FD, and how long it takes on the wire.
+#include "drivers/can/frame_time.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace tappet::can {
+namespace {
+
+Frame of_length(unsigned length, bool fd = true) {
+    Frame f;
+    f.id = 0x123;
+    f.fd = fd;
+    f.length = static_cast<std::uint8_t>(length);
+    return f;
+}
+
+TEST(Frame, has_the_lengths_of_its_format_and_no_others) {
+    const std::set<unsigned> lengths{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+    for (unsigned length = 0; length < 256; ++length) {
+        EXPECT_EQ(valid(of_length(length)), lengths.contains(length)) << length;
+        EXPECT_EQ(valid(of_length(length, false)), length <= 8) << length;
+    }
+}
+
+TEST(Frame, is_never_remote_in_can_fd_nor_fast_in_classical_can) {
+    Frame f = of_length(8);
+    f.remote = true;
+    EXPECT_FALSE(valid(f));
+    f.fd = false;
+    EXPECT_TRUE(valid(f));
+    f.remote = false;
+    f.bit_rate_switch = true;
+    EXPECT_FALSE(valid(f));
+    f.fd = true;
+    EXPECT_TRUE(valid(f));
+    f.id = 0x800;
+    EXPECT_FALSE(valid(f));
+}
+
+TEST(Frame, keeps_the_format_that_it_was_given) {
+    for (const Format format : {Format::classical, Format::flexible, Format::flexible_faster}) {
+        Frame f;
+        set_format(f, format);
+        EXPECT_EQ(format_of(f), format);
+    }
+}
+
+TEST(FrameTime, agrees_with_the_published_lengths_of_classical_frames) {
+    constexpr BitRates rates{1'000'000'000, 0}; // a bit takes 1 ns
+    Frame f = of_length(8, false);
+    EXPECT_EQ(frame_time_ns(f, rates), 135); // Davis et al. 2007: 55 + 10 n for 11-bit identifiers
+    f.remote = true;
+    EXPECT_EQ(frame_time_ns(f, rates), 55) << "its length is only asked for";
+    f.remote = false;
+    f.length = 0;
+    EXPECT_EQ(frame_time_ns(f, rates), 55);
+    f.extended = true;
+    f.length = 8;
+    EXPECT_EQ(frame_time_ns(f, rates), 160); // 80 + 10 n for 29-bit identifiers
+}
+
+TEST(FrameTime, of_can_fd_is_that_of_its_two_bit_rates) {
+    Frame f = of_length(64);
+    EXPECT_EQ(frame_time_ns(f, {500'000, 2'000'000}), 1'420'000) << "710 bits, all of them slow";
+    f.bit_rate_switch = true;
+    EXPECT_EQ(frame_time_ns(f, {500'000, 2'000'000}), 403'000) << "32 slow ones, 678 fast ones";
+    EXPECT_EQ(frame_time_ns(f, {500'000, 0}), -1) << "there is no second rate";
+}
+
+} // namespace
+} // namespace tappet::can
