@@ -39,6 +39,8 @@ struct MessageRow {
     std::size_t first = 0;
     std::size_t signals = 0;
     bool says_every = false;
+    bool says_fd = false, is_fd = false;
+    bool says_switch = false, switches = false;
     Duration every{};
     bool is_taken = false;
     Direction direction = Direction::receive;

@@ -136,13 +136,13 @@ private:
         constexpr std::string_view all =
             "VAL_TABLE_ EV_ ENVVAR_DATA_ EV_DATA_ SGTYPE_ SIG_GROUP_ SIG_TYPE_REF_ SIGTYPE_VALTYPE_ "
             "SGTYPE_VAL_ "
-            "BA_DEF_ BA_DEF_SGTYPE_ BA_SGTYPE_ BA_DEF_REL_ BA_REL_ BA_DEF_DEF_REL_ BU_SG_REL_ BU_EV_REL_ "
+            "BA_DEF_SGTYPE_ BA_SGTYPE_ BA_DEF_REL_ BA_REL_ BA_DEF_DEF_REL_ BU_SG_REL_ BU_EV_REL_ "
             "BU_BO_REL_ CAT_ CAT_DEF_ FILTER CM_";
         return names(all, keyword);
     }
     static constexpr bool is_statement(std::string_view keyword) noexcept {
         constexpr std::string_view read =
-            "BO_ SG_ VAL_ BA_ BA_DEF_DEF_ BO_TX_BU_ SIG_VALTYPE_ SG_MUL_VAL_ BU_ NS_ BS_ VERSION";
+            "BO_ SG_ VAL_ BA_ BA_DEF_ BA_DEF_DEF_ BO_TX_BU_ SIG_VALTYPE_ SG_MUL_VAL_ BU_ NS_ BS_ VERSION";
         return names(read, keyword) || is_passed_over(keyword);
     }
     constexpr void statement() {
@@ -153,6 +153,7 @@ private:
         if (keyword == "BO_") return message(at);
         if (keyword == "VAL_") return values();
         if (keyword == "BA_") return attribute();
+        if (keyword == "BA_DEF_") return attribute_definition();
         if (keyword == "BA_DEF_DEF_") return attribute_default();
         if (keyword == "BO_TX_BU_") return senders();
         if (keyword == "SIG_VALTYPE_") return value_type();
@@ -369,7 +370,39 @@ private:
             signal.too_many_selections |= !all.push(more);
     }
 
-    // ---- attributes: the cycle time, and names of more than 32 characters
+    // ---- attributes: the cycle time, CAN FD, and names of more than 32 characters
+
+    /// An attribute whose values have names: those that say yes. A file gives their names or their numbers.
+    struct Choice {
+        std::uint64_t yes = 0; ///< a bit for each number
+        bool usually = false;  ///< of messages that do not say it
+    };
+    static constexpr bool says_yes(std::string_view attribute, std::string_view value) noexcept {
+        return attribute == "CANFD_BRS" ? value == "1" : value.ends_with("CAN_FD");
+    }
+    constexpr Choice* choice(std::string_view attribute) noexcept {
+        return attribute == "VFrameFormat" ? &fd_ : attribute == "CANFD_BRS" ? &switch_ : nullptr;
+    }
+    constexpr bool chosen(std::string_view attribute, const Choice& among) {
+        if (in_.next() == '"') return says_yes(attribute, text("the attribute's value"));
+        const std::uint32_t number = whole(63, "the number of the attribute's value");
+        return ok() && (among.yes >> number & 1u) != 0;
+    }
+    constexpr void attribute_definition() {
+        if (in_.peek() == "BO_") in_.word();
+        const std::string_view name = in_.next() == '"' ? text("an attribute's name") : std::string_view{};
+        Choice* const of = choice(name);
+        if (of == nullptr || in_.peek() != "ENUM") return skip_statement();
+        in_.word();
+        of->yes = 0;
+        unsigned number = 0;
+        do {
+            const std::string_view value = text("a value's name between quotes");
+            if (number < 64 && says_yes(name, value)) of->yes |= std::uint64_t{1} << number;
+            ++number;
+        } while (ok() && in_.take(','));
+        end_of_statement();
+    }
 
     constexpr Duration cycle_time() {
         const std::size_t at = in_.at();
@@ -383,11 +416,17 @@ private:
         const bool is_period = name == "GenMsgCycleTime" && of == "BO_";
         const bool is_message_name = name == "SystemMessageLongSymbol" && of == "BO_";
         const bool is_signal_name = name == "SystemSignalLongSymbol" && of == "SG_";
-        if (!ok() || (!is_period && !is_message_name && !is_signal_name)) return skip_statement();
+        const Choice* const among = of == "BO_" ? choice(name) : nullptr;
+        if (!ok() || (!is_period && !is_message_name && !is_signal_name && among == nullptr))
+            return skip_statement();
         in_.word();
         MessageRow* const message = known_message();
         SignalRow* const signal = is_signal_name ? known_signal(message) : nullptr;
-        if (is_period) {
+        if (among != nullptr) {
+            const bool yes = chosen(name, *among);
+            if (message != nullptr && among == &fd_) message->says_fd = true, message->is_fd = yes;
+            if (message != nullptr && among == &switch_) message->says_switch = true, message->switches = yes;
+        } else if (is_period) {
             const Duration every = cycle_time();
             if (ok() && message != nullptr) {
                 message->every = every;
@@ -401,8 +440,13 @@ private:
         end_of_statement();
     }
     constexpr void attribute_default() {
-        if (text("an attribute's name between quotes") != "GenMsgCycleTime") return skip_statement();
-        usual_every_ = cycle_time();
+        const std::string_view name = text("an attribute's name between quotes");
+        Choice* const of = choice(name);
+        if (of == nullptr && name != "GenMsgCycleTime") return skip_statement();
+        if (of != nullptr)
+            of->usually = chosen(name, *of);
+        else
+            usual_every_ = cycle_time();
         end_of_statement();
     }
 
@@ -410,6 +454,8 @@ private:
 
     constexpr void finish(MessageRow& message) {
         if (!message.says_every) message.every = usual_every_;
+        if (!message.says_fd) message.is_fd = fd_.usually;
+        if (!message.says_switch) message.switches = switch_.usually;
         const auto signals = net_.of(message);
         std::size_t multiplexors = 0;
         std::size_t plain = no_such; // the one that is not multiplexed itself
@@ -452,6 +498,8 @@ private:
     bool has_nodes_ = false;
     bool takes_signals_ = false;
     Duration usual_every_{};
+    // As CANdb++ has them, for files that use the attributes and do not define them.
+    Choice fd_{.yes = std::uint64_t{3} << 14}, switch_{.yes = 2, .usually = true};
 };
 
 } // namespace tappet::can::dbc

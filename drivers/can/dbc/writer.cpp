@@ -46,6 +46,19 @@ std::string quoted(std::string_view text) {
     return out + "\"";
 }
 
+/// A file with CAN FD frames says of each message which format it has.
+const std::string fd_definitions =
+    "BA_DEF_ \"BusType\" STRING ;\nBA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\"," +
+    [] {
+        std::string reserved;
+        for (int i = 2; i < 14; ++i) reserved += "\"reserved\",";
+        return reserved;
+    }() +
+    "\"StandardCAN_FD\",\"ExtendedCAN_FD\";\nBA_DEF_ BO_ \"CANFD_BRS\" ENUM \"0\",\"1\";\n";
+const std::string fd_defaults =
+    "BA_DEF_DEF_ \"BusType\" \"\";\nBA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\n"
+    "BA_DEF_DEF_ \"CANFD_BRS\" \"1\";\nBA_ \"BusType\" \"CAN FD\";\n";
+
 class Writer {
 public:
     Writer(std::string_view machine, std::span<const Signal> signals)
@@ -59,6 +72,14 @@ public:
         const auto own = signals_.subspan(frame.first, frame.signals);
         for (const Signal& signal : own) add(signal, own, id, sent ? "others" : machine_);
         messages_ += '\n';
+        if (frame.format != Format::classical) {
+            has_fd_ = true;
+            formats_ += "BA_ \"VFrameFormat\" BO_ " + id + (frame.identifier.extended ? " 15;\n" : " 14;\n");
+            formats_ +=
+                "BA_ \"CANFD_BRS\" BO_ " + id + (frame.format == Format::flexible_faster ? " 1;\n" : " 0;\n");
+        } else if (frame.identifier.extended) {
+            formats_ += "BA_ \"VFrameFormat\" BO_ " + id + " 1;\n";
+        }
         if (frame.every > Duration::zero())
             periods_ += "BA_ \"GenMsgCycleTime\" BO_ " + id + ' ' +
                         real(static_cast<double>(frame.every.count()) / 1e6) + ";\n";
@@ -66,9 +87,9 @@ public:
     [[nodiscard]] std::string text() const {
         return "VERSION \"\"\n\nNS_ "
                ":\n\tBA_\n\tBA_DEF_\n\tBA_DEF_DEF_\n\tVAL_\n\tSIG_VALTYPE_\n\tSG_MUL_VAL_\n\nBS_:\n\nBU_: " +
-               machine_ + " others\n\n" + messages_ +
-               "BA_DEF_ BO_ \"GenMsgCycleTime\" FLOAT 0 3600000;\nBA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n" +
-               periods_ + values_ + types_ + selections_;
+               machine_ + " others\n\n" + messages_ + "BA_DEF_ BO_ \"GenMsgCycleTime\" FLOAT 0 3600000;\n" +
+               (has_fd_ ? fd_definitions : "") + "BA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n" +
+               (has_fd_ ? fd_defaults + formats_ : "") + periods_ + values_ + types_ + selections_;
     }
 
 private:
@@ -106,7 +127,8 @@ private:
 
     std::string machine_;
     std::span<const Signal> signals_;
-    std::string messages_, periods_, values_, types_, selections_;
+    bool has_fd_ = false;
+    std::string messages_, formats_, periods_, values_, types_, selections_;
 };
 
 } // namespace

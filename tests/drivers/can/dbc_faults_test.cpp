@@ -27,6 +27,30 @@ std::string with_signal(const std::string& signal) {
     return with("BO_ 3 more: 4 them\n SG_ " + signal + "\n");
 }
 
+TEST(DbcFaults, formats_of_messages) {
+    EXPECT_EQ(fault(with("BA_ \"VFrameFormat\" BO_ 2 99;")),
+              "t.dbc:7:26: 99 is too large for the number of the attribute's value, which is 63 at most; "
+              "correct it");
+    EXPECT_EQ(fault(with("BA_ \"CANFD_BRS\" BO_ 2 yes;")),
+              "t.dbc:7:23: found \"yes;\", expected the number of the attribute's value; correct it");
+    EXPECT_EQ(
+        fault(with("BA_DEF_ BO_ \"VFrameFormat\" ENUM \"a\" \"b\";")),
+        "t.dbc:7:37: a text without its end, or one that is out of place, expected \";\", the end of the "
+        "statement; close the quotes in the same line");
+    EXPECT_EQ(
+        fault(with(
+            "BA_DEF_ BO_ \"VFrameFormat\" INT 0 15;\nBA_DEF_ BU_ \"x\" STRING ;\nBA_DEF_ \"y\" INT 0 1;")),
+        "");
+    EXPECT_EQ(
+        fault(with("BO_ 3 more: 13 them\n SG_ c : 0|8@1+ (1,0) [0|0] \"\" us\n"
+                   "BA_ \"VFrameFormat\" BO_ 3 14;")),
+        "t.dbc:7:7: frame \"more\" has 13 bytes: CAN FD has no such length; make it 16, and what no signal "
+        "covers is padding");
+    EXPECT_EQ(fault(with("BO_ 3 more: 64 them\n SG_ c : 504|8@1+ (1,0) [0|0] \"\" us\n"
+                         "BA_ \"VFrameFormat\" BO_ 3 14;\nBA_ \"GenMsgCycleTime\" BO_ 3 20;")),
+              "");
+}
+
 TEST(DbcFaults, a_file_without_any) {
     EXPECT_EQ(fault(with("")), "");
     EXPECT_EQ(fault(with_signal("c : 0|32@1- (1E-3,-.5) [-1e+3|1000.0] \"mm/s\" us, them")), "");

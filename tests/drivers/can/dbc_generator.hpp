@@ -19,9 +19,11 @@ public:
     std::string file() {
         text_ = "VERSION \"" + std::to_string(below(100)) +
                 "\"\n\nNS_ :\n\tCM_\n\tBA_\n\nBS_:\n\nBU_: us them others\n\n";
+        is_fd_ = random_.one_in(3);
         tail_ =
             "CM_ \"generated: \\\"BO_ 1\\\"\";\nBA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\nBA_DEF_DEF_ "
             "\"GenMsgCycleTime\" 0;\n";
+        if (is_fd_) tail_ += fd_attributes();
         own.clear();
         const std::size_t messages = 1 + below(8);
         for (std::size_t m = 0; m < messages; ++m) message(m);
@@ -34,7 +36,7 @@ public:
     std::vector<std::string> own{}; ///< what "us" sends in the last file
 
 private:
-    using Places = std::array<bool, 64>;
+    using Places = std::array<bool, 512>;
 
     std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_.below(n)); }
     template <std::size_t N> std::string any(const std::string_view (&list)[N]) {
@@ -44,7 +46,9 @@ private:
     void message(std::size_t m) {
         const bool is_extended = random_.one_in(3);
         id_ = m * 200 + below(200) + (is_extended ? 0x8000'0000u + (below(0x1000) << 16) : 0);
-        bytes_ = 1 + below(8);
+        constexpr std::size_t fd_lengths[] = {1, 3, 8, 12, 16, 20, 24, 32, 48, 64};
+        const bool has_fd = is_fd_ && !random_.one_in(3);
+        bytes_ = has_fd ? fd_lengths[below(std::size(fd_lengths))] : 1 + below(8);
         const std::string name = "Message_" + std::to_string(m);
         const std::string sender = any({"us", "them", "them", "others", "Vector__XXX"});
         text_ += "BO_ " + std::to_string(id_) + ' ' + name + (random_.one_in(2) ? ": " : " : ") +
@@ -63,7 +67,21 @@ private:
         if (sender == "us") own.push_back(name);
         tail_ += "BA_ \"GenMsgCycleTime\" BO_ " + std::to_string(id_) + ' ' + std::to_string(1 + below(500)) +
                  ";\n";
+        if (has_fd) tail_ += format_of(is_extended);
         if (random_.one_in(4)) tail_ += "BO_TX_BU_ " + std::to_string(id_) + " : them,others;\n";
+    }
+    static std::string fd_attributes() {
+        std::string all = "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",";
+        for (int i = 2; i < 14; ++i) all += i == 3 ? "\"J1939PG\"," : "\"reserved\",";
+        return all + "\"StandardCAN_FD\",\"ExtendedCAN_FD\";\nBA_DEF_ BO_ \"CANFD_BRS\" ENUM \"0\",\"1\";\n"
+                     "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\nBA_DEF_DEF_ \"CANFD_BRS\" \"1\";\n";
+    }
+    std::string format_of(bool is_extended) {
+        std::string says =
+            "BA_ \"VFrameFormat\" BO_ " + std::to_string(id_) + (is_extended ? " 15;\n" : " 14;\n");
+        if (random_.one_in(2))
+            says += "BA_ \"CANFD_BRS\" BO_ " + std::to_string(id_) + (random_.one_in(2) ? " 0;\n" : " 1;\n");
+        return says;
     }
     /// One multiplexor, M, and pages m0 and on.
     void pages() {
@@ -181,6 +199,7 @@ private:
     std::vector<std::string> lines_;
     std::size_t id_ = 0;
     std::size_t bytes_ = 0;
+    bool is_fd_ = false;
     std::size_t signals_ = 0;
     Places used_{}, pages_{};
 };

@@ -22,7 +22,10 @@ def raw(signal, value):
 
 def describe(frame):
     senders = ",".join(frame.transmitters)
-    print("frame", frame.arbitration_id.id, int(bool(frame.arbitration_id.extended)), frame.size, frame.name, int(frame.cycle_time), senders, sep="\t")
+    # An attribute that the message has not got has its default, by position or by name.
+    switches = int(frame.is_fd and frame.attribute("CANFD_BRS", db=matrix, default="1") == "1")
+    print("frame", frame.arbitration_id.id, int(bool(frame.arbitration_id.extended)), frame.size, frame.name, int(frame.cycle_time), senders,
+          int(frame.is_fd), switches, sep="\t")
     for s in frame.signals:
         names = ";".join(f"{value}={name.encode().hex()}" for value, name in s.values.items())
         print("signal", s.name, s.get_startbit(bit_numbering=1), s.size, int(s.is_little_endian), int(s.is_signed), int(bool(s.is_float)),

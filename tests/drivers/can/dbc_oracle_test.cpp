@@ -103,6 +103,14 @@ constexpr auto by_hand =
                transmit(standard(2), "double", bytes(8), on_demand(5ms),
                         signal("value", 0, 64).as_float().in("N m").safe(0)));
 TAPPET_ACCEPTED(by_hand.fault);
+/// Each format, and signals behind the eighth byte.
+constexpr auto of_can_fd =
+    signal_map(receive(standard(1), "scan", fd_bytes(64), every(20ms), signal("first", 0, 16),
+                       signal("across", 61, 64), signal("last", 487, 32).big_endian().as_signed()),
+               receive(extended(2), "slow", fd_bytes(12).in_one_rate(), every(20ms), signal("value", 70, 20)),
+               transmit(standard(3), "old", bytes(8), every(20ms), signal("value", 0, 64).safe(0)),
+               receive(extended(4), "older", bytes(2), every(20ms), signal("value", 0, 16)));
+TAPPET_ACCEPTED(of_can_fd.fault);
 
 /// One run of canmatrix over all files and frames; its answers, line by line.
 struct Asked {
@@ -118,6 +126,7 @@ struct Asked {
         for (std::size_t i = 0; i < files; ++i) taken.push_back(std::make_unique<Taken>(i + 1));
         taken.push_back(std::make_unique<Taken>(by_hand));
         taken.push_back(std::make_unique<Taken>(carpet::can_signals));
+        taken.push_back(std::make_unique<Taken>(of_can_fd));
         for (std::size_t i = 0; i < taken.size(); ++i) {
             const std::string path = (folder / (std::to_string(i) + ".dbc")).string();
             std::ofstream{path, std::ios::binary} << taken[i]->text;
@@ -147,6 +156,7 @@ private:
                 frame.id = map.frames[f].identifier.id;
                 frame.extended = map.frames[f].identifier.extended;
                 frame.length = map.frames[f].length;
+                set_format(frame, map.frames[f].format);
                 for (std::size_t b = 0; b < frame.length; ++b)
                     frame.data[b] = static_cast<std::uint8_t>(random.next());
                 mine.push_back(frame);
@@ -179,7 +189,7 @@ class Comparison {
 public:
     using Map = SignalMap<64, 512>;
     std::vector<std::string> differences{};
-    std::size_t signals = 0, decoded = 0, encoded = 0;
+    std::size_t signals = 0, decoded = 0, encoded = 0, fd = 0;
 
     explicit Comparison(const std::function<void(Map&)>& spoil = [](Map&) {}) {
         std::size_t line = 0;
@@ -227,6 +237,10 @@ private:
                 same(parts[4], "identifier", std::to_string(row.identifier.id), parts[1]);
                 same(parts[4], "extended", row.identifier.extended ? "1" : "0", parts[2]);
                 same(parts[4], "bytes", std::to_string(row.length), parts[3]);
+                fd += row.format != Format::classical;
+                same(parts[4], "CAN FD", row.format == Format::classical ? "0" : "1", parts[7]);
+                same(parts[4], "bit rate switch", row.format == Format::flexible_faster ? "1" : "0",
+                     parts[8]);
                 same(parts[4], "cycle time", std::to_string(row.every / 1ms), parts[5]);
                 const auto senders = parts_of(parts[6], ',');
                 const bool is_ours = std::ranges::find(senders, us) != senders.end();
@@ -329,6 +343,7 @@ TEST(DbcOracle, agrees_to_the_bit) {
     EXPECT_GT(comparison.signals, 3000u);
     EXPECT_GT(comparison.decoded, 20000u);
     EXPECT_GT(comparison.encoded, 3000u);
+    EXPECT_GT(comparison.fd, 100u);
 }
 
 /// The first signal of each map that `is_meant` is changed.
@@ -358,6 +373,7 @@ template <std::size_t F, std::size_t S> void expect_back(const SignalMap<F, S>& 
         EXPECT_EQ(back.frames[f].name, map.frames[f].name);
         EXPECT_EQ(back.frames[f].direction, map.frames[f].direction);
         EXPECT_EQ(back.frames[f].length, map.frames[f].length);
+        EXPECT_EQ(back.frames[f].format, map.frames[f].format);
         EXPECT_EQ(back.frames[f].every, map.frames[f].every);
     }
     for (std::size_t s = 0; s < S; ++s) {
@@ -383,6 +399,19 @@ template <std::size_t F, std::size_t S> void expect_back(const SignalMap<F, S>& 
 TEST(DbcOracle, what_is_written_comes_back) {
     expect_back(by_hand, *asked().taken[files]);
     expect_back(carpet::can_signals, *asked().taken[files + 1]);
+    expect_back(of_can_fd, *asked().taken[files + 2]);
+}
+
+TEST(DbcOracle, finds_a_format_that_is_planted_in_ours) {
+    for (const auto& [from, to] : {std::pair{Format::classical, Format::flexible},
+                                   {Format::flexible, Format::flexible_faster},
+                                   {Format::flexible_faster, Format::classical}}) {
+        const Comparison comparison{[&](SignalMap<64, 512>& map) {
+            for (FrameRow& each : map.frames)
+                if (each.length != 0 && each.format == from) each.format = to;
+        }};
+        EXPECT_GT(comparison.differences.size(), 20u);
+    }
 }
 
 TEST(DbcOracle, finds_what_is_planted_in_ours) {

@@ -119,6 +119,44 @@ constexpr auto by_hand = signal_map(
 TAPPET_ACCEPTED(by_hand.fault);
 static_assert(by_hand.safe_frames().size() == 2 && by_hand.safe_frames()[0].data == Payload{1, 4});
 
+/// Of message 1, after these attributes.
+Format format_in(const std::string& attributes) {
+    static constexpr auto nobody = node("", receive("one", every(10ms)));
+    const DbcMap read{"BU_: us\nBO_ 1 one: 8 us\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" us\n" + attributes,
+                      nobody.view()};
+    EXPECT_EQ(read.map.fault.view(), "");
+    return read.map.frames[0].format;
+}
+const std::string formats =
+    "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"ExtendedCAN_FD\",\"StandardCAN\",\"StandardCAN_FD\";\n";
+
+TEST(Dbc, says_can_fd_by_the_number_of_the_format_or_by_its_name) {
+    EXPECT_EQ(format_in(""), Format::classical);
+    EXPECT_EQ(format_in("BA_ \"VFrameFormat\" BO_ 1 14;"), Format::flexible_faster)
+        << "as CANdb++ counts them";
+    EXPECT_EQ(format_in("BA_ \"VFrameFormat\" BO_ 1 0;"), Format::classical);
+    EXPECT_EQ(format_in("BA_ \"VFrameFormat\" BO_ 1 3;"), Format::classical) << "J1939";
+    EXPECT_EQ(format_in("BA_ \"VFrameFormat\" BO_ 1 \"StandardCAN_FD\";"), Format::flexible_faster);
+    EXPECT_EQ(format_in(formats + "BA_ \"VFrameFormat\" BO_ 1 2;"), Format::flexible_faster);
+    EXPECT_EQ(format_in(formats + "BA_ \"VFrameFormat\" BO_ 1 1;"), Format::classical);
+    EXPECT_EQ(format_in(formats + "BA_ \"VFrameFormat\" BO_ 1 14;"), Format::classical)
+        << "it has no such number";
+    EXPECT_EQ(format_in(formats + "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN_FD\";"),
+              Format::flexible_faster);
+    EXPECT_EQ(format_in(formats +
+                        "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN_FD\";\nBA_ \"VFrameFormat\" BO_ 1 1;"),
+              Format::classical);
+}
+
+TEST(Dbc, says_whether_the_bit_rate_switches) {
+    const std::string fd = formats + "BA_ \"VFrameFormat\" BO_ 1 2;\n";
+    EXPECT_EQ(format_in(fd + "BA_ \"CANFD_BRS\" BO_ 1 0;"), Format::flexible);
+    EXPECT_EQ(format_in(fd + "BA_ \"CANFD_BRS\" BO_ 1 1;"), Format::flexible_faster);
+    EXPECT_EQ(format_in(fd + "BA_DEF_ BO_ \"CANFD_BRS\" ENUM \"0\",\"1\";\nBA_DEF_DEF_ \"CANFD_BRS\" \"0\";"),
+              Format::flexible);
+    EXPECT_EQ(format_in("BA_ \"CANFD_BRS\" BO_ 1 1;"), Format::classical) << "of no CAN FD message";
+}
+
 TEST(Dbc, at_run_time_gives_what_the_compiler_made) {
     const DbcMap read{files::press_dbc.text, controller.view()};
     ASSERT_EQ(read.map.fault.view(), "");
