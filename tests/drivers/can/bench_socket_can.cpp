@@ -1,5 +1,6 @@
 // The real SocketCAN device on a real kernel's virtual bus, with can-utils as peers. Runs on the bench:
 // interface can0.
+#include "drivers/can/safe_sender.hpp"
 #include "drivers/can/signal_map.hpp"
 #include "drivers/can/socket_can.hpp"
 #include "tests/drivers/foreign.hpp"
@@ -231,6 +232,136 @@ TEST_F(RealCan, allocates_nothing_while_it_runs) {
     }
     EXPECT_EQ(::mallinfo2().uordblks, before);
     EXPECT_EQ(got, 100u);
+}
+
+TEST_F(RealCan, hears_no_can_fd_frame_unless_its_map_has_one) {
+    open();
+    ASSERT_EQ(run("cansend can0 123##1DEADBEEF"), 0);
+    ASSERT_EQ(run("cansend can0 123#DEADBEEF"), 0);
+    const auto got = run_for(20ms);
+    ASSERT_EQ(got.size(), 1u);
+    EXPECT_FALSE(got[0].fd);
+    Frame fast = frame(0x201);
+    fast.fd = true;
+    EXPECT_EQ(can.send(fast), Send::refused_invalid);
+}
+
+struct RealCanFd : RealCan {
+    RealCanFd() {
+        settings.takes_fd = true;
+        settings.data_bit_rate = 2'000'000;
+    }
+    static Frame whole(std::uint32_t id, Format format, std::uint8_t length = 64) {
+        Frame f;
+        f.id = id;
+        f.length = length;
+        f.stamp = now();
+        set_format(f, format);
+        for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(i);
+        return f;
+    }
+    /// The flags that it shows of that frame; newer kernels add one that says CAN FD (4). -1: it shows none.
+    static int flags_of(const Foreign& dump, const Frame& f) {
+        char head[16];
+        std::snprintf(head, sizeof head, " %X##", f.id);
+        if (!dump.says(digits(f))) return -1;
+        const std::string seen = dump.output();
+        const std::size_t at = seen.find(head);
+        const std::size_t flags = at == seen.npos ? at : at + std::strlen(head);
+        if (flags == seen.npos || seen.substr(flags + 1, 2u * f.length) != digits(f)) return -1;
+        return (seen[flags] - '0') & ~4;
+    }
+    static std::string digits(const Frame& f) {
+        std::string text;
+        char pair[3];
+        for (std::size_t i = 0; i < f.length; ++i) {
+            std::snprintf(pair, sizeof pair, "%02X", unsigned{f.data[i]});
+            text += pair;
+        }
+        return text;
+    }
+};
+
+TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format) {
+    open();
+    const auto sent = [](Format format, std::uint8_t length) { return whole(0x123, format, length); };
+    const std::array all{sent(Format::flexible_faster, 64), sent(Format::flexible, 48),
+                         sent(Format::flexible_faster, 12), sent(Format::flexible_faster, 0),
+                         sent(Format::classical, 8)};
+    for (const Frame& f : all)
+        ASSERT_EQ(run("cansend can0 123" + std::string{f.fd ? (f.bit_rate_switch ? "##1" : "##0") : "#"} +
+                      digits(f)),
+                  0);
+    const auto got = run_for(20ms);
+    ASSERT_EQ(got.size(), all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_EQ(format_of(got[i]), format_of(all[i])) << i;
+        EXPECT_EQ(got[i].length, all[i].length);
+        EXPECT_EQ(got[i].data, all[i].data);
+    }
+    ASSERT_EQ(run("cansend can0 123##300"), 0);
+    const auto passive = run_for(20ms);
+    ASSERT_EQ(passive.size(), 1u);
+    EXPECT_TRUE(passive[0].error_state_indicator);
+}
+
+TEST_F(RealCanFd, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
+    open();
+    Foreign dump{"candump -L can0"};
+    std::this_thread::sleep_for(200ms);
+    const Frame fast = whole(0x201, Format::flexible_faster), slow = whole(0x202, Format::flexible, 32);
+    EXPECT_EQ(can.send(fast), Send::queued);
+    EXPECT_EQ(can.send(slow), Send::queued);
+    EXPECT_EQ(can.send(frame(0x203)), Send::queued);
+    EXPECT_TRUE(run_for(10ms).empty()) << "its own frames are confirmations only";
+    EXPECT_EQ(flags_of(dump, fast), CANFD_BRS);
+    EXPECT_EQ(flags_of(dump, slow), 0);
+    EXPECT_TRUE(dump.says("can0 203#ABCD"));
+    EXPECT_EQ(can.counters().sent, 3u);
+    EXPECT_EQ(can.send(whole(0x201, Format::flexible, 13)), Send::refused_invalid);
+}
+
+TEST_F(RealCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_more) {
+    const std::array safe{whole(0x201, Format::flexible_faster), frame(0x202)};
+    SafeSender sender;
+    const auto opened = sender.open("can0", safe);
+    ASSERT_TRUE(opened) << opened.error().view();
+    Foreign dump{"candump -L can0"};
+    std::this_thread::sleep_for(200ms);
+    sender.send(SafeSender::Purpose::rehearsal);
+    EXPECT_EQ(sender.left(), 2u);
+    sender.send(SafeSender::Purpose::earnest);
+    EXPECT_EQ(sender.left(), 0u);
+    EXPECT_EQ(flags_of(dump, safe[0]), CANFD_BRS);
+    EXPECT_TRUE(dump.says("can0 202#ABCD"));
+}
+
+TEST_F(RealCanFd, refuses_an_interface_for_classical_frames_and_says_the_cure) {
+    const auto set_mtu = [](int mtu) {
+        const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
+        ifreq request{};
+        std::strcpy(request.ifr_name, "can0");
+        request.ifr_mtu = mtu;
+        set_up(false);
+        ASSERT_EQ(::ioctl(fd, SIOCSIFMTU, &request), 0);
+        set_up(true);
+        ::close(fd);
+    };
+    set_mtu(16);
+    const std::string cure =
+        "CAN interface \"can0\" carries classical frames only (mtu 16, of CAN FD 72), and its "
+        "bus has CAN FD: set it down, and up again after ip link set can0 mtu 72";
+    const auto opened = can.open(settings);
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().view(), cure);
+    const std::array safe{whole(0x201, Format::flexible_faster)};
+    SafeSender sender;
+    const auto rehearsed = sender.open("can0", safe);
+    ASSERT_FALSE(rehearsed);
+    EXPECT_EQ(rehearsed.error().view(), cure);
+    settings.takes_fd = false;
+    open();
+    set_mtu(72);
 }
 
 TEST_F(RealCan, refuses_an_interface_that_is_down_and_says_the_cure) {
