@@ -40,6 +40,7 @@ public:
     double gone = 0, speed = 0; ///< of the belt, mm and mm/s
     std::vector<Board> boards{};
     bool acknowledges = false;
+    bool runs = false; ///< the conveyor's lamp says that the belt may run
 
     /// Once a millisecond of the conveyor's time.
     void move(Duration step) {
@@ -87,41 +88,68 @@ private:
 };
 
 /// The conveyor's drive and scanner, and who acknowledges.
-class ConveyorPlant final : public Plant {
+class ConveyorWires {
 public:
-    explicit ConveyorPlant(Hall& hall) : hall_{hall} { can.send_every("drive", 5ms); }
-    Time move(Time now) override {
-        hall_.command = can.get("drive_command.speed");
-        hall_.move(step());
-        can.set_integer("drive.position", static_cast<std::uint64_t>(std::llround(hall_.gone)));
-        can.set_integer("drive.speed", static_cast<std::uint64_t>(std::llround(hall_.speed)));
-        if (hall_.scanned() != 0) {
-            can.set_integer("scanner.code", static_cast<std::uint64_t>(hall_.scanned()));
+    explicit ConveyorWires(FarEnds& ends) : can{ends, "belt-can"}, io{ends, "belt-io"} {
+        can.send_every("drive", 5ms);
+    }
+    void move(Hall& hall, Duration step) {
+        hall.command = can.get("drive_command.speed");
+        hall.move(step);
+        can.set_integer("drive.position", static_cast<std::uint64_t>(std::llround(hall.gone)));
+        can.set_integer("drive.speed", static_cast<std::uint64_t>(std::llround(hall.speed)));
+        if (hall.scanned() != 0) {
+            can.set_integer("scanner.code", static_cast<std::uint64_t>(hall.scanned()));
             can.send("scanner");
         }
-        io.set("acknowledge", hall_.acknowledges);
-        return now + 1ms;
+        io.set("acknowledge", hall.acknowledges);
+        hall.runs = io.get("lamp");
     }
 
 private:
-    Hall& hall_;
-    can::FarEnd<belt_signals> can{ends, "belt-can"};
-    gpio::FarEnd<belt_lines> io{ends, "belt-io"};
+    can::FarEnd<belt_signals> can;
+    gpio::FarEnd<belt_lines> io;
 };
 
-class StationPlant final : public Plant {
+class StationWires {
 public:
-    StationPlant(Hall& hall, int station) : hall_{hall}, station_{station} {}
+    StationWires(FarEnds& ends, std::string_view device, int station) : station_{station}, io{ends, device} {}
+    void move(Hall& hall) {
+        hall.tools[static_cast<std::size_t>(station_)] = io.get("tool");
+        io.set("board", hall.barrier(station_));
+    }
+
+private:
+    int station_;
+    gpio::FarEnd<station_lines> io;
+};
+
+// ---- of one machine each, where all of them live in one process
+
+class ConveyorPlant final : public tappet::Plant {
+public:
+    explicit ConveyorPlant(Hall& hall) : hall_{hall} {}
     Time move(Time now) override {
-        hall_.tools[static_cast<std::size_t>(station_)] = io.get("tool");
-        io.set("board", hall_.barrier(station_));
+        wires_.move(hall_, step());
         return now + 1ms;
     }
 
 private:
     Hall& hall_;
-    int station_;
-    gpio::FarEnd<station_lines> io{ends, "station-io"};
+    ConveyorWires wires_{ends};
+};
+
+class StationPlant final : public tappet::Plant {
+public:
+    StationPlant(Hall& hall, int station) : hall_{hall}, wires_{ends, "station-io", station} {}
+    Time move(Time now) override {
+        wires_.move(hall_);
+        return now + 1ms;
+    }
+
+private:
+    Hall& hall_;
+    StationWires wires_;
 };
 
 } // namespace woodworking

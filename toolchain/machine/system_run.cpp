@@ -53,7 +53,7 @@ Time WireEnd::next_service() const noexcept TAPPET_REALTIME { return clock_.loca
 
 SystemRun::SystemRun(const SystemView& system, std::span<const AcceptedMachine> machines,
                      std::span<Plant* const> plants, std::uint64_t seed)
-    : system_{system}, wire_{seed, system.wire.rate.bits_per_second} {
+    : system_{system}, wire_{seed, {system.wire.rate.bits_per_second, system.wire.rate.in_data_phase}} {
     for (std::size_t n = 0; n < machines.size(); ++n)
         nodes_.push_back(
             std::make_unique<Node>(machines[n], n < plants.size() ? plants[n] : nullptr, seed + n));
