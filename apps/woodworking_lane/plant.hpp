@@ -16,7 +16,7 @@
 namespace woodworking {
 
 /// A board, as it really is.
-struct Board {
+struct Workpiece {
     Ticket ticket = 0;
     double laid_at = 0; ///< the belt had gone so far, mm
     std::array<Duration, station_count> worked{};
@@ -38,7 +38,7 @@ public:
     std::array<bool, station_count> tools{};
     double command = 0;         ///< mm/s
     double gone = 0, speed = 0; ///< of the belt, mm and mm/s
-    std::vector<Board> boards{};
+    std::vector<Workpiece> boards{};
     bool acknowledges = false;
     bool runs = false; ///< the conveyor's lamp says that the belt may run
 
@@ -57,7 +57,7 @@ public:
             scanned_ = boards.back().ticket;
             spread_ = static_cast<double>(random_.below(3000));
         }
-        for (Board& board : boards) {
+        for (Workpiece& board : boards) {
             const double at = gone - board.laid_at;
             board.left |= at > end;
             for (int s = 0; s < station_count; ++s) {
@@ -71,14 +71,15 @@ public:
     }
     [[nodiscard]] Ticket scanned() const { return scanned_; }
     [[nodiscard]] bool barrier(int station) const {
-        for (const Board& board : boards) {
+        for (const Workpiece& board : boards) {
             const double at = gone - board.laid_at - (stands_at(station) - barrier_before);
             if (at >= 0 && at < length) return true;
         }
         return false;
     }
     [[nodiscard]] int left() const {
-        return static_cast<int>(std::ranges::count_if(boards, [](const Board& each) { return each.left; }));
+        return static_cast<int>(
+            std::ranges::count_if(boards, [](const Workpiece& each) { return each.left; }));
     }
 
 private:

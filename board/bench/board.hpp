@@ -16,6 +16,7 @@ inline constexpr Board bench{
     .highest_priority = 80,
     .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000)),
                              board_device("can1", "can", "can1", bit_rate(1'000'000)),
+                             board_device("can2", "can", "can2", bit_rate(500'000)), // as 100 m have it
                              board_device("io", "gpio", "/dev/io", lines(32)),
                              board_device("panel", "gpio", "/dev/panel", lines(32))),
     // The emulator has neither a frequency governor nor a clock that Linux trusts.

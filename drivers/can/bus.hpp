@@ -43,6 +43,9 @@ struct Bus {
     static constexpr std::string_view device_kind = "can";
     static constexpr Identifiers device_map = AllFrames<map, protocol>::value;
     static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
+        if (protocol.bit_rate != 0 && protocol.bit_rate != use.bit_rate)
+            return Sentence{"it runs at ", use.bit_rate, " bit/s, but what crosses it was proven for ",
+                            protocol.bit_rate, "; correct one of them"};
         return bus_traffic(AllFrames<map, protocol>::traffic, use, into);
     }
     static Duration longest_seen(const void* bus, std::string_view frame) {

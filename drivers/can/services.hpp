@@ -13,6 +13,7 @@ namespace tappet::can {
 template <std::size_t N, std::size_t S> struct Services {
     std::array<FrameRow, N> frames{};
     std::array<Frame, S> safe{};
+    std::uint32_t bit_rate = 0; ///< that they were proven for; 0: the board's, whatever it is
     static constexpr bool any = N + S != 0;
 
     [[nodiscard]] constexpr bool takes(const Frame& frame) const noexcept TAPPET_REALTIME {

@@ -45,6 +45,7 @@ struct StationRows {
     }();
     static constexpr auto services = [] {
         can::Services<frame_count, 0> all{};
+        all.bit_rate = system.wire.rate.bits_per_second;
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
             can::FrameRow& row = all.frames[f];

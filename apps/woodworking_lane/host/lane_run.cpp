@@ -55,7 +55,7 @@ bool LaneRun::run_through(Duration limit) {
 Sentence fault_of(const Hall& hall, int& missed) {
     constexpr std::array<Duration, station_count> takes{800ms, 500ms, 1200ms, 300ms}; // as the tables have it
     missed = 0;
-    for (const Board& board : hall.boards) {
+    for (const Workpiece& board : hall.boards) {
         if (!board.left) continue;
         if (board.harmed)
             return Sentence{"a tool worked on board ", number_of(board.ticket), " while it moved"};

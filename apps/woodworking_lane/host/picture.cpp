@@ -42,7 +42,7 @@ std::string picture_of(const LaneRun& run) {
         }
     }
     for (std::size_t b = 0; b < run.hall.boards.size(); ++b) {
-        const Board& board = run.hall.boards[b];
+        const Workpiece& board = run.hall.boards[b];
         svg.raw("<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"")
             .raw(colours[b % colours.size()])
             .raw("\" points=\"");
