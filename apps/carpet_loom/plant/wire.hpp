@@ -5,8 +5,9 @@
 #include "drivers/canopen/simulated_node.hpp"
 #include "kernel/base/digest.hpp"
 
-#include <bit>
+#include <array>
 #include <cstdint>
+#include <cstring>
 
 namespace tappet::loom {
 
@@ -24,7 +25,9 @@ public:
     static void note(const can::Frame& frame, Time at, Digest& log) noexcept TAPPET_REALTIME {
         log.add(to_ns(at));
         log.add((std::uint64_t{frame.id} << 8) | frame.length);
-        log.add(std::bit_cast<std::uint64_t>(frame.data));
+        std::array<std::uint64_t, sizeof(frame.data) / sizeof(std::uint64_t)> words{};
+        std::memcpy(words.data(), frame.data.data(), sizeof frame.data);
+        for (std::size_t i = 0; i == 0 || 8 * i < frame.length; ++i) log.add(words[i]);
     }
 
 private:
