@@ -22,10 +22,18 @@ struct TaskTiming {
     [[nodiscard]] constexpr bool is_on_grid() const noexcept { return phase_ns >= 0 && jitter_ns == 0; }
 };
 
+/// The job of a task that takes longest. It is the last of `jobs` of its own that fill, with all that is of
+/// higher priority, a window that began with the first one's release.
+struct WorstJob {
+    Response response{};
+    std::int64_t window_ns = 0;
+    std::int64_t jobs = 1;
+};
+
 /// Of the task at `index`, of tasks on one core, highest priority first. Deadlines may exceed periods: every
 /// job of the level's busy period is looked at (Joseph and Pandya 1986; Audsley 1993; Lehoczky 1990).
-constexpr Response response_time(std::span<const TaskTiming> by_priority_highest_first,
-                                 std::size_t index) noexcept {
+constexpr WorstJob worst_job(std::span<const TaskTiming> by_priority_highest_first,
+                             std::size_t index) noexcept {
     using analysis::Span;
     if (index >= by_priority_highest_first.size()) return {};
     const auto higher = by_priority_highest_first.first(index);
@@ -59,7 +67,7 @@ constexpr Response response_time(std::span<const TaskTiming> by_priority_highest
     if (!busy.exists()) return {};
 
     const std::int64_t jobs = std::max<std::int64_t>(1, analysis::arrivals(busy + jitter, own.period_ns));
-    std::int64_t worst_ns = 0;
+    WorstJob worst;
     Span end{};
     for (std::int64_t job = 0; job < jobs; ++job) {
         const Span demand = blocking + (job + 1) * budget;
@@ -68,9 +76,15 @@ constexpr Response response_time(std::span<const TaskTiming> by_priority_highest
         end = analysis::fixed_point(start, steps_left,
                                     [&](Span window) { return demand + interference(window); });
         if (!end.exists()) return {};
-        worst_ns = std::max(worst_ns, jitter.ns + end.ns - job * own.period_ns);
+        const std::int64_t ns = jitter.ns + end.ns - job * own.period_ns;
+        if (job == 0 || ns > worst.response.worst_ns) worst = {{true, ns}, end.ns, job + 1};
     }
-    return {true, worst_ns};
+    return worst;
+}
+
+constexpr Response response_time(std::span<const TaskTiming> by_priority_highest_first,
+                                 std::size_t index) noexcept {
+    return worst_job(by_priority_highest_first, index).response;
 }
 
 } // namespace tappet
