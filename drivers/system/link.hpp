@@ -182,7 +182,7 @@ private:
     /// The other node is heard, again or in a new start of it; then whatever was under way to the one before
     /// is over. After a silence of the same start both ends go on where they were.
     void begin(std::size_t node, std::uint16_t epoch) noexcept TAPPET_REALTIME {
-        if (peers_[node].there) end_rows(node);
+        if (peers_[node].there) lose(node); // it began anew before its silence told
         const bool is_new = peers_[node].epoch != epoch;
         peers_[node] = {true, epoch, never};
         for (std::size_t i = 0; is_new && i < row_count; ++i) {
@@ -192,7 +192,6 @@ private:
             state_[i].serves = state_[i].refuses =
                 false; // what it executes goes on; nobody waits for its end
         }
-        is_there[node].write(true);
     }
     void lose(std::size_t node) noexcept TAPPET_REALTIME {
         end_rows(node);

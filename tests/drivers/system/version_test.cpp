@@ -1,0 +1,66 @@
+// A node of another version of the system: what is the same there works, what differs is refused by name.
+#include "tests/drivers/system/pair.hpp"
+#include "toolchain/machine/system_run.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::pair {
+namespace {
+
+// clang-format off
+/// The value is told in finer steps, and an event that the first version has not comes last.
+inline constexpr auto newer_pair = system("pair",
+    nodes(node<giver_table>("a"), node<taker_table>("b")),
+    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
+    crossings(
+        across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.01)),
+        across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), if_lost("a.giver.not_taken")),
+        across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24)),
+        presence("b", "a.giver.other_is_there"),
+        presence("a", "b.taker.other_is_there")));
+// clang-format on
+using NewerTaker = Firmware<station<newer_pair, "b", taker_table>, board::host>;
+
+TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
+    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), NewerTaker::machine()};
+    SystemRun run{pair.view(), machines, {}, 1};
+    ASSERT_TRUE(run.start());
+    auto& giver = *run.instance(0).find<Giver>("giver");
+    auto& taker = *run.instance(1).find<Taker>("taker");
+    auto& from = *run.instance(0).find<systems::Link<pair, 0>>("wire");
+    auto& to = *run.instance(1).find<systems::Link<newer_pair, 1>>("wire");
+    ASSERT_TRUE(run.run_until([&] { return giver.other_is_there.get() && taker.other_is_there.get(); }, 500ms));
+    giver.tells = 5.0;
+    giver.to_send = {1, 2, 3};
+    giver.asks = 4;
+    run.run_for(400ms);
+    EXPECT_EQ(taker.got, (std::vector<std::int32_t>{1, 2, 3}));
+    EXPECT_EQ(giver.doubled.state(), CommandState::done);
+    EXPECT_EQ(giver.doubled.result<0>(), 8);
+    EXPECT_EQ(taker.level.flow(), Flow::never_written);
+    constexpr std::string_view refusal =
+        "has another row \"a.giver.level\" -> \"b.taker.level\": give both one version of the system";
+    EXPECT_EQ(to.refused.last().view(), "node \"a\" " + std::string{refusal});
+    EXPECT_EQ(from.refused.last().view(), "node \"b\" " + std::string{refusal});
+    EXPECT_FALSE(to.works(0));
+    EXPECT_TRUE(to.works(1));
+    run.stop();
+}
+
+TEST(Versions, the_right_one_is_taken_when_it_comes) {
+    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
+    SystemRun run{pair.view(), machines, {}, 1};
+    ASSERT_TRUE(run.start());
+    run.run_for(300ms);
+    run.stop(1); // in order: it says so
+    run.run_for(20ms);
+    EXPECT_FALSE(run.instance(0).find<Giver>("giver")->other_is_there.get()) << "before its silence would tell";
+    ASSERT_TRUE(run.start(1));
+    run.run_for(300ms);
+    EXPECT_TRUE(run.instance(1).find<Taker>("taker")->level.good());
+    EXPECT_EQ((run.instance(1).find<systems::Link<pair, 1>>("wire")->refused.last().view()), "");
+    run.stop();
+}
+
+} // namespace
+} // namespace tappet::pair
