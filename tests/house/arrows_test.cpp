@@ -61,7 +61,7 @@ const std::vector<Row> house{
     {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen", "drivers/instruments"}},
     // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by; a plant may
     // contain another machine.
-    {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/command_line.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
+    {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/machine/bench/plant_program.hpp", "toolchain/command_line.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "apps/carpet_loom/network.hpp", "drivers/canopen"}},
 

@@ -7,6 +7,7 @@ namespace woodworking {
 namespace {
 
 constexpr double left = 90, top = 50, width = 1100, height = 620, right = width - 30; // px
+constexpr std::size_t points_apart = 15;                                              // of the moments
 constexpr std::array<std::string_view, 6> colours{"#5b8def", "#c8202a", "#2e8b57",
                                                   "#b8860b", "#8a2be2", "#444"};
 
@@ -32,24 +33,28 @@ std::string picture_of(const LaneRun& run) {
     for (std::size_t n = 0; n < node_count; ++n) {
         const double row = n == 0 ? y(0) : y(stands_at(static_cast<int>(n) - 1));
         svg.words(8, row + 18, names[n], "fill=\"#666\"");
-        for (std::size_t m = 1; m < run.moments.size(); ++m) {
-            const Moment &before = run.moments[m - 1], &now = run.moments[m];
-            if (!now.alive[n])
-                svg.rectangle(x(before.at_s), row - 9, x(now.at_s) - x(before.at_s), 18,
-                              "fill=\"#999\" fill-opacity=\"0.5\"");
-            if (n > 0 && now.tools[n - 1])
-                svg.rectangle(x(before.at_s), row - 6, x(now.at_s) - x(before.at_s), 12, "fill=\"#f0a030\"");
-        }
+        const auto bars = [&](double half, std::string_view style, auto is_so) {
+            for (std::size_t m = 0; m < run.moments.size(); ++m) {
+                const std::size_t first = m;
+                while (m < run.moments.size() && is_so(run.moments[m])) ++m;
+                if (m > first)
+                    svg.rectangle(x(run.moments[first].at_s), row - half,
+                                  x(run.moments[m - 1].at_s) - x(run.moments[first].at_s) + 0.5, 2 * half,
+                                  style);
+            }
+        };
+        bars(9, "fill=\"#999\" fill-opacity=\"0.5\"", [&](const Moment& each) { return !each.alive[n]; });
+        if (n > 0) bars(6, "fill=\"#f0a030\"", [&](const Moment& each) { return each.tools[n - 1]; });
     }
     for (std::size_t b = 0; b < run.hall.boards.size(); ++b) {
         const Workpiece& board = run.hall.boards[b];
         svg.raw("<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"")
             .raw(colours[b % colours.size()])
             .raw("\" points=\"");
-        for (const Moment& each : run.moments) {
-            const double at = each.gone - board.laid_at;
-            if (at < 0 || at > Hall::end) continue;
-            svg.number(x(each.at_s)).raw(",").number(y(at)).raw(" ");
+        for (std::size_t m = 0; m < run.moments.size(); m += points_apart) {
+            const double at = run.moments[m].gone - board.laid_at;
+            if (at >= 0 && at <= Hall::end)
+                svg.number(x(run.moments[m].at_s)).raw(",").number(y(at)).raw(" ");
         }
         svg.raw("\"/>\n");
     }
