@@ -10,8 +10,9 @@ namespace tappet::can {
 
 /// The frames that a protocol keeps for itself, and those that make its nodes safe when the machine's process
 /// is no more. A row without a rate is no part of what the bus is proven for: it comes after a fault only.
-template <std::size_t N, std::size_t S> struct Services {
+template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     std::array<FrameRow, N> frames{};
+    std::array<Signal, G> signals{}; ///< what stands in them, for tools: a row's first and how many
     std::array<Frame, S> safe{};
     std::uint32_t bit_rate = 0; ///< that they were proven for; 0: the board's, whatever it is
     static constexpr bool any = N + S != 0;
@@ -61,7 +62,21 @@ template <const auto& map, const auto& services> struct AllFrames {
     static constexpr auto safe = joined<map.safe_count>(map.safe_frames(), services.safe);
     static constexpr bool has_fd =
         std::ranges::any_of(map.frames, [](Format f) { return f != Format::classical; }, &FrameRow::format);
-    static constexpr Identifiers value{receive, transmit, has_fd, safe, map.frames, map.signals};
+    /// What tools are told: of services the frames that say what stands in them.
+    static constexpr auto told_frames = [] {
+        constexpr std::size_t own = map.frames.size();
+        constexpr bool all = services.signals.size() != 0;
+        std::array<FrameRow, own + (all ? services.frames.size() : 0)> rows{};
+        std::copy(map.frames.begin(), map.frames.end(), rows.begin());
+        for (std::size_t f = own; f < rows.size(); ++f) {
+            rows[f] = services.frames[f - own];
+            rows[f].first += map.signals.size();
+        }
+        return rows;
+    }();
+    static constexpr auto told_signals =
+        joined<map.signals.size()>(std::span<const Signal>{map.signals}, services.signals);
+    static constexpr Identifiers value{receive, transmit, has_fd, safe, told_frames, told_signals};
     /// What the bus is proven for.
     static constexpr auto traffic =
         joined<map.frames.size()>(std::span<const FrameRow>{map.frames}, chosen<rated>(&AllFrames::has_rate));

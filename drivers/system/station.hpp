@@ -43,8 +43,81 @@ struct StationRows {
         }
         return names;
     }();
+    // ---- what stands in them, for tools
+
+    using SignalName = Text<64>;
+    /// Of a value as its path, with '_'.
+    static constexpr auto value_names = [] {
+        std::array<SignalName, system.crossings.size()> names{};
+        for (std::size_t x = 0; x < names.size(); ++x)
+            for (const char each : system.crossings[x].from())
+                names[x].append(each == '.' ? std::string_view{"_"} : std::string_view{&each, 1});
+        return names;
+    }();
+    static constexpr can::Signal field(std::string_view name, std::size_t start, std::size_t bits) {
+        return can::signal(name, static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(bits));
+    }
+    /// Empty where no signal of a DBC file says what it is.
+    static constexpr can::Signal value_field(std::size_t x, const WireValue& value, std::size_t start,
+                                             std::string_view name) {
+        const Facet* facet = plan.index[x].from.facet;
+        const TypeId type = facet->type->kind == ValueKind::arguments && facet->type->elements.size() == 1
+                                ? facet->type->elements[0]
+                                : facet->type;
+        can::Signal signal = field(name, start, value.bits);
+        const bool as_it_is = value.kind == ValueKind::opaque;
+        if (value.bits > 64 || (as_it_is && !type->arithmetic)) signal.bits = 0;
+        if (as_it_is && type->kind == ValueKind::real) return signal.as_float().in(facet->unit);
+        if (as_it_is ? type->kind == ValueKind::integer : value.kind != ValueKind::boolean && value.is_signed)
+            signal = signal.as_signed();
+        return signal.times(value.step).in(system.crossings[x].kind == CrossingKind::data ? facet->unit : "");
+    }
+    /// Calls take(frame, signal) for each.
+    static constexpr void each_signal(auto take) {
+        for (std::size_t f = 0; f < frame_count; ++f) {
+            const WireFrame& frame = plan.frames[f];
+            take(f, field("checksum", 0, 8));
+            take(f, field("counter", 8, 4));
+            if (frame.kind == WireFrameKind::beat) {
+                take(f, field("runs", 12, 4));
+                take(f, field("epoch", 16, 16));
+                take(f, field("row", 32, 16));
+                take(f, field("layout", 48, 16));
+            } else if (frame.kind == WireFrameKind::data) {
+                for (std::size_t p = 0; p < system.crossings.size(); ++p) {
+                    if (system.crossings[p].kind != CrossingKind::data || plan.place[p].frame != f) continue;
+                    bool is_first = true; // of the readers of one value
+                    for (std::size_t q = 0; q < p; ++q)
+                        is_first &= system.crossings[q].from() != system.crossings[p].from();
+                    if (const can::Signal value =
+                            value_field(p, plan.index[p].value, plan.place[p].at + 1u, value_names[p].view());
+                        is_first && value.bits != 0)
+                        take(f, value);
+                }
+            } else {
+                take(f, field("word", 12, 4));
+                take(f, field("number", 16, 8));
+                take(f, field("session", 24, 8));
+                if (frame.kind == WireFrameKind::message)
+                    if (const can::Signal value = value_field(
+                            frame.crossing, plan.index[frame.crossing].value, channel_bits, "value");
+                        value.bits != 0)
+                        take(f, value);
+            }
+        }
+    }
+    static constexpr std::size_t signal_count = [] {
+        std::size_t count = 0;
+        each_signal([&](std::size_t, const can::Signal&) { ++count; });
+        return count;
+    }();
     static constexpr auto services = [] {
-        can::Services<frame_count, 0> all{};
+        can::Services<frame_count, 0, signal_count> all{};
+        std::size_t k = 0;
+        each_signal([&](std::size_t f, const can::Signal& signal) {
+            if (all.frames[f].signals++ == 0) all.frames[f].first = k;
+            all.signals[k++] = signal;
+        });
         all.bit_rate = system.wire.rate.bits_per_second;
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];

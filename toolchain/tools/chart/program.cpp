@@ -116,7 +116,7 @@ private:
     bool write_buses() {
         bool good = true;
         for (const ComponentRow& row : machine_.table.components) {
-            if (row.type->device_kind != "can") continue;
+            if (row.type->device_kind != "can" || row.type->device_map == nullptr) continue;
             const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
             good = write(stem_ + "." + identifier(row.name) + ".dbc",
                          can::dbc::to_dbc(machine_.table.name, map.frames, map.signals)) &&

@@ -1,0 +1,76 @@
+// What crosses a system's wire, as canmatrix reads it: the exported DBC file, and frames that were heard
+// there.
+#include "drivers/can/dbc/writer.hpp"
+#include "tests/drivers/system/pair.hpp"
+#include "tests/toolchain/program.hpp"
+#include "toolchain/machine/system_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+
+namespace tappet::pair {
+namespace {
+
+using testing::HasSubstr;
+
+std::string hex_of(const can::Frame& frame) {
+    std::string text;
+    for (std::size_t i = 0; i < frame.length; ++i) {
+        std::array<char, 3> digits{};
+        std::snprintf(digits.data(), digits.size(), "%02x", unsigned{frame.data[i]});
+        text += digits.data();
+    }
+    return text;
+}
+std::string bits_of(double value) {
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx",
+                  static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
+    return text.data();
+}
+
+TEST(SystemDbc, is_read_by_a_tool_that_is_not_ours_and_so_are_the_frames) {
+    const auto& plan = systems::plan_of<pair>;
+    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
+    SystemRun run{pair.view(), machines, {}, 1};
+    std::array<can::Identifier, plan.frames.size()> all{};
+    for (std::size_t f = 0; f < all.size(); ++f) all[f] = {plan.frames[f].id, false};
+    can::Twin ear;
+    ASSERT_TRUE(ear.open({.interface = "ear", .receive = all}));
+    ASSERT_TRUE(run.wire().attach(ear));
+    ASSERT_TRUE(run.start());
+    run.run_for(300ms);
+    auto& giver = *run.instance(0).find<Giver>("giver");
+    giver.tells = -123.44;
+    giver.to_send = {77};
+    run.run_for(60ms);
+    std::string orders;
+    const std::string file = testing::TempDir() + "pair_test.dbc";
+    using Rows = systems::StationRows<pair, 0>;
+    using Frames = can::AllFrames<systems::no_signals, Rows::services>;
+    std::ofstream{file} << can::dbc::to_dbc("a", Frames::value.frames, Frames::value.signals);
+    orders += "file " + file + "\\n";
+    const std::uint32_t level = plan.frames[plan.place[0].frame].id,
+                        sent = plan.frames[plan.place[1].frame].id;
+    can::Frame frame, of_level, of_event;
+    while (ear.receive(frame).what != can::Received::none) {
+        if (frame.id == level) of_level = frame;
+        if (frame.id == sent) of_event = frame;
+    }
+    orders += "decode " + std::to_string(level) + " 0 " + hex_of(of_level) + "\\n";
+    orders += "decode " + std::to_string(sent) + " 0 " + hex_of(of_event) + "\\n";
+    run.stop();
+    const Ended read = run_line("printf '" + orders + "' | /usr/bin/python3 " TAPPET_DBC_ORACLE);
+    EXPECT_EQ(read.exit_code, 0) << read.text;
+    EXPECT_THAT(read.text, HasSubstr("data_of_a_giver_level"));
+    EXPECT_THAT(read.text, HasSubstr("end\t\n")) << "canmatrix has nothing to complain of";
+    EXPECT_THAT(read.text, HasSubstr("a_giver_level=-1234;" + bits_of(-123.4)));
+    EXPECT_THAT(read.text, HasSubstr("value=77;"));
+    std::remove(file.c_str());
+}
+
+} // namespace
+} // namespace tappet::pair
