@@ -4,6 +4,7 @@
 
 #include "kernel/base/digest.hpp"
 #include "kernel/base/response.hpp"
+#include "kernel/component/device_traffic.hpp"
 #include "kernel/system/resolve.hpp"
 
 #include <algorithm>
@@ -294,6 +295,13 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
         if (kind != CrossingKind::event && kind != CrossingKind::command) continue;
         if (Sentence fault = systems::add_channels(s, plan, x); !fault.empty()) return refuse(fault), plan;
     }
+    if (plan.frames.size() > most_traffic_rows)
+        return refuse(Sentence{
+                   "wire \"", s.wire.name, "\" has ", plan.frames.size(), " frames, more than ",
+                   most_traffic_rows,
+                   " that are analysed: tell values of one node with one every(...), events seldom as "
+                   "values, or make two systems"}),
+               plan;
     const std::size_t bad = systems::assign(s, plan, analysis);
     for (std::size_t f = 0; f < plan.frames.size(); ++f)
         plan.frames[f].id = s.wire.first_identifier + static_cast<std::uint32_t>(f);
