@@ -119,6 +119,15 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const Arch
         // It sleeps until somebody opens it; a reset ends the guest.
         "-device", "i6300esb", "-machine"};
     arguments.insert(arguments.end(), architecture.machine.begin(), architecture.machine.end());
+    for (std::size_t i = 0; i < scenario.can_cards.size(); ++i) {
+        const std::string bus = "can-bus-" + std::to_string(i);
+        arguments.insert(arguments.end(), {"-object", "can-bus,id=" + bus});
+        if (scenario.can_cards[i] == "ctucan")
+            arguments.insert(arguments.end(), {"-device", "ctucan_pci,canbus0=" + bus + ",canbus1=" + bus});
+        else // Kvaser's, with one each
+            for (int channel = 0; channel < 2; ++channel)
+                arguments.insert(arguments.end(), {"-device", "kvaser_pci,canbus=" + bus});
+    }
     if (scenario.clock == Clock::instructions) {
         arguments.insert(arguments.end(),
                          {"-icount", "shift=" + std::to_string(instruction_shift) + ",sleep=off"});
@@ -321,6 +330,13 @@ void check(const Scenario& scenario, const Architecture& architecture, const fs:
         throw BenchError("there is no kernel '" + scenario.kernel + "' for " + architecture.name + " at " +
                          kernel.string() + "; use rt (or plain, on x86-64), and run " + architecture.set_up +
                          " once as root");
+    }
+    for (const std::string& card : scenario.can_cards) {
+        const fs::path driver = kernel / "modules" / (card == "ctucan" ? "ctucanfd.ko" : "kvaser_pci.ko");
+        if (!fs::exists(driver)) {
+            throw BenchError("there is no driver of the CAN card '" + card + "' at " + driver.string() +
+                             "; run " + architecture.set_up + " once as root");
+        }
     }
     if (scenario.clock == Clock::instructions && scenario.processors != 1) {
         throw BenchError("the instruction clock drives one processor only, " +

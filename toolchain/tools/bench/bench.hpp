@@ -41,6 +41,9 @@ struct Scenario {
     std::vector<File> files;        // dynamic programs bring their libraries along
     std::vector<std::string> tools; // programs of the host, by name, to /bin
     std::vector<std::string> can;   // virtual CAN interfaces, up
+    // Emulated cards of two controllers, each pair on a bus of its own: "sja1000" of classical CAN, "ctucan"
+    // of CAN FD. Linux's own drivers for them name the interfaces, which are down and have no bit rate.
+    std::vector<std::string> can_cards;
     std::vector<GpioChip> gpio;
     std::vector<Setting> settings; // written before the first command
     // In order; the first that fails ends the scenario. "& " at the end: in the background, terminated at the

@@ -27,6 +27,8 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
                          and real-time threads that nobody throttles
   --tool NAME            a program of this machine for the guest's /bin; python3 brings its standard library
   --can NAME             a virtual CAN interface
+  --can-card sja1000|ctucan   two emulated CAN controllers on one bus, of classical CAN or of CAN FD; Linux names
+                         their interfaces, which are down
   --gpio-chip NAME:LINES simulated GPIO: /dev/NAME, its outside at /sim/NAME/sim_gpioN/pull and .../value
   --set PATH=VALUE       written before the first command, e.g. /proc/sys/kernel/sched_rt_runtime_us=-1
   --collect GUEST=HOST   a file copied out at the end
@@ -82,6 +84,8 @@ bool take(Request& request, const std::string& option, const std::string& value)
         scenario.tools.push_back(value);
     } else if (option == "--can") {
         scenario.can.push_back(value);
+    } else if (option == "--can-card" && (value == "sja1000" || value == "ctucan")) {
+        scenario.can_cards.push_back(value);
     } else if (option == "--gpio-chip") {
         const auto [name, lines] = parts(option, value, ':');
         scenario.gpio.push_back({name, number(option, lines)});
