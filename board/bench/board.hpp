@@ -14,8 +14,8 @@ inline constexpr Board bench{
     .heap_bytes = 160 * 1024,
     .processors = 1, // the emulator counts instructions for one processor only
     .highest_priority = 80,
-    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000)),
-                             board_device("can1", "can", "can1", bit_rate(1'000'000)),
+    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000, 5'000'000)),
+                             board_device("can1", "can", "can1", bit_rate(1'000'000, 5'000'000)),
                              board_device("can2", "can", "can2", bit_rate(500'000)), // as 100 m have it
                              board_device("io", "gpio", "/dev/io", lines(32)),
                              board_device("panel", "gpio", "/dev/panel", lines(32))),
