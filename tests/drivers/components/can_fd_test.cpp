@@ -1,0 +1,126 @@
+// A machine on a bus with CAN FD frames, from its board's two bit rates to the values in its plant's hands.
+#include "drivers/can/bus.hpp"
+#include "drivers/can/far_end.hpp"
+#include "drivers/plant/simulation.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::test {
+namespace {
+
+constexpr auto signals = can::signal_map(
+    can::receive(can::standard(0x181), "scan", can::fd_bytes(64), can::every(2ms),
+                 can::signal("count", 0, 16),
+                 can::signal("width", 487, 24).big_endian().times(0.001).in("mm")),
+    can::receive(can::standard(0x182), "guard", can::bytes(1), can::every(10ms), can::signal("closed", 0, 1)),
+    can::transmit(can::standard(0x201), "recipe", can::fd_bytes(24).in_one_rate(), can::every(10ms),
+                  can::signal("thickness", 160, 24).times(0.001).in("mm").safe(0)));
+
+/// Planes what was scanned to half of its width.
+struct Planer {
+    Input<double> width{};
+    Output<double> thickness{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME { thickness.write(width.get() / 2); }
+    static constexpr auto interface() {
+        return facets(input<&Planer::width>("width", "mm", "of the board, scanned"),
+                      output<&Planer::thickness>("thickness", "mm", "to be planed to"));
+    }
+};
+
+// clang-format off
+constexpr auto planing_machine = machine("planing-machine",
+    components(component<can::Bus<signals>>("can", device("wire")), component<Planer>("planer")),
+    activities(
+        activity("can",    on_device("can"), at_most(8, 1ms), runs("can"), deadline(500us), budget(20us)),
+        activity("planer", every(1ms), runs("planer"), budget(20us))),
+    connections(
+        data("can.scan.width",   "planer.width", stale_after(50ms), hold),
+        data("planer.thickness", "can.recipe.thickness", stale_after(50ms), hold)),
+    reactions(), behaviours());
+// clang-format on
+
+constexpr Board box{.name = "box",
+                    .memory_budget_bytes = 4u << 20,
+                    .devices =
+                        board_devices(board_device("can0", "can", "can0", bit_rate(500'000, 2'000'000)))};
+constexpr Binding on_box = binding(wired("wire", "can0"));
+
+struct Scanner final : Plant {
+    Scanner() { can.send_every("scan", 2ms); }
+    Time move(Time now) override { return now + 1ms; }
+    can::FarEnd<signals> can{ends, "wire"};
+};
+
+struct PlaningMachine : testing::Test {
+    PlaningMachine() {
+        devices.set_bit_rates({500'000, 2'000'000});
+        const auto opened = devices.open(machine);
+        EXPECT_TRUE(opened) << opened.error().view();
+        const auto configured = instance.configure(devices.provided());
+        EXPECT_TRUE(configured) << configured.error().view();
+        world.add({this, [](void* self) { return static_cast<PlaningMachine*>(self)->next; },
+                   [](void* self, Time now) { static_cast<PlaningMachine*>(self)->advance(now); }});
+        world.start();
+    }
+    void advance(Time now) {
+        devices.advance(now);
+        next = now + 50us;
+    }
+    void run_for(Duration time) { EXPECT_TRUE(world.run_until(clock.now() + time)); }
+
+    Scanner plant;
+    SimulatedDevices devices{plant, 1};
+    AcceptedMachine machine = Firmware<planing_machine, box, on_box>::machine();
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{machine, clock};
+    VirtualWorld world{instance};
+    Time next{};
+    can::Bus<signals>& bus = *instance.find<can::Bus<signals>>("can");
+};
+
+TEST_F(PlaningMachine, has_values_that_lie_behind_the_eighth_byte_in_and_out) {
+    plant.can.set("scan.width", 123.456);
+    run_for(100ms);
+    EXPECT_NEAR(plant.can.get("recipe.thickness"), 61.728, 0.0005);
+    plant.can.set("scan.width", 8000.25);
+    run_for(100ms);
+    EXPECT_NEAR(plant.can.get("recipe.thickness"), 4000.125, 0.0005);
+    EXPECT_EQ(bus.wrong_lengths.last(), 0);
+    EXPECT_GE(bus.longest_response("recipe"), 740us) << "300 + 5 bits, all of them slow";
+    EXPECT_LT(bus.longest_response("recipe"), 10ms);
+}
+
+TEST_F(PlaningMachine, is_proven_by_both_bit_rates) {
+    std::array<TrafficRow, 3> rows{};
+    const DeviceUse use{"can0", 500'000, 2'000'000, 1, 100ms, 500us};
+    EXPECT_EQ(can::Bus<signals>::analyse_traffic(use, rows).view(), "");
+    EXPECT_EQ(rows[0].wire_time, 403us);
+    EXPECT_EQ(rows[2].wire_time, 620us);
+    for (const TrafficRow& row : rows) EXPECT_LE(row.worst, row.deadline) << row.name;
+}
+
+TEST_F(PlaningMachine, takes_no_frame_of_another_format) {
+    run_for(20ms);
+    can::Frame wrong;
+    wrong.id = 0x182;
+    wrong.length = 1;
+    wrong.stamp = clock.now();
+    set_format(wrong, can::Format::flexible);
+    EXPECT_TRUE(plant.can.RawFarEnd::send(wrong));
+    EXPECT_EQ(plant.can.refused(), 0u);
+    run_for(20ms);
+    EXPECT_EQ(bus.wrong_lengths.last(), 1);
+}
+
+TEST_F(PlaningMachine, counts_frames_that_the_bus_cut_short) {
+    run_for(20ms);
+    devices.bus("wire").faults.only = can::standard(0x181);
+    devices.bus("wire").faults.corrupt_length.next = 2;
+    run_for(20ms);
+    EXPECT_EQ(bus.wrong_lengths.last(), 2);
+}
+
+} // namespace
+} // namespace tappet::test
