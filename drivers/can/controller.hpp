@@ -20,6 +20,7 @@ public:
         state_ = state;
         count = {};
         longest_ = {};
+        last_ = {};
     }
     Send accept(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
         if (faulted(state_)) return refuse(Send::refused_fault);
@@ -46,12 +47,18 @@ public:
     void confirmed(Time now) noexcept TAPPET_REALTIME {
         const Transmitter::Flight sent = transmitter_.confirmed(now, count);
         const std::size_t which = index_of(sent.identifier);
-        if (sent.made != Time{} && which < longest_.size())
-            longest_[which] = std::max(longest_[which], now - sent.made);
+        if (sent.made == Time{} || which >= longest_.size()) return;
+        longest_[which] = std::max(longest_[which], now - sent.made);
+        last_[which] = {sent.made, now};
     }
     [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME {
         const std::size_t which = index_of(of);
         return which < longest_.size() ? longest_[which] : Duration::zero();
+    }
+
+    [[nodiscard]] Confirmation last_confirmed(Identifier of) const noexcept TAPPET_REALTIME {
+        const std::size_t which = index_of(of);
+        return which < last_.size() ? last_[which] : Confirmation{};
     }
 
     void report(const BusError& error) noexcept TAPPET_REALTIME {
@@ -100,6 +107,7 @@ private:
     std::span<const Identifier> transmit_{};
     bool takes_fd_ = false;
     std::array<Duration, TransmitQueue::capacity> longest_{}; // of transmit_, from making to confirmation
+    std::array<Confirmation, TransmitQueue::capacity> last_{};
     State state_ = State::active;
 };
 

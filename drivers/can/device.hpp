@@ -72,6 +72,12 @@ struct Settings {
     int receive_buffer_bytes = 1 << 20; ///< the default of Linux holds 278 frames
 };
 
+/// A frame that somebody acknowledged: when its contents were made, and when it was through. At Time{}: none.
+struct Confirmation {
+    Time made{}, at{};
+    bool operator==(const Confirmation&) const = default;
+};
+
 /// All calls belong to one activity and are real-time, except restart(): it blocks, and belongs to a
 /// background activity. A faulted bus is silent: its device wakes nobody until it is restarted.
 class Device {
@@ -97,6 +103,10 @@ public:
     /// Of what is sent with this identifier: the longest from frame.stamp until it was confirmed. Nought:
     /// none was, or the device does not look.
     [[nodiscard]] virtual Duration longest_response(Identifier) const noexcept TAPPET_REALTIME { return {}; }
+    /// Of what is sent with this identifier: the last one. A device that does not look answers none.
+    [[nodiscard]] virtual Confirmation last_confirmed(Identifier) const noexcept TAPPET_REALTIME {
+        return {};
+    }
     /// Drops everything that waits to be sent: an emergency stop calls this.
     virtual void purge() noexcept TAPPET_REALTIME = 0;
     /// Not real-time. Brings a faulted controller back, with everything it still held dropped.

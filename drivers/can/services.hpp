@@ -26,6 +26,17 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
 };
 inline constexpr Services<0, 0> no_services{};
 
+/// Of two protocols on one bus. Each takes what it knows.
+template <std::size_t N, std::size_t S, std::size_t M, std::size_t T>
+constexpr Services<N + M, S + T> together(const Services<N, S>& one, const Services<M, T>& other) noexcept {
+    Services<N + M, S + T> both{};
+    std::copy(other.frames.begin(), other.frames.end(),
+              std::copy(one.frames.begin(), one.frames.end(), both.frames.begin()));
+    std::copy(other.safe.begin(), other.safe.end(),
+              std::copy(one.safe.begin(), one.safe.end(), both.safe.begin()));
+    return both;
+}
+
 /// What one end of the bus takes and sends, of a map and of services together.
 template <const auto& map, const auto& services> struct AllFrames {
     template <std::size_t N, class T, std::size_t M>

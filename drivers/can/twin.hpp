@@ -33,6 +33,9 @@ public:
     [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME override {
         return controller_.longest_response(of);
     }
+    [[nodiscard]] Confirmation last_confirmed(Identifier of) const noexcept TAPPET_REALTIME override {
+        return controller_.last_confirmed(of);
+    }
     void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
     Restart restart() noexcept override;
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }

@@ -2,10 +2,8 @@
 // what is likely.
 #pragma once
 
-#include "kernel/base/realtime.hpp"
-#include "kernel/base/time.hpp"
+#include "kernel/base/clock_bounds.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,47 +20,14 @@ struct ClockTimes {
 /// A question reaches the other machine after it was asked, and the answer this one after it was given, so
 /// that the other clock is ahead by no less than `answered - got` and no more than `received - asked`. Each
 /// exchange narrows what is known; as it ages it widens by as much as the two clocks may drift. Real-time.
-class ClockExchange {
+class ClockExchange : public ClockBounds {
 public:
     /// `drift`: between the two clocks, seconds in a second.
     void take(const ClockTimes& times, double drift) noexcept TAPPET_REALTIME {
         age(times.got, drift);
-        const Duration way = after(times.got - times.asked, drift);
-        const Duration least = times.answered - times.got, most = times.received - times.asked + way;
-        if (!known_ || most < least_ || least > most_) { // before, or another clock than before
-            jumps_ += known_ ? 1 : 0;
-            least_ = least, most_ = most;
-            known_ = true;
-        } else {
-            least_ = std::max(least_, least);
-            most_ = std::min(most_, most);
-        }
+        narrow(times.answered - times.got,
+               times.received - times.asked + parted(times.got - times.asked, drift));
     }
-    /// What is known of `now`.
-    void age(Time now, double drift) noexcept TAPPET_REALTIME {
-        const Duration wider = after(now - at_, drift);
-        if (known_) least_ -= wider, most_ += wider;
-        at_ = now;
-    }
-    [[nodiscard]] bool known() const noexcept TAPPET_REALTIME { return known_; }
-    /// Of the other clock against the own one, give or take error().
-    [[nodiscard]] Duration ahead() const noexcept TAPPET_REALTIME { return least_ + error(); }
-    [[nodiscard]] Duration error() const noexcept TAPPET_REALTIME { return (most_ - least_ + 1ns) / 2; }
-    /// Exchanges that cannot be of the clock that was known before.
-    [[nodiscard]] std::int64_t jumps() const noexcept TAPPET_REALTIME { return jumps_; }
-
-private:
-    /// Rounded upwards.
-    static Duration after(Duration time, double drift) noexcept TAPPET_REALTIME {
-        return time > Duration::zero()
-                   ? Duration{static_cast<std::int64_t>(static_cast<double>(time.count()) * drift) + 1}
-                   : Duration::zero();
-    }
-
-    bool known_ = false;
-    Duration least_{}, most_{};
-    Time at_{};
-    std::int64_t jumps_ = 0;
 };
 
 /// A question and its answer have one form, little-endian: u32 "clk1", u32 number, and of the times three in

@@ -33,7 +33,7 @@ can::Receive WireEnd::receive(can::Frame& frame) noexcept TAPPET_REALTIME {
     for (std::size_t i = 0; i < can::Twin::inbox; ++i) {
         const can::Receive got = twin_.receive(frame);
         if (got.what != can::Received::frame) return got;
-        frame.stamp = clock_.local(frame.stamp);
+        frame.stamp = clock_.local(frame.stamp + lateness(frame.stamp));
         if (is_cut || random_.one_in(omits_one_in)) continue;
         has_again_ = random_.one_in(doubles_one_in);
         again_ = frame;
@@ -47,6 +47,18 @@ can::Send WireEnd::send(const can::Frame& frame, can::Keep keep) noexcept TAPPET
     can::Frame sent = frame;
     sent.stamp = clock_.true_time(frame.stamp);
     return twin_.send(sent, keep);
+}
+
+can::Confirmation WireEnd::last_confirmed(can::Identifier of) const noexcept TAPPET_REALTIME {
+    const can::Confirmation found = twin_.last_confirmed(of);
+    if (found.at == Time{}) return {};
+    return {clock_.local(found.made), clock_.local(found.at + lateness(found.at))};
+}
+
+/// The same of one frame however often it is asked for.
+Duration WireEnd::lateness(Time of) const noexcept TAPPET_REALTIME {
+    Random random{seed_ ^ static_cast<std::uint64_t>(to_ns(of))};
+    return Duration{random.between(0, stamps_late.count())};
 }
 
 Time WireEnd::next_service() const noexcept TAPPET_REALTIME { return clock_.local(twin_.next_service()); }

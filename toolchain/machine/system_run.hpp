@@ -26,7 +26,7 @@ struct ClockFault {
 class WireEnd final : public can::Device {
 public:
     WireEnd(can::Twin& twin, const ClockFault& clock, std::uint64_t seed)
-        : twin_{twin}, clock_{clock}, random_{seed} {}
+        : twin_{twin}, clock_{clock}, random_{seed}, seed_{seed} {}
 
     can::Receive receive(can::Frame& frame) noexcept TAPPET_REALTIME override;
     can::Send send(const can::Frame& frame, can::Keep keep) noexcept TAPPET_REALTIME override;
@@ -39,19 +39,26 @@ public:
     [[nodiscard]] Duration longest_response(can::Identifier of) const noexcept TAPPET_REALTIME override {
         return twin_.longest_response(of);
     }
+    [[nodiscard]] can::Confirmation last_confirmed(can::Identifier of) const noexcept
+        TAPPET_REALTIME override;
     void purge() noexcept TAPPET_REALTIME override { twin_.purge(); }
     can::Restart restart() noexcept override { return twin_.restart(); }
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
     void set_listener(Listener ready, void* context) noexcept override { twin_.set_listener(ready, context); }
 
     std::uint32_t omits_one_in = 0, doubles_one_in = 0;
+    /// What arrives and what is confirmed is stamped up to so much later than it was through.
+    Duration stamps_late{};
     /// Nothing passes: the cable is cut on this side of the node.
     bool is_cut = false;
 
 private:
     can::Twin& twin_;
     const ClockFault& clock_;
+    [[nodiscard]] Duration lateness(Time of) const noexcept TAPPET_REALTIME;
+
     Random random_;
+    std::uint64_t seed_;
     can::Frame again_{};
     bool has_again_ = false;
 };

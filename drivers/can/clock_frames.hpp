@@ -1,0 +1,135 @@
+// The two frames by which one node of a bus tells the others its time, as AUTOSAR has them (CanTSyn): SYNC,
+// of which both ends note when it is through, and FUP, which tells when that was by the teller's clock.
+#pragma once
+
+#include "drivers/can/services.hpp"
+#include "kernel/base/crc.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tappet::can {
+
+/// Who tells its time by which frames; one constant, which both ends have.
+struct ClockRow {
+    Identifier identifier{};                                  ///< of both frames
+    Duration every{};                                         ///< from SYNC to SYNC
+    Duration jitter{};                                        ///< by how much its teller may be late with it
+    std::uint8_t domain = 0;                                  ///< 0 to 15: several may share an identifier
+    std::array<std::uint8_t, 16> sync_ids{}, follow_up_ids{}; ///< by sequence number, in the checksum
+};
+/// clock(standard(0x090), every(100ms))
+constexpr ClockRow clock(Identifier identifier, Rate rate, std::uint8_t domain = 0) noexcept {
+    return {identifier, rate.every, rate.jitter, domain, {}, {}};
+}
+
+/// FUP leaves so long after its SYNC, or not at all.
+constexpr Duration follow_up_within(const ClockRow& row) noexcept { return row.every / 4; }
+
+/// Empty: it is right.
+constexpr Sentence clock_fault(const ClockRow& row) noexcept {
+    if (!valid(row.identifier))
+        return Sentence{"the clock's identifier ", row.identifier.id, " is out of range: give it another"};
+    if (row.every < 10ms || row.every > 10s)
+        return Sentence{"the clock is told every ", row.every.count() / 1'000'000,
+                        " ms: write every(..) from 10 ms to 10 s"};
+    if (row.jitter < Duration::zero() || row.jitter > row.every / 4)
+        return Sentence{"the clock's teller may be late by ", row.jitter.count() / 1'000'000,
+                        " ms: write at most a quarter of its period"};
+    if (row.domain > 15)
+        return Sentence{"the clock's domain is ", unsigned{row.domain}, ": write one from 0 to 15"};
+    return {};
+}
+
+/// For can::Bus<signals, clock_frames<row, transmit>>: of who tells; of the others, receive.
+template <const auto& row, Direction direction>
+inline constexpr auto clock_frames = [] {
+    TAPPET_ACCEPTED(clock_fault(row));
+    Services<2, 0> both{};
+    both.frames[0].name = "clock.sync";
+    both.frames[1].name = "clock.follow_up";
+    for (FrameRow& frame : both.frames) {
+        frame.identifier = row.identifier;
+        frame.direction = direction;
+        frame.length = 8;
+    }
+    // On no grid of the bus's own. Two FUP are nearer to each other than two SYNC.
+    both.frames[0].apart = row.every;
+    both.frames[0].jitter = direction == Direction::transmit ? Duration{} : row.jitter;
+    both.frames[1].apart = row.every - row.jitter - follow_up_within(row);
+    return both;
+}();
+
+/// What a frame tells.
+struct ClockFrame {
+    enum class Kind : std::uint8_t { sync, follow_up };
+    Kind kind = Kind::sync;
+    std::uint8_t sequence = 0; ///< 0 to 15
+    /// Of SYNC: whole seconds of the teller's clock when it was made. Of FUP: ns from then until it was
+    /// through, and of that in `seconds_more` the whole seconds.
+    std::uint32_t number = 0;
+    std::uint8_t seconds_more = 0; ///< 0 to 3
+
+    constexpr bool operator==(const ClockFrame&) const = default;
+};
+
+namespace detail {
+
+/// Over all behind itself, and the id last.
+constexpr std::uint8_t clock_checksum(const ClockRow& row, const Payload& data) noexcept TAPPET_REALTIME {
+    const std::size_t sequence = data[2] & 15U;
+    const bool is_sync = (data[0] & 8U) == 0;
+    const std::array<std::uint8_t, 7> summed{data[2],
+                                             data[3],
+                                             data[4],
+                                             data[5],
+                                             data[6],
+                                             data[7],
+                                             is_sync ? row.sync_ids[sequence] : row.follow_up_ids[sequence]};
+    return crc8_2f.of(summed);
+}
+
+inline constexpr std::uint8_t secured_sync = 0x20, secured_follow_up = 0x28;
+
+} // namespace detail
+
+constexpr Frame encode(const ClockRow& row, const ClockFrame& told) noexcept TAPPET_REALTIME {
+    Frame frame;
+    frame.id = row.identifier.id;
+    frame.extended = row.identifier.extended;
+    frame.length = 8;
+    const bool is_sync = told.kind == ClockFrame::Kind::sync;
+    frame.data[0] = is_sync ? detail::secured_sync : detail::secured_follow_up;
+    frame.data[2] = static_cast<std::uint8_t>((row.domain & 15U) << 4 | (told.sequence & 15U));
+    frame.data[3] = is_sync ? std::uint8_t{0} : static_cast<std::uint8_t>(told.seconds_more & 3U);
+    for (std::size_t i = 0; i < 4; ++i)
+        frame.data[4 + i] = static_cast<std::uint8_t>(told.number >> (24U - 8U * i));
+    frame.data[1] = detail::clock_checksum(row, frame.data);
+    return frame;
+}
+
+enum class ClockRead : std::uint8_t {
+    told,    ///< it is one
+    foreign, ///< of another identifier, domain or kind of message
+    wrong,   ///< spoilt, or without a checksum
+};
+constexpr ClockRead decode(const ClockRow& row, const Frame& frame, ClockFrame& told) noexcept
+    TAPPET_REALTIME {
+    if (row.identifier != Identifier{frame.id, frame.extended} || frame.remote || frame.fd)
+        return ClockRead::foreign;
+    if (frame.length != 8) return ClockRead::wrong;
+    if (frame.data[2] >> 4 != row.domain) return ClockRead::foreign;
+    const std::uint8_t kind = frame.data[0];
+    if (kind == 0x10 || kind == 0x18) return ClockRead::wrong; // SYNC and FUP that nothing secures
+    if (kind != detail::secured_sync && kind != detail::secured_follow_up) return ClockRead::foreign;
+    if (frame.data[1] != detail::clock_checksum(row, frame.data)) return ClockRead::wrong;
+    told = {};
+    told.kind = kind == detail::secured_sync ? ClockFrame::Kind::sync : ClockFrame::Kind::follow_up;
+    told.sequence = frame.data[2] & 15U;
+    if (told.kind == ClockFrame::Kind::follow_up) told.seconds_more = frame.data[3] & 3U;
+    for (std::size_t i = 0; i < 4; ++i) told.number = told.number << 8 | frame.data[4 + i];
+    const bool too_much = told.kind == ClockFrame::Kind::follow_up && told.number >= 1'000'000'000;
+    return too_much ? ClockRead::wrong : ClockRead::told;
+}
+
+} // namespace tappet::can

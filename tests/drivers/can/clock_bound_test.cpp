@@ -1,0 +1,134 @@
+// A thousand seeds of a clock that is told over a bus: clocks that drift, stamps that are late, frames that
+// wait, are lost and come twice, tellers that begin anew with another time. What is told is never further
+// from the truth than it says.
+#include "tests/drivers/can/clock_machines.hpp"
+#include "toolchain/machine/system_run.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::test {
+namespace {
+
+constexpr Duration late = 100us; // as the properties of the clock have it
+
+constexpr std::array nodes{SystemNode{"teller", {}}, SystemNode{"told", {}}};
+constexpr SystemView bus{.name = "clock",
+                         .nodes = nodes,
+                         .wire = {.name = "wire", .rate = {500'000}},
+                         .crossings = {},
+                         .promises = {}};
+
+struct Judgement {
+    std::int64_t looks = 0, exchanges = 0, discarded = 0, broken = 0, restarts = 0;
+    double nearest = 0; ///< of what is told, to its bound
+    Duration worst_error{};
+};
+
+class Story {
+public:
+    Story(const AcceptedMachine& told, std::uint64_t seed)
+        : random_{seed},
+          machines_{Firmware<telling_machine, board>::machine(), told},
+          run_{bus, machines_, {}, seed} {
+        for (ClockFault& clock : clocks_) {
+            clock.drift_ppm = static_cast<double>(random_.between(-100, 100));
+            clock.offset = Duration{random_.between(0, 5'000'000'000)};
+        }
+        for (std::size_t n = 0; n < 2; ++n) {
+            run_.set_clock(n, clocks_[n]);
+            run_.end(n).stamps_late = late;
+        }
+    }
+    void live(Judgement& found) {
+        // Late by up to a fifth of a second, either of them.
+        const std::size_t first = random_.below(2);
+        begin(first);
+        run_.run_for(Duration{random_.between(0, 200'000'000)});
+        begin(1 - first);
+        run_.end(1).omits_one_in = random_.one_in(2) ? 8 : 0;
+        run_.end(1).doubles_one_in = random_.one_in(2) ? 8 : 0;
+        run_.wire().faults.spoil.one_in = random_.one_in(2) ? 10 : 0;
+        if (random_.one_in(2)) {
+            can::Frame urgent;
+            urgent.id = 1;
+            urgent.length = 8;
+            run_.wire().babble(urgent, Duration{random_.between(300'000, 2'000'000)}, run_.now());
+        }
+        for (int part = 0; part < 6; ++part) {
+            run_.run_for(Duration{random_.between(50'000'000, 600'000'000)});
+            judge(found);
+            if (!random_.one_in(3)) continue;
+            run_.kill(0);
+            run_.run_for(Duration{random_.between(0, 1'500'000'000)});
+            judge(found); // by the clock of before
+            // Its next process counts from elsewhere.
+            clocks_[0].offset += Duration{random_.one_in(2) ? random_.between(0, 300'000)
+                                                            : random_.between(0, 100'000'000'000)};
+            run_.set_clock(0, clocks_[0]);
+            begin(0);
+            exchanges_before_ = told().exchanges.last();
+            ++found.restarts;
+        }
+        found.exchanges += told().exchanges.last();
+        found.discarded += told().discarded.last();
+        run_.stop();
+    }
+
+private:
+    Told& told() { return *run_.instance(1).find<Told>("clock"); }
+
+    void begin(std::size_t node) {
+        const auto started = run_.start(node);
+        ASSERT_TRUE(started) << started.error().view();
+    }
+    void judge(Judgement& found) {
+        auto& seen = run_.instance(1).find<ClockWatcher>("watcher")->seen;
+        for (const ClockWatcher::Seen& each : seen) {
+            if (each.exchanges <= exchanges_before_) continue; // not told yet, since the teller's start
+            const Time then = clocks_[1].true_time(each.now);
+            const Duration truth = clocks_[0].local(then) - clocks_[1].local(then);
+            const std::int64_t wrong = std::abs((each.ahead - truth).count());
+            ++found.looks;
+            if (wrong > each.error.count() + 2) ++found.broken; // the simulated clocks count whole ns
+            found.nearest =
+                std::max(found.nearest, static_cast<double>(wrong) / to_seconds(each.error) * 1e-9);
+            found.worst_error = std::max(found.worst_error, each.error);
+        }
+        seen.clear();
+    }
+
+    Random random_;
+    std::array<AcceptedMachine, 2> machines_;
+    std::array<ClockFault, 2> clocks_{};
+    SystemRun run_;
+    std::int64_t exchanges_before_ = 0;
+};
+
+Judgement judge(const AcceptedMachine& told, std::uint64_t seeds) {
+    Judgement found;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) Story{told, seed}.live(found);
+    return found;
+}
+
+TEST(ClockBound, holds_over_a_thousand_seeds) {
+    const Judgement found = judge(Firmware<told_machine, board>::machine(), 1000);
+    std::printf("%ld looks, %ld exchanges, %ld discarded, %ld restarts, nearest %.3f, worst error %.1f us\n",
+                found.looks, found.exchanges, found.discarded, found.restarts, found.nearest,
+                to_seconds(found.worst_error) * 1e6);
+    EXPECT_EQ(found.broken, 0);
+    EXPECT_GT(found.exchanges, 10'000);
+    EXPECT_GT(found.discarded, 1'000) << "the faults strike";
+    EXPECT_GT(found.restarts, 500);
+    EXPECT_GT(found.nearest, 0.7);
+    EXPECT_LT(found.nearest, 1.001);
+}
+
+// What each part of the bound is for.
+TEST(ClockBound, is_broken_without_drift_and_without_either_stamp) {
+    EXPECT_GT(judge(Firmware<told_without_drift, board>::machine(), 100).broken, 0);
+    EXPECT_GT(judge(Firmware<told_without_own_late, board>::machine(), 100).broken, 0);
+    EXPECT_GT(judge(Firmware<told_without_teller_late, board>::machine(), 100).broken, 0);
+}
+
+} // namespace
+} // namespace tappet::test
