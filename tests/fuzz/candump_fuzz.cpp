@@ -1,0 +1,34 @@
+// Any bytes as a line of a candump log: the reader says in which column it goes wrong, or gives a frame that
+// can be, and writes what it read in words that say the same.
+#include "drivers/can/candump.hpp"
+
+#include <cstdlib>
+
+namespace {
+
+using namespace tappet::can;
+
+void demand(bool held) {
+    if (!held) std::abort();
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view line{reinterpret_cast<const char*>(data), size};
+    const auto read = candump::read(line);
+    if (!read) {
+        demand(!read.error().what.empty() && read.error().column >= 1 && read.error().column <= size + 1);
+        return 0;
+    }
+    Frame frame = read->frame;
+    demand(frame.stamp >= tappet::Time{} && !read->interface.empty());
+    if (read->is_error) return 0;
+    demand(valid(frame));
+    const tappet::Sentence ours = candump::write(frame, read->interface);
+    const auto again = candump::read(ours.view());
+    demand(again.has_value());
+    frame.stamp -= frame.stamp.time_since_epoch() % std::chrono::microseconds{1};
+    demand(again->frame == frame);
+    return 0;
+}
