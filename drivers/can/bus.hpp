@@ -190,7 +190,8 @@ struct Bus {
             list[n++] = facet;
         if constexpr (protocol.any) {
             list[n++] = output<&Bus::services>("services", "", "frames of the protocol's own, received");
-            list[n++] = input<&Bus::to_send>("to_send", "", "frames of the protocol's own, to be sent", optional);
+            list[n] = input<&Bus::to_send>("to_send", "", "frames of the protocol's own, to be sent");
+            list[n++].required = !protocol.sends_itself;
         }
         return list;
     }

@@ -15,6 +15,7 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     std::array<Signal, G> signals{}; ///< what stands in them, for tools: a row's first and how many
     std::array<Frame, S> safe{};
     std::uint32_t bit_rate = 0; ///< that they were proven for; 0: the board's, whatever it is
+    bool sends_itself = false;  ///< it stands beside the bus on the device; else by the bus's to_send
     static constexpr bool any = N + S != 0;
 
     [[nodiscard]] constexpr bool takes(const Frame& frame) const noexcept TAPPET_REALTIME {
@@ -26,14 +27,21 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
 };
 inline constexpr Services<0, 0> no_services{};
 
-/// Of two protocols on one bus. Each takes what it knows.
-template <std::size_t N, std::size_t S, std::size_t M, std::size_t T>
-constexpr Services<N + M, S + T> together(const Services<N, S>& one, const Services<M, T>& other) noexcept {
-    Services<N + M, S + T> both{};
-    std::copy(other.frames.begin(), other.frames.end(),
-              std::copy(one.frames.begin(), one.frames.end(), both.frames.begin()));
-    std::copy(other.safe.begin(), other.safe.end(),
-              std::copy(one.safe.begin(), one.safe.end(), both.safe.begin()));
+/// Of two protocols on one bus. Each takes what it knows; one of them at most may be proven for a rate of its
+/// own, or both for the same.
+template <std::size_t N, std::size_t S, std::size_t G, std::size_t M, std::size_t T, std::size_t H>
+constexpr Services<N + M, S + T, G + H> together(const Services<N, S, G>& one,
+                                                 const Services<M, T, H>& other) noexcept {
+    Services<N + M, S + T, G + H> both{};
+    const auto join = [](const auto& first, const auto& then, auto& into) {
+        std::copy(then.begin(), then.end(), std::copy(first.begin(), first.end(), into.begin()));
+    };
+    join(one.frames, other.frames, both.frames);
+    join(one.safe, other.safe, both.safe);
+    join(one.signals, other.signals, both.signals);
+    for (std::size_t f = N; f < N + M; ++f) both.frames[f].first += G;
+    both.bit_rate = std::max(one.bit_rate, other.bit_rate);
+    both.sends_itself = one.sends_itself && other.sends_itself;
     return both;
 }
 

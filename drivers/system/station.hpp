@@ -119,6 +119,7 @@ struct StationRows {
             all.signals[k++] = signal;
         });
         all.bit_rate = system.wire.rate.bits_per_second;
+        all.sends_itself = true;
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
             can::FrameRow& row = all.frames[f];

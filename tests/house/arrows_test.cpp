@@ -76,7 +76,7 @@ const std::vector<Row> house{
     {"toolchain/tools/bench", {}},
     {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},
     {"toolchain/tools/front", {"toolchain", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp", "toolchain/tools/image/options.hpp"}},
-    {"toolchain/tools/pages", {"drivers/plant", "kernel/pieces", "drivers/instruments", "drivers/canopen", "toolchain/tools/browser", "kernel/control"}},
+    {"toolchain/tools/pages", {"drivers/plant", "drivers/system", "kernel/pieces", "drivers/instruments", "drivers/canopen", "toolchain/tools/browser", "kernel/control"}},
     {"apps/carpet_loom/demo", {"apps", "toolchain", "toolchain/tools/bench"}},
     {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/image"}},
 };

@@ -403,7 +403,7 @@ Outcome run_checked(const Scenario& scenario, const Output& output, const Cancel
 } // namespace
 
 void add_board(Scenario& scenario) {
-    for (const char* bus : {"can0", "can1"}) scenario.can.emplace_back(bus);
+    for (const char* bus : {"can0", "can1", "can2"}) scenario.can.emplace_back(bus);
     for (const char* chip : {"io", "panel"}) scenario.gpio.push_back({chip, 32});
     scenario.settings.push_back({"/proc/sys/kernel/sched_rt_runtime_us", "-1"});
 }

@@ -23,7 +23,7 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
                          @signal NAME TERM|INT|KILL|STOP|CONT|USR1|HUP, @wait NAME [while OTHER]
   --file HOST=GUEST      a file or folder for the guest; programs bring their shared libraries. The box is of the
                          architecture of the first program: x86-64 or aarch64
-  --board                all that a machine finds on the board "bench": can0, can1, io and panel with 32 lines,
+  --board                all that a machine finds on the board "bench": can0 to can2, io and panel with 32 lines,
                          and real-time threads that nobody throttles
   --tool NAME            a program of this machine for the guest's /bin; python3 brings its standard library
   --can NAME             a virtual CAN interface

@@ -1,6 +1,7 @@
 // The reference: components of the library and the drivers by their interfaces, words of tables and maps by
 // their headers, commands of the browser by their table.
 #include "drivers/can/bus.hpp"
+#include "drivers/can/clock.hpp"
 #include "drivers/can/restarter.hpp"
 #include "drivers/canopen/axis.hpp"
 #include "drivers/canopen/eds.hpp"
@@ -11,6 +12,7 @@
 #include "drivers/instruments/force_sensor.hpp"
 #include "drivers/instruments/velocity_axis.hpp"
 #include "drivers/modbus/client.hpp"
+#include "drivers/system/link.hpp"
 #include "drivers/udp/peer_clock.hpp"
 #include "kernel/base/decimal.hpp"
 #include "kernel/control/control.hpp"
@@ -56,6 +58,34 @@ constexpr auto registers =
                          modbus::write("out_row", modbus::holding_registers(0, 1), modbus::every(1s),
                                        modbus::stale_after(3s), modbus::word("measure", 0).in("mm").safe(0)));
 
+constexpr auto bus_clock = can::clock(can::standard(0x100), can::every(100ms));
+/// What crosses a wire, once each.
+struct Crosses {
+    Output<double> value{};
+    Input<double> heard{};
+    Event<> event{};
+    CommandCall<> call{};
+    void operation() noexcept TAPPET_REALTIME {}
+    bool command() noexcept TAPPET_REALTIME { return true; }
+    static constexpr auto interface() {
+        return facets(
+            output<&Crosses::value>("value", "mm", "told"), input<&Crosses::heard>("heard", "mm", "heard"),
+            tappet::event<&Crosses::event>("event", "emitted"), sends<&Crosses::call>("call", "sent"),
+            tappet::operation<&Crosses::operation>("operation", "served"),
+            tappet::command<&Crosses::command>("command", "executed"));
+    }
+};
+constexpr auto one_machine = machine("one", components(component<Crosses>("c")), activities(), connections(),
+                                     reactions(), behaviours());
+constexpr auto pair =
+    system("pair", tappet::nodes(node<one_machine>("a"), node<one_machine>("b")), wire("wire", bit_rate(500'000)),
+           crossings(across(data("a.c.value", "b.c.heard"), every(10ms), in_bits(16, 0.1)),
+                     across(data("b.c.value", "a.c.heard"), every(10ms), in_bits(16, 0.1)),
+                     across(when("a.c.event", tell("b.c.operation")), at_most(1, 100ms), within(50ms)),
+                     across(when("b.c.event", tell("a.c.operation")), at_most(1, 100ms), within(50ms)),
+                     across(uses("a.c.call", "b.c.command"), at_most(1, 100ms), within(50ms)),
+                     across(uses("b.c.call", "a.c.command"), at_most(1, 100ms), within(50ms))));
+
 struct Described {
     std::string_view header, type, row;
     const ComponentType& component;
@@ -66,6 +96,11 @@ const Described components[] = {
     {"drivers/can/bus.hpp", "Bus", "can::Bus<signal_map>", component_type<can::Bus<frames>>},
     {"drivers/udp/peer_clock.hpp", "ClockAnswers", "udp::ClockAnswers", component_type<udp::ClockAnswers>},
     {"drivers/udp/peer_clock.hpp", "PeerClock", "udp::PeerClock", component_type<udp::PeerClock>},
+    {"drivers/can/clock.hpp", "ClockTeller", "can::ClockTeller<row>",
+     component_type<can::ClockTeller<bus_clock>>},
+    {"drivers/can/clock.hpp", "ToldClock", "can::ToldClock<row>", component_type<can::ToldClock<bus_clock>>},
+    {"drivers/system/link.hpp", "Link", "systems::Link<system, node>",
+     component_type<systems::Link<pair, 0>>},
     {"drivers/can/restarter.hpp", "Restarter", "can::Restarter", component_type<can::Restarter>},
     {"drivers/canopen/manager.hpp", "Manager", "canopen::Manager<network>",
      component_type<canopen::Manager<nodes>>},
