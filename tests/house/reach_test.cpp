@@ -35,7 +35,7 @@ std::vector<std::regex> sources_of(const File& cmake) {
 /// The cases of tests/diagnostics are found by their program, in their folder; what the guide's pages become
 /// includes its context.
 bool has_no_target(const File& file) {
-    return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/gpio_sim") ||
+    return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/left_out") ||
            file.is_under("toolchain/libmodbus") || file.is_under("toolchain/aarch64") ||
            file.path == "tests/toolchain/guide/context.hpp";
 }

@@ -4,6 +4,8 @@
 #include "drivers/can/dbc/scanner.hpp"
 #include "drivers/can/signal_map.hpp"
 
+#include <optional>
+
 namespace tappet::can::dbc {
 
 /// Vector's name for nobody, as a sender and as a receiver.
@@ -39,8 +41,7 @@ struct MessageRow {
     std::size_t first = 0;
     std::size_t signals = 0;
     bool says_every = false;
-    bool says_fd = false, is_fd = false;
-    bool says_switch = false, switches = false;
+    std::optional<bool> is_fd{}, switches{}; ///< nothing: the file's default
     Duration every{};
     bool is_taken = false;
     Direction direction = Direction::receive;

@@ -1,6 +1,7 @@
 // Reads a DBC file, in a constant expression or on the host: the same code, the same sentence for a fault.
 #pragma once
 
+#include "drivers/can/dbc/choice.hpp"
 #include "drivers/can/dbc/network.hpp"
 #include "drivers/can/dbc/scanner.hpp"
 #include "kernel/base/decimal.hpp"
@@ -372,21 +373,12 @@ private:
 
     // ---- attributes: the cycle time, CAN FD, and names of more than 32 characters
 
-    /// An attribute whose values have names: those that say yes. A file gives their names or their numbers.
-    struct Choice {
-        std::uint64_t yes = 0; ///< a bit for each number
-        bool usually = false;  ///< of messages that do not say it
-    };
-    static constexpr bool says_yes(std::string_view attribute, std::string_view value) noexcept {
-        return attribute == "CANFD_BRS" ? value == "1" : value.ends_with("CAN_FD");
-    }
     constexpr Choice* choice(std::string_view attribute) noexcept {
-        return attribute == "VFrameFormat" ? &fd_ : attribute == "CANFD_BRS" ? &switch_ : nullptr;
+        return attribute == fd_.attribute ? &fd_ : attribute == switch_.attribute ? &switch_ : nullptr;
     }
-    constexpr bool chosen(std::string_view attribute, const Choice& among) {
-        if (in_.next() == '"') return says_yes(attribute, text("the attribute's value"));
-        const std::uint32_t number = whole(63, "the number of the attribute's value");
-        return ok() && (among.yes >> number & 1u) != 0;
+    constexpr bool chosen(const Choice& among) {
+        if (in_.next() == '"') return among.says_yes(text("the attribute's value"));
+        return among.says_yes(whole(63, "the number of the attribute's value"));
     }
     constexpr void attribute_definition() {
         if (in_.peek() == "BO_") in_.word();
@@ -396,11 +388,8 @@ private:
         in_.word();
         of->yes = 0;
         unsigned number = 0;
-        do {
-            const std::string_view value = text("a value's name between quotes");
-            if (number < 64 && says_yes(name, value)) of->yes |= std::uint64_t{1} << number;
-            ++number;
-        } while (ok() && in_.take(','));
+        do of->define(number++, text("a value's name between quotes"));
+        while (ok() && in_.take(','));
         end_of_statement();
     }
 
@@ -423,9 +412,8 @@ private:
         MessageRow* const message = known_message();
         SignalRow* const signal = is_signal_name ? known_signal(message) : nullptr;
         if (among != nullptr) {
-            const bool yes = chosen(name, *among);
-            if (message != nullptr && among == &fd_) message->says_fd = true, message->is_fd = yes;
-            if (message != nullptr && among == &switch_) message->says_switch = true, message->switches = yes;
+            const bool yes = chosen(*among);
+            if (message != nullptr) (among == &fd_ ? message->is_fd : message->switches) = yes;
         } else if (is_period) {
             const Duration every = cycle_time();
             if (ok() && message != nullptr) {
@@ -444,7 +432,7 @@ private:
         Choice* const of = choice(name);
         if (of == nullptr && name != "GenMsgCycleTime") return skip_statement();
         if (of != nullptr)
-            of->usually = chosen(name, *of);
+            of->usually = chosen(*of);
         else
             usual_every_ = cycle_time();
         end_of_statement();
@@ -454,8 +442,8 @@ private:
 
     constexpr void finish(MessageRow& message) {
         if (!message.says_every) message.every = usual_every_;
-        if (!message.says_fd) message.is_fd = fd_.usually;
-        if (!message.says_switch) message.switches = switch_.usually;
+        if (!message.is_fd) message.is_fd = fd_.usually;
+        if (!message.switches) message.switches = switch_.usually;
         const auto signals = net_.of(message);
         std::size_t multiplexors = 0;
         std::size_t plain = no_such; // the one that is not multiplexed itself
@@ -498,8 +486,7 @@ private:
     bool has_nodes_ = false;
     bool takes_signals_ = false;
     Duration usual_every_{};
-    // As CANdb++ has them, for files that use the attributes and do not define them.
-    Choice fd_{.yes = std::uint64_t{3} << 14}, switch_{.yes = 2, .usually = true};
+    Choice fd_ = can_fd, switch_ = bit_rate_switch;
 };
 
 } // namespace tappet::can::dbc

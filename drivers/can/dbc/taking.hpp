@@ -219,7 +219,7 @@ private:
         frame.identifier = message.identifier;
         frame.direction = message.direction;
         frame.length = static_cast<std::uint8_t>(message.length);
-        if (message.is_fd) frame.format = message.switches ? Format::flexible_faster : Format::flexible;
+        if (*message.is_fd) frame.format = *message.switches ? Format::flexible_faster : Format::flexible;
         frame.every = frame.apart = message.every;
         frame.name = kept([&](const auto& put) { put(message.name); });
         if (message.row == nullptr) return frame;
