@@ -173,7 +173,8 @@ constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
 }
 
 /// The line, without its end. What no interface of Linux is called becomes '_', and what is too long for one
-/// is cut, so that canplayer takes it; a time before 0 becomes 0.
+/// is cut, so that canplayer takes it; a time before 0 becomes 0, and one between two microseconds the later
+/// one: nothing happens before it happened.
 constexpr Sentence write(const Frame& frame, std::string_view interface) noexcept {
     constexpr std::string_view digits = "0123456789ABCDEF";
     Sentence line{"("};
@@ -183,7 +184,7 @@ constexpr Sentence write(const Frame& frame, std::string_view interface) noexcep
             value %= highest;
         }
     };
-    const auto us = static_cast<std::uint64_t>(std::max(to_ns(frame.stamp), std::int64_t{0}) / 1000);
+    const auto us = static_cast<std::uint64_t>((std::max(to_ns(frame.stamp), std::int64_t{0}) + 999) / 1000);
     add(us / 1'000'000, 1'000'000'000, 10);
     line.add(".");
     add(us % 1'000'000, 100'000, 10);

@@ -81,6 +81,7 @@ private:
     std::uint32_t lost_ = 0; // the bus's: arrivals that found the inbox full
     bool arrived_ = false;   // the bus's: the listener is to be called
     bool starved_ = false;   // the bus's: it was told that nobody acknowledges
+    bool muted_ = false;     // the bus's: nobody hears what it sends
     Listener ready_ = nullptr;
     void* context_ = nullptr;
 };

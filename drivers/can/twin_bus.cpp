@@ -17,6 +17,8 @@ std::uint8_t next_to(std::uint8_t length) noexcept TAPPET_REALTIME {
 void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     now_ = now;
     if (is_silent()) return;
+    for (Twin* end : ends_)
+        if (end->muted_) swallow(*end);
     // Each end has at most `outbox` frames to give before its owner runs again; the babbler is cut off the
     // same way.
     for (std::size_t i = 0; acknowledged_ && i < 4 * most_ends * Twin::outbox; ++i) {
@@ -81,6 +83,8 @@ void TwinBus::transmit(const Contender& winner, Time finish) noexcept TAPPET_REA
     const bool corrupted = strikes(faults.corrupt_length, frame);
     const bool late = strikes(faults.delay, frame);
     if (corrupted) frame.length = next_to(frame.length);
+    tap(frame);
+    if (doubled) tap(frame);
     if (lost) {
         ++frames_lost_;
         return;
@@ -88,6 +92,29 @@ void TwinBus::transmit(const Contender& winner, Time finish) noexcept TAPPET_REA
     const bool put_off = late && put_off_until(finish + faults.delay_by, frame, winner.end);
     if (!put_off) hand_out(frame, winner.end);
     if (doubled) hand_out(frame, winner.end);
+}
+
+void TwinBus::put(const Frame& frame, Time at) noexcept TAPPET_REALTIME {
+    Frame sent = frame;
+    sent.stamp = at;
+    ++frames_on_wire_;
+    tap(sent);
+    hand_out(sent, nullptr);
+}
+
+void TwinBus::tap(const Frame& frame) noexcept TAPPET_REALTIME {
+    if (tap_ != nullptr && !tap_->push(frame)) ++untapped_;
+}
+
+void TwinBus::swallow(Twin& muted) noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < Twin::outbox; ++i) {
+        const auto* head = muted.head();
+        if (head == nullptr) return;
+        Frame frame = head->frame;
+        frame.stamp = now_;
+        muted.outbox_.drop();
+        muted.arrive(Twin::Happened::confirmed, frame);
+    }
 }
 
 bool TwinBus::put_off_until(Time when, Frame frame, Twin* from) noexcept TAPPET_REALTIME {

@@ -43,6 +43,17 @@ public:
     }
 
     static constexpr std::size_t most_ends = 8;
+    /// What was on the wire, as it arrived; its owner takes it out after each call that moves the bus.
+    using Tap = twin::Ring<Frame, 2 * 4 * most_ends * Twin::outbox>;
+    /// Not real-time, before the bus runs. None: nobody looks.
+    void set_tap(Tap* tap) noexcept { tap_ = tap; }
+    /// Not real-time, before the bus runs: what this end sends is confirmed and reaches nobody.
+    void mute(Twin& end) noexcept { end.muted_ = true; }
+    /// Sent by a node that is no end, at that moment, whatever else is on the wire; no fault strikes it.
+    void put(const Frame& frame, Time at) noexcept TAPPET_REALTIME;
+    /// Frames that found the tap full.
+    [[nodiscard]] std::uint64_t frames_untapped() const noexcept TAPPET_REALTIME { return untapped_; }
+
     /// Not real-time, before the bus runs. False when eight ends are there already.
     [[nodiscard]] bool attach(Twin& end) noexcept { return ends_.push(&end); }
 
@@ -89,6 +100,8 @@ private:
     void transmit(const Contender& winner, Time finish) noexcept TAPPET_REALTIME;
     bool put_off_until(Time when, Frame frame, Twin* from) noexcept TAPPET_REALTIME;
     void hand_out(const Frame& frame, const Twin* from) noexcept TAPPET_REALTIME;
+    void tap(const Frame& frame) noexcept TAPPET_REALTIME;
+    void swallow(Twin& muted) noexcept TAPPET_REALTIME;
     void release_delayed(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool strikes(Chance& chance, const Frame& frame) noexcept TAPPET_REALTIME;
     [[nodiscard]] Duration wire_time(const Frame& frame) const noexcept TAPPET_REALTIME;
@@ -107,6 +120,8 @@ private:
     Time next_babble_ = never;
     std::uint64_t frames_on_wire_ = 0;
     std::uint64_t frames_lost_ = 0;
+    Tap* tap_ = nullptr;
+    std::uint64_t untapped_ = 0;
 };
 
 } // namespace tappet::can

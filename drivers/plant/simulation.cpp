@@ -52,7 +52,79 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
         }
     }
     if (Sentence fault = plant_.connect(far); !fault.empty()) return std::unexpected(fault);
+    if (Sentence fault = open_logs(); !fault.empty()) return std::unexpected(fault);
     return {};
+}
+
+Sentence SimulatedDevices::open_logs() {
+    for (const Replay& each : replays_) {
+        const auto found = std::ranges::find(buses_, each.bus, [](const auto& bus) { return bus->name; });
+        if (found == buses_.end()) {
+            Sentence fault{"--replay-can: the machine has no CAN bus \"", each.bus, "\""};
+            for (const auto& bus : buses_)
+                fault.add(bus == buses_.front() ? "; it has: " : ", ").add(bus->name);
+            return fault;
+        }
+        Bus& bus = **found;
+        if (bus.replay) return Sentence{"--replay-can: \"", each.bus, "\" is given twice; leave one out"};
+        bus.replay = std::make_unique<CanReplay>();
+        if (Sentence fault = bus.replay->open(bus.name, each.file, each.begins_at, bus.settings.receive,
+                                              bus.settings.transmit);
+            !fault.empty())
+            return fault;
+        bus.bus.mute(bus.plant);
+    }
+    for (const auto& bus : buses_) {
+        if (!recorded_in_.empty()) {
+            bus->recorder = std::make_unique<CanRecorder>();
+            if (Sentence fault = bus->recorder->open(bus->name, recorded_in_); !fault.empty()) return fault;
+        }
+        if (!bus->recorder && !bus->replay) continue;
+        bus->tap = std::make_unique<can::TwinBus::Tap>();
+        bus->bus.set_tap(bus->tap.get());
+    }
+    return {};
+}
+
+bool SimulatedDevices::is_done() const {
+    if (replays_.empty()) return plant_.is_done();
+    return std::ranges::all_of(buses_,
+                               [](const auto& each) { return !each->replay || each->replay->is_over(); });
+}
+
+bool SimulatedDevices::close_logs(const std::function<void(const Sentence& what, bool good)>& tell) {
+    bool all_good = true;
+    const auto say = [&](const Sentence& what, bool good) {
+        tell(what, good);
+        all_good &= good;
+    };
+    for (const auto& bus : buses_) {
+        if (bus->recorder) {
+            bool good = false;
+            const Sentence what = bus->recorder->close(good);
+            say(what, good);
+        }
+        if (bus->replay) say(bus->replay->report(), true);
+        if (bus->replay && !bus->replay->fault().empty()) say(bus->replay->fault(), false);
+        if (bus->bus.frames_untapped() != 0)
+            say(Sentence{"CAN bus \"", bus->name, "\": ", bus->bus.frames_untapped(),
+                         " frames came faster than they could be recorded or compared"},
+                false);
+    }
+    return all_good;
+}
+
+CanReplay::Counts SimulatedDevices::replayed(std::string_view bus) {
+    const auto& replay = named(buses_, bus).replay;
+    return replay ? replay->counts() : CanReplay::Counts{};
+}
+
+void SimulatedDevices::Bus::drain_tap() {
+    if (!tap) return;
+    for (can::Frame frame; tap->pop(frame);) {
+        if (recorder) recorder->record(frame);
+        if (replay) replay->heard(frame);
+    }
 }
 
 std::expected<void, Sentence> SimulatedDevices::open_again() {
@@ -134,13 +206,16 @@ void SimulatedDevices::advance(Time now) {
     for (const auto& chip : chips_) chip->seen = chip->twin.outputs();
     for (const auto& bus : buses_) {
         bus->bus.deliver_until(now);
+        bus->drain_tap();
         if (can::faulted(bus->plant.state())) static_cast<void>(bus->plant.restart());
     }
     next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
     for (const auto& bus : buses_) {
+        if (bus->replay) bus->replay->play(bus->bus, now);
         bus->bus.deliver_until(now);
-        next_ = std::min(next_, bus->bus.next());
+        bus->drain_tap();
     }
+    next_ = std::min(next_, next_on_buses());
     for (const auto& chip : chips_) chip->twin.deliver_until(now);
     for (const auto& server : servers_) server->seen = server->twin.changes();
 }
@@ -161,7 +236,16 @@ void SimulatedDevices::leap(Time until) {
     const bool still = std::ranges::all_of(buses_, [](const auto& each) { return each->bus.is_still(); }) &&
                        std::ranges::all_of(chips_, [](const auto& each) { return each->twin.is_still(); });
     if (!still) return;
-    if (const auto next = plant_.leap_ahead(until)) next_ = *next;
+    if (const auto next = plant_.leap_ahead(until)) next_ = std::min(*next, next_on_buses());
+}
+
+Time SimulatedDevices::next_on_buses() {
+    Time next = never;
+    for (const auto& bus : buses_) {
+        next = std::min(next, bus->bus.next());
+        if (bus->replay) next = std::min(next, bus->replay->next());
+    }
+    return next;
 }
 
 can::TwinBus& SimulatedDevices::bus(std::string_view device) { return named(buses_, device).bus; }

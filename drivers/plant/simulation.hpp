@@ -8,11 +8,14 @@
 #include "drivers/hardware/devices.hpp"
 #include "drivers/hardware/open.hpp"
 #include "drivers/modbus/twin.hpp"
+#include "drivers/plant/can_log.hpp"
 #include "drivers/plant/plant.hpp"
 #include "drivers/udp/twin.hpp"
 
 #include <array>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace tappet {
@@ -28,6 +31,18 @@ public:
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
     /// Before open(): a device that somebody else simulates, as a wire to other machines.
     void lend(const ProvidedDevice& device) { lent_.push_back(device); }
+    /// Before open(): what is on each CAN bus goes to a candump log in that folder.
+    void record_can(std::string folder) { recorded_in_ = std::move(folder); }
+    /// Before open(): that candump log in place of what the plant sends on the bus. Its first frame comes so
+    /// long after the beginning.
+    void replay_can(std::string bus, std::string file, Duration begins_at = {}) {
+        replays_.push_back({std::move(bus), std::move(file), begins_at});
+    }
+    /// Each log that is replayed is at its end; without any, the plant says it.
+    [[nodiscard]] bool is_done() const;
+    /// At the end, once: what became of each log. False: one of them could not be written, or read.
+    [[nodiscard]] bool close_logs(const std::function<void(const Sentence& what, bool good)>& tell);
+    [[nodiscard]] CanReplay::Counts replayed(std::string_view bus);
     /// The machine's ends of the buses anew, as a new process has them: a bus that was off is on again. Lines
     /// stay as they were left.
     std::expected<void, Sentence> open_again();
@@ -63,7 +78,15 @@ private:
         can::Settings settings{};
         std::span<const can::Frame> safe{};
         can::Twin machine{}, plant{};
+        std::unique_ptr<can::TwinBus::Tap> tap{};
+        std::unique_ptr<CanRecorder> recorder{};
+        std::unique_ptr<CanReplay> replay{};
+        void drain_tap();
         Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
+    };
+    struct Replay {
+        std::string bus, file;
+        Duration begins_at;
     };
     struct Chip {
         std::string_view name;
@@ -84,11 +107,15 @@ private:
     };
 
     std::expected<void, Sentence> add_bus(const ComponentRow& row);
+    Sentence open_logs();
+    [[nodiscard]] Time next_on_buses();
     std::expected<void, Sentence> add_chip(const ComponentRow& row);
 
     Plant& plant_;
     std::uint64_t seed_;
     can::BitRates bit_rates_{};
+    std::string recorded_in_{};
+    std::vector<Replay> replays_{};
     Time next_{};
     // What a twin is given stays where it is.
     std::vector<std::unique_ptr<Bus>> buses_{};

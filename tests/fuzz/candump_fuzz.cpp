@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const tappet::Sentence ours = candump::write(frame, read->interface);
     const auto again = candump::read(ours.view());
     demand(again.has_value());
-    frame.stamp -= frame.stamp.time_since_epoch() % std::chrono::microseconds{1};
+    frame.stamp = std::chrono::ceil<std::chrono::microseconds>(frame.stamp);
     demand(again->frame == frame);
     return 0;
 }

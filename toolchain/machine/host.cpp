@@ -55,49 +55,74 @@ public:
 
 private:
     template <class Run>
-    void prepare(Run& run) {
+    [[nodiscard]] Sentence prepare(Run& run) {
         run.keep_properties_in(options_.text("--properties"));
         run.instance().browse_in(options_.text("--browse"));
+        run.devices().record_can(std::string{options_.text("--record-can")});
+        for (const auto& [option, value] : options_.options)
+            if (option->name == "--replay-can")
+                if (const Sentence fault = replay(run.devices(), value); !fault.empty()) return fault;
+        return {};
+    }
+    /// BUS=FILE[@SECONDS]
+    static Sentence replay(SimulatedDevices& devices, std::string_view value) {
+        const std::size_t equals = value.find('='), at = value.rfind('@');
+        std::string_view file = value.substr(std::min(equals, value.size() - 1) + 1);
+        Duration begins_at{};
+        if (at != value.npos && at > equals) {
+            const auto seconds = can::candump::read_seconds(value.substr(at + 1));
+            if (!seconds)
+                return Sentence{"option --replay-can: behind @ in \"", value, "\": ", seconds.error().what};
+            begins_at = *seconds;
+            file = value.substr(equals + 1, at - equals - 1);
+        }
+        if (equals == value.npos || equals == 0 || file.empty())
+            return Sentence{"option --replay-can: \"", value, "\" is not BUS=FILE, as in can=shift.log"};
+        devices.replay_can(std::string{value.substr(0, equals)}, std::string{file}, begins_at);
+        return {};
     }
 
+    /// Soon behind its log's end it ends, too: before the machine misses what came no more.
+    [[nodiscard]] Duration pace() const { return replays_ ? 1ms : 50ms; }
     [[nodiscard]] Duration time() const {
+        if (replays_ && !options_.has("--for")) return 1'000'000'000s;
         return options_.has("--for") ? Duration{std::chrono::seconds{options_.number("--for", 0)}}
                                      : plant_.usual_time();
     }
 
     int run_virtual() {
         VirtualRun run{machine_, plant_, seed_};
-        prepare(run);
+        if (const Sentence fault = prepare(run); !fault.empty()) return fail(fault);
         if (const auto started = run.start(); !started) return fail(started.error());
         const Time end = run.now() + time();
         const auto look = [&] {
             if (hooks_.look != nullptr) hooks_.look(run.instance(), plant_, run.now());
         };
         bool runs = true;
-        while (runs && !plant_.is_done() && run.now() < end) {
-            runs = run.run_for(hooks_.look != nullptr ? hooks_.look_every : 50ms);
+        while (runs && !run.devices().is_done() && run.now() < end) {
+            runs = run.run_for(hooks_.look != nullptr ? hooks_.look_every : pace());
             reasons_.tell(run.instance(), name_);
             if (runs) look();
         }
         run.stop();
         look();
         Outcome outcome;
-        judge(run.instance(), runs, outcome);
+        judge(run.instance(), run.devices(), runs, outcome);
         return finish(run.instance(), run.devices(), outcome);
     }
 
     int run_real() {
         RealRun run{machine_, plant_, seed_};
-        prepare(run);
+        if (const Sentence fault = prepare(run); !fault.empty()) return fail(fault);
         if (const auto started = run.start(2); !started) return fail(started.error());
         bool runs = true;
-        for (Duration left = time(); runs && !run.is_done() && left > Duration::zero(); left -= 50ms) {
-            runs = run.supervise(50ms);
+        for (Duration left = time(); runs && !run.is_done() && left > Duration::zero(); left -= pace()) {
+            runs = run.supervise(pace());
             reasons_.tell(run.instance(), name_);
         }
         const int hung = run.stop();
         Outcome outcome;
-        judge(run.instance(), runs, outcome);
+        judge(run.instance(), run.devices(), runs, outcome);
         outcome.page_faults = run.world().page_faults_in_real_time_threads();
         outcome.contracts_broken = run.world().breaches();
         if (outcome.contracts_broken != 0) outcome.reason = run.world().broken_contract();
@@ -106,18 +131,23 @@ private:
     }
 
     /// Well: the plant is done, the time is over, or somebody asked it to end.
-    void judge(const MachineInstance& instance, bool runs, Outcome& outcome) const {
-        const Sentence fault = plant_.fault();
+    void judge(const MachineInstance& instance, const SimulatedDevices& devices, bool runs,
+               Outcome& outcome) const {
+        const Sentence fault = replays_ ? Sentence{} : plant_.fault(); // a plant that nobody hears
         outcome.well = fault.empty() && (runs || instance.stop_request().reason == StopReason::requested);
-        outcome.reason = !runs              ? instance.describe_stop()
-                         : !fault.empty()   ? fault
-                         : plant_.is_done() ? Sentence{"the plant is done"}
-                                            : Sentence{"its time is over"};
+        outcome.reason = !runs            ? instance.describe_stop()
+                         : !fault.empty() ? fault
+                         : devices.is_done()
+                             ? Sentence{replays_ ? "the log is replayed" : "the plant is done"}
+                             : Sentence{"its time is over"};
     }
 
-    int finish(MachineInstance& instance, const SimulatedDevices& devices, const Outcome& outcome) {
+    int finish(MachineInstance& instance, SimulatedDevices& devices, const Outcome& outcome) {
         os::print(Sentence{name_, ": stopped: ", outcome.reason, "\n"}.view());
         tell_overruns(instance, name_);
+        const bool has_logs = devices.close_logs([this](const Sentence& what, bool good) {
+            static_cast<void>(os::write_all(good ? 1 : 2, Sentence{name_, ": ", what, "\n"}.view()));
+        });
         if (options_.has("--properties"))
             if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
                 return fail(fault);
@@ -130,7 +160,7 @@ private:
                                  "\"; name a file in a folder that exists"});
         if (hooks_.ended != nullptr)
             if (const Sentence fault = hooks_.ended(plant_); !fault.empty()) return fail(fault);
-        return outcome.well ? ended_well : ended_otherwise;
+        return outcome.well && has_logs ? ended_well : ended_otherwise;
     }
 
     /// The machine's object, and what the plant measured as one of its fields; that is printed, too.
@@ -174,6 +204,7 @@ private:
     const CommandLine& options_;
     const HostHooks& hooks_;
     std::uint64_t seed_ = options_.number("--seed", default_seed);
+    bool replays_ = options_.has("--replay-can");
     bool is_virtual_ = !options_.has("--real");
     ReasonTeller reasons_;
 };

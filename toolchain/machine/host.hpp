@@ -89,7 +89,7 @@ public:
     std::expected<void, Sentence> start(int file);
     /// Sleeps; false: a stop is asked for, or a signal asks to end.
     bool supervise(Duration time) { return world_.supervise(time); }
-    /// As the plant said after its last move.
+    /// As SimulatedDevices::is_done() said after the plant's last move.
     [[nodiscard]] bool is_done() const noexcept { return done_.load(std::memory_order_acquire); }
     /// The machine first, then the plant, which has `coming_to_rest` for its last moves. How many threads of
     /// the machine hung.

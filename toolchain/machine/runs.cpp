@@ -90,7 +90,7 @@ void RealRun::follow() {
     while (!plant_ends_.load(std::memory_order_acquire)) {
         const Time now = clock_.now();
         devices_.advance(now);
-        done_.store(plant_.is_done(), std::memory_order_release);
+        done_.store(devices_.is_done(), std::memory_order_release);
         static_cast<void>(plant_waiter_.wait(now + plant_period));
     }
 }

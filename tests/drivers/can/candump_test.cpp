@@ -124,6 +124,13 @@ TEST(Candump, refuses_what_is_no_line_where_it_goes_wrong) {
     EXPECT_FALSE(candump::read_seconds("12.5s"));
 }
 
+TEST(Candump, writes_what_happened_between_two_microseconds_as_of_the_later_one) {
+    EXPECT_EQ(candump::write({.stamp = at_ns(1'999'999'001)}, "can0").view(),
+              "(0000000002.000000) can0 000#");
+    EXPECT_EQ(candump::write({.stamp = at_ns(1'999'999'000)}, "can0").view(),
+              "(0000000001.999999) can0 000#");
+}
+
 TEST(Candump, writes_names_that_linux_could_have) {
     EXPECT_EQ(candump::write({}, "axis of the can bus").view(), "(0000000000.000000) axis_of_the_can 000#");
 }

@@ -1,0 +1,263 @@
+// Candump logs of simulated buses: what is recorded, what is replayed and when, what is compared, and which
+// file is refused with which words.
+#include "drivers/plant/can_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+using can::Frame;
+
+constexpr std::array machine_sends{can::Identifier{0x201}, can::Identifier{0x202}};
+constexpr std::array machine_receives{can::Identifier{0x181}, can::Identifier{0x182}};
+
+struct CanLog : testing::Test {
+    CanLog() {
+        std::filesystem::create_directories(folder);
+        EXPECT_TRUE(machine.open({.interface = "machine",
+                                  .receive = machine_receives,
+                                  .transmit = machine_sends,
+                                  .takes_fd = true}));
+        EXPECT_TRUE(plant.open({.interface = "plant",
+                                .receive = machine_sends,
+                                .transmit = machine_receives,
+                                .takes_fd = true}));
+        EXPECT_TRUE(bus.attach(machine) && bus.attach(plant));
+        bus.set_tap(&tap);
+    }
+    ~CanLog() override { std::filesystem::remove_all(folder); }
+
+    std::string file(std::string_view text) {
+        const std::string path = (folder / "a.log").string();
+        std::ofstream{path, std::ios::binary} << text;
+        return path;
+    }
+    Sentence open(std::string_view text, Duration begins_at = {}) {
+        return replay.open("can", file(text), begins_at, machine_receives, machine_sends);
+    }
+    void send(can::Twin& end, std::uint32_t id, std::uint8_t value, Time now) {
+        Frame frame{.id = id, .length = 1, .stamp = now};
+        frame.data[0] = value;
+        EXPECT_EQ(end.send(frame, can::Keep::every), can::Send::queued);
+        end.service(now);
+    }
+    /// As the twins of a machine are moved: what ends sent, then what the log has.
+    void move(Time now) {
+        bus.deliver_until(now);
+        drain();
+        replay.play(bus, now);
+        bus.deliver_until(now);
+        drain();
+    }
+    void drain() {
+        for (Frame frame; tap.pop(frame);) replay.heard(frame);
+    }
+    std::vector<Frame> arrived(can::Twin& end) {
+        std::vector<Frame> all;
+        for (Frame frame; end.receive(frame).what == can::Received::frame;) all.push_back(frame);
+        return all;
+    }
+    std::string refusal(std::string_view text) {
+        CanReplay fresh;
+        const Sentence fault = fresh.open("can", file(text), {}, machine_receives, machine_sends);
+        std::string said{fault.view()};
+        if (const std::size_t at = said.find("a.log"); at != said.npos) said.erase(0, at);
+        return said;
+    }
+
+    std::filesystem::path folder =
+        std::filesystem::path{testing::TempDir()} / ("can_log." + std::to_string(getpid()));
+    can::TwinBus bus{1};
+    can::Twin machine, plant;
+    can::TwinBus::Tap tap;
+    CanReplay replay;
+};
+
+TEST_F(CanLog, records_what_both_ends_send_in_the_order_of_the_wire) {
+    CanRecorder recorder;
+    ASSERT_TRUE(recorder.open("axis can", (folder / "new").string()).empty());
+    send(machine, 0x201, 0xAA, Time{1ms});
+    send(plant, 0x181, 0xBB, Time{1ms});
+    bus.deliver_until(Time{1ms});
+    EXPECT_TRUE(arrived(plant).size() == 1 && arrived(machine).size() == 1);
+    bus.faults.lose.next = 1; // acknowledged by another node: it was on the wire
+    send(plant, 0x182, 0xCC, Time{1500ms});
+    bus.deliver_until(Time{1500ms});
+    for (Frame frame; tap.pop(frame);) recorder.record(frame);
+    bool good = false;
+    const Sentence said = recorder.close(good);
+    EXPECT_TRUE(good);
+    EXPECT_NE(said.view().find("3 frames recorded"), std::string_view::npos) << said.view();
+    EXPECT_TRUE(said.view().ends_with("--replay-can axis can=" + (folder / "new/axis_can.log").string() +
+                                      "@0.001000"))
+        << said.view();
+    std::ifstream log{folder / "new/axis_can.log"};
+    EXPECT_EQ((std::string{std::istreambuf_iterator<char>{log}, {}}),
+              "(0000000000.001000) axis_can 181#BB\n"
+              "(0000000000.001000) axis_can 201#AA\n"
+              "(0000000001.500000) axis_can 182#CC\n");
+}
+
+TEST_F(CanLog, says_what_it_cannot_write) {
+    CanRecorder recorder;
+    const Sentence said = recorder.open("can", file("") + "/below_a_file");
+    EXPECT_TRUE(said.view().ends_with("name a folder in which you may write")) << said.view();
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+    std::filesystem::create_symlink("/dev/full", folder / "full.log");
+    ASSERT_TRUE(recorder.open("full", folder.string()).empty());
+    recorder.record({});
+    bool good = true;
+    EXPECT_TRUE(recorder.close(good).view().ends_with("is the disk full?"));
+    EXPECT_FALSE(good);
+}
+
+TEST_F(CanLog, replays_each_frame_at_its_time_since_the_first_of_the_log) {
+    ASSERT_TRUE(open("(1700000000.000000) can0 181#01\n"
+                     "\n"
+                     "(1700000000.250000) can0 182##1AABBCCDD\r\n"
+                     "(1700000000.250000) can0 181#02\n",
+                     2ms)
+                    .empty());
+    bus.mute(plant);
+    move(Time{100ms}); // the run begins here
+    EXPECT_EQ(replay.next(), Time{102ms});
+    EXPECT_TRUE(arrived(machine).empty());
+    send(plant, 0x181, 0xFF, Time{101ms});
+    move(Time{101ms});
+    EXPECT_TRUE(arrived(machine).empty()) << "in place of the plant's";
+    move(Time{102ms});
+    const auto first = arrived(machine);
+    ASSERT_EQ(first.size(), 1u);
+    EXPECT_EQ(first[0].data[0], 1);
+    EXPECT_EQ(first[0].stamp, Time{102ms});
+    EXPECT_EQ(replay.next(), Time{352ms});
+    EXPECT_FALSE(replay.is_over());
+    move(Time{352ms});
+    const auto last = arrived(machine);
+    ASSERT_EQ(last.size(), 2u) << "in the order of the log";
+    EXPECT_TRUE(last[0].fd && last[0].bit_rate_switch);
+    EXPECT_EQ(last[0].length, 4);
+    EXPECT_EQ(last[1].data[0], 2);
+    EXPECT_TRUE(replay.is_over());
+    EXPECT_EQ(replay.next(), never);
+    EXPECT_EQ(plant.counters().sent, 0u) << "it has not looked yet";
+    EXPECT_TRUE(arrived(plant).empty());
+    EXPECT_EQ(plant.counters().sent, 1u) << "it believes that somebody heard it";
+}
+
+TEST_F(CanLog, lets_the_plant_hear_the_machine_while_nobody_hears_the_plant) {
+    ASSERT_TRUE(open("(1.0) can0 181#01\n").empty());
+    bus.mute(plant);
+    send(machine, 0x201, 7, Time{1ms});
+    move(Time{1ms});
+    EXPECT_EQ(arrived(plant).size(), 1u);
+}
+
+TEST_F(CanLog, leaves_out_and_counts_what_the_machine_does_not_take) {
+    ASSERT_TRUE(open("(1.0) can0 181#01\n(1.0) can0 7FF#01\n(1.0) can0 00000181#01\n(1.0) can0 181#R\n"
+                     "(1.0) can0 20000040#0000000000000000\n(1.0) can0 201#05\n")
+                    .empty());
+    move(Time{});
+    EXPECT_EQ(arrived(machine).size(), 1u);
+    EXPECT_EQ(machine.counters().impostors, 0u) << "what it sends itself is not replayed";
+    const auto counts = replay.counts();
+    EXPECT_EQ(counts.played, 1u);
+    EXPECT_EQ(counts.unknown, 2u);
+    EXPECT_EQ(counts.remote, 1u);
+    EXPECT_EQ(counts.errors, 1u);
+    EXPECT_EQ(counts.only_in_log, 1u);
+    EXPECT_TRUE(replay.report().view().ends_with(
+        "left out 2 of other identifiers, 1 remote and 1 error frames; of what the machine sent itself 0 "
+        "frames "
+        "are as in the log, 0 are not, 1 are only in the log and 0 are not in it"))
+        << replay.report().view();
+}
+
+TEST_F(CanLog, compares_what_the_machine_sends_identifier_by_identifier) {
+    ASSERT_TRUE(open("(1.000) can0 181#01\n"
+                     "(1.001) can0 201#01\n"
+                     "(1.002) can0 201#02\n"
+                     "(1.003) can0 181#01\n")
+                    .empty());
+    move(Time{});
+    send(machine, 0x202, 9, Time{1ms}); // the log has none of it: nothing to compare
+    send(machine, 0x201, 1, Time{1ms});
+    move(Time{1ms});
+    move(Time{2ms});
+    send(machine, 0x201, 3, Time{2500us});
+    move(Time{2500us});
+    send(machine, 0x201, 4, Time{3ms});
+    move(Time{3ms});
+    const auto counts = replay.counts();
+    EXPECT_EQ(counts.equal, 1u);
+    EXPECT_EQ(counts.different, 1u);
+    EXPECT_EQ(counts.first_different, Time{2500us});
+    EXPECT_EQ(counts.only_in_log, 0u);
+    EXPECT_EQ(counts.only_sent, 1u);
+    EXPECT_NE(replay.report().view().find("(the first 0.002500 s after the beginning)"),
+              std::string_view::npos)
+        << replay.report().view();
+}
+
+// Under virtual time question and answer have the same time.
+TEST_F(CanLog, gives_an_answer_of_the_same_moment_only_when_the_machine_has_asked) {
+    ASSERT_TRUE(open("(1.0) can0 181#01\n(1.001) can0 201#01\n(1.001) can0 181#02\n").empty());
+    move(Time{});
+    EXPECT_EQ(arrived(machine).size(), 1u);
+    move(Time{1ms});
+    EXPECT_TRUE(arrived(machine).empty()) << "the machine has not had its turn";
+    EXPECT_EQ(replay.next(), Time{1ms + 1us});
+    send(machine, 0x201, 1, Time{1ms});
+    move(Time{1ms});
+    EXPECT_EQ(arrived(machine).size(), 1u);
+    EXPECT_TRUE(replay.is_over());
+}
+
+TEST_F(CanLog, waits_no_longer_than_a_microsecond_for_a_machine_that_does_not_ask) {
+    ASSERT_TRUE(open("(1.0) can0 181#01\n(1.001) can0 201#01\n(1.001) can0 181#02\n").empty());
+    for (const Duration at : {0us, 1000us, 1001us}) move(Time{at});
+    EXPECT_EQ(arrived(machine).size(), 2u);
+    EXPECT_TRUE(replay.is_over());
+}
+
+TEST_F(CanLog, refuses_a_file_with_line_column_and_cure) {
+    EXPECT_EQ(refusal(""), "a.log: there is no frame in it; name a log of candump -L or -l");
+    EXPECT_EQ(refusal("(1.0) can0 181#01\n(1.1) can0 181#1\n"),
+              "a.log:2:17: a byte is two hexadecimal digits; the line is cut off");
+    EXPECT_EQ(refusal("(1.0) can0 181#01\n(0.9) can0 181#01\n"),
+              "a.log:2:2: this time is before that of the line above; put them in order: sort -s");
+    EXPECT_EQ(
+        refusal("(1.0) can0 181#01\n(1.0) can1 181#01\n"),
+        "a.log:2:7: here is a frame of another interface; a bus is replayed from a log of its own: grep ' "
+        "can0 '");
+    EXPECT_EQ(refusal("(1.0) can0 7FF#01\n"), "a.log: none of its frames has an identifier that the machine "
+                                              "receives on \"can\"; is it the log of that bus?");
+    CanReplay fresh;
+    EXPECT_TRUE(fresh.open("can", (folder / "none.log").string(), {}, machine_receives, machine_sends)
+                    .view()
+                    .ends_with("cannot be read; name a log of candump -L or -l"));
+}
+
+TEST_F(CanLog, says_when_the_file_changes_while_it_is_replayed) {
+    std::string text;
+    for (int i = 0; i < 10'000; ++i) text += "(" + std::to_string(1000 + i) + ".0) can0 181#01\n";
+    ASSERT_TRUE(open(text).empty());
+    move(Time{});
+    text.replace(text.size() - 100, 1, "?");
+    file(text);
+    move(Time{20'000s});
+    EXPECT_TRUE(replay.is_over());
+    EXPECT_FALSE(replay.fault().empty());
+}
+
+} // namespace
+} // namespace tappet
