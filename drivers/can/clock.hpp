@@ -101,7 +101,8 @@ private:
 /// `error` is certain: half of both stamps' lateness, and what the clocks may have drifted since the last
 /// exchange, P at most while all is well. Only that one counts: a teller that began anew has another clock,
 /// and a small jump of it shows nowhere else. What is spoilt, comes twice, out of order or without its other
-/// half is not used. Between a restart and its first exchange, it is still the clock of before that is told.
+/// half is not used. Between a restart and its first exchange, it is still the clock of before that is told;
+/// `rate` is of one start of the teller, and a jump too small to be seen is in it.
 template <const auto& row> struct ToldClock {
     TAPPET_ACCEPTED(clock_fault(row));
     static constexpr int max_frames_per_cycle = 16;
@@ -115,7 +116,7 @@ template <const auto& row> struct ToldClock {
     Output<std::int64_t> exchanges{}, discarded{}, invalid{}, jumps{};
     Property<Duration> teller_late{100us}, own_late{100us};
     Property<double> drift{210e-6};
-    Property<Duration> silent_after{1s}, rate_over{10s};
+    Property<Duration> silent_after{std::max<Duration>(1s, 5 * row.every)}, rate_over{10s};
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         Frame forgotten;
@@ -208,11 +209,14 @@ private:
         exchanges.write(exchanges.last() + 1);
         const bool is_another = jumps.last() != bounds_.jumps();
         if (is_another) jumps.write(bounds_.jumps());
-        if (has_anchor_ && !is_another && through_ - anchor_ < rate_over.get()) return;
         if (has_anchor_ && !is_another) {
-            const double over = to_seconds(through_ - anchor_);
-            rate.write(to_seconds(ahead_now - ahead_then_) / over);
-            rate_error.write((to_seconds(teller_late.get() + own_late.get()) + 2e-9) / over);
+            const Duration over = through_ - anchor_;
+            if (over < rate_over.get() + own_late.get()) return;
+            rate.write(to_seconds(ahead_now - ahead_then_) / to_seconds(over));
+            // Over a time that is itself known to the lateness of a stamp.
+            rate_error.write((to_seconds(teller_late.get() + own_late.get()) +
+                              drift.get() * to_seconds(own_late.get()) + 2e-9) /
+                             to_seconds(over - own_late.get()));
         }
         has_anchor_ = true;
         anchor_ = through_;

@@ -19,7 +19,7 @@ constexpr SystemView bus{.name = "clock",
                          .promises = {}};
 
 struct Judgement {
-    std::int64_t looks = 0, exchanges = 0, discarded = 0, broken = 0, restarts = 0;
+    std::int64_t looks = 0, rates = 0, exchanges = 0, discarded = 0, broken = 0, restarts = 0;
     double nearest = 0; ///< of what is told, to its bound
     Duration worst_error{};
 };
@@ -68,7 +68,9 @@ public:
             begin(0);
             exchanges_before_ = told().exchanges.last();
             ++found.restarts;
+            has_restarted_ = true;
         }
+        judge_rate(found);
         found.exchanges += told().exchanges.last();
         found.discarded += told().discarded.last();
         run_.stop();
@@ -97,11 +99,20 @@ private:
         seen.clear();
     }
 
+    /// Of a teller that never began anew: both clocks go evenly.
+    void judge_rate(Judgement& found) {
+        if (has_restarted_ || told().rate_error.last() == 0) return;
+        const double truth = (1.0 + clocks_[0].drift_ppm * 1e-6) / (1.0 + clocks_[1].drift_ppm * 1e-6) - 1.0;
+        ++found.rates;
+        if (std::abs(told().rate.last() - truth) > told().rate_error.last()) ++found.broken;
+    }
+
     Random random_;
     std::array<AcceptedMachine, 2> machines_;
     std::array<ClockFault, 2> clocks_{};
     SystemRun run_;
     std::int64_t exchanges_before_ = 0;
+    bool has_restarted_ = false;
 };
 
 Judgement judge(const AcceptedMachine& told, std::uint64_t seeds) {
@@ -116,6 +127,7 @@ TEST(ClockBound, holds_over_a_thousand_seeds) {
                 found.looks, found.exchanges, found.discarded, found.restarts, found.nearest,
                 to_seconds(found.worst_error) * 1e6);
     EXPECT_EQ(found.broken, 0);
+    EXPECT_GT(found.rates, 50);
     EXPECT_GT(found.exchanges, 10'000);
     EXPECT_GT(found.discarded, 1'000) << "the faults strike";
     EXPECT_GT(found.restarts, 500);

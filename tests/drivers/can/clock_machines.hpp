@@ -69,7 +69,7 @@ constexpr auto told_machine_with(auto... settings) {
     return machine("told",
         components(
             component<ToldBus>("can", device("wire")),
-            component<Told>("clock", settings...),
+            component<Told>("clock", set("rate_over", 500ms), settings...),
             component<ClockWatcher>("watcher")),
         activities(
             activity("can", on_device("can"), at_most(8, 1ms), runs("can"), deadline(500us), budget(20us)),
