@@ -142,5 +142,35 @@ TEST(ClockBound, is_broken_without_drift_and_without_either_stamp) {
     EXPECT_GT(judge(Firmware<told_without_teller_late, board>::machine(), 100).broken, 0);
 }
 
+// The SYNC of one start of the teller, and the FUP of the next one with the same number, do not belong
+// together.
+TEST(ClockTeller, that_begins_anew_at_once_is_not_mistaken_for_the_one_before) {
+    const std::array machines{Firmware<telling_machine, board>::machine(),
+                              Firmware<told_machine, board>::machine()};
+    SystemRun run{bus, machines, {}, 1};
+    ASSERT_TRUE(run.start());
+    while (run.wire().next() == never && run.now() < Time{1s}) run.run_for(100us); // its first SYNC leaves
+    run.kill(0);
+    run.run_for(300us);
+    ASSERT_EQ(run.wire().frames_on_wire(), 1u);
+    run.set_clock(0, {.offset = 10s});
+    ASSERT_TRUE(run.start(0));
+    auto& watcher = *run.instance(1).find<ClockWatcher>("watcher");
+    for (int i = 0; i < 2000; ++i) { // whenever the next SYNC comes, only what follows it arrives
+        const std::uint64_t frames = run.wire().frames_on_wire();
+        run.end(1).omits_one_in = frames < 2 ? 1 : 0;
+        run.run_for(100us);
+    }
+    ASSERT_GE(run.wire().frames_on_wire(), 3u);
+    for (const ClockWatcher::Seen& each : watcher.seen)
+        if (each.exchanges > 0) {
+            ASSERT_LE(std::abs((each.ahead - 10s).count()), each.error.count() + 2);
+        }
+    run.run_for(500ms);
+    EXPECT_LE(std::abs((watcher.seen.back().ahead - 10s).count()), watcher.seen.back().error.count() + 2);
+    EXPECT_GT(watcher.seen.back().exchanges, 0);
+    run.stop();
+}
+
 } // namespace
 } // namespace tappet::test

@@ -12,7 +12,17 @@ namespace tappet::test {
 
 inline constexpr auto clock_row = can::clock(can::standard(0x090), can::every(100ms));
 inline constexpr auto no_signals = can::signal_map();
-using TellingBus = can::Bus<no_signals, can::clock_frames<clock_row, can::Direction::transmit>>;
+/// Frames of others, which wake who tells while its own wait.
+inline constexpr auto urgent_frames = [] {
+    can::Services<1, 0> heard{};
+    heard.frames[0].identifier = can::standard(1);
+    heard.frames[0].name = "urgent";
+    heard.frames[0].length = 8;
+    return heard;
+}();
+inline constexpr auto telling_frames =
+    can::together(can::clock_frames<clock_row, can::Direction::transmit>, urgent_frames);
+using TellingBus = can::Bus<no_signals, telling_frames>;
 using ToldBus = can::Bus<no_signals, can::clock_frames<clock_row, can::Direction::receive>>;
 using Teller = can::ClockTeller<clock_row>;
 using Told = can::ToldClock<clock_row>;
