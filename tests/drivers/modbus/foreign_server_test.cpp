@@ -14,13 +14,19 @@
 namespace tappet::modbus {
 namespace {
 
-constexpr auto map =
-    register_map(read("inputs", input_registers(10, 3), every(20ms), word("a", 0), word("b", 2)),
-                 read("contacts", discrete_inputs(4, 4), every(20ms), bit("even", 0), bit("odd", 1)),
-                 read("echo", holding_registers(20, 2), every(20ms), double_word("both", 0).as_signed()),
-                 write("setpoint", holding_registers(20, 2), every(1s), stale_after(10s),
-                       double_word("both", 0).as_signed().safe(-2)),
-                 read("nowhere", holding_registers(5000, 1), every(100ms), word("w", 0)));
+constexpr auto map = register_map(
+    read("inputs", input_registers(10, 3), every(20ms), word("a", 0), word("b", 2)),
+    read("contacts", discrete_inputs(4, 4), every(20ms), bit("even", 0), bit("odd", 1)),
+    read("echo", holding_registers(20, 2), every(20ms), double_word("both", 0).as_signed()),
+    write("setpoint", holding_registers(20, 2), every(1s), stale_after(10s),
+          double_word("both", 0).as_signed().safe(-2)),
+    read("orders", input_registers(40, 16), every(20ms), double_word("abcd", 0).as_signed(),
+         float_word("abcd_real", 2), double_word("cdab", 4).as_signed().swapped(),
+         float_word("cdab_real", 6).swapped(), double_word("badc", 8).as_signed().bytes_swapped(),
+         float_word("badc_real", 10).bytes_swapped(),
+         double_word("dcba", 12).as_signed().swapped().bytes_swapped(),
+         float_word("dcba_real", 14).swapped().bytes_swapped()),
+    read("nowhere", holding_registers(5000, 1), every(100ms), word("w", 0)));
 static_assert(map.fault.empty());
 
 Time now() {
@@ -82,7 +88,7 @@ protected:
     std::string where, ours;
     std::unique_ptr<Foreign> socat, server;
     LibmodbusTransport transport;
-    Session<5, 7> session{map, transport, {.first = 50ms, .most = 200ms}};
+    Session<6, 15> session{map, transport, {.first = 50ms, .most = 200ms}};
 };
 
 TEST_P(ForeignDevice, is_read_written_lost_and_found_again) {
@@ -93,6 +99,11 @@ TEST_P(ForeignDevice, is_read_written_lost_and_found_again) {
     EXPECT_EQ(value("inputs.b").value, 1012);
     EXPECT_EQ(value("contacts.even").value, 0);
     EXPECT_EQ(value("contacts.odd").value, 1);
+    ASSERT_TRUE(run_until([&] { return value("orders.abcd").quality == Quality::good; }));
+    for (const std::string order : {"abcd", "cdab", "badc", "dcba"}) {
+        EXPECT_EQ(value("orders." + order).value, -305419896) << order;
+        EXPECT_EQ(value("orders." + order + "_real").value, -12.625) << order;
+    }
     ASSERT_TRUE(run_until([&] { return value("nowhere.w").quality == Quality::exception; }));
     EXPECT_EQ(value("nowhere.w").exception, 2) << "illegal data address";
 
