@@ -191,7 +191,7 @@ struct Bus {
         if constexpr (protocol.any) {
             list[n++] = output<&Bus::services>("services", "", "frames of the protocol's own, received");
             list[n] = input<&Bus::to_send>("to_send", "", "frames of the protocol's own, to be sent");
-            list[n++].required = !protocol.sends_itself;
+            list[n++].required = protocol.sends_by_bus();
         }
         return list;
     }

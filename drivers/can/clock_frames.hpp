@@ -46,6 +46,7 @@ template <const auto& row, Direction direction>
 inline constexpr auto clock_frames = [] {
     TAPPET_ACCEPTED(clock_fault(row));
     Services<2, 0> both{};
+    both.sends_itself = true; // the teller; who is told sends nothing
     both.frames[0].name = "clock.sync";
     both.frames[1].name = "clock.follow_up";
     for (FrameRow& frame : both.frames) {

@@ -18,6 +18,10 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     bool sends_itself = false;  ///< it stands beside the bus on the device; else by the bus's to_send
     static constexpr bool any = N + S != 0;
 
+    /// Whether something of it leaves by the bus's input to_send.
+    [[nodiscard]] constexpr bool sends_by_bus() const noexcept {
+        return !sends_itself && std::ranges::count(frames, Direction::transmit, &FrameRow::direction) != 0;
+    }
     [[nodiscard]] constexpr bool takes(const Frame& frame) const noexcept TAPPET_REALTIME {
         for (const FrameRow& row : frames)
             if (row.direction == Direction::receive && row.identifier == Identifier{frame.id, frame.extended})
@@ -41,7 +45,7 @@ constexpr Services<N + M, S + T, G + H> together(const Services<N, S, G>& one,
     join(one.signals, other.signals, both.signals);
     for (std::size_t f = N; f < N + M; ++f) both.frames[f].first += G;
     both.bit_rate = std::max(one.bit_rate, other.bit_rate);
-    both.sends_itself = one.sends_itself && other.sends_itself;
+    both.sends_itself = !one.sends_by_bus() && !other.sends_by_bus();
     return both;
 }
 
