@@ -29,7 +29,8 @@ TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
     auto& taker = *run.instance(1).find<Taker>("taker");
     auto& from = *run.instance(0).find<systems::Link<pair, 0>>("wire");
     auto& to = *run.instance(1).find<systems::Link<newer_pair, 1>>("wire");
-    ASSERT_TRUE(run.run_until([&] { return giver.other_is_there.get() && taker.other_is_there.get(); }, 500ms));
+    ASSERT_TRUE(
+        run.run_until([&] { return giver.other_is_there.get() && taker.other_is_there.get(); }, 500ms));
     giver.tells = 5.0;
     giver.to_send = {1, 2, 3};
     giver.asks = 4;
@@ -54,7 +55,8 @@ TEST(Versions, the_right_one_is_taken_when_it_comes) {
     run.run_for(300ms);
     run.stop(1); // in order: it says so
     run.run_for(20ms);
-    EXPECT_FALSE(run.instance(0).find<Giver>("giver")->other_is_there.get()) << "before its silence would tell";
+    EXPECT_FALSE(run.instance(0).find<Giver>("giver")->other_is_there.get())
+        << "before its silence would tell";
     ASSERT_TRUE(run.start(1));
     run.run_for(300ms);
     EXPECT_TRUE(run.instance(1).find<Taker>("taker")->level.good());

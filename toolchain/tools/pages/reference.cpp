@@ -77,14 +77,14 @@ struct Crosses {
 };
 constexpr auto one_machine = machine("one", components(component<Crosses>("c")), activities(), connections(),
                                      reactions(), behaviours());
-constexpr auto pair =
-    system("pair", tappet::nodes(node<one_machine>("a"), node<one_machine>("b")), wire("wire", bit_rate(500'000)),
-           crossings(across(data("a.c.value", "b.c.heard"), every(10ms), in_bits(16, 0.1)),
-                     across(data("b.c.value", "a.c.heard"), every(10ms), in_bits(16, 0.1)),
-                     across(when("a.c.event", tell("b.c.operation")), at_most(1, 100ms), within(50ms)),
-                     across(when("b.c.event", tell("a.c.operation")), at_most(1, 100ms), within(50ms)),
-                     across(uses("a.c.call", "b.c.command"), at_most(1, 100ms), within(50ms)),
-                     across(uses("b.c.call", "a.c.command"), at_most(1, 100ms), within(50ms))));
+constexpr auto pair = system(
+    "pair", tappet::nodes(node<one_machine>("a"), node<one_machine>("b")), wire("wire", bit_rate(500'000)),
+    crossings(across(data("a.c.value", "b.c.heard"), every(10ms), in_bits(16, 0.1)),
+              across(data("b.c.value", "a.c.heard"), every(10ms), in_bits(16, 0.1)),
+              across(when("a.c.event", tell("b.c.operation")), at_most(1, 100ms), within(50ms)),
+              across(when("b.c.event", tell("a.c.operation")), at_most(1, 100ms), within(50ms)),
+              across(uses("a.c.call", "b.c.command"), at_most(1, 100ms), within(50ms)),
+              across(uses("b.c.call", "a.c.command"), at_most(1, 100ms), within(50ms))));
 
 struct Described {
     std::string_view header, type, row;
