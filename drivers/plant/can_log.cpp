@@ -43,8 +43,10 @@ Sentence CanRecorder::open(std::string_view bus, const std::string& folder) {
 }
 
 void CanRecorder::record(const can::Frame& frame) {
-    if (frames_++ == 0) first_ = frame.stamp;
-    file_ << can::candump::write(frame, bus_).view() << '\n';
+    can::Frame logged = frame;
+    logged.stamp = Time{frame.stamp - begun_};
+    if (frames_++ == 0) first_ = logged.stamp;
+    file_ << can::candump::write(logged, bus_).view() << '\n';
 }
 
 Sentence CanRecorder::close(bool& good) {

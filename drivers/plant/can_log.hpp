@@ -19,6 +19,8 @@ public:
     /// `bus` as the machine's table names it: the file is that name's in the folder. The error says what to
     /// do.
     [[nodiscard]] Sentence open(std::string_view bus, const std::string& folder);
+    /// Times are written from here on.
+    void begin(Time now) { begun_ = std::min(begun_, now); }
     void record(const can::Frame& frame);
     /// How much was written, and how it is replayed; or what could not be written. Once, at the end.
     [[nodiscard]] Sentence close(bool& good);
@@ -27,7 +29,7 @@ private:
     std::string bus_{}, path_{};
     std::ofstream file_{};
     std::uint64_t frames_ = 0;
-    Time first_{};
+    Time begun_ = never, first_{};
 };
 
 /// Plays the frames that the machine receives, each at its time since the log's first frame. Those that the

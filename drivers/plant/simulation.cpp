@@ -119,8 +119,9 @@ CanReplay::Counts SimulatedDevices::replayed(std::string_view bus) {
     return replay ? replay->counts() : CanReplay::Counts{};
 }
 
-void SimulatedDevices::Bus::drain_tap() {
+void SimulatedDevices::Bus::drain_tap(Time now) {
     if (!tap) return;
+    if (recorder) recorder->begin(now);
     for (can::Frame frame; tap->pop(frame);) {
         if (recorder) recorder->record(frame);
         if (replay) replay->heard(frame);
@@ -206,14 +207,14 @@ void SimulatedDevices::advance(Time now) {
     for (const auto& chip : chips_) chip->seen = chip->twin.outputs();
     for (const auto& bus : buses_) {
         bus->bus.deliver_until(now);
-        bus->drain_tap();
+        bus->drain_tap(now);
         if (can::faulted(bus->plant.state())) static_cast<void>(bus->plant.restart());
     }
     next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
     for (const auto& bus : buses_) {
         if (bus->replay) bus->replay->play(bus->bus, now);
         bus->bus.deliver_until(now);
-        bus->drain_tap();
+        bus->drain_tap(now);
     }
     next_ = std::min(next_, next_on_buses());
     for (const auto& chip : chips_) chip->twin.deliver_until(now);

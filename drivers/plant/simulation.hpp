@@ -81,7 +81,7 @@ private:
         std::unique_ptr<can::TwinBus::Tap> tap{};
         std::unique_ptr<CanRecorder> recorder{};
         std::unique_ptr<CanReplay> replay{};
-        void drain_tap();
+        void drain_tap(Time now);
         Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
     };
     struct Replay {

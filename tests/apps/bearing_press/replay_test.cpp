@@ -38,7 +38,11 @@ struct ReplayedPress : testing::Test {
         run.stop();
         EXPECT_TRUE(run.devices().close_logs(
             [](const Sentence& what, bool good) { EXPECT_TRUE(good) << what.view(); }));
-        return run.devices().replayed("axis-can");
+        const CanReplay::Counts counts = run.devices().replayed("axis-can");
+        EXPECT_EQ(run.devices().bus("axis-can").frames_on_wire(),
+                  counts.played + counts.equal + counts.different + counts.only_sent)
+            << "and nothing of the plant's";
+        return counts;
     }
 
     std::filesystem::path folder =

@@ -85,13 +85,15 @@ struct CanLog : testing::Test {
 TEST_F(CanLog, records_what_both_ends_send_in_the_order_of_the_wire) {
     CanRecorder recorder;
     ASSERT_TRUE(recorder.open("axis can", (folder / "new").string()).empty());
-    send(machine, 0x201, 0xAA, Time{1ms});
-    send(plant, 0x181, 0xBB, Time{1ms});
-    bus.deliver_until(Time{1ms});
+    recorder.begin(Time{1s});
+    recorder.begin(Time{2s}); // it has begun
+    send(machine, 0x201, 0xAA, Time{1001ms});
+    send(plant, 0x181, 0xBB, Time{1001ms});
+    bus.deliver_until(Time{1001ms});
     EXPECT_TRUE(arrived(plant).size() == 1 && arrived(machine).size() == 1);
     bus.faults.lose.next = 1; // acknowledged by another node: it was on the wire
-    send(plant, 0x182, 0xCC, Time{1500ms});
-    bus.deliver_until(Time{1500ms});
+    send(plant, 0x182, 0xCC, Time{2500ms});
+    bus.deliver_until(Time{2500ms});
     for (Frame frame; tap.pop(frame);) recorder.record(frame);
     bool good = false;
     const Sentence said = recorder.close(good);
