@@ -4,13 +4,17 @@
 //     node peer.js values FILE.eds             the values of the file, as that package reads them
 //     node peer.js device FILE.eds ID SOCKET   the device of the file
 //     node peer.js client ID SOCKET            reads and writes the device ID by SDO
+//     node peer.js bus FILE.eds=ID..           the devices of the files in real time, on a bus of Linux:
+//                                              candump -L can0 | node peer.js bus .. | canplayer -t
 'use strict';
 const fs = require('fs');
 const net = require('net');
 const os = require('os');
 const path = require('path');
 
-// Its timers run in the test's time.
+const [, , mode, ...rest] = process.argv;
+
+// Its timers run in the test's time, if it has one.
 let now = 0;
 const timers = new Set();
 class Timer {
@@ -25,9 +29,11 @@ class Timer {
     }
     unref() { return this; }
 }
-global.setTimeout = (act, ms, ...rest) => new Timer(() => act(...rest), ms, false);
-global.setInterval = (act, ms, ...rest) => new Timer(() => act(...rest), ms, true);
-global.clearTimeout = global.clearInterval = (timer) => timers.delete(timer);
+if (mode !== 'bus') {
+    global.setTimeout = (act, ms, ...rest) => new Timer(() => act(...rest), ms, false);
+    global.setInterval = (act, ms, ...rest) => new Timer(() => act(...rest), ms, true);
+    global.clearTimeout = global.clearInterval = (timer) => timers.delete(timer);
+}
 function advance(to) {
     for (;;) {
         let first = null;
@@ -89,7 +95,6 @@ function serve(device, place, tell) {
     socket.on('close', () => process.exit(0));
 }
 
-const [, , mode, ...rest] = process.argv;
 if (mode === 'values') {
     const eds = dictionary(rest[0], 5);
     const show = (index, sub, entry) => {
@@ -113,6 +118,29 @@ if (mode === 'values') {
             if (device.eds.getEntry(index) && get(index) !== value) device.setValue(index, value);
         return [`state ${device.state}`, `mapped ${device.eds.getTransmitPdos().map((pdo) => pdo.dataObjects.length)}`,
             `controlword ${get(0x6040)}`, `target ${get(0x60FF)}`];
+    });
+} else if (mode === 'bus') {
+    const devices = rest.map((word) => {
+        const [file, id] = [word.slice(0, word.lastIndexOf('=')), Number(word.slice(word.lastIndexOf('=') + 1))];
+        const eds = dictionary(file, id);
+        eds.addSdoServerParameter(id, 0x580 + id, 0x600 + id);
+        const device = new Device({ eds, id });
+        device.on('message', ({ id: to, data }) => process.stdout.write(
+            `(0.000000) can0 ${to.toString(16).padStart(3, '0')}#${data.toString('hex')}\n`));
+        device.start();
+        return device;
+    });
+    let seen = '';
+    setInterval(() => {
+        const states = devices.map((device) => `${device.id}:${device.state}/${device.getValue(0x1017)}`).join(' ');
+        if (states !== seen) console.error(`foreign nodes, state and heartbeat: ${states}`);
+        seen = states;
+    }, 20);
+    require('readline').createInterface({ input: process.stdin }).on('line', (line) => {
+        const [, id, hex] = line.match(/ ([0-9A-F]{3})#([0-9A-F]*)$/) || [];
+        if (id === undefined) return;
+        const data = Buffer.from(hex, 'hex');
+        for (const device of devices) device.receive({ id: parseInt(id, 16), data, len: data.length });
     });
 } else {
     const id = Number(rest[0]);
