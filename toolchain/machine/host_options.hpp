@@ -26,9 +26,9 @@ inline constexpr std::array host_options{
     Option{"--browse", "DIR",
            "opens a socket for tappet-browse there (with --real: virtual time does not wait for it)"},
     Option{"--record-can", "DIR", "writes what is on each CAN bus there, as candump -L does"},
-    Option{"--replay-can", "BUS=FILE[@SECONDS]",
-           "plays a log of candump -L in place of what the plant sends on that bus; it begins SECONDS after "
-           "the machine, and the run ends with it"},
+    Option{"--replay-can", "BUS=FILE",
+           "plays that candump log in place of what the plant sends on the bus, up to its end; FILE@SECONDS: "
+           "it begins so late"},
     Option{"--quiet", "", "what the machine's components print is not shown; faults are"},
     Option{"--plan", "", "what the compiler derived from the table: priorities, order, mailboxes, memory"},
     Option{"--help", "", "this text"}};
