@@ -29,10 +29,11 @@ TEST(Hostile, frames_stop_nobody_and_what_is_damaged_is_refused) {
             for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(random.next());
             frame.stamp = run.now() + 1ns;
             const bool is_right = random.one_in(2) && frame.length == as.bytes();
-            if (is_right)
+            if (is_right) {
                 ASSERT_TRUE(protect(std::span{frame.data}.first(frame.length),
                                     {.form = Protection::Form::id_both, .id = as.data_id},
                                     static_cast<std::uint8_t>(random.below(15))));
+            }
             damaged += is_right ? 0 : 1;
             static_cast<void>(liar.send(frame, can::Keep::every));
             liar.service(run.now());
