@@ -112,7 +112,6 @@ private:
     void follow();
 
     os::Clock clock_{os::Clock::Kind::real};
-    Plant& plant_;
     SimulatedDevices devices_;
     PropertyFiles files_{""};
     MachineInstance instance_;

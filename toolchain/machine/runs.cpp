@@ -64,7 +64,7 @@ bool VirtualRun::run_until(const std::function<bool()>& done, Duration limit) {
 }
 
 RealRun::RealRun(const AcceptedMachine& machine, Plant& plant, std::uint64_t seed)
-    : plant_{plant}, devices_{plant, seed}, instance_{machine, clock_}, world_{instance_} {}
+    : devices_{plant, seed}, instance_{machine, clock_}, world_{instance_} {}
 
 RealRun::~RealRun() { static_cast<void>(stop()); }
 
