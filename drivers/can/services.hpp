@@ -14,8 +14,9 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     std::array<FrameRow, N> frames{};
     std::array<Signal, G> signals{}; ///< what stands in them, for tools: a row's first and how many
     std::array<Frame, S> safe{};
-    std::uint32_t bit_rate = 0; ///< that they were proven for; 0: the board's, whatever it is
-    bool sends_itself = false;  ///< it stands beside the bus on the device; else by the bus's to_send
+    std::uint32_t bit_rate = 0;         ///< that they were proven for; 0: the board's, whatever it is
+    std::uint32_t restarts_allowed = 0; ///< of a faulted controller; 0: as few as any bus has
+    bool sends_itself = false;          ///< it stands beside the bus on the device; else by the bus's to_send
     static constexpr bool any = N + S != 0;
 
     /// Whether something of it leaves by the bus's input to_send.
@@ -45,6 +46,7 @@ constexpr Services<N + M, S + T, G + H> together(const Services<N, S, G>& one,
     join(one.signals, other.signals, both.signals);
     for (std::size_t f = N; f < N + M; ++f) both.frames[f].first += G;
     both.bit_rate = std::max(one.bit_rate, other.bit_rate);
+    both.restarts_allowed = std::max(one.restarts_allowed, other.restarts_allowed);
     both.sends_itself = !one.sends_by_bus() && !other.sends_by_bus();
     return both;
 }
@@ -99,7 +101,8 @@ template <const auto& map, const auto& services> struct AllFrames {
     }();
     static constexpr auto told_signals =
         joined<map.signals.size()>(std::span<const Signal>{map.signals}, services.signals);
-    static constexpr Identifiers value{receive, transmit, has_fd, safe, told_frames, told_signals};
+    static constexpr Identifiers value{
+        receive, transmit, has_fd, safe, told_frames, told_signals, services.restarts_allowed};
     /// What the bus is proven for.
     static constexpr auto traffic =
         joined<map.frames.size()>(std::span<const FrameRow>{map.frames}, chosen<rated>(&AllFrames::has_rate));

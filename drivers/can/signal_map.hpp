@@ -130,6 +130,7 @@ struct Identifiers {
     std::span<const Frame> safe{};      ///< see SignalMap::safe_frames
     std::span<const FrameRow> frames{}; ///< of a machine's end, for tools
     std::span<const Signal> signals{};
+    std::uint32_t restarts_allowed = 0; ///< of its controller; 0: as few as any bus has
 };
 
 /// Of all multiplexed frames of a map together, beyond one frame each.

@@ -14,6 +14,7 @@ std::expected<void, Sentence> open_device(can::SocketCan& bus, const BoundTo& to
     settings.bit_rate = to.device->bit_rate.bits_per_second;
     settings.data_bit_rate = to.device->bit_rate.in_data_phase;
     settings.takes_fd = map.has_fd;
+    if (map.restarts_allowed != 0) settings.restarts_allowed = map.restarts_allowed;
     settings.receive = map.receive;
     settings.transmit = map.transmit;
     std::array<TrafficRow, most_traffic_rows> rows{};

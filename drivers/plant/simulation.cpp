@@ -172,6 +172,7 @@ std::expected<void, Sentence> SimulatedDevices::add_bus(const ComponentRow& row)
     bus.bus.set_bit_rates(bit_rates_);
     const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
     bus.settings.interface = row.device;
+    if (map.restarts_allowed != 0) bus.settings.restarts_allowed = map.restarts_allowed;
     bus.settings.receive = map.receive;
     bus.settings.transmit = map.transmit;
     bus.settings.takes_fd = map.has_fd;

@@ -59,7 +59,9 @@ struct Link {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         can::Frame forgotten;
         for (int k = 0; k < max_frames_per_cycle && received.pop(forgotten);) ++k;
-        epoch_ = static_cast<std::uint16_t>(to_ns(cycle.now) / 1'000'000 % 0xFFFF + 1);
+        // In nanoseconds: two starts of a box are alike in milliseconds.
+        epoch_ = static_cast<std::uint16_t>(
+            static_cast<std::uint64_t>(to_ns(cycle.now)) * 0x9E37'79B9'7F4A'7C15u >> 48);
         peers_ = {};
         state_ = {};
         for (std::size_t i = 0; i < row_count; ++i) {
@@ -118,6 +120,7 @@ private:
     struct RowState {
         bool agreed = false;
         bool is_refused = false;
+        bool was_valid = false;     ///< a value of it came
         ChannelSender sender{};     ///< of events and commands to others, and of replies
         ChannelReceiver receiver{}; ///< the other way
         Call call = Call::none;
@@ -141,7 +144,7 @@ private:
             return;
         }
         if (what.kind == WireFrameKind::beat) {
-            take_beat(what.node, beat_of(frame.data), now);
+            take_beat(what.node, beat_of(frame.data), frame.stamp);
         } else if (what.kind == WireFrameKind::data) {
             take_data(f, frame);
         } else {
@@ -155,14 +158,14 @@ private:
         return verdict.kind != ProtectionVerdict::Kind::wrong_crc;
     }
 
-    void take_beat(std::size_t node, const Beat& beat, Time now) noexcept TAPPET_REALTIME {
+    void take_beat(std::size_t node, const Beat& beat, Time at) noexcept TAPPET_REALTIME {
         Peer& peer = peers_[node];
         if (!beat.runs) {
             if (peer.there && peer.epoch == beat.epoch) lose(node);
             return;
         }
         if (!peer.there || peer.epoch != beat.epoch) begin(node, beat.epoch);
-        peer.silent_at = now + system.wire.silent_after;
+        peer.silent_at = at + system.wire.silent_after;
         for (std::size_t i = 0; i < row_count; ++i) {
             if (Rows::rows[i].name != beat.row || Rows::other(i) != node) continue;
             if (Rows::rows[i].layout == beat.layout) {
@@ -202,7 +205,7 @@ private:
         for (std::size_t i = 0; i < row_count; ++i) {
             if (Rows::other(i) != node) continue;
             RowState& row = state_[i];
-            row.agreed = row.is_refused = false;
+            row.agreed = row.is_refused = row.was_valid = false;
             if (Rows::sends_events(i) && row.sender.state() == ChannelSender::State::sends) tell_loss(i);
             row.sender.give_up();
             if (is_under_way(row)) row.call = Call::failed;
@@ -213,13 +216,18 @@ private:
         for (std::size_t p = 0; p < Rows::port_count; ++p) {
             const PortPlace& port = Rows::ports[p];
             if (port.is_input || port.frame != f || !state_[port.row].agreed) continue;
-            std::array<std::byte, 56> value{};
-            on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
-            // What was old when it was told is so here.
+            void* const output = storage_.data() + port.at;
             const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0;
-            const Time stamp = is_valid ? frame.stamp : frame.stamp - port.max_age - 1ns;
-            if (is_valid || port.max_age > Duration::zero())
-                port.facet->port->write_at(storage_.data() + port.at, value.data(), stamp);
+            bool& was_valid = state_[port.row].was_valid;
+            if (!is_valid && (!was_valid || port.max_age == Duration::zero())) continue;
+            std::array<std::byte, 56> value{};
+            if (is_valid)
+                on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
+            else // what was old when it was told is so here
+                static_cast<void>(port.facet->port->read(output, false, false, value.data()));
+            port.facet->port->write_at(output, value.data(),
+                                       is_valid ? frame.stamp : frame.stamp - port.max_age - 1ns);
+            was_valid = is_valid;
         }
     }
 
@@ -285,6 +293,10 @@ private:
     // ---- what goes
 
     void serve(Time now) noexcept TAPPET_REALTIME {
+        // Who hears and is not heard must not believe that all is well.
+        if (can::faulted(device_->state()))
+            for (std::size_t node = 0; node < node_count; ++node)
+                if (peers_[node].there) lose(node);
         for (std::size_t node = 0; node < node_count; ++node)
             if (peers_[node].there && now >= peers_[node].silent_at) lose(node);
         for (std::size_t i = 0; i < row_count; ++i) {
@@ -403,7 +415,7 @@ private:
             std::array<std::byte, 56> value{};
             const Flow flow = port.facet->port->read(storage_.data() + port.at, true, false, value.data());
             const on_wire::Told told = on_wire::tell(value.data(), port.value, payload, port.bit + 1u);
-            if (told == on_wire::Told::beyond) beyond.write(++beyond_);
+            if (told != on_wire::Told::well) beyond.write(++beyond_);
             const bool is_valid =
                 (flow == Flow::fresh || flow == Flow::old) && told != on_wire::Told::no_number;
             on_wire::put_bits(payload, port.bit, 1, is_valid ? 1 : 0);

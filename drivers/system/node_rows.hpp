@@ -34,7 +34,8 @@ struct PortPlace {
     std::size_t frame = nowhere;
     std::uint16_t bit = 0; ///< of the bit that says whether it is valid; the value stands behind it
     WireValue value{};
-    Duration max_age{}; ///< the longest that a reader allows
+    Duration
+        max_age{}; ///< that a reader allows: the shortest where it is told, the longest where it is heard
     std::size_t at = 0; ///< in the storage
 };
 
@@ -84,6 +85,11 @@ private:
         std::array<std::size_t, crossing_count> row_of{};
         std::size_t bytes = 64; // none is of no size
     };
+    /// Who tells goes by the strictest of its readers; who hears tells an old value to the most patient, too.
+    static constexpr Duration stricter(Duration a, Duration b, bool is_told) {
+        if (a == Duration::zero() || b == Duration::zero()) return std::max(a, b);
+        return is_told ? std::min(a, b) : std::max(a, b);
+    }
     static constexpr std::size_t on_a_line(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
     static constexpr Places places = [] {
         Places all;
@@ -120,7 +126,7 @@ private:
             for (std::size_t x = 0; x < crossing_count; ++x)
                 if (has_part(x) && system.crossings[x].kind == CrossingKind::data &&
                     system.crossings[x].data.from == system.crossings[each.crossing].data.from)
-                    each.max_age = std::max(each.max_age, system.crossings[x].data.max_age);
+                    each.max_age = stricter(each.max_age, system.crossings[x].data.max_age, each.is_input);
         return all;
     }();
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/can/bus.hpp"
+#include "drivers/can/restarter.hpp"
 #include "drivers/system/link.hpp"
 #include "kernel/system/joined.hpp"
 
@@ -43,6 +44,11 @@ struct StationRows {
         }
         return names;
     }();
+    /// A node that is alone on the wire has nobody who acknowledges: it tries again until somebody is there,
+    /// some half an hour; then it needs hands.
+    static constexpr std::uint32_t restarts = 1000;
+    static constexpr Duration restart_pause = 2s;
+
     // ---- what stands in them, for tools
 
     using SignalName = Text<64>;
@@ -120,6 +126,7 @@ struct StationRows {
         });
         all.bit_rate = system.wire.rate.bits_per_second;
         all.sends_itself = true;
+        all.restarts_allowed = restarts;
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
             can::FrameRow& row = all.frames[f];
@@ -189,6 +196,13 @@ struct StationRows {
         return text;
     }();
     static constexpr auto bus_services = path("services", "_can"), received = path("received", "");
+    static constexpr auto bus_faulted = path("faulted", "_can"), faulted = path("faulted", "_restarter");
+    static constexpr auto restarter_name = [] {
+        Text<64> text;
+        text.append(system.wire.name);
+        text.append("_restarter");
+        return text;
+    }();
     static constexpr auto port_paths = [] {
         std::array<Path, Rows::port_count> all{};
         for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view(), "");
@@ -218,7 +232,7 @@ struct StationRows {
         return {};
     }
     static constexpr std::size_t connection_count = [] {
-        std::size_t count = 1;
+        std::size_t count = 2;
         for (const PortPlace& port : Rows::ports) count += port.is_input ? 1u : 0u;
         for (std::size_t x = 0; x < system.crossings.size(); ++x)
             count += plan.index[x].to.node == n && (system.crossings[x].kind == CrossingKind::data ||
@@ -231,6 +245,7 @@ struct StationRows {
         std::array<ConnectionRow, connection_count> all{};
         std::size_t k = 0;
         all[k++] = buffer<64>(bus_services.view(), received.view());
+        all[k++] = data(bus_faulted.view(), faulted.view());
         for (std::size_t p = 0; p < Rows::port_count; ++p) {
             if (!Rows::ports[p].is_input) continue;
             ConnectionRow& row = all[k++];
@@ -279,10 +294,13 @@ struct StationRows {
         }
         return all;
     }();
-    static constexpr std::array<ComponentRow, 2> components{
+    static constexpr std::array<ComponentRow, 3> components{
         component<can::Bus<no_signals, services>>(bus_name.view(), device(system.wire.name)),
-        component<Link<system, n>>(system.wire.name, device(system.wire.name))};
-    static constexpr std::array<ActivityRow, 1> activities{
+        component<Link<system, n>>(system.wire.name, device(system.wire.name)),
+        component<can::Restarter>(restarter_name.view(), device(system.wire.name), set("attempts", restarts),
+                                  set("pause", restart_pause))};
+    static constexpr std::array<ActivityRow, 2> activities{
+        activity(restarter_name.view(), every(100ms), not_real_time, runs(restarter_name.view())),
         activity(system.wire.name, on_device(bus_name.view()), at_most(wakes, system.wire.service.deadline),
                  runs(bus_name.view(), system.wire.name), deadline(system.wire.service.deadline),
                  budget(system.wire.service.budget))};

@@ -18,7 +18,15 @@ constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> fram
     std::array<std::int64_t, most>
         late{}; // behind less urgent ones of its own node that are in flight already
     const std::uint32_t rate = s.wire.rate.bits_per_second;
+    std::array<std::int64_t, most> brought{}; // of an answer: the jitter of what it answers
+    std::array<std::size_t, most> answers{};
     for (std::size_t f = 0; f < frames.size(); ++f) {
+        answers[f] = frames.size();
+        for (std::size_t m = 0; m < frames.size(); ++m)
+            if (frames[m].crossing == frames[f].crossing &&
+                ((frames[f].kind == WireFrameKind::answer && frames[m].kind == WireFrameKind::message) ||
+                 (frames[f].kind == WireFrameKind::received && frames[m].kind == WireFrameKind::reply)))
+                answers[f] = m;
         timing[f].wire_ns = can::frame_time_ns(can::Format::classical, false, frames[f].bytes(), {rate, 0});
         frames[f].on_wire = Duration{timing[f].wire_ns};
         timing[f].period_ns = frames[f].apart.count();
@@ -32,7 +40,7 @@ constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> fram
             std::int64_t shortest = std::numeric_limits<std::int64_t>::max();
             for (std::size_t f = 0; f < frames.size(); ++f) {
                 timing[f].own = frames[f].node == n;
-                timing[f].jitter_ns = served + (timing[f].own ? 0 : late[f]);
+                timing[f].jitter_ns = served + brought[f] + (timing[f].own ? 0 : late[f]);
                 if (timing[f].own) shortest = std::min(shortest, timing[f].wire_ns);
             }
             const can::BusAnalysis bus{std::span{timing}.first(frames.size()),
@@ -42,15 +50,22 @@ constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> fram
             for (std::size_t f = 0; f < frames.size(); ++f) {
                 if (!timing[f].own) continue;
                 const can::FrameResponse found = bus.of(f);
+                // From its own release: that of an answer is the end of what it answers.
                 frames[f].worst =
-                    found.response.bounded ? Duration{found.response.worst_ns} : Duration::max();
+                    found.response.bounded ? Duration{found.response.worst_ns - brought[f]} : Duration::max();
                 if (!found.response.bounded) return f;
+                for (std::size_t k = 0; k < frames.size(); ++k)
+                    if (answers[k] == f)
+                        if (const std::int64_t ns = found.response.worst_ns - timing[f].wire_ns;
+                            ns > brought[k])
+                            brought[k] = ns, again = true;
                 if (const std::int64_t behind = bus.late_ns(f); behind > late[f])
                     late[f] = behind, again = true;
             }
         }
     }
-    for (std::size_t f = 0; f < frames.size(); ++f) frames[f].jitter = Duration{served + late[f]};
+    for (std::size_t f = 0; f < frames.size(); ++f)
+        frames[f].jitter = Duration{served + brought[f] + late[f]};
     for (std::size_t f = 0; f < frames.size(); ++f)
         if (frames[f].worst > frames[f].deadline) return f;
     return frames.size();

@@ -82,25 +82,20 @@ constexpr void add_value(Digest& digest, const WireValue& value) noexcept {
     digest.add(std::bit_cast<std::uint64_t>(value.step));
 }
 
-/// The deadline of the activity that runs a component of a node: proven by that machine's own check.
-constexpr Duration deadline_at(const SystemView& s, const NodeEnd& end) {
-    const MachineView& table = s.nodes[end.node].table;
-    const std::size_t a = activity_of(table, table.components[end.at.component].name);
-    return a == nowhere ? Duration{} : table.activities[a].deadline();
-}
-/// From the arrival of a value until the component there has seen it.
-constexpr Duration read_within(const SystemView& s, const NodeEnd& end, bool wakes) {
+/// From the arrival of a value or a message until the component there has seen it: a periodic activity waits
+/// for its next period, whatever comes.
+constexpr Duration read_within(const SystemView& s, const NodeEnd& end) {
     const MachineView& table = s.nodes[end.node].table;
     const std::size_t a = activity_of(table, table.components[end.at.component].name);
     if (a == nowhere) return {};
     const ActivityRow& row = table.activities[a];
-    return row.deadline() + (row.periodic() && !wakes ? row.period : Duration{});
+    return row.deadline() + (row.periodic() ? row.period : Duration{});
 }
 
 /// What a row's time has besides its frame on the wire.
 constexpr Duration around_wire(const SystemView& s, const Crossing& row, const CrossingIndex& index) {
     const Duration served = s.wire.service.deadline;
-    return row.kind == CrossingKind::data ? row.every + served : served + deadline_at(s, index.to);
+    return row.kind == CrossingKind::data ? row.every + served : served + read_within(s, index.to);
 }
 
 template <std::size_t N, std::size_t X>
@@ -142,7 +137,18 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
                                    "\"; give all rows of one output the same every(...) and the same bits");
             place = plan.place[b];
         }
-        if (place.frame != nowhere) continue;
+        const Duration left =
+            row.within == Duration::zero() ? row.every : row.within - around_wire(s, row, plan.index[x]);
+        if (left <= Duration::zero())
+            return of_crossing(
+                row, " is to be there within ", row.within.count() / 1000, " us, but ",
+                around_wire(s, row, plan.index[x]).count() / 1000,
+                " us of that are its every(...) and the deadline by which the wire is served; shorten "
+                "those, or say a longer within(...)");
+        if (place.frame != nowhere) {
+            plan.frames[place.frame].deadline = std::min(plan.frames[place.frame].deadline, left);
+            continue;
+        }
         for (std::size_t f = 0; f < plan.frames.size() && place.frame == nowhere; ++f) {
             const WireFrame& frame = plan.frames[f];
             if (frame.kind == WireFrameKind::data && frame.node == plan.index[x].from.node &&
@@ -161,8 +167,7 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
         WireFrame& frame = plan.frames[place.frame];
         place.at = frame.bits;
         frame.bits = static_cast<std::uint16_t>(frame.bits + bits);
-        if (row.within != Duration::zero())
-            frame.deadline = std::min(frame.deadline, row.within - around_wire(s, row, plan.index[x]));
+        frame.deadline = std::min(frame.deadline, left);
     }
     return {};
 }
@@ -184,7 +189,8 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
                          .kind = kind,
                          .crossing = x,
                          .apart = again,
-                         .deadline = std::min(left, again),
+                         // A message and its answer, both at their worst, are through before it is given up.
+                         .deadline = std::min(left, again - s.wire.service.deadline),
                          .bits = static_cast<std::uint16_t>(bits)};
     };
     if (channel_bits + index.value.bits > most_wire_bits)
@@ -228,6 +234,9 @@ constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAn
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
               [&](std::size_t a, std::size_t b) {
                   const WireFrame &l = plan.frames[a], &r = plan.frames[b];
+                  // Beats have identifiers that no row moves: other versions hear them, too.
+                  const bool l_beats = l.kind == WireFrameKind::beat, r_beats = r.kind == WireFrameKind::beat;
+                  if (l_beats != r_beats) return l_beats;
                   return l.deadline != r.deadline ? l.deadline < r.deadline : a < b;
               });
     auto trial = plan.frames;
@@ -239,9 +248,9 @@ constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAn
     if (bad < count) {
         const auto monotonic = order;
         const std::size_t first_bad = order[bad];
-        for (std::size_t level = count; level-- > 0 && bad < count;) {
+        for (std::size_t level = count; level-- > N && bad < count;) {
             bool found = false;
-            for (std::size_t candidate = level + 1; candidate-- > 0 && !found;) {
+            for (std::size_t candidate = level + 1; candidate-- > N && !found;) {
                 std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
                             order.begin() + static_cast<std::ptrdiff_t>(candidate) + 1,
                             order.begin() + static_cast<std::ptrdiff_t>(level) + 1);
@@ -316,6 +325,7 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
         layout.add(static_cast<std::uint64_t>(row.kind));
         systems::add_value(layout, index.value);
         systems::add_value(layout, index.result);
+        if (index.from.facet != nullptr) systems::add_text(layout, index.from.facet->unit);
         layout.add(std::uint64_t{place.at});
         for (const std::size_t f : {place.frame, place.answer, place.reply, place.received})
             if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id} << 8 | plan.frames[f].bytes());
@@ -329,6 +339,20 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
                            s.crossings[other].to(), "\", or stands twice; remove it, or rename a node")),
                        plan;
     }
+    for (const WireFrame& frame : plan.frames) {
+        if (bad < plan.frames.size() || frame.kind != WireFrameKind::beat) continue;
+        const Duration needed = 2 * s.wire.beats + frame.worst + s.wire.service.deadline;
+        if (s.wire.silent_after < needed)
+            return refuse(Sentence{"wire \"", s.wire.name,
+                                   "\": one lost beat must not make a node silent, and with that the next "
+                                   "one may come after ",
+                                   needed.count() / 1000, " us; say silent_after(...) of more than that"}),
+                   plan;
+    }
+    if (s.wire.first_identifier + plan.frames.size() > 0x800)
+        return refuse(Sentence{"wire \"", s.wire.name, "\": ", plan.frames.size(), " frames from identifier ",
+                               s.wire.first_identifier, " on go beyond the last of 11 bits; begin lower"}),
+               plan;
     for (WireFrame& frame : plan.frames) {
         Digest id;
         systems::add_text(id, s.name);

@@ -29,12 +29,12 @@ constexpr Sentence at_node(const SystemView& s, std::string_view what, std::size
 }
 
 /// The activity at the far end of a hop, and for how long it may wait for its turn.
-constexpr void add_reader(const SystemView& s, const NodeEnd& end, bool wakes, ChainTime& time) {
+constexpr void add_reader(const SystemView& s, const NodeEnd& end, ChainTime& time) {
     const MachineView& table = s.nodes[end.node].table;
     const std::size_t a = activity_of(table, table.components[end.at.component].name);
     if (a == nowhere) return; // the machine's own check says so
     const ActivityRow& row = table.activities[a];
-    if (row.periodic() && !wakes)
+    if (row.periodic()) // nothing wakes it in between: a message, too, waits for its next period
         time.add(row.period,
                  at_node(s, Sentence{"the period of activity \"", row.name, "\""}.view(), end.node));
     time.add(row.deadline(),
@@ -49,7 +49,7 @@ constexpr void add_crossing(const SystemView& s, const Plan& plan, std::size_t x
     time.add(frame.worst, of_crossing(row, ": its frame on the wire"));
     time.add(s.wire.service.deadline,
              at_node(s, "the deadline by which the wire is served", plan.index[x].to.node));
-    add_reader(s, plan.index[x].to, row.kind != CrossingKind::data || row.data.wakes_reader, time);
+    add_reader(s, plan.index[x].to, time);
 }
 
 /// One hop, over the wire or inside a node. False: no row leads from the one to the other.
@@ -69,14 +69,39 @@ constexpr bool add_hop(const SystemView& s, const Plan& plan, std::string_view f
         if (row.event != in_node(from) || row.target.operation != in_node(to)) continue;
         if (row.target.synchronous) return true; // in the emitter's own time
         static_cast<void>(resolve_end(s, to, FacetKind::operation, end));
-        return add_reader(s, end, true, time), true;
+        return add_reader(s, end, time), true;
     }
     for (const ConnectionRow& row : table.connections) {
         if (row.from != in_node(from) || row.to != in_node(to)) continue;
         static_cast<void>(resolve_end(s, to, FacetKind::input, end));
-        return add_reader(s, end, row.wakes_reader, time), true;
+        return add_reader(s, end, time), true;
     }
     return false;
+}
+
+/// What comes in at a component and what follows in it: an event in the same cycle, an output in the next
+/// one, since what it is told of is served after its step.
+constexpr Sentence pass_through(const SystemView& s, std::string_view in, std::string_view out,
+                                ChainTime& time) {
+    NodeEnd from, to;
+    const auto facet_of = [&](std::string_view path, NodeEnd& end) {
+        if (!resolve_node(s, path, end.node).empty()) return false;
+        for (const FacetKind kind :
+             {FacetKind::input, FacetKind::operation, FacetKind::event, FacetKind::output})
+            if (resolve_end(s, path, kind, end).empty()) return true;
+        return false;
+    };
+    if (!facet_of(in, from) || !facet_of(out, to) || from.node != to.node ||
+        from.at.component != to.at.component)
+        return Sentence{"via(\"", in, "\", \"", out,
+                        "\") does not name two facets of one component of one node"};
+    const MachineView& table = s.nodes[to.node].table;
+    const std::size_t a = activity_of(table, table.components[to.at.component].name);
+    if (a != nowhere && from.facet->kind == FacetKind::operation && to.facet->kind == FacetKind::output)
+        time.add(table.activities[a].shortest_period() + table.activities[a].deadline(),
+                 at_node(s, Sentence{"the next cycle of activity \"", table.activities[a].name, "\""}.view(),
+                         to.node));
+    return {};
 }
 
 template <class Plan>
@@ -90,7 +115,12 @@ constexpr ChainTime prove_reaction(const SystemView& s, const Plan& plan, const 
                                   "\"; add it, or name what lies between with via(\"in\", \"out\")"};
             return time;
         }
-        if (i < row.via.size()) at = row.via[i + 1];
+        if (i >= row.via.size()) break;
+        if (Sentence fault = pass_through(s, row.via[i], row.via[i + 1], time); !fault.empty()) {
+            time.fault = fault;
+            return time;
+        }
+        at = row.via[i + 1];
     }
     return time;
 }
@@ -122,7 +152,7 @@ constexpr ChainTime prove_stop(const SystemView& s, const Plan& plan, const Prom
         if (is_presence)
             time.add(s.wire.service.deadline,
                      at_node(s, "the deadline by which the wire is served", plan.index[x].to.node));
-        add_reader(s, plan.index[x].to, crossing.data.wakes_reader, time);
+        add_reader(s, plan.index[x].to, time);
         return time;
     }
     time.fault = Sentence{"nothing of node \"",

@@ -158,6 +158,9 @@ constexpr Sentence resolve_presence(const SystemView& s, const Crossing& row, Cr
         return Sentence{": ", fault};
     if (found.to.facet->kind != FacetKind::input || found.to.facet->type != type_id<bool>)
         return Sentence{": \"", row.to(), "\" is no input of type bool; name one"};
+    if (row.data.max_age != Duration::zero())
+        return Sentence{
+            " says stale_after(...): it is written on change and grows false, not old; remove that"};
     return {};
 }
 

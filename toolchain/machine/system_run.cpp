@@ -84,6 +84,7 @@ std::expected<void, Sentence> SystemRun::start(std::size_t n) {
         const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
         can::Settings settings{};
         settings.interface = system_.nodes[n].name;
+        if (map.restarts_allowed != 0) settings.restarts_allowed = map.restarts_allowed;
         settings.receive = map.receive;
         settings.transmit = map.transmit;
         if (auto opened = node.twin.open(settings); !opened) return opened;
@@ -95,6 +96,10 @@ std::expected<void, Sentence> SystemRun::start(std::size_t n) {
         node.run.devices().lend(
             {type_id<can::Device>, system_.wire.name, static_cast<can::Device*>(&node.end)});
     }
+    // A box whose program has died still acknowledges; one that was never switched on does not.
+    std::size_t on_wire = 1;
+    for (const auto& each : nodes_) on_wire += each.get() != &node && each->was_started ? 1u : 0u;
+    wire_.set_acknowledged(on_wire > 1);
     auto started = node.was_started ? node.run.start_again() : node.run.start();
     node.was_started = true;
     node.is_alive = started.has_value();

@@ -89,6 +89,7 @@ public:
 
     [[nodiscard]] Time now() const { return now_; } ///< the true time
     [[nodiscard]] can::TwinBus& wire() { return wire_; }
+    [[nodiscard]] can::Twin& twin(std::size_t node) { return nodes_[node]->twin; }
     [[nodiscard]] WireEnd& end(std::size_t node) { return nodes_[node]->end; }
     [[nodiscard]] MachineInstance& instance(std::size_t node) { return nodes_[node]->run.instance(); }
     [[nodiscard]] VirtualRun& run(std::size_t node) { return nodes_[node]->run; }

@@ -85,6 +85,28 @@ TEST_F(LinkTest, a_command_to_a_node_that_dies_fails) {
     EXPECT_EQ(giver().doubled.state(), CommandState::failed);
 }
 
+TEST(LinkAlone, a_node_that_is_first_on_the_wire_is_heard_when_another_one_comes) {
+    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
+    SystemRun run{pair.view(), machines, {}, 1};
+    ASSERT_TRUE(run.start(0)); // nobody acknowledges
+    run.run_for(5s);
+    EXPECT_TRUE(can::faulted(run.end(0).state()));
+    ASSERT_TRUE(run.start(1));
+    run.run_for(5s);
+    EXPECT_TRUE(run.instance(0).find<Giver>("giver")->other_is_there.get());
+    EXPECT_TRUE(run.instance(1).find<Taker>("taker")->other_is_there.get());
+    run.stop();
+}
+
+TEST_F(LinkTest, whoever_is_not_heard_any_more_believes_nobody_is_there) {
+    run.wire().bus_off(run.twin(0));
+    run.run_for(100ms);
+    EXPECT_FALSE(giver().other_is_there.get()) << "it hears the other one, but is not heard";
+    EXPECT_FALSE(taker().other_is_there.get());
+    run.run_for(5s);
+    EXPECT_TRUE(giver().other_is_there.get() && taker().other_is_there.get()) << "it was restarted";
+}
+
 TEST_F(LinkTest, an_event_for_a_node_that_is_gone_is_known_to_be_lost) {
     run.kill(1);
     giver().to_send = {7};

@@ -89,8 +89,8 @@ inline constexpr auto pair = system("pair",
         presence("b", "a.giver.other_is_there"),
         presence("a", "b.taker.other_is_there")),
     promises(
-        reaction("a.giver.sent", "b.taker.take", within(12ms)),
-        reaction("a.giver.level", "b.taker.level", within(25ms)),
+        reaction("a.giver.sent", "b.taker.take", within(15ms)),
+        reaction("a.giver.level", "b.taker.level", within(26ms)),
         stops("a", "b.taker.other_is_there", within(85ms))));
 // clang-format on
 
