@@ -104,6 +104,7 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
                        Duration{frames[i].deadline_ns},
                        found.response.bounded ? Duration{found.response.worst_ns} : Duration::max()};
         if (!fault.empty() || found.response.within(frames[i].deadline_ns)) continue;
+        if (row.is_proven && found.response.bounded) continue;
         const std::string_view of = crossing[by_rank[found.of]].name;
         if (!found.response.bounded && found.largest_ns > 0)
             fault = Sentence{"frame \"",

@@ -34,6 +34,7 @@ struct FrameRow {
     bool multiplexed = false;     ///< not all of its signals are in every frame
     std::string_view in_file{};   ///< its name in its DBC file, where a row gives it another
     Format format = Format::classical;
+    bool is_proven = false; ///< of another node, whose own proof holds it in time: here it is load only
 };
 
 /// A row together with its signals, before the map flattens them.

@@ -140,6 +140,7 @@ struct StationRows {
                                                                                                : Duration{};
             row.apart = frame.apart;
             row.jitter = frame.jitter;
+            row.is_proven = frame.node != n;
         }
         return all;
     }();
