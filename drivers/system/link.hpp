@@ -71,7 +71,8 @@ struct Link {
         for (std::size_t f = 0; f < due_.size(); ++f) due_[f] = Rows::is_periodic(f) ? cycle.now : never;
         for (ProtectionCheck& each : checks_) each.reset();
         told_row_ = 0;
-        for (auto& each : is_there) each.write(false);
+        for (std::size_t node = 0; node < node_count; ++node)
+            if (node != n) is_there[node].write(false);
         refused.write({});
         serve(cycle.now);
     }
