@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         616},
     {"kernel/services",       5717},
     {"kernel/system",         2030},
-    {"drivers",               16833},
+    {"drivers",               16837},
     {"board",                 3976},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    763},
