@@ -99,10 +99,9 @@ constexpr Duration around_wire(const SystemView& s, const Crossing& row, const C
 }
 
 template <std::size_t N, std::size_t X>
-constexpr Sentence add_frame(SystemPlan<N, X>& plan, const WireFrame& frame, std::size_t& at) {
-    at = plan.frames.size();
+constexpr std::size_t add_frame(SystemPlan<N, X>& plan, const WireFrame& frame) {
     static_cast<void>(plan.frames.push(frame));
-    return {};
+    return plan.frames.size() - 1;
 }
 
 /// Values of one node and one period share frames, the widest first, each where it fits first.
@@ -156,14 +155,12 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
                 place.frame = f;
         }
         if (place.frame == nowhere)
-            add_frame(plan,
-                      {.node = plan.index[x].from.node,
-                       .kind = WireFrameKind::data,
-                       .crossing = x,
-                       .apart = row.every,
-                       .deadline = row.every,
-                       .bits = protection_bits},
-                      place.frame);
+            place.frame = add_frame(plan, {.node = plan.index[x].from.node,
+                                           .kind = WireFrameKind::data,
+                                           .crossing = x,
+                                           .apart = row.every,
+                                           .deadline = row.every,
+                                           .bits = protection_bits});
         WireFrame& frame = plan.frames[place.frame];
         place.at = frame.bits;
         frame.bits = static_cast<std::uint16_t>(frame.bits + bits);
@@ -197,17 +194,17 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
         return of_crossing(row, ": its arguments take ", unsigned{index.value.bits},
                            " bits, and a frame has ", most_wire_bits - channel_bits,
                            " for them; tell a number by in_bits(...), or the rest by data(...)");
-    add_frame(plan, frame(index.from.node, WireFrameKind::message, channel_bits + index.value.bits),
-              plan.place[x].frame);
-    add_frame(plan, frame(index.to.node, WireFrameKind::answer, channel_bits + 8), plan.place[x].answer);
+    plan.place[x].frame =
+        add_frame(plan, frame(index.from.node, WireFrameKind::message, channel_bits + index.value.bits));
+    plan.place[x].answer = add_frame(plan, frame(index.to.node, WireFrameKind::answer, channel_bits + 8));
     if (row.kind != CrossingKind::command) return {};
     if (channel_bits + 8 + index.result.bits > most_wire_bits)
         return of_crossing(row, ": its results take ", unsigned{index.result.bits}, " bits, and a frame has ",
                            most_wire_bits - channel_bits - 8, " for them; tell them by data(...)");
-    add_frame(plan, frame(index.to.node, WireFrameKind::reply, channel_bits + 8 + index.result.bits),
-              plan.place[x].reply);
-    add_frame(plan, frame(index.from.node, WireFrameKind::received, channel_bits + 8),
-              plan.place[x].received);
+    plan.place[x].reply =
+        add_frame(plan, frame(index.to.node, WireFrameKind::reply, channel_bits + 8 + index.result.bits));
+    plan.place[x].received =
+        add_frame(plan, frame(index.from.node, WireFrameKind::received, channel_bits + 8));
     return {};
 }
 
@@ -289,15 +286,12 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
     for (std::size_t x = 0; x < X; ++x)
         if (Sentence fault = systems::resolve_crossing(s, s.crossings[x], plan.index[x]); !fault.empty())
             return refuse(fault), plan;
-    std::size_t ignored = 0;
     for (std::size_t n = 0; n < N; ++n)
-        systems::add_frame(plan,
-                           {.node = n,
-                            .kind = WireFrameKind::beat,
-                            .apart = s.wire.beats,
-                            .deadline = s.wire.beats,
-                            .bits = most_wire_bits},
-                           ignored);
+        systems::add_frame(plan, {.node = n,
+                                  .kind = WireFrameKind::beat,
+                                  .apart = s.wire.beats,
+                                  .deadline = s.wire.beats,
+                                  .bits = most_wire_bits});
     if (Sentence fault = systems::pack_data(s, plan); !fault.empty()) return refuse(fault), plan;
     for (std::size_t x = 0; x < X; ++x) {
         const CrossingKind kind = s.crossings[x].kind;

@@ -164,6 +164,21 @@ constexpr Sentence resolve_presence(const SystemView& s, const Crossing& row, Cr
     return {};
 }
 
+/// What arguments and results become.
+constexpr Sentence wire_values(const Crossing& row, CrossingIndex& found) {
+    Sentence fault;
+    if (row.kind == CrossingKind::event) {
+        found.value = wire_value(found.from.facet->type, row.encoding, fault);
+        return fault;
+    }
+    const CommandOperations& command = *found.to.facet->command;
+    found.value = wire_value(command.arguments, row.encoding, fault);
+    const bool is_number = command.results->elements.size() == 1 && command.results->elements[0]->arithmetic;
+    if (fault.empty())
+        found.result = wire_value(command.results, is_number ? row.encoding : Encoding{}, fault);
+    return fault;
+}
+
 constexpr Sentence resolve_crossing(const SystemView& s, const Crossing& row, CrossingIndex& found) {
     Sentence fault;
     switch (row.kind) {
@@ -174,17 +189,10 @@ constexpr Sentence resolve_crossing(const SystemView& s, const Crossing& row, Cr
         fault =
             row.kind == CrossingKind::event ? resolve_event(s, row, found) : resolve_command(s, row, found);
         if (fault.empty()) fault = check_pace(row);
-        if (fault.empty() && row.kind == CrossingKind::command) {
-            const CommandOperations& command = *found.to.facet->command;
-            found.value = wire_value(command.arguments, row.encoding, fault);
-            const bool is_number =
-                command.results->elements.size() == 1 && command.results->elements[0]->arithmetic;
-            if (fault.empty())
-                found.result = wire_value(command.results, is_number ? row.encoding : Encoding{}, fault);
-        } else if (fault.empty()) {
-            found.value = wire_value(found.from.facet->type, row.encoding, fault);
+        if (fault.empty()) {
+            fault = wire_values(row, found);
+            if (!fault.empty()) fault = Sentence{": ", fault};
         }
-        if (!fault.empty()) fault = Sentence{"", fault};
         break;
     }
     if (fault.empty() && found.from.node == found.to.node)

@@ -129,6 +129,10 @@ TEST(SystemRefusals, of_events_and_commands) {
 }
 
 TEST(SystemRefusals, of_what_a_stranger_would_try) {
+    EXPECT_EQ(
+        refusal(
+            across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), in_bits(60))),
+        "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": in_bits takes 1 to 56 bits and a step above 0");
     EXPECT_EQ(refusal(presence("b", "a.giver.other_is_there", stale_after(50ms))),
               "lane: presence of \"b\" -> \"a.giver.other_is_there\" says stale_after(...): it is written on "
               "change and grows false, not old; remove that");

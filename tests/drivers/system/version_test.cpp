@@ -8,7 +8,7 @@ namespace tappet::pair {
 namespace {
 
 // clang-format off
-/// The value is told in finer steps, and an event that the first version has not comes last.
+/// The value is told in finer steps.
 inline constexpr auto newer_pair = system("pair",
     nodes(node<giver_table>("a"), node<taker_table>("b")),
     wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
