@@ -96,6 +96,8 @@ public:
 
     /// Before anybody sends. `values` has room for the command's value_bytes() and outlives the slot.
     void place(const Route& route, std::byte* values) noexcept { route_ = route, values_ = values; }
+    /// What wait() sleeps on; before anybody sends. Not in the slot, whose memory may be another's at its end.
+    void wait_on(os::Waiter& ended) noexcept { ended_ = &ended; }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return route_.command != nullptr; }
 
     // ---- the sender's side: one thread, real-time but for wait()
@@ -134,14 +136,14 @@ public:
         state_.store(CommandState::ready, std::memory_order_relaxed); // command.reset
         return true;
     }
-    /// Sleeps until it has ended, at most so long; for activities that are not_real_time. True: it has ended,
-    /// or was never sent. Under virtual time nothing may sleep: it answers at once.
+    /// Sleeps until it has ended, at most so long; after wait_on(), for activities that are not_real_time.
+    /// True: it has ended, or was never sent. Under virtual time nothing may sleep: it answers at once.
     [[nodiscard]] bool wait(Duration at_most) noexcept {
         if (is_mine()) return true;
         if (route_.clock->is_virtual()) return false;
         const Time end = route_.clock->now() + at_most;
         // A wake of an earlier sending may be left over.
-        while (!is_mine() && route_.clock->now() < end) static_cast<void>(ended_.wait(end));
+        while (!is_mine() && route_.clock->now() < end) static_cast<void>(ended_->wait(end));
         return is_mine();
     }
     [[nodiscard]] std::byte* values() noexcept TAPPET_REALTIME { return values_; }
@@ -174,12 +176,13 @@ public:
     void reject() noexcept TAPPET_REALTIME { static_cast<void>(end(CommandState::rejected)); }
 
 private:
-    // The results are read after the state. From the store on the slot is the sender's, which may place it
-    // anew.
+    // The results are read after the state. From the store on the slot is the sender's, which may use its
+    // memory for something else: nothing of it is touched any more.
     CommandState end(CommandState how) noexcept TAPPET_REALTIME {
         const Waker wake_sender = route_.wake_sender;
+        os::Waiter* const ended = ended_;
         state_.store(how, std::memory_order_release); // command.end
-        ended_.wake();
+        if (ended != nullptr) ended->wake();
         wake_sender();
         return how;
     }
@@ -187,7 +190,7 @@ private:
     Route route_{};
     std::byte* values_ = nullptr;
     alignas(64) std::atomic<CommandState> state_{CommandState::ready};
-    os::Waiter ended_{};
+    os::Waiter* ended_ = nullptr;
 };
 
 template <class... P>
@@ -228,7 +231,7 @@ class CommandCall {
 public:
     using Signature = Arguments<typename detail::Parameter<P>::InName...>;
 
-    CommandCall() = default;
+    CommandCall() noexcept { slot_.wait_on(ended_); }
     CommandCall(const CommandCall&) = delete;
     CommandCall& operator=(const CommandCall&) = delete;
 
@@ -317,6 +320,7 @@ private:
 
     std::array<std::byte, Pack::bytes + 1> values_{}; // never of size zero
     CommandSlot slot_{};
+    os::Waiter ended_{};
 };
 
 /// What start-up does with the sender's side.
