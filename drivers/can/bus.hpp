@@ -46,6 +46,16 @@ struct Bus {
         if (protocol.bit_rate != 0 && protocol.bit_rate != use.bit_rate)
             return Sentence{"it runs at ", use.bit_rate, " bit/s, but what crosses it was proven for ",
                             protocol.bit_rate, "; correct one of them"};
+        if (protocol.data_bit_rate != 0 && protocol.data_bit_rate != use.data_bit_rate)
+            return Sentence{"its data phase runs at ",
+                            use.data_bit_rate,
+                            " bit/s, but what crosses it was proven for ",
+                            protocol.data_bit_rate,
+                            "; write bit_rate(",
+                            protocol.bit_rate,
+                            ", ",
+                            protocol.data_bit_rate,
+                            ") at the device, or correct the wire"};
         return bus_traffic(AllFrames<map, protocol>::traffic, use, into);
     }
     static Duration longest_seen(const void* bus, std::string_view frame) {

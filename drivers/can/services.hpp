@@ -15,6 +15,7 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     std::array<Signal, G> signals{}; ///< what stands in them, for tools: a row's first and how many
     std::array<Frame, S> safe{};
     std::uint32_t bit_rate = 0;         ///< that they were proven for; 0: the board's, whatever it is
+    std::uint32_t data_bit_rate = 0;    ///< likewise, of CAN FD
     std::uint32_t restarts_allowed = 0; ///< of a faulted controller; 0: as few as any bus has
     bool sends_itself = false;          ///< it stands beside the bus on the device; else by the bus's to_send
     static constexpr bool any = N + S != 0;
@@ -46,6 +47,7 @@ constexpr Services<N + M, S + T, G + H> together(const Services<N, S, G>& one,
     join(one.signals, other.signals, both.signals);
     for (std::size_t f = N; f < N + M; ++f) both.frames[f].first += G;
     both.bit_rate = std::max(one.bit_rate, other.bit_rate);
+    both.data_bit_rate = std::max(one.data_bit_rate, other.data_bit_rate);
     both.restarts_allowed = std::max(one.restarts_allowed, other.restarts_allowed);
     both.sends_itself = !one.sends_by_bus() && !other.sends_by_bus();
     return both;
@@ -85,8 +87,9 @@ template <const auto& map, const auto& services> struct AllFrames {
     static constexpr auto transmit = joined<map.transmitted_count>(
         map.transmits(), identifiers<count(Direction::transmit)>(Direction::transmit));
     static constexpr auto safe = joined<map.safe_count>(map.safe_frames(), services.safe);
-    static constexpr bool has_fd =
-        std::ranges::any_of(map.frames, [](Format f) { return f != Format::classical; }, &FrameRow::format);
+    static constexpr bool is_fd(const FrameRow& row) { return row.format != Format::classical; }
+    static constexpr bool has_fd = std::ranges::any_of(map.frames, &AllFrames::is_fd) ||
+                                   std::ranges::any_of(services.frames, &AllFrames::is_fd);
     /// What tools are told: of services the frames that say what stands in them.
     static constexpr auto told_frames = [] {
         constexpr std::size_t own = map.frames.size();

@@ -23,7 +23,9 @@ struct Link {
     static constexpr std::size_t node_count = system.nodes.size();
     static constexpr std::size_t row_count = Rows::row_count;
     static constexpr std::size_t frame_count = Rows::plan.frames.size();
+    static constexpr WireShape shape = plan.shape;
     static constexpr int max_frames_per_cycle = 64;
+    using CommandCallSlot = PackedCommandCall<Rows::command_bytes>;
 
     Link() {
         for (std::size_t i = 0; i < Rows::port_count; ++i)
@@ -43,12 +45,15 @@ struct Link {
     std::array<Output<bool>, node_count> is_there{};
     std::array<PackedEventWait, row_count> emitted{};
     std::array<Event<>, row_count> lost{};
-    std::array<PackedCommandCall, row_count> calls{};
+    std::array<CommandCallSlot, row_count> calls{};
+    Input<Duration> ahead{};
+    Input<bool> knows_time{};
     Output<Text<160>> refused{};
     Output<std::int64_t> events_lost{};
     Output<std::int64_t> frames_refused{};
     Output<std::int64_t> beyond{};
     Output<std::int64_t> not_sent{};
+    Output<std::int64_t> held_back{};
     Timer next{};
 
     Sentence configure(Setup& setup) {
@@ -84,8 +89,8 @@ struct Link {
     void fire(const Cycle& cycle) noexcept TAPPET_REALTIME { serve(cycle.now); }
     /// The others need not wait for its silence.
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        Payload payload{};
-        put_beat(payload, {.runs = false, .epoch = epoch_});
+        Room payload{};
+        put_beat(shape, payload, {.runs = false, .epoch = epoch_});
         send(Rows::beat_frame, payload, cycle.now);
         device_->service(cycle.now);
     }
@@ -125,30 +130,39 @@ private:
         ChannelSender sender{};     ///< of events and commands to others, and of replies
         ChannelReceiver receiver{}; ///< the other way
         Call call = Call::none;
-        std::uint8_t asked = 0;   ///< the number by which it was sent
-        bool serves = false;      ///< a command of another node is under way here,
-        std::uint8_t serving = 0; ///< sent by this number
-        bool refuses = false;     ///< another one came meanwhile,
-        std::uint8_t refused = 0; ///< by this one
-        std::array<std::byte, PackedCommandCall::most_bytes> values{};
+        std::uint8_t asked = 0;       ///< the number by which it was sent
+        bool serves = false;          ///< a command of another node is under way here,
+        std::uint8_t serving = 0;     ///< sent by this number
+        bool refuses = false;         ///< another one came meanwhile,
+        std::uint8_t refused = 0;     ///< by this one
+        Time may_offer = Time::min(); ///< the next one, by its at_most(...)
+        bool is_held = false;         ///< one waits for that, in `values`
+        std::array<std::byte, Rows::command_bytes> values{};
     };
+    /// What stands in a frame.
+    using Room = std::array<std::uint8_t, shape.most_bits / 8>;
+    static constexpr std::size_t contents = shape.channel_bits() / 8; ///< of a channel's frame
 
     // ---- what comes
 
     void take(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
-        const std::size_t f = frame.id - system.wire.first_identifier;
-        if (frame.extended || frame.remote || f >= plan.frames.size()) return;
+        if (frame.remote || frame.extended != system.wire.fixed_identifiers) return;
+        const std::size_t f = Rows::frame_of(frame.id);
+        if (f == plan.frames.size()) return;
         const WireFrame& what = plan.frames[f];
-        if (what.node == n) return; // somebody else sends what is ours; the bus counts it
-        if (frame.length != what.bytes() || !is_good(f, frame)) {
+        // Somebody else sends what is ours: the bus counts it. The clock is another component's.
+        if (what.node == n || what.is_of_clock()) return;
+        // Values may be fewer in another version, or more.
+        const bool is_whole = what.kind == WireFrameKind::data || frame.length >= what.bytes;
+        if (can::format_of(frame) != format_of(system.wire, what) || !is_whole || !is_good(f, frame)) {
             frames_refused.write(++refused_frames_);
             return;
         }
         if (what.kind == WireFrameKind::beat) {
-            take_beat(what.node, beat_of(frame.data), frame.stamp);
+            take_beat(what.node, beat_of(shape, frame.data), frame.stamp);
         } else if (what.kind == WireFrameKind::data) {
             take_data(f, frame);
-        } else {
+        } else if constexpr (row_count > 0) {
             take_channel(what, frame.data, now);
         }
     }
@@ -207,7 +221,11 @@ private:
             if (Rows::other(i) != node) continue;
             RowState& row = state_[i];
             row.agreed = row.is_refused = row.was_valid = false;
-            if (Rows::sends_events(i) && row.sender.state() == ChannelSender::State::sends) tell_loss(i);
+            if (Rows::sends_events(i)) {
+                if (row.sender.state() == ChannelSender::State::sends) tell_loss(i);
+                if (row.is_held) tell_loss(i);
+            }
+            row.is_held = false;
             row.sender.give_up();
             if (is_under_way(row)) row.call = Call::failed;
         }
@@ -217,33 +235,51 @@ private:
         for (std::size_t p = 0; p < Rows::port_count; ++p) {
             const PortPlace& port = Rows::ports[p];
             if (port.is_input || port.frame != f || !state_[port.row].agreed) continue;
+            if (port.bit + port.value.bits_in_frame() > 8u * frame.length) continue;
             void* const output = storage_.data() + port.at;
             const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0;
             bool& was_valid = state_[port.row].was_valid;
             if (!is_valid && (!was_valid || port.max_age == Duration::zero())) continue;
+            if (is_valid && port.value.has_time && !knows_common()) continue;
             std::array<std::byte, 56> value{};
             if (is_valid)
                 on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
             else // what was old when it was told is so here
                 static_cast<void>(port.facet->port->read(output, false, false, value.data()));
-            port.facet->port->write_at(output, value.data(),
-                                       is_valid ? frame.stamp : frame.stamp - port.max_age - 1ns);
+            port.facet->port->write_at(output, value.data(), frame.stamp - age_of(port, is_valid, frame));
             was_valid = is_valid;
         }
+    }
+
+    /// Of a value, when its frame came.
+    [[nodiscard]] Duration age_of(const PortPlace& port, bool is_valid, const can::Frame& frame) noexcept
+        TAPPET_REALTIME {
+        if (!is_valid) return port.max_age + 1ns;
+        if (!port.value.has_time) return {};
+        return on_wire::age_of_time(
+            on_wire::take_bits(frame.data, port.bit + 1u + port.value.bits, time_bits), common(frame.stamp));
+    }
+    [[nodiscard]] bool knows_common() noexcept TAPPET_REALTIME {
+        if constexpr (Rows::is_told_time) return knows_time.get();
+        return true;
+    }
+    [[nodiscard]] Time common(Time own) noexcept TAPPET_REALTIME {
+        if constexpr (Rows::is_told_time) return own + ahead.get();
+        return own;
     }
 
     void take_channel(const WireFrame& what, Contents payload, Time now) noexcept TAPPET_REALTIME {
         const std::size_t i = Rows::row_of(what.crossing);
         if (i == nowhere) return;
         RowState& row = state_[i];
-        const ChannelHead head = head_of(payload);
+        const ChannelHead head = head_of(shape, payload);
         const bool is_message = what.kind == WireFrameKind::message || what.kind == WireFrameKind::reply;
         const std::uint16_t other = peers_[what.node].epoch;
         if (!row.agreed ||
             head.session != (is_message ? session_of(other, epoch_) : session_of(epoch_, other)))
             return;
         if (!is_message) {
-            row.sender.taken(head.number, payload[4]);
+            row.sender.taken(head.number, payload[contents]);
             return;
         }
         const bool serves = row.receiver.take(head.word, head.number);
@@ -260,11 +296,11 @@ private:
     }
     void emit(std::size_t i, Contents payload) noexcept TAPPET_REALTIME {
         std::array<std::byte, 56> packed{};
-        on_wire::hear(payload, channel_bits, Rows::index(i).value, packed.data());
+        on_wire::hear(payload, 8 * contents, Rows::index(i).value, packed.data());
         Rows::facet_from(i).event->emit(storage_.data() + Rows::rows[i].event_at, packed.data());
     }
     void begin_command(std::size_t i, std::uint8_t number, Contents payload) noexcept TAPPET_REALTIME {
-        PackedCommandCall& call = calls[i];
+        CommandCallSlot& call = calls[i];
         RowState& row = state_[i];
         if (row.serves || !call.slot.is_mine()) { // one of before is still executed
             row.refuses = true, row.refused = number;
@@ -272,7 +308,7 @@ private:
         }
         row.serves = true, row.serving = number;
         call.values = {};
-        on_wire::hear(payload, channel_bits, Rows::index(i).value, call.values.data());
+        on_wire::hear(payload, 8 * contents, Rows::index(i).value, call.values.data());
         if (!call.slot.send()) row.serves = false, row.refuses = true, row.refused = number;
     }
     /// Of a command that was sent from here.
@@ -280,10 +316,10 @@ private:
         RowState& row = state_[i];
         if (row.call != Call::offered) return;
         // A reply that is lost may have been this one's.
-        if (serves && (payload[4] >> 3) != (row.asked & 31u)) return;
-        const auto how = static_cast<CommandState>(payload[4] & 7u);
+        if (serves && (payload[contents] >> 3) != (row.asked & 31u)) return;
+        const auto how = static_cast<CommandState>(payload[contents] & 7u);
         if (serves && how == CommandState::done) {
-            on_wire::hear(payload, channel_bits + 8, Rows::index(i).result,
+            on_wire::hear(payload, 8 * contents + 8, Rows::index(i).result,
                           row.values.data() + Rows::index(i).value.bytes);
             row.call = Call::done;
         } else {
@@ -303,11 +339,7 @@ private:
         for (std::size_t i = 0; i < row_count; ++i) {
             if (Rows::sends_events(i)) take_emissions(i, now);
             if (Rows::serves_command(i)) follow_command(i, now);
-            if (state_[i].call == Call::wanted) {
-                state_[i].call = Call::offered;
-                offer(i, state_[i].values.data(), now);
-                state_[i].asked = state_[i].sender.number();
-            }
+            if (state_[i].call == Call::wanted) send_wanted(i, now);
             send_channel(i, now);
         }
         for (std::size_t f = 0; f < due_.size(); ++f) {
@@ -318,21 +350,37 @@ private:
         const can::State before = device_->state();
         device_->service(now);
         if (device_->state() != before) waiter_->wake(); // the bus tells it
-        arm();
+        arm(now);
     }
-    void arm() noexcept TAPPET_REALTIME {
+    void arm(Time now) noexcept TAPPET_REALTIME {
         Time first = device_->next_service();
         for (const Time due : due_) first = std::min(first, due);
         for (const Peer& peer : peers_)
             if (peer.there) first = std::min(first, peer.silent_at);
-        for (const RowState& row : state_)
-            if (row.agreed) first = std::min(first, row.sender.next());
+        for (const RowState& row : state_) {
+            if (!row.agreed) continue;
+            first = std::min(first, row.sender.next());
+            if (row.is_held && row.may_offer > now) first = std::min(first, row.may_offer);
+        }
         next.arm(first);
     }
 
+    void send_wanted(std::size_t i, Time now) noexcept TAPPET_REALTIME {
+        RowState& row = state_[i];
+        if (now < row.may_offer) return hold(row);
+        row.is_held = false;
+        row.call = Call::offered;
+        offer(i, row.values.data(), now);
+        row.asked = row.sender.number();
+    }
     void take_emissions(std::size_t i, Time now) noexcept TAPPET_REALTIME {
         RowState& row = state_[i];
         for (int k = 0; k < max_frames_per_cycle; ++k) {
+            if (row.is_held) {
+                if (!row.sender.is_free() || now < row.may_offer) return;
+                row.is_held = false;
+                offer(i, row.values.data(), now);
+            }
             if (row.agreed && !row.sender.is_free()) return;
             const std::byte* packed = emitted[i].take();
             if (packed == nullptr) return;
@@ -340,11 +388,22 @@ private:
                 tell_loss(i);
                 continue;
             }
+            if (now < row.may_offer) {
+                std::copy_n(packed, Rows::index(i).value.bytes, row.values.data());
+                hold(row);
+                return;
+            }
             offer(i, packed, now);
         }
     }
+    /// The wire is proven for what rows say: what comes sooner waits, and is counted.
+    void hold(RowState& row) noexcept TAPPET_REALTIME {
+        if (!row.is_held) held_back.write(++held_back_);
+        row.is_held = true;
+    }
     void offer(std::size_t i, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
-        Payload arguments{};
+        Room arguments{};
+        state_[i].may_offer = now + Rows::crossing(i).at_most_per;
         const WireValue& as = Rows::index(i).value;
         if (on_wire::tell(packed, as, arguments, 0) != on_wire::Told::well) beyond.write(++beyond_);
         state_[i].sender.offer(std::span{arguments}.first((as.bits + 7u) / 8u), now);
@@ -366,7 +425,7 @@ private:
         }
     }
     void reply(std::size_t i, CommandState how, std::uint8_t number, Time now) noexcept TAPPET_REALTIME {
-        Payload payload{};
+        Room payload{};
         static_assert(static_cast<unsigned>(CommandState::done) < 8,
                       "a state has three bits, the number the others");
         payload[0] = static_cast<std::uint8_t>(static_cast<unsigned>(how) | unsigned{number} << 3);
@@ -386,30 +445,32 @@ private:
             if (row.call == Call::offered) row.call = Call::failed;
         }
         if (!has_frame) return;
-        Payload payload{};
-        put_head(payload, {frame.word, frame.number, session_of(epoch_, peers_[Rows::other(i)].epoch)});
-        std::copy(frame.bytes.begin(), frame.bytes.end(), payload.begin() + channel_bits / 8);
+        Room payload{};
+        put_head(shape, payload,
+                 {frame.word, frame.number, session_of(epoch_, peers_[Rows::other(i)].epoch)});
+        std::copy(frame.bytes.begin(), frame.bytes.end(), payload.begin() + contents);
         send(Rows::message_frame(i), payload, now);
     }
     void answer(std::size_t i, std::size_t f, Time now) noexcept TAPPET_REALTIME {
-        Payload payload{};
-        put_head(payload, {ChannelWord::taken, state_[i].receiver.last(),
-                           session_of(peers_[Rows::other(i)].epoch, epoch_)});
-        payload[4] = state_[i].receiver.lost();
+        Room payload{};
+        put_head(shape, payload,
+                 {ChannelWord::taken, state_[i].receiver.last(),
+                  session_of(peers_[Rows::other(i)].epoch, epoch_)});
+        payload[contents] = state_[i].receiver.lost();
         send(f, payload, now);
     }
     void send_beat(Time now) noexcept TAPPET_REALTIME {
-        Payload payload{};
+        Room payload{};
         Beat beat{.runs = true, .epoch = epoch_};
         if constexpr (row_count > 0) {
             beat.row = Rows::rows[told_row_].name, beat.layout = Rows::rows[told_row_].layout;
             told_row_ = (told_row_ + 1) % row_count;
         }
-        put_beat(payload, beat);
+        put_beat(shape, payload, beat);
         send(Rows::beat_frame, payload, now);
     }
     void send_data(std::size_t f, Time now) noexcept TAPPET_REALTIME {
-        Payload payload{};
+        Room payload{};
         for (std::size_t p = 0; p < Rows::port_count; ++p) {
             const PortPlace& port = Rows::ports[p];
             if (!port.is_input || port.frame != f) continue;
@@ -419,14 +480,21 @@ private:
             if (told != on_wire::Told::well) beyond.write(++beyond_);
             const bool is_valid =
                 (flow == Flow::fresh || flow == Flow::old) && told != on_wire::Told::no_number;
-            on_wire::put_bits(payload, port.bit, 1, is_valid ? 1 : 0);
+            on_wire::put_bits(payload, port.bit, 1,
+                              is_valid && (!port.value.has_time || knows_common()) ? 1 : 0);
+            if (port.value.has_time)
+                on_wire::put_bits(payload, port.bit + 1u + port.value.bits, time_bits,
+                                  on_wire::tell_time(common(
+                                      *port.facet->port->places(storage_.data() + port.at, true).stamp)));
         }
         send(f, payload, now);
     }
-    void send(std::size_t f, const Payload& payload, Time now) noexcept TAPPET_REALTIME {
+    void send(std::size_t f, const Room& payload, Time now) noexcept TAPPET_REALTIME {
         can::Frame frame;
         frame.id = plan.frames[f].id;
-        frame.length = plan.frames[f].bytes();
+        frame.extended = system.wire.fixed_identifiers;
+        can::set_format(frame, format_of(system.wire, plan.frames[f]));
+        frame.length = plan.frames[f].bytes;
         std::copy(payload.begin(), payload.end(), frame.data.begin());
         frame.stamp = now;
         static_cast<void>(
@@ -460,14 +528,15 @@ private:
         return CommandProgress::done;
     }
 
-    /// A profile for frames of 8 bytes (AUTOSAR E2E P11).
+    /// Of 8 bytes by AUTOSAR's E2E P11, of up to 64 by P05.
     static constexpr Protection protected_by(std::size_t f) {
-        return {.form = Protection::Form::id_both, .id = plan.frames[f].data_id};
+        return {.form = system.wire.is_fd() ? Protection::Form::wide : Protection::Form::id_both,
+                .id = plan.frames[f].data_id};
     }
     static constexpr std::make_index_sequence<frame_count> each_frame{};
     template <class End, std::size_t... f>
     static constexpr std::array<End, frame_count> of_each_frame(std::index_sequence<f...>) {
-        static_assert((protection_fault(protected_by(f), plan.frames[f].bytes()).empty() && ...));
+        static_assert((protection_fault(protected_by(f), plan.frames[f].bytes).empty() && ...));
         return {End{protected_by(f)}...};
     }
 
@@ -482,7 +551,7 @@ private:
     std::array<Protector, frame_count> protectors_ = of_each_frame<Protector>(each_frame);
     std::uint16_t epoch_ = 0;
     std::size_t told_row_ = 0;
-    std::int64_t refused_frames_ = 0, lost_events_ = 0, beyond_ = 0, not_sent_ = 0;
+    std::int64_t refused_frames_ = 0, lost_events_ = 0, beyond_ = 0, not_sent_ = 0, held_back_ = 0;
 };
 
 } // namespace tappet::systems

@@ -7,14 +7,15 @@
 namespace tappet::systems {
 
 /// A command call of whatever signature.
+template <std::size_t most_bytes>
 struct PackedCommandCall {
-    static constexpr std::size_t most_bytes = 16;
     CommandSlot slot{};
     std::array<std::byte, most_bytes> values{};
+
+    static constexpr CommandCallOperations operations{
+        [](void* call) { return &static_cast<PackedCommandCall*>(call)->slot; },
+        [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
 };
-inline constexpr CommandCallOperations packed_command_call{
-    [](void* call) { return &static_cast<PackedCommandCall*>(call)->slot; },
-    [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
 
 /// Of a Link.
 template <class Link>
@@ -81,7 +82,7 @@ struct LinkFacets {
             facet.at = [](void* self, std::size_t k) noexcept -> void* {
                 return &static_cast<Link*>(self)->calls[k];
             };
-            facet.command_call = &packed_command_call;
+            facet.command_call = &Link::CommandCallSlot::operations;
         } else {
             facet.doc = "done by another node";
             facet.kind = FacetKind::command;
@@ -92,7 +93,7 @@ struct LinkFacets {
         return 1;
     }
     static constexpr auto list() {
-        constexpr std::size_t fixed = 7, node_count = Link::node_count;
+        constexpr std::size_t fixed = 8 + (Rows::is_told_time ? 2 : 0), node_count = Link::node_count;
         std::array<Facet, fixed + node_count - 1 + Rows::port_count + Rows::facet_count> list{};
         std::size_t k = 0;
         for (const Facet& facet : {
@@ -106,9 +107,16 @@ struct LinkFacets {
                  output<&Link::beyond>("beyond", "", "values that their bits cannot hold; written on change"),
                  output<&Link::not_sent>("not_sent", "",
                                          "frames that a faulted or full bus did not take; written on change"),
+                 output<&Link::held_back>("held_back", "",
+                                          "events and commands that came sooner than their at_most(...); "
+                                          "written on change"),
                  timer<&Link::next, &Link::fire>("next", "the next frame, or the next silence"),
              })
             list[k++] = facet;
+        if constexpr (Rows::is_told_time) {
+            list[k++] = input<&Link::ahead>("ahead", "s", "the common clock of the own one");
+            list[k++] = input<&Link::knows_time>("knows_time", "", "it was told lately");
+        }
         for (std::size_t node = 0; node < node_count; ++node)
             if (node != Link::this_node)
                 list[k++] = {.name = Rows::presence_names[node].view(),

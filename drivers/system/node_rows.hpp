@@ -135,6 +135,32 @@ public:
     static constexpr auto& rows = places.rows;
     static constexpr std::size_t storage_bytes = places.bytes;
 
+    // ---- the common clock
+
+    static constexpr bool tells_time =
+        system.wire.has_clock() && system.nodes[n].name == system.wire.clock.node;
+    static constexpr bool is_told_time = system.wire.has_clock() && !tells_time;
+
+    /// Of a command its arguments and results; the longest.
+    static constexpr std::size_t command_bytes = [] {
+        std::size_t most = 1;
+        for (const CrossingIndex& each : plan.index)
+            most = std::max(most, std::size_t{each.value.bytes} + each.result.bytes);
+        return most;
+    }();
+    /// The frame of that identifier; where there is none, how many there are.
+    static constexpr std::size_t frame_of(std::uint32_t id) noexcept TAPPET_REALTIME {
+        std::size_t first = 0, past = plan.frames.size();
+        while (first < past) {
+            const std::size_t middle = (first + past) / 2;
+            if (plan.frames[middle].id < id)
+                first = middle + 1;
+            else
+                past = middle;
+        }
+        return first < plan.frames.size() && plan.frames[first].id == id ? first : plan.frames.size();
+    }
+
     static constexpr std::size_t row_of(std::size_t x) noexcept TAPPET_REALTIME {
         return x < crossing_count ? places.row_of[x] : nowhere;
     }

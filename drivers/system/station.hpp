@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/can/bus.hpp"
+#include "drivers/can/clock.hpp"
 #include "drivers/can/restarter.hpp"
 #include "drivers/system/link.hpp"
 #include "kernel/system/joined.hpp"
@@ -22,7 +23,7 @@ struct StationRows {
 
     static constexpr bool is_heard(const WireFrame& frame) {
         if (frame.node == n) return false;
-        if (frame.kind == WireFrameKind::beat) return true;
+        if (frame.kind == WireFrameKind::beat || frame.is_of_clock()) return true;
         if (frame.kind != WireFrameKind::data) return Rows::has_part(frame.crossing);
         for (std::size_t x = 0; x < system.crossings.size(); ++x)
             if (system.crossings[x].kind == CrossingKind::data &&
@@ -35,8 +36,8 @@ struct StationRows {
         std::array<FrameName, frame_count> names{};
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
-            constexpr std::string_view what[] = {"beat of ",   "data of ",  "",
-                                                 "answer to ", "reply to ", "taken: "};
+            constexpr std::string_view what[] = {"beat of ",  "data of ", "",          "answer to ",
+                                                 "reply to ", "taken: ",  "clock of ", "clock of "};
             names[f].append(what[static_cast<std::size_t>(frame.kind)]);
             names[f].append(frame.crossing == nowhere           ? system.nodes[frame.node].name
                             : frame.kind == WireFrameKind::data ? system.crossings[frame.crossing].from()
@@ -82,13 +83,16 @@ struct StationRows {
     static constexpr void each_signal(auto take) {
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
-            take(f, field("checksum", 0, 8));
-            take(f, field("counter", 8, 4));
+            constexpr WireShape shape = plan.shape;
+            if (frame.is_of_clock()) continue; // see can::ClockFrame
+            constexpr std::size_t counter = system.wire.is_fd() ? 16 : 8;
+            take(f, field("checksum", 0, counter));
+            take(f, field("counter", counter, shape.protection_bits - counter));
             if (frame.kind == WireFrameKind::beat) {
-                take(f, field("runs", 12, 4));
-                take(f, field("epoch", 16, 16));
-                take(f, field("row", 32, 16));
-                take(f, field("layout", 48, 16));
+                take(f, field("runs", shape.protection_bits, 4));
+                take(f, field("epoch", shape.head_bits, 16));
+                take(f, field("row", shape.head_bits + 16u, 16));
+                take(f, field("layout", shape.head_bits + 32u, 16));
             } else if (frame.kind == WireFrameKind::data) {
                 for (std::size_t p = 0; p < system.crossings.size(); ++p) {
                     if (system.crossings[p].kind != CrossingKind::data || plan.place[p].frame != f) continue;
@@ -101,12 +105,12 @@ struct StationRows {
                         take(f, value);
                 }
             } else {
-                take(f, field("word", 12, 4));
-                take(f, field("number", 16, 8));
-                take(f, field("session", 24, 8));
+                take(f, field("word", shape.protection_bits, 4));
+                take(f, field("number", shape.head_bits, 8));
+                take(f, field("session", shape.head_bits + 8u, 8));
                 if (frame.kind == WireFrameKind::message)
                     if (const can::Signal value = value_field(
-                            frame.crossing, plan.index[frame.crossing].value, channel_bits, "value");
+                            frame.crossing, plan.index[frame.crossing].value, shape.channel_bits(), "value");
                         value.bits != 0)
                         take(f, value);
             }
@@ -125,17 +129,19 @@ struct StationRows {
             all.signals[k++] = signal;
         });
         all.bit_rate = system.wire.rate.bits_per_second;
+        all.data_bit_rate = system.wire.rate.in_data_phase;
         all.sends_itself = true;
         all.restarts_allowed = restarts;
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
             can::FrameRow& row = all.frames[f];
-            row.identifier = can::standard(frame.id);
+            row.identifier = identifier_of(system.wire, frame);
             row.name = frame_names[f].view();
             row.direction = frame.node == n   ? can::Direction::transmit
                             : is_heard(frame) ? can::Direction::receive
                                               : can::Direction::passing;
-            row.length = frame.bytes();
+            row.length = frame.bytes;
+            row.format = format_of(system.wire, frame);
             row.every = frame.kind == WireFrameKind::beat || frame.kind == WireFrameKind::data ? frame.apart
                                                                                                : Duration{};
             row.apart = frame.apart;
@@ -153,16 +159,21 @@ struct StationRows {
         for (const WireFrame& frame : plan.frames) {
             if (frame.node != n && !is_heard(frame)) continue;
             on_wire += (window + frame.jitter) / frame.apart + 1;
-            // Without any stuffing.
-            const std::int64_t bits = 47 + 8 * std::int64_t{frame.bytes()};
-            shortest = std::min(shortest, Duration{bits * 1'000'000'000 / system.wire.rate.bits_per_second});
+            // Without any stuffing; of CAN FD what goes in each of its two rates.
+            const std::int64_t bits = 8 * std::int64_t{frame.bytes};
+            const BitRate rate = system.wire.rate;
+            const std::int64_t ns = format_of(system.wire, frame) == can::Format::classical
+                                        ? (47 + bits) * 1'000'000'000 / rate.bits_per_second
+                                        : 29 * 1'000'000'000LL / rate.bits_per_second +
+                                              (26 + bits) * 1'000'000'000 / rate.in_data_phase;
+            shortest = std::min(shortest, Duration{ns});
             if (frame.node == n && frame.kind != WireFrameKind::answer &&
                 frame.kind != WireFrameKind::received)
                 timers += window / frame.apart + 1;
         }
         std::int64_t events = 1;
         for (std::size_t i = 0; i < Rows::row_count; ++i)
-            if (Rows::is_command(i) || Rows::sends_events(i)) ++events;
+            if (Rows::is_command(i) || Rows::sends_events(i)) events += 2; // it comes, or may go
         return std::min(on_wire, window / shortest + 1) + timers + events;
     }();
 
@@ -204,6 +215,15 @@ struct StationRows {
         text.append("_restarter");
         return text;
     }();
+    static constexpr auto clock_name = [] {
+        Text<64> text;
+        text.append(system.wire.name);
+        text.append("_clock");
+        return text;
+    }();
+    static constexpr auto clock_received = path("received", "_clock"), clock_ahead = path("ahead", "_clock"),
+                          clock_known = path("known", "_clock"), ahead = path("ahead", ""),
+                          knows_time = path("knows_time", "");
     static constexpr auto port_paths = [] {
         std::array<Path, Rows::port_count> all{};
         for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view(), "");
@@ -233,7 +253,7 @@ struct StationRows {
         return {};
     }
     static constexpr std::size_t connection_count = [] {
-        std::size_t count = 2;
+        std::size_t count = 2 + (Rows::is_told_time ? 3u : 0u);
         for (const PortPlace& port : Rows::ports) count += port.is_input ? 1u : 0u;
         for (std::size_t x = 0; x < system.crossings.size(); ++x)
             count += plan.index[x].to.node == n && (system.crossings[x].kind == CrossingKind::data ||
@@ -247,6 +267,11 @@ struct StationRows {
         std::size_t k = 0;
         all[k++] = buffer<64>(bus_services.view(), received.view());
         all[k++] = data(bus_faulted.view(), faulted.view());
+        if constexpr (Rows::is_told_time) {
+            all[k++] = buffer<64>(bus_services.view(), clock_received.view());
+            all[k++] = data(clock_ahead.view(), ahead.view());
+            all[k++] = data(clock_known.view(), knows_time.view());
+        }
         for (std::size_t p = 0; p < Rows::port_count; ++p) {
             if (!Rows::ports[p].is_input) continue;
             ConnectionRow& row = all[k++];
@@ -295,16 +320,46 @@ struct StationRows {
         }
         return all;
     }();
-    static constexpr std::array<ComponentRow, 3> components{
-        component<can::Bus<no_signals, services>>(bus_name.view(), device(system.wire.name)),
-        component<Link<system, n>>(system.wire.name, device(system.wire.name)),
-        component<can::Restarter>(restarter_name.view(), device(system.wire.name), set("attempts", restarts),
-                                  set("pause", restart_pause))};
-    static constexpr std::array<ActivityRow, 2> activities{
-        activity(restarter_name.view(), every(100ms), not_real_time, runs(restarter_name.view())),
-        activity(system.wire.name, on_device(bus_name.view()), at_most(wakes, system.wire.service.deadline),
-                 runs(bus_name.view(), system.wire.name), deadline(system.wire.service.deadline),
-                 budget(system.wire.service.budget))};
+    // ---- the common clock, behind the bus and before the end that asks it
+
+    static constexpr can::ClockRow clock_row = [] {
+        can::ClockRow row{};
+        for (const WireFrame& frame : plan.frames)
+            if (frame.kind == WireFrameKind::sync)
+                row = can::clock(identifier_of(system.wire, frame),
+                                 can::every(system.wire.clock.every, system.wire.service.deadline));
+        return row;
+    }();
+    static constexpr auto clock_component = [] {
+        if constexpr (Rows::tells_time)
+            return std::array{
+                component<can::ClockTeller<clock_row>>(clock_name.view(), device(system.wire.name))};
+        else if constexpr (Rows::is_told_time)
+            return std::array{component<can::ToldClock<clock_row>>(
+                clock_name.view(), set("teller_late", system.wire.clock.stamps_late),
+                set("own_late", system.wire.clock.stamps_late), set("drift", system.wire.clock.drift))};
+        else
+            return std::array<ComponentRow, 0>{};
+    }();
+
+    static constexpr auto components = both(
+        std::array<ComponentRow, 3>{
+            component<can::Bus<no_signals, services>>(bus_name.view(), device(system.wire.name)),
+            component<Link<system, n>>(system.wire.name, device(system.wire.name)),
+            component<can::Restarter>(restarter_name.view(), device(system.wire.name),
+                                      set("attempts", restarts), set("pause", restart_pause))},
+        clock_component);
+    static constexpr std::array<ActivityRow, 2> activities = [] {
+        ActivityRow serves =
+            activity(system.wire.name, on_device(bus_name.view()),
+                     at_most(wakes, system.wire.service.deadline), runs(bus_name.view()),
+                     deadline(system.wire.service.deadline), budget(system.wire.service.budget));
+        if (system.wire.has_clock()) static_cast<void>(serves.runs.push(clock_name.view()));
+        static_cast<void>(serves.runs.push(system.wire.name));
+        return std::array{
+            activity(restarter_name.view(), every(100ms), not_real_time, runs(restarter_name.view())),
+            serves};
+    }();
 };
 
 /// The number of a node; a name that the system has not does not compile.

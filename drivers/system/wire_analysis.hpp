@@ -10,6 +10,15 @@
 
 namespace tappet::systems {
 
+/// The clock is told in classical frames, whatever the wire is.
+constexpr can::Format format_of(const WireRow& wire, const WireFrame& frame) noexcept TAPPET_REALTIME {
+    return wire.is_fd() && !frame.is_of_clock() ? can::Format::flexible_faster : can::Format::classical;
+}
+constexpr can::Identifier identifier_of(const WireRow& wire, const WireFrame& frame) noexcept
+    TAPPET_REALTIME {
+    return {frame.id, wire.fixed_identifiers};
+}
+
 /// A WireAnalysis.
 constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> frames) {
     constexpr std::size_t most = can::BusAnalysis::most_frames;
@@ -25,9 +34,12 @@ constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> fram
         for (std::size_t m = 0; m < frames.size(); ++m)
             if (frames[m].crossing == frames[f].crossing &&
                 ((frames[f].kind == WireFrameKind::answer && frames[m].kind == WireFrameKind::message) ||
-                 (frames[f].kind == WireFrameKind::received && frames[m].kind == WireFrameKind::reply)))
+                 (frames[f].kind == WireFrameKind::received && frames[m].kind == WireFrameKind::reply) ||
+                 (frames[f].kind == WireFrameKind::follow_up && frames[m].kind == WireFrameKind::sync)))
                 answers[f] = m;
-        timing[f].wire_ns = can::frame_time_ns(can::Format::classical, false, frames[f].bytes(), {rate, 0});
+        frames[f].bytes = static_cast<std::uint8_t>(can::padded_length((frames[f].bits + 7u) / 8u));
+        timing[f].wire_ns = can::frame_time_ns(format_of(s.wire, frames[f]), s.wire.fixed_identifiers,
+                                               frames[f].bytes, {rate, s.wire.rate.in_data_phase});
         frames[f].on_wire = Duration{timing[f].wire_ns};
         timing[f].period_ns = frames[f].apart.count();
         timing[f].deadline_ns = frames[f].deadline.count();

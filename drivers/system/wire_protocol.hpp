@@ -10,8 +10,8 @@
 
 namespace tappet::systems {
 
-using Payload = std::array<std::uint8_t, most_wire_bits / 8>;
-using Contents = std::span<const std::uint8_t>; ///< of a frame, as long as a Payload
+using Contents = std::span<const std::uint8_t>; ///< of a frame, as long as the wire's longest
+using Payload = std::span<std::uint8_t>;        ///< likewise, to be written
 
 /// Of a node: that it lives, which start of it this is, and how one of its rows stands on the wire there.
 struct Beat {
@@ -21,38 +21,43 @@ struct Beat {
     std::uint16_t layout = 0;
 };
 
-// Bits 12 to 15 say what it is; the rest stands in bytes, the low one first. All real-time.
-constexpr void put_word(Payload& into, std::uint8_t word) noexcept TAPPET_REALTIME {
-    on_wire::put_bits(into, 12, 4, word);
+// Four bits behind the protection say what it is; the rest stands in bytes, the low one first. All real-time.
+constexpr void put_word(const WireShape& shape, Payload into, std::uint8_t word) noexcept TAPPET_REALTIME {
+    on_wire::put_bits(into, shape.protection_bits, 4, word);
 }
-constexpr std::uint8_t word_of(Contents from) noexcept TAPPET_REALTIME {
-    return static_cast<std::uint8_t>(on_wire::take_bits(from, 12, 4));
+constexpr std::uint8_t word_of(const WireShape& shape, Contents from) noexcept TAPPET_REALTIME {
+    return static_cast<std::uint8_t>(on_wire::take_bits(from, shape.protection_bits, 4));
 }
-constexpr void put_beat(Payload& into, const Beat& beat) noexcept TAPPET_REALTIME {
-    put_word(into, beat.runs ? 1 : 0);
-    on_wire::put_bits(into, 16, 16, beat.epoch);
-    on_wire::put_bits(into, 32, 16, beat.row);
-    on_wire::put_bits(into, 48, 16, beat.layout);
+constexpr void put_beat(const WireShape& shape, Payload into, const Beat& beat) noexcept TAPPET_REALTIME {
+    put_word(shape, into, beat.runs ? 1 : 0);
+    std::size_t at = shape.head_bits;
+    for (const std::uint16_t each : {beat.epoch, beat.row, beat.layout}) {
+        on_wire::put_bits(into, at, 16, each);
+        at += 16;
+    }
 }
-constexpr Beat beat_of(Contents from) noexcept TAPPET_REALTIME {
-    return {word_of(from) == 1, static_cast<std::uint16_t>(on_wire::take_bits(from, 16, 16)),
-            static_cast<std::uint16_t>(on_wire::take_bits(from, 32, 16)),
-            static_cast<std::uint16_t>(on_wire::take_bits(from, 48, 16))};
+constexpr Beat beat_of(const WireShape& shape, Contents from) noexcept TAPPET_REALTIME {
+    const auto number = [&](std::size_t i) noexcept TAPPET_REALTIME {
+        return static_cast<std::uint16_t>(on_wire::take_bits(from, shape.head_bits + 16 * i, 16));
+    };
+    return {word_of(shape, from) == 1, number(0), number(1), number(2)};
 }
 
-/// The head of a channel's frames, before arguments from bit 32 on.
+/// The head of a channel's frames, before their contents.
 struct ChannelHead {
     ChannelWord word{};
     std::uint8_t number = 0;
     std::uint8_t session = 0;
 };
-constexpr void put_head(Payload& into, const ChannelHead& head) noexcept TAPPET_REALTIME {
-    put_word(into, static_cast<std::uint8_t>(head.word));
-    into[2] = head.number;
-    into[3] = head.session;
+constexpr void put_head(const WireShape& shape, Payload into, const ChannelHead& head) noexcept
+    TAPPET_REALTIME {
+    put_word(shape, into, static_cast<std::uint8_t>(head.word));
+    into[shape.head_bits / 8u] = head.number;
+    into[shape.head_bits / 8u + 1] = head.session;
 }
-constexpr ChannelHead head_of(Contents from) noexcept TAPPET_REALTIME {
-    return {static_cast<ChannelWord>(word_of(from)), from[2], from[3]};
+constexpr ChannelHead head_of(const WireShape& shape, Contents from) noexcept TAPPET_REALTIME {
+    return {static_cast<ChannelWord>(word_of(shape, from)), from[shape.head_bits / 8u],
+            from[shape.head_bits / 8u + 1]};
 }
 
 } // namespace tappet::systems

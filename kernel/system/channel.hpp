@@ -46,7 +46,7 @@ struct ReceiveCounts {
 /// The end that sends. All of it real-time.
 class ChannelSender {
 public:
-    static constexpr std::size_t most_bytes = 56;
+    static constexpr std::size_t most_bytes = 58;
     /// Numbers have 8 bits: more without an answer could be taken for old ones.
     static constexpr std::uint8_t most_unanswered = 100;
     enum class State : std::uint8_t { idle, sends, gives_up };

@@ -16,9 +16,23 @@ struct WireValue {
     ValueKind kind = ValueKind::opaque; ///< boolean: one bit; opaque: as it is
     std::uint8_t bytes = 0;             ///< of the value in the machine
     bool is_signed = true;
+    bool has_time = false; ///< behind it stands when it was true
     double step = 1;
     constexpr bool operator==(const WireValue&) const = default;
+
+    /// In a frame: whether it is valid, the value, and its time.
+    [[nodiscard]] constexpr std::uint16_t bits_in_frame() const noexcept;
 };
+
+/// A time on the wire: the common one in these steps, modulo 2 to the power of the bits.
+inline constexpr std::int64_t time_step_ns = 10'000;
+inline constexpr std::uint16_t time_bits = 16;
+/// A value is told so long after it was true at most; a quarter of the turn is left for what clocks differ.
+inline constexpr Duration oldest_told{(std::int64_t{1} << time_bits) * time_step_ns / 4 * 3};
+
+constexpr std::uint16_t WireValue::bits_in_frame() const noexcept {
+    return static_cast<std::uint16_t>(1 + bits + (has_time ? time_bits : 0));
+}
 
 /// Of a value of that type, or of an argument list; of none the bits are 0, and `fault` says why.
 constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& fault) {
@@ -133,6 +147,17 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
     }
     if (told != Told::no_number) put_bits(into, at, as.bits, static_cast<std::uint64_t>(steps));
     return told;
+}
+
+/// A time of the common clock.
+constexpr std::uint64_t tell_time(Time common) noexcept TAPPET_REALTIME {
+    return static_cast<std::uint64_t>(to_ns(common) / time_step_ns) & ((1u << time_bits) - 1);
+}
+/// How long before `now` that was. What seems to be later than now, by what clocks differ, is now.
+constexpr Duration age_of_time(std::uint64_t told, Time now) noexcept TAPPET_REALTIME {
+    const auto steps = static_cast<std::int64_t>((tell_time(now) - told) & ((1u << time_bits) - 1));
+    const Duration age{steps * time_step_ns};
+    return age <= oldest_told ? age : Duration::zero();
 }
 
 /// The way back.

@@ -19,6 +19,8 @@ enum class WireFrameKind : std::uint8_t {
     answer,   ///< to those
     reply,    ///< how a command went
     received, ///< the answer to that
+    sync,     ///< the common clock is told: this frame is through,
+    follow_up ///< and then that was so by the teller's clock
 };
 
 struct WireFrame {
@@ -31,19 +33,31 @@ struct WireFrame {
     Duration worst{};       ///< likewise, proven
     Duration jitter{};      ///< by how much it may be late, for other nodes
     std::uint16_t bits = 0; ///< of its contents, protection included
+    std::uint8_t bytes = 0; ///< that it has on the wire
     std::uint32_t id = 0;
     std::uint16_t data_id = 0; ///< protects it against being taken for another one
 
-    [[nodiscard]] constexpr std::uint8_t bytes() const noexcept {
-        return static_cast<std::uint8_t>((bits + 7) / 8);
+    [[nodiscard]] constexpr bool is_of_clock() const noexcept {
+        return kind == WireFrameKind::sync || kind == WireFrameKind::follow_up;
     }
 };
 
-/// A frame of classical CAN holds 8 bytes; the first 12 bits are its protection: CRC and counter.
-inline constexpr std::size_t most_wire_bits = 64;
-inline constexpr std::size_t protection_bits = 12;
-/// Of a channel's frame: what it is, its number and session.
-inline constexpr std::size_t channel_bits = 32;
+/// How the frames of a wire are laid out: their protection, which is CRC and counter; then values, or four
+/// bits that say what it is and from a whole byte on the rest.
+struct WireShape {
+    std::uint16_t most_bits = 64, protection_bits = 12, head_bits = 16;
+
+    /// Of a channel's frame, before its contents: what it is, its number and session.
+    [[nodiscard]] constexpr std::uint16_t channel_bits() const noexcept {
+        return static_cast<std::uint16_t>(head_bits + 16);
+    }
+    [[nodiscard]] constexpr std::uint16_t beat_bits() const noexcept {
+        return static_cast<std::uint16_t>(head_bits + 48);
+    }
+};
+constexpr WireShape shape_of(const WireRow& wire) noexcept {
+    return wire.is_fd() ? WireShape{512, 24, 32} : WireShape{};
+}
 
 /// Where a row stands on the wire.
 struct CrossingPlace {
@@ -52,14 +66,16 @@ struct CrossingPlace {
     std::uint16_t at = 0; ///< of data: its first bit
 };
 
-/// Proves frames that stand in the order in which they win the wire. `worst` of each is written; the answer
-/// is the first that is not within its deadline, or how many there are.
+/// Proves frames that stand in the order in which they win the wire. `worst` and `bytes` of each are written;
+/// the answer is the first that is not within its deadline, or how many there are.
 using WireAnalysis = std::size_t (*)(const SystemView&, std::span<WireFrame>);
 
 template <std::size_t N, std::size_t X>
 struct SystemPlan {
-    static constexpr std::size_t most_frames = N + 4 * X;
-    Sentence fault{}; ///< empty when everything about the wire is right
+    static constexpr std::size_t most_frames = N + 2 + 4 * X;
+    WireShape shape{};
+    Duration clock_error{}; ///< of the common clock, while no exchange is lost
+    Sentence fault{};       ///< empty when everything about the wire is right
     std::array<CrossingIndex, X> index{};
     std::array<CrossingPlace, X> place{};
     Bounded<WireFrame, most_frames> frames{}; ///< the most urgent first
@@ -78,7 +94,7 @@ constexpr void add_text(Digest& digest, std::string_view text) noexcept {
 constexpr void add_value(Digest& digest, const WireValue& value) noexcept {
     digest.add(std::uint64_t{value.bits});
     digest.add(static_cast<std::uint64_t>(value.kind));
-    digest.add(std::uint64_t{value.is_signed ? 1u : 0u});
+    digest.add(std::uint64_t{value.is_signed ? 1u : 0u} | std::uint64_t{value.has_time ? 2u : 0u});
     digest.add(std::bit_cast<std::uint64_t>(value.step));
 }
 
@@ -104,7 +120,8 @@ constexpr std::size_t add_frame(SystemPlan<N, X>& plan, const WireFrame& frame) 
     return plan.frames.size() - 1;
 }
 
-/// Values of one node and one period share frames, the widest first, each where it fits first.
+/// Values of one node and one period share frames, each where it fits first: the widest first, or in the
+/// order of the rows, so that one at their end moves none before it.
 template <std::size_t N, std::size_t X>
 constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
     std::array<std::size_t, X> by_width{};
@@ -113,19 +130,19 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
         if (s.crossings[x].kind == CrossingKind::data) by_width[count++] = x;
     std::sort(by_width.begin(), by_width.begin() + static_cast<std::ptrdiff_t>(count),
               [&](std::size_t a, std::size_t b) {
-                  return plan.index[a].value.bits != plan.index[b].value.bits
+                  return !s.wire.fixed_identifiers && plan.index[a].value.bits != plan.index[b].value.bits
                              ? plan.index[a].value.bits > plan.index[b].value.bits
                              : a < b;
               });
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t x = by_width[i];
         const Crossing& row = s.crossings[x];
-        const auto bits = static_cast<std::uint16_t>(plan.index[x].value.bits + 1); // whether it is valid
-        if (protection_bits + bits > most_wire_bits)
+        const std::uint16_t bits = plan.index[x].value.bits_in_frame();
+        if (plan.shape.protection_bits + bits > plan.shape.most_bits)
             return of_crossing(
-                row, ": its value takes ", unsigned{bits},
-                " bits with the one that says whether it is valid, and a frame has ",
-                most_wire_bits - protection_bits,
+                row, ": its value takes ", unsigned{bits}, " bits with the one that says whether it is valid",
+                row.with_time ? " and the time" : "", ", and a frame has ",
+                plan.shape.most_bits - plan.shape.protection_bits,
                 " for values; tell it in fewer: in_bits(32, 0.001) of a number, or a part of a record");
         CrossingPlace& place = plan.place[x];
         for (std::size_t before = 0; before < i && place.frame == nowhere; ++before) {
@@ -151,7 +168,7 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
         for (std::size_t f = 0; f < plan.frames.size() && place.frame == nowhere; ++f) {
             const WireFrame& frame = plan.frames[f];
             if (frame.kind == WireFrameKind::data && frame.node == plan.index[x].from.node &&
-                frame.apart == row.every && frame.bits + bits <= most_wire_bits)
+                frame.apart == row.every && frame.bits + bits <= plan.shape.most_bits)
                 place.frame = f;
         }
         if (place.frame == nowhere)
@@ -160,7 +177,7 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
                                            .crossing = x,
                                            .apart = row.every,
                                            .deadline = row.every,
-                                           .bits = protection_bits});
+                                           .bits = plan.shape.protection_bits});
         WireFrame& frame = plan.frames[place.frame];
         place.at = frame.bits;
         frame.bits = static_cast<std::uint16_t>(frame.bits + bits);
@@ -181,6 +198,7 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
             " us of that are the deadlines of the activities that serve the wire and the operation; "
             "shorten those, or say a longer within(...)");
     const Duration again = row.within / 2;
+    const std::size_t channel_bits = plan.shape.channel_bits(), most_wire_bits = plan.shape.most_bits;
     const auto frame = [&](std::size_t node, WireFrameKind kind, std::size_t bits) {
         return WireFrame{.node = node,
                          .kind = kind,
@@ -221,19 +239,103 @@ constexpr void renumber(SystemPlan<N, X>& plan, std::span<const std::size_t> new
     for (std::size_t f = 0; f < before.size(); ++f) plan.frames[new_place[f]] = before[f];
 }
 
+/// The two frames of the common clock stand before all that rows bring about: there are few of them, and how
+/// well the clock is known depends on them.
+template <std::size_t N, std::size_t X>
+constexpr void add_clock(const SystemView& s, SystemPlan<N, X>& plan) {
+    const Duration quarter = s.wire.clock.every / 4; // see can::follow_up_within
+    WireFrame frame{.node = find_node(s, s.wire.clock.node),
+                    .kind = WireFrameKind::sync,
+                    .apart = s.wire.clock.every,
+                    .deadline = quarter,
+                    .bits = 64};
+    add_frame(plan, frame);
+    frame.kind = WireFrameKind::follow_up;
+    frame.apart -= quarter;
+    add_frame(plan, frame);
+}
+
+/// From the last exchange that counts until the next one the clocks part.
+constexpr Sentence check_clock_error(const SystemView& s, std::span<const WireFrame> frames,
+                                     Duration& error) {
+    const CommonClock& clock = s.wire.clock;
+    Duration age = clock.every + 2 * s.wire.service.deadline + clock.stamps_late;
+    for (const WireFrame& frame : frames)
+        if (frame.is_of_clock()) age += frame.worst;
+    // What is rounded up by each frame that wakes who knows it.
+    const Duration parted{static_cast<std::int64_t>(static_cast<double>(age.count()) * clock.drift) + 1 +
+                          age.count() / 50'000};
+    error = clock.stamps_late + parted;
+    if (error <= clock.within) return {};
+    return Sentence{
+        "common_clock(\"",
+        clock.node,
+        "\"): it is known to ",
+        error.count() / 1000,
+        " us, but promised within ",
+        clock.within.count() / 1000,
+        " us; most of it, ",
+        std::max(clock.stamps_late, parted).count() / 1000,
+        " us, is ",
+        clock.stamps_late >= parted
+            ? Sentence{"how late frames are stamped; say stamps_late(...) of less where that is so"}
+            : Sentence{"what clocks part in ", age.count() / 1'000'000, " ms; tell it more often"},
+        ", or promise less"};
+}
+
+/// A digest of what a frame is, whatever stands beside it in the table.
+template <std::size_t N, std::size_t X>
+constexpr Digest key_of(const SystemView& s, const SystemPlan<N, X>& plan, std::size_t f) {
+    const WireFrame& frame = plan.frames[f];
+    Digest key;
+    add_text(key, s.name);
+    add_text(key, s.nodes[frame.node].name);
+    // Both frames of the clock have one identifier.
+    key.add(static_cast<std::uint64_t>(frame.is_of_clock() ? WireFrameKind::sync : frame.kind));
+    if (frame.kind == WireFrameKind::data) {
+        std::uint64_t before = 0;
+        for (std::size_t i = 0; i < f; ++i)
+            if (plan.frames[i].kind == WireFrameKind::data && plan.frames[i].node == frame.node &&
+                plan.frames[i].apart == frame.apart)
+                ++before;
+        key.add(static_cast<std::uint64_t>(frame.apart.count()));
+        key.add(before);
+    } else if (frame.crossing != nowhere) {
+        key.add(std::uint64_t{plan.index[frame.crossing].name});
+    }
+    return key;
+}
+
+/// Of 29 bits: how urgent it is, in 32 steps an octave of its deadline, and which frame.
+constexpr std::uint32_t fixed_identifier(const WireFrame& frame, std::uint64_t key) noexcept {
+    constexpr unsigned steps_bits = 5, key_bits = 18;
+    const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.deadline.count() / 1000, 1));
+    const unsigned octave = static_cast<unsigned>(std::bit_width(us)) - 1;
+    const std::uint64_t step =
+        (octave >= steps_bits ? us >> (octave - steps_bits) : us << (steps_bits - octave)) &
+        ((1u << steps_bits) - 1);
+    const bool goes_first = frame.kind == WireFrameKind::beat || frame.is_of_clock();
+    const std::uint64_t urgency = goes_first ? 0 : std::uint64_t{octave} << steps_bits | step;
+    return static_cast<std::uint32_t>(urgency << key_bits |
+                                      ((key ^ key >> 23 ^ key >> 46) & ((1u << key_bits) - 1)));
+}
+
 /// Deadline-monotonic first, which is right for most; where that fails, Audsley's assignment (1991): the
 /// lowest place goes to a frame that bears it, then the next lowest. The answer is the frame that bears none.
 template <std::size_t N, std::size_t X>
 constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAnalysis analysis) {
     const std::size_t count = plan.frames.size();
+    const bool is_fixed = s.wire.fixed_identifiers;
+    const std::size_t go_first = N + (s.wire.has_clock() ? 2 : 0);
     std::array<std::size_t, SystemPlan<N, X>::most_frames> order{}, new_place{};
     for (std::size_t f = 0; f < count; ++f) order[f] = f;
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
               [&](std::size_t a, std::size_t b) {
                   const WireFrame &l = plan.frames[a], &r = plan.frames[b];
+                  if (is_fixed) return l.id != r.id ? l.id < r.id : a < b;
                   // Beats have identifiers that no row moves: other versions hear them, too.
-                  const bool l_beats = l.kind == WireFrameKind::beat, r_beats = r.kind == WireFrameKind::beat;
-                  if (l_beats != r_beats) return l_beats;
+                  if ((a < go_first) != (b < go_first)) return a < go_first;
+                  if (a < go_first) return a < b;
                   return l.deadline != r.deadline ? l.deadline < r.deadline : a < b;
               });
     auto trial = plan.frames;
@@ -242,12 +344,12 @@ constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAn
         return analysis(s, std::span{trial.items}.first(count));
     };
     std::size_t bad = tries();
-    if (bad < count) {
+    if (bad < count && !is_fixed) {
         const auto monotonic = order;
         const std::size_t first_bad = order[bad];
-        for (std::size_t level = count; level-- > N && bad < count;) {
+        for (std::size_t level = count; level-- > go_first && bad < count;) {
             bool found = false;
-            for (std::size_t candidate = level + 1; candidate-- > N && !found;) {
+            for (std::size_t candidate = level + 1; candidate-- > go_first && !found;) {
                 std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
                             order.begin() + static_cast<std::ptrdiff_t>(candidate) + 1,
                             order.begin() + static_cast<std::ptrdiff_t>(level) + 1);
@@ -281,17 +383,31 @@ template <std::size_t N, std::size_t X, std::size_t P>
 constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysis analysis) {
     SystemPlan<N, X> plan;
     const SystemView s = table.view();
+    plan.shape = shape_of(s.wire);
     const auto refuse = [&](const Sentence& fault) { plan.fault = Sentence{s.name, ": ", fault}; };
     if (Sentence fault = systems::check_nodes(s); !fault.empty()) return refuse(fault), plan;
-    for (std::size_t x = 0; x < X; ++x)
-        if (Sentence fault = systems::resolve_crossing(s, s.crossings[x], plan.index[x]); !fault.empty())
+    for (std::size_t x = 0; x < X; ++x) {
+        const Crossing& row = s.crossings[x];
+        if (Sentence fault = systems::resolve_crossing(s, row, plan.index[x]); !fault.empty())
             return refuse(fault), plan;
+        Digest name;
+        systems::add_text(name, row.kind == CrossingKind::presence ? row.node : row.from());
+        systems::add_text(name, row.to());
+        plan.index[x].name = systems::folded(name);
+        for (std::size_t other = 0; other < x; ++other)
+            if (row.kind != CrossingKind::presence && plan.index[other].name == plan.index[x].name)
+                return refuse(systems::of_crossing(
+                           row, " is told by the same number as \"", s.crossings[other].from(), "\" -> \"",
+                           s.crossings[other].to(), "\", or stands twice; remove it, or rename a node")),
+                       plan;
+    }
     for (std::size_t n = 0; n < N; ++n)
         systems::add_frame(plan, {.node = n,
                                   .kind = WireFrameKind::beat,
                                   .apart = s.wire.beats,
                                   .deadline = s.wire.beats,
-                                  .bits = most_wire_bits});
+                                  .bits = plan.shape.beat_bits()});
+    if (s.wire.has_clock()) systems::add_clock(s, plan);
     if (Sentence fault = systems::pack_data(s, plan); !fault.empty()) return refuse(fault), plan;
     for (std::size_t x = 0; x < X; ++x) {
         const CrossingKind kind = s.crossings[x].kind;
@@ -305,33 +421,31 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
                    " that are analysed: tell values of one node with one every(...), events seldom as "
                    "values, or make two systems"}),
                plan;
+    for (std::size_t f = 0; f < plan.frames.size(); ++f) {
+        const Digest key = systems::key_of(s, plan, f);
+        plan.frames[f].data_id = systems::folded(key);
+        plan.frames[f].id = systems::fixed_identifier(plan.frames[f], key.value());
+    }
     const std::size_t bad = systems::assign(s, plan, analysis);
-    for (std::size_t f = 0; f < plan.frames.size(); ++f)
-        plan.frames[f].id = s.wire.first_identifier + static_cast<std::uint32_t>(f);
+    for (std::size_t f = 0; f < plan.frames.size() && !s.wire.fixed_identifiers; ++f) {
+        const bool is_second = plan.frames[f].kind == WireFrameKind::follow_up;
+        plan.frames[f].id = s.wire.first_identifier + static_cast<std::uint32_t>(f - (is_second ? 1 : 0));
+    }
     for (std::size_t x = 0; x < X; ++x) {
         const Crossing& row = s.crossings[x];
         const CrossingPlace& place = plan.place[x];
         CrossingIndex& index = plan.index[x];
-        Digest name, layout;
-        systems::add_text(name, row.kind == CrossingKind::presence ? row.node : row.from());
-        systems::add_text(name, row.to());
-        index.name = systems::folded(name);
+        Digest layout;
         layout.add(static_cast<std::uint64_t>(row.kind));
         systems::add_value(layout, index.value);
         systems::add_value(layout, index.result);
         if (index.from.facet != nullptr) systems::add_text(layout, index.from.facet->unit);
         layout.add(std::uint64_t{place.at});
         for (const std::size_t f : {place.frame, place.answer, place.reply, place.received})
-            if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id} << 8 | plan.frames[f].bytes());
+            if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id});
         layout.add(static_cast<std::uint64_t>(row.every.count()));
         layout.add(static_cast<std::uint64_t>(row.within.count()));
         index.layout = systems::folded(layout);
-        for (std::size_t other = 0; other < x; ++other)
-            if (row.kind != CrossingKind::presence && plan.index[other].name == index.name)
-                return refuse(systems::of_crossing(
-                           row, " is told by the same number as \"", s.crossings[other].from(), "\" -> \"",
-                           s.crossings[other].to(), "\", or stands twice; remove it, or rename a node")),
-                       plan;
     }
     for (const WireFrame& frame : plan.frames) {
         if (bad < plan.frames.size() || frame.kind != WireFrameKind::beat) continue;
@@ -343,22 +457,27 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
                                    needed.count() / 1000, " us; say silent_after(...) of more than that"}),
                    plan;
     }
-    if (s.wire.first_identifier + plan.frames.size() > 0x800)
+    if (!s.wire.fixed_identifiers && s.wire.first_identifier + plan.frames.size() > 0x800)
         return refuse(Sentence{"wire \"", s.wire.name, "\": ", plan.frames.size(), " frames from identifier ",
                                s.wire.first_identifier, " on go beyond the last of 11 bits; begin lower"}),
                plan;
-    for (WireFrame& frame : plan.frames) {
-        Digest id;
-        systems::add_text(id, s.name);
-        systems::add_text(id, s.nodes[frame.node].name);
-        id.add(static_cast<std::uint64_t>(frame.kind));
-        if (frame.crossing != nowhere) id.add(std::uint64_t{plan.index[frame.crossing].name});
-        frame.data_id = systems::folded(id);
-    }
+    for (std::size_t f = 1; f < plan.frames.size(); ++f)
+        if (plan.frames[f].id == plan.frames[f - 1].id && !plan.frames[f].is_of_clock())
+            return refuse(Sentence{"wire \"", s.wire.name, "\": two frames of node \"",
+                                   s.nodes[plan.frames[f].node].name, "\" and node \"",
+                                   s.nodes[plan.frames[f - 1].node].name,
+                                   "\" would have the same fixed identifier; rename one of the nodes"}),
+                   plan;
+    if (bad == plan.frames.size() && s.wire.has_clock())
+        if (Sentence fault = systems::check_clock_error(s, {plan.frames.items.data(), plan.frames.size()},
+                                                        plan.clock_error);
+            !fault.empty())
+            return refuse(fault), plan;
     if (bad < plan.frames.size()) {
         const WireFrame& frame = plan.frames[bad];
-        const Sentence what = frame.kind == WireFrameKind::beat
-                                  ? Sentence{"the beat of node \"", s.nodes[frame.node].name, "\""}
+        const Sentence what = frame.crossing == nowhere
+                                  ? Sentence{frame.is_of_clock() ? "the clock" : "the beat", " of node \"",
+                                             s.nodes[frame.node].name, "\""}
                                   : systems::of_crossing(s.crossings[frame.crossing]);
         std::int64_t load_ppm = 0;
         for (const WireFrame& each : plan.frames)

@@ -81,12 +81,23 @@ constexpr Sentence resolve_data(const SystemView& s, const Crossing& row, Crossi
     if (row.every <= Duration::zero()) return Sentence{" does not say how often it is told; add every(10ms)"};
     if (row.at_most_per != Duration::zero())
         return Sentence{" is told every(...); at_most(...) is for events and commands, remove it"};
+    if (row.with_time) {
+        if (!s.wire.has_clock())
+            return Sentence{" is told with_time, but wire \"", s.wire.name,
+                            "\" has no common time; add common_clock(\"node\", every(100ms), within(200us))"};
+        const Duration oldest = oldest_told - row.every;
+        if (row.data.max_age <= Duration::zero() || row.data.max_age > oldest)
+            return Sentence{" is told with_time, which holds for ", oldest.count() / 1'000'000,
+                            " ms; say stale_after(...) of at most that"};
+    }
     Sentence fault;
     found.value = wire_value(found.from.facet->type, row.encoding, fault);
+    found.value.has_time = row.with_time;
     return fault.empty() ? fault : Sentence{": ", fault};
 }
 
 constexpr Sentence check_pace(const Crossing& row) {
+    if (row.with_time) return Sentence{" is told when it happens; with_time is for data, remove it"};
     if (row.every > Duration::zero())
         return Sentence{" is told when it happens; every(...) is for data, remove it"};
     if (row.at_most_per <= Duration::zero())
@@ -216,6 +227,25 @@ constexpr Sentence check_nodes(const SystemView& s) {
                             "\", which is the wire's name; rename one of them"};
     if (s.wire.rate.bits_per_second == 0)
         return Sentence{"wire \"", s.wire.name, "\" has no bit rate; add bit_rate(500'000)"};
+    if (s.wire.is_fd() && s.wire.rate.in_data_phase < s.wire.rate.bits_per_second)
+        return Sentence{"wire \"",
+                        s.wire.name,
+                        "\" has ",
+                        s.wire.rate.in_data_phase,
+                        " bit/s in the data phase, less than its ",
+                        s.wire.rate.bits_per_second,
+                        "; write the faster one behind the other"};
+    if (const CommonClock& clock = s.wire.clock; s.wire.has_clock()) {
+        if (find_node(s, clock.node) == nowhere)
+            return Sentence{"common_clock(\"", clock.node,
+                            "\"): there is no such node; name one of nodes(...)"};
+        if (clock.every < 10ms || clock.every > 10s)
+            return Sentence{"common_clock(\"", clock.node, "\") is told every ",
+                            clock.every.count() / 1'000'000, " ms; write every(...) from 10 ms to 10 s"};
+        if (clock.within <= Duration::zero())
+            return Sentence{"common_clock(\"", clock.node,
+                            "\") does not say how well it is to be known; add within(200us)"};
+    }
     if (s.wire.beats <= Duration::zero() || s.wire.silent_after < 2 * s.wire.beats)
         return Sentence{"wire \"",
                         s.wire.name,

@@ -52,7 +52,27 @@ struct Service {
 /// Within `deadline` of a frame's arrival it is served, and so is what is to be sent; `budget` of each cycle.
 constexpr Service served_within(Duration deadline, Budget each) noexcept { return {deadline, each.each}; }
 
-/// The wire between the nodes: classical CAN.
+struct Within {
+    Duration time{};
+};
+/// Of a crossing: from the writing, the emission or the sending until it was served at the other node.
+constexpr Within within(Duration time) noexcept { return {time}; }
+
+/// Who tells the wire's common time, and how well the others are to know it.
+struct CommonClock {
+    std::string_view node{};
+    Duration every{};
+    Duration within{};
+    /// From the end of a frame to its stamp at most, at any node: of a kernel that stamps what arrives.
+    Duration stamps_late = 100us;
+    double drift = 210e-6; ///< of two clocks against each other at most, s in a s
+};
+struct StampsLate {
+    Duration time{};
+};
+constexpr StampsLate stamps_late(Duration time) noexcept { return {time}; }
+
+/// The wire between the nodes: classical CAN, or CAN FD where its bit rate has a second number.
 struct WireRow {
     std::string_view name{}; ///< of the device in each node's binding, and of what stands on it there
     BitRate rate{};
@@ -61,6 +81,11 @@ struct WireRow {
     Duration silent_after = 70ms;
     Service service{};
     std::uint32_t first_identifier = 0x181;
+    bool fixed_identifiers = false;
+    CommonClock clock{};
+
+    [[nodiscard]] constexpr bool is_fd() const noexcept { return rate.in_data_phase != 0; }
+    [[nodiscard]] constexpr bool has_clock() const noexcept { return clock.every > Duration::zero(); }
 };
 
 struct FirstIdentifier {
@@ -70,8 +95,19 @@ struct FirstIdentifier {
 /// Unless stated they begin where CiA 301 has its process data.
 constexpr FirstIdentifier identifiers_from(std::uint32_t number) noexcept { return {number}; }
 
+struct FixedIdentifiers {};
+/// The wire's frames have identifiers of 29 bits, made of what each frame is and by when it must be there
+/// alone: no other row moves them, so that nodes of two versions of a system work together in all rows that
+/// both have. They cost 20 to 25 bits a frame. Nothing else of 29 bits may be on the wire.
+inline constexpr FixedIdentifiers fixed_identifiers{};
+
 namespace detail {
 
+constexpr void apply(CommonClock& clock, Within option) noexcept { clock.within = option.time; }
+constexpr void apply(CommonClock& clock, StampsLate option) noexcept { clock.stamps_late = option.time; }
+
+constexpr void apply(WireRow& row, const CommonClock& option) noexcept { row.clock = option; }
+constexpr void apply(WireRow& row, FixedIdentifiers) noexcept { row.fixed_identifiers = true; }
 constexpr void apply(WireRow& row, FirstIdentifier option) noexcept { row.first_identifier = option.number; }
 constexpr void apply(WireRow& row, BitRate rate) noexcept { row.rate = rate; }
 constexpr void apply(WireRow& row, BusErrors errors) noexcept { row.errors = errors; }
@@ -80,6 +116,17 @@ constexpr void apply(WireRow& row, SilentAfter option) noexcept { row.silent_aft
 constexpr void apply(WireRow& row, Service option) noexcept { row.service = option; }
 
 } // namespace detail
+
+/// common_clock("conveyor", every(100ms), within(200us)): that node tells its time (AUTOSAR CanTSyn), and the
+/// others know it to within so much, which the compiler proves while no exchange is lost. What they know, and
+/// how surely, is told by the outputs `ahead`, `error` and `known` of the component "<wire>_clock".
+template <class... Options>
+constexpr CommonClock common_clock(std::string_view node, const TriggerOption& rate,
+                                   const Options&... options) {
+    CommonClock clock{.node = node, .every = rate.period};
+    (detail::apply(clock, options), ...);
+    return clock;
+}
 
 template <class... Options>
 constexpr WireRow wire(std::string_view name, const Options&... options) {
@@ -102,18 +149,17 @@ constexpr Encoding in_natural_bits(std::uint8_t bits, double step = 1) noexcept 
     return {bits, step, false};
 }
 
-struct Within {
-    Duration time{};
-};
-/// From the writing, the emission or the sending until it was served at the other node.
-constexpr Within within(Duration time) noexcept { return {time}; }
-
 struct IfLost {
     std::string_view operation{};
 };
 /// Of an event: what runs at its own node when nobody has answered within its time. Whether it was served is
 /// then not known; a command that fails so says failed.
 constexpr IfLost if_lost(std::string_view operation) noexcept { return {operation}; }
+
+struct WithTime {};
+/// Of data: it crosses with the common time at which it was true, so that its stamp there is what it was
+/// here, to within the common clock's bound; while one of the two does not know that time it is not valid.
+inline constexpr WithTime with_time{};
 
 enum class CrossingKind : std::uint8_t { data, event, command, presence };
 
@@ -127,6 +173,7 @@ struct Crossing {
     Duration at_most_per{}; ///< of events and commands: the least time between two
     Duration within{};      ///< 0: of data its period and what the wire takes; of the others it must be said
     Encoding encoding{};
+    bool with_time = false;
     std::string_view node{};    ///< of presence: whose
     std::string_view if_lost{}; ///< of an event: the operation of the emitter's node that hears of it
 
@@ -148,6 +195,7 @@ constexpr void apply(Crossing& row, AtMost option) noexcept {
 }
 constexpr void apply(Crossing& row, Within option) noexcept { row.within = option.time; }
 constexpr void apply(Crossing& row, Encoding option) noexcept { row.encoding = option; }
+constexpr void apply(Crossing& row, WithTime) noexcept { row.with_time = true; }
 constexpr void apply(Crossing& row, IfLost option) noexcept { row.if_lost = option.operation; }
 
 } // namespace detail

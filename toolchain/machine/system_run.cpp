@@ -87,6 +87,7 @@ std::expected<void, Sentence> SystemRun::start(std::size_t n) {
         if (map.restarts_allowed != 0) settings.restarts_allowed = map.restarts_allowed;
         settings.receive = map.receive;
         settings.transmit = map.transmit;
+        settings.takes_fd = map.has_fd;
         if (auto opened = node.twin.open(settings); !opened) return opened;
     }
     node.run.clock().advance_to(node.clock.local(now_));
@@ -127,6 +128,10 @@ bool SystemRun::run_for(Duration time) {
     for (;;) {
         const Time then = std::max(next(), now_);
         now_ = std::min(then, end);
+        // Before something comes to a machine: it is served at the time at which it came.
+        for (const auto& node : nodes_)
+            if (node->is_alive)
+                node->run.clock().advance_to(std::max(node->clock.local(now_), node->run.now()));
         wire_.deliver_until(now_);
         for (const auto& node : nodes_) {
             if (!node->is_alive) continue;

@@ -1,0 +1,163 @@
+// One time over the nodes of a wire: values keep the time at which they were true, whatever their nodes'
+// clocks show, to within the bound that the compiler has proven.
+#include "board/host/board.hpp"
+#include "drivers/system/station.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "toolchain/machine/system_run.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::time_test {
+namespace {
+
+/// Tells by its own clock when it told it.
+struct Speaker {
+    Output<double> told_at{};
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME { told_at.write(to_seconds(cycle.now - Time{})); }
+    static constexpr auto interface() {
+        return facets(output<&Speaker::told_at>("told_at", "s", "its time"));
+    }
+};
+struct Listener {
+    Input<double> told_at{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(input<&Listener::told_at>("told_at", "s", "as it was told"));
+    }
+};
+
+// clang-format off
+constexpr auto speaks = machine("speaks", components(component<Speaker>("speaker")),
+    activities(activity("speaking", every(7ms), runs("speaker"), budget(50us))), connections(), reactions(), behaviours());
+constexpr auto listens = machine("listens", components(component<Listener>("listener")),
+    activities(activity("listening", every(5ms), runs("listener"), budget(50us))), connections(), reactions(), behaviours());
+constexpr auto tells = machine("tells", components(component<Speaker>("speaker")),
+    activities(activity("speaking", every(5ms), runs("speaker"), budget(50us))), connections(), reactions(), behaviours());
+
+constexpr auto three = nodes(node<speaks>("a"), node<listens>("b"), node<tells>("clock"));
+constexpr auto row = across(data("a.speaker.told_at", "b.listener.told_at", stale_after(60ms), hold), every(10ms),
+                            in_natural_bits(35, 1e-6), with_time);
+constexpr auto clocked_wire = wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)),
+                                   common_clock("clock", every(100ms), within(200us)));
+constexpr auto clocked = system("clocked", three, clocked_wire, crossings(row));
+// clang-format on
+using Speaks = Firmware<station<clocked, "a", speaks>, board::host>;
+using Listens = Firmware<station<clocked, "b", listens>, board::host>;
+using Tells = Firmware<station<clocked, "clock", tells>, board::host>;
+using ClockOfB = can::ToldClock<systems::StationRows<clocked, 1>::clock_row>;
+
+struct Rig {
+    explicit Rig(std::uint64_t seed)
+        : random{seed},
+          machines{Speaks::machine(), Listens::machine(), Tells::machine()},
+          run{clocked.view(), machines, {}, seed} {
+        for (std::size_t n = 0; n < 3; ++n) {
+            clocks[n] = {Duration{random.between(0, 100'000'000'000)},
+                         static_cast<double>(random.between(-100, 100))};
+            run.set_clock(n, clocks[n]);
+            run.end(n).stamps_late = clocked.wire.clock.stamps_late;
+        }
+    }
+    Listener& listener() { return *run.instance(1).find<Listener>("listener"); }
+    /// By how much the stamp of the value that is known differs from when it was true.
+    Duration error() {
+        const Time told = clocks[0].true_time(Time{from_seconds(listener().told_at.get())});
+        return clocks[1].true_time(listener().told_at.stamp()) - told;
+    }
+    static Duration from_seconds(double seconds) {
+        return Duration{static_cast<std::int64_t>(seconds * 1e9)};
+    }
+
+    Random random;
+    std::array<AcceptedMachine, 3> machines;
+    std::array<ClockFault, 3> clocks{};
+    SystemRun run;
+};
+
+TEST(CommonTime, a_value_keeps_the_time_at_which_it_was_true_between_clocks_that_drift) {
+    // Of both nodes that are told the time; and the steps of it and of the value.
+    const Duration bound = 2 * systems::plan_of<clocked>.clock_error + Duration{time_step_ns} + 2us;
+    Duration furthest{};
+    std::int64_t looks = 0;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        Rig rig{seed};
+        ASSERT_TRUE(rig.run.start());
+        rig.run.run_for(500ms);
+        for (int i = 0; i < 40; ++i) {
+            rig.run.run_for(Duration{rig.random.between(1'000'000, 60'000'000)});
+            if (!rig.listener().told_at.good()) continue;
+            const Duration error = rig.error();
+            ASSERT_LE(error, bound) << "seed " << seed;
+            ASSERT_GE(error, -bound) << "seed " << seed;
+            furthest = std::max({furthest, error, -error});
+            ++looks;
+        }
+        const auto& clock = *rig.run.instance(1).find<ClockOfB>("wire_clock");
+        EXPECT_LE(clock.error.last(), systems::plan_of<clocked>.clock_error) << "seed " << seed;
+        EXPECT_GT(clock.error.last(), clocked.wire.clock.stamps_late);
+        rig.run.stop();
+    }
+    EXPECT_GT(looks, 1900);
+    EXPECT_GT(furthest, 50us) << "stamps are late in this run; nothing of that was seen";
+}
+
+TEST(CommonTime, while_nobody_tells_the_time_what_needs_it_is_not_valid) {
+    Rig rig{1};
+    ASSERT_TRUE(rig.run.start(0) && rig.run.start(1));
+    rig.run.run_for(500ms);
+    EXPECT_EQ(rig.listener().told_at.flow(), Flow::never_written);
+    ASSERT_TRUE(rig.run.start(2));
+    rig.run.run_for(500ms);
+    EXPECT_TRUE(rig.listener().told_at.good());
+    rig.run.kill(2);
+    rig.run.run_for(900ms);
+    EXPECT_TRUE(rig.listener().told_at.good()) << "its error grows, but it is known";
+    rig.run.run_for(500ms);
+    EXPECT_EQ(rig.listener().told_at.flow(), Flow::stale);
+    EXPECT_FALSE(rig.run.instance(1).find<ClockOfB>("wire_clock")->is_known.last());
+    ASSERT_TRUE(rig.run.start(2));
+    rig.run.run_for(500ms);
+    EXPECT_TRUE(rig.listener().told_at.good());
+    rig.run.stop();
+}
+
+std::string refusal(const WireRow& wire, const Crossing& crossing) {
+    return std::string{
+        plan_system(system("lane", three, wire, crossings(crossing)), &systems::analyse_can).fault.view()};
+}
+constexpr WireRow on_wire(const CommonClock& clock) {
+    WireRow other = clocked_wire;
+    other.clock = clock;
+    return other;
+}
+
+TEST(CommonTime, refusals) {
+    EXPECT_EQ(refusal(clocked_wire, row), "");
+    EXPECT_EQ(
+        refusal(on_wire({}), row),
+        "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is told with_time, but wire \"wire\" "
+        "has no common time; add common_clock(\"node\", every(100ms), within(200us))");
+    EXPECT_EQ(refusal(on_wire(common_clock("c", every(100ms), within(200us))), row),
+              "lane: common_clock(\"c\"): there is no such node; name one of nodes(...)");
+    EXPECT_EQ(refusal(on_wire(common_clock("clock", every(1ms), within(200us))), row),
+              "lane: common_clock(\"clock\") is told every 1 ms; write every(...) from 10 ms to 10 s");
+    EXPECT_EQ(refusal(on_wire(common_clock("clock", every(100ms))), row),
+              "lane: common_clock(\"clock\") does not say how well it is to be known; add within(200us)");
+    EXPECT_EQ(refusal(on_wire(common_clock("clock", every(100ms), within(50us))), row),
+              "lane: common_clock(\"clock\"): it is known to 124 us, but promised within 50 us; most of it, "
+              "100 us, is "
+              "how late frames are stamped; say stamps_late(...) of less where that is so, or promise less");
+    EXPECT_EQ(refusal(on_wire(common_clock("clock", every(1s), within(150us), stamps_late(10us))), row),
+              "lane: common_clock(\"clock\"): it is known to 241 us, but promised within 150 us; most of it, "
+              "231 us, is "
+              "what clocks part in 1007 ms; tell it more often, or promise less");
+    Crossing long_lived = row;
+    long_lived.data.max_age = 2s;
+    EXPECT_EQ(refusal(clocked_wire, long_lived),
+              "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is told with_time, which holds "
+              "for 481 "
+              "ms; say stale_after(...) of at most that");
+}
+
+} // namespace
+} // namespace tappet::time_test

@@ -1,0 +1,191 @@
+// The same rows on other wires: CAN FD, which takes wide values, and identifiers that no row moves.
+#include "tests/drivers/system/pair.hpp"
+#include "toolchain/machine/system_run.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::pair {
+namespace {
+
+using Pose = std::array<double, 6>;
+
+/// Tells and asks in values that no classical frame takes.
+struct Arm {
+    Output<Pose> pose{};
+    Event<Pose> reached{};
+    CommandCall<Pose, Pose&> mirror{};
+    Pose tells{};
+    bool emits = false, asks = false;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        pose.write(tells);
+        if (std::exchange(emits, false)) reached.emit(tells);
+        if (asks && mirror.send(tells)) asks = false;
+    }
+    static constexpr auto interface() {
+        return facets(output<&Arm::pose>("pose", "mm", "as the test has it"),
+                      event<&Arm::reached>("reached", "a pose"), sends<&Arm::mirror>("mirror", "of a pose"));
+    }
+};
+struct Desk {
+    Input<Pose> pose{};
+    Pose reached{};
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    void arrive(Pose at) noexcept TAPPET_REALTIME { reached = at; }
+    bool mirror(Pose, Pose&) noexcept TAPPET_REALTIME { return true; }
+    CommandProgress mirrored(Pose of, Pose& result) noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < of.size(); ++i) result[i] = -of[i];
+        return CommandProgress::done;
+    }
+    static constexpr auto interface() {
+        return facets(input<&Desk::pose>("pose", "mm", "as the arm tells it"),
+                      operation<&Desk::arrive>("arrive", "a pose"),
+                      command<&Desk::mirror, &Desk::mirrored>("mirror", "of a pose"));
+    }
+};
+
+// clang-format off
+constexpr auto arm_table = machine("arm",
+    components(component<Arm>("arm")),
+    activities(activity("arm", every(5ms), runs("arm"), budget(50us))),
+    connections(), reactions(), behaviours());
+constexpr auto desk_table = machine("desk",
+    components(component<Desk>("desk")),
+    activities(activity("desk", every(5ms), runs("desk"), budget(50us))),
+    connections(), reactions(), behaviours());
+
+constexpr auto wide = system("wide",
+    nodes(node<arm_table>("a"), node<desk_table>("b")),
+    wire("wire", bit_rate(500'000, 2'000'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
+    crossings(
+        across(data("a.arm.pose", "b.desk.pose", stale_after(60ms), hold), every(10ms)),
+        across(when("a.arm.reached", tell("b.desk.arrive")), at_most(1, 40ms), within(30ms)),
+        across(uses("a.arm.mirror", "b.desk.mirror"), at_most(1, 100ms), within(20ms))));
+// clang-format on
+using ArmFirmware = Firmware<station<wide, "a", arm_table>, board::host>;
+using DeskFirmware = Firmware<station<wide, "b", desk_table>, board::host>;
+
+TEST(CanFd, takes_values_arguments_and_results_that_no_classical_frame_takes) {
+    const std::array<AcceptedMachine, 2> machines{ArmFirmware::machine(), DeskFirmware::machine()};
+    SystemRun run{wide.view(), machines, {}, 1};
+    ASSERT_TRUE(run.start());
+    run.run_for(300ms);
+    Arm& arm = *run.instance(0).find<Arm>("arm");
+    Desk& desk = *run.instance(1).find<Desk>("desk");
+    const Pose pose{1.5, -2, 1e300, -0.0, 4, 5};
+    arm.tells = pose;
+    arm.emits = arm.asks = true;
+    run.run_for(60ms);
+    EXPECT_EQ(desk.pose.get(), pose);
+    EXPECT_EQ(desk.reached, pose);
+    EXPECT_EQ(arm.mirror.state(), CommandState::done);
+    EXPECT_EQ(arm.mirror.result<0>(), (Pose{-1.5, 2, -1e300, 0, -4, -5}));
+    run.stop();
+}
+
+TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) {
+    const auto& plan = systems::plan_of<wide>;
+    const WireFrame& data = plan.frames[plan.place[0].frame];
+    EXPECT_EQ(data.bytes, 64); // 24 bits of protection, one of validity, 48 bytes
+    // Arbitration in 32 bits of 2 us; behind it 33 + 640 + 5 of 0.5 us.
+    EXPECT_EQ(data.on_wire, 403us);
+    EXPECT_EQ(plan.frames[plan.place[1].answer].bytes, 7);
+    const std::array<AcceptedMachine, 2> machines{ArmFirmware::machine(), DeskFirmware::machine()};
+    SystemRun run{wide.view(), machines, {}, 1};
+    can::Twin ear;
+    const std::array all{can::Identifier{data.id, false}};
+    ASSERT_TRUE(ear.open({.interface = "ear", .receive = all, .takes_fd = true}));
+    ASSERT_TRUE(run.wire().attach(ear));
+    ASSERT_TRUE(run.start());
+    run.run_for(300ms);
+    can::Frame frame;
+    ASSERT_EQ(ear.receive(frame).what, can::Received::frame);
+    EXPECT_EQ(can::format_of(frame), can::Format::flexible_faster);
+    ProtectionCheck check{{.form = Protection::Form::wide, .id = data.data_id}};
+    EXPECT_EQ(check.check(std::span{frame.data}.first(frame.length)).kind, ProtectionVerdict::Kind::initial);
+    frame.data[40] ^= 1;
+    EXPECT_EQ(check.check(std::span{frame.data}.first(frame.length)).kind,
+              ProtectionVerdict::Kind::wrong_crc);
+    for (const WireFrame& each : plan.frames)
+        EXPECT_LE(run.end(each.node).longest_response({each.id, false}), each.worst);
+    run.stop();
+}
+
+// clang-format off
+constexpr auto fixed_wire = wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms),
+                                 served_within(1ms, budget(40us)), fixed_identifiers);
+constexpr auto level_row = across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1));
+constexpr auto sent_row = across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms));
+constexpr auto doubled_row = across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24));
+constexpr auto b_row = presence("b", "a.giver.other_is_there");
+constexpr auto a_row = presence("a", "b.taker.other_is_there");
+constexpr auto older = system("fixed", nodes(node<giver_table>("a"), node<taker_table>("b")), fixed_wire,
+    crossings(level_row, a_row, b_row));
+/// More rows, of which two come first on the wire.
+constexpr auto newer = system("fixed", nodes(node<giver_table>("a"), node<taker_table>("b")), fixed_wire,
+    crossings(sent_row, level_row, doubled_row, a_row, b_row));
+// clang-format on
+using OlderTaker = Firmware<station<older, "b", taker_table>, board::host>;
+using NewerGiver = Firmware<station<newer, "a", giver_table>, board::host>;
+
+TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
+    for (const WireFrame& frame : systems::plan_of<older>.frames) {
+        std::size_t found = 0;
+        for (const WireFrame& each : systems::plan_of<newer>.frames)
+            found +=
+                each.id == frame.id && each.data_id == frame.data_id && each.kind == frame.kind ? 1u : 0u;
+        EXPECT_EQ(found, 1u) << std::hex << frame.id;
+        EXPECT_LT(frame.id, 1u << 29);
+    }
+    const std::array<AcceptedMachine, 2> machines{NewerGiver::machine(), OlderTaker::machine()};
+    SystemRun run{older.view(), machines, {}, 1};
+    ASSERT_TRUE(run.start());
+    Giver& giver = *run.instance(0).find<Giver>("giver");
+    Taker& taker = *run.instance(1).find<Taker>("taker");
+    giver.tells = 12;
+    giver.to_send = {1};
+    run.run_for(400ms);
+    EXPECT_DOUBLE_EQ(taker.level.get(), 12);
+    EXPECT_TRUE(taker.level.good());
+    EXPECT_TRUE(taker.got.empty()) << "of that row the older one knows nothing";
+    EXPECT_EQ((run.instance(1).find<systems::Link<older, 1>>("wire")->frames_refused.last()), 0);
+    run.stop();
+}
+
+TEST(FixedIdentifiers, win_the_wire_by_their_deadlines) {
+    const auto& frames = systems::plan_of<newer>.frames;
+    EXPECT_EQ(frames[0].kind, WireFrameKind::beat);
+    EXPECT_EQ(frames[1].kind, WireFrameKind::beat);
+    for (std::size_t f = 3; f < frames.size(); ++f) {
+        EXPECT_LT(frames[f - 1].id, frames[f].id);
+        // In 32 steps an octave.
+        EXPECT_LE(to_seconds(frames[f - 1].deadline), to_seconds(frames[f].deadline) * 33 / 32);
+    }
+}
+
+TEST(Pace, what_comes_sooner_than_its_row_says_waits_and_is_counted) {
+    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
+    SystemRun run{pair.view(), machines, {}, 1};
+    ASSERT_TRUE(run.start());
+    run.run_for(300ms);
+    Giver& giver = *run.instance(0).find<Giver>("giver");
+    Taker& taker = *run.instance(1).find<Taker>("taker");
+    auto& link = *run.instance(0).find<systems::Link<pair, 0>>("wire");
+    giver.to_send = {1, 2, 3}; // 5 ms after each other; at_most(1, 40ms)
+    run.run_for(20ms);
+    EXPECT_EQ(taker.got.size(), 1u);
+    run.run_for(40ms);
+    EXPECT_EQ(taker.got.size(), 2u);
+    run.run_for(40ms);
+    EXPECT_EQ(taker.got, (std::vector<std::int32_t>{1, 2, 3}));
+    EXPECT_EQ(link.held_back.last(), 2);
+    run.run_for(200ms);
+    giver.to_send = {4};
+    run.run_for(200ms);
+    EXPECT_EQ(link.held_back.last(), 2);
+    run.stop();
+}
+
+} // namespace
+} // namespace tappet::pair
