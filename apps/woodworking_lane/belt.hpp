@@ -28,7 +28,7 @@ struct Belt {
     }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         position_ = drive_position.get();
-        position.write(position_);
+        position.write(position_, drive_position.stamp());
         speed_command.write(static_cast<std::int64_t>(wanted_speed()));
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { speed_command.write(0); }
@@ -88,7 +88,7 @@ struct Belt {
             input<&Belt::polish_is_there>("polish_is_there", "", "likewise"),
             input<&Belt::glue_is_there>("glue_is_there", "", "likewise"),
             output<&Belt::speed_command>("speed_command", "mm/s", "of the drive"),
-            output<&Belt::position>("position", "mm", "so far the belt has gone"),
+            output<&Belt::position>("position", "mm", "so far the belt has gone, when the drive has told it"),
             output<&Belt::lamp>("lamp", "", "the belt may run"),
             output<&Belt::boards_in>("boards_in", "", "that were scanned; written on change"),
             output<&Belt::boards_out>("boards_out", "", "that left the last station; written on change"),

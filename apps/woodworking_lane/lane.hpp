@@ -60,12 +60,13 @@ inline constexpr auto& glue = station_table<3, 300'000'000>;
 
 inline constexpr auto lane = system("woodworking-lane",
     nodes(node<conveyor>("conveyor"), node<saw>("saw"), node<drill>("drill"), node<polish>("polish"), node<glue>("glue")),
-    wire("lane", bit_rate(500'000), beats(20ms), silent_after(65ms), served_within(1ms, budget(30us))), // 100 m
+    wire("lane", bit_rate(500'000), beats(20ms), silent_after(65ms), served_within(1ms, budget(30us)), // 100 m
+        common_clock("conveyor", every(100ms), within(200us))),
     crossings(
-        across(data("conveyor.belt.position", "saw.station.belt_position",    stale_after(60ms), hold), every(10ms), in_natural_bits(30)),
-        across(data("conveyor.belt.position", "drill.station.belt_position",  stale_after(60ms), hold), every(10ms), in_natural_bits(30)),
-        across(data("conveyor.belt.position", "polish.station.belt_position", stale_after(60ms), hold), every(10ms), in_natural_bits(30)),
-        across(data("conveyor.belt.position", "glue.station.belt_position",   stale_after(60ms), hold), every(10ms), in_natural_bits(30)),
+        across(data("conveyor.belt.position", "saw.station.belt_position",    stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
+        across(data("conveyor.belt.position", "drill.station.belt_position",  stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
+        across(data("conveyor.belt.position", "polish.station.belt_position", stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
+        across(data("conveyor.belt.position", "glue.station.belt_position",   stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
         // Each board's ticket goes with it from station to station.
         across(when("conveyor.belt.board_in",   tell("saw.station.board_comes")),    at_most(1, 500ms), within(120ms)),
         across(when("saw.station.board_out",    tell("drill.station.board_comes")),  at_most(1, 200ms), within(120ms), if_lost("saw.station.not_handed_on")),

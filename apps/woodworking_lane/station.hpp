@@ -75,8 +75,8 @@ struct Station {
     }
     /// The light barrier: the next one is here.
     void board_seen(Time at) noexcept TAPPET_REALTIME {
-        // The position that is known is of the past, of which the belt went on at its speed.
-        const double since = to_seconds(at - belt_position.stamp() + told_late);
+        // The position that is known is of the past, since when the belt went on at its speed.
+        const double since = to_seconds(at - belt_position.stamp());
         const std::int64_t position =
             belt_position.get() + static_cast<std::int64_t>(belt_speed * std::clamp(since, 0.0, 0.05));
         if (phase_ != Phase::waits || !find(position)) return; // somebody takes out what nobody knows
@@ -120,8 +120,6 @@ private:
         boards_missed.write(++missed_);
         become(Phase::lost);
     }
-
-    static constexpr Duration told_late = 8ms; ///< a position, on its way through two cycles and the wire
 
     /// A board on its way here.
     struct Coming {

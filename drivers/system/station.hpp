@@ -173,7 +173,8 @@ struct StationRows {
         }
         std::int64_t events = 1;
         for (std::size_t i = 0; i < Rows::row_count; ++i)
-            if (Rows::is_command(i) || Rows::sends_events(i)) events += 2; // it comes, or may go
+            if (Rows::is_command(i) || Rows::sends_events(i))
+                ++events; // a held one leaves by the timer of its frame
         return std::min(on_wire, window / shortest + 1) + timers + events;
     }();
 
