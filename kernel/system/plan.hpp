@@ -347,7 +347,17 @@ constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAn
     if (bad < count && !is_fixed) {
         const auto monotonic = order;
         const std::size_t first_bad = order[bad];
-        for (std::size_t level = count; level-- > go_first && bad < count;) {
+        // What fails in the best place fails in all: that is known at once, and not after n^2 of these.
+        bool may_help = bad > go_first;
+        if (may_help) {
+            const auto from = order.begin() + static_cast<std::ptrdiff_t>(go_first);
+            std::rotate(from, order.begin() + static_cast<std::ptrdiff_t>(bad),
+                        order.begin() + static_cast<std::ptrdiff_t>(bad) + 1);
+            static_cast<void>(tries());
+            may_help = trial[go_first].worst <= trial[go_first].deadline;
+            order = monotonic;
+        }
+        for (std::size_t level = count; may_help && level-- > go_first;) {
             bool found = false;
             for (std::size_t candidate = level + 1; candidate-- > go_first && !found;) {
                 std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
