@@ -113,6 +113,9 @@ TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) 
 }
 
 // clang-format off
+constexpr WireRow good_wire(std::string_view name) {
+    return wire(name, bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)));
+}
 constexpr auto fixed_wire = wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms),
                                  served_within(1ms, budget(40us)), fixed_identifiers);
 constexpr auto level_row = across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1));
@@ -162,6 +165,38 @@ TEST(FixedIdentifiers, win_the_wire_by_their_deadlines) {
         // In 32 steps an octave.
         EXPECT_LE(to_seconds(frames[f - 1].deadline), to_seconds(frames[f].deadline) * 33 / 32);
     }
+}
+
+/// Stands on two wires: it hears the giver on one, and tells the arm's desk on the other.
+struct Bridge {
+    Input<double> level{};
+    Output<double> doubled{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME { doubled.write(2 * level.get()); }
+    static constexpr auto interface() {
+        return facets(input<&Bridge::level>("level", "mm", "of one wire"),
+                      output<&Bridge::doubled>("doubled", "mm", "to the other"));
+    }
+};
+// clang-format off
+constexpr auto bridge_table = machine("bridge",
+    components(component<Bridge>("bridge")),
+    activities(activity("bridge", every(5ms), runs("bridge"), budget(50us))),
+    connections(), reactions(), behaviours());
+constexpr auto first_wire = system("first", nodes(node<giver_table>("a"), node<bridge_table>("m")), good_wire("left"),
+    crossings(across(data("a.giver.level", "m.bridge.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
+              presence("m", "a.giver.other_is_there")));
+constexpr auto& on_first_wire = station<first_wire, "m", bridge_table>;
+constexpr auto second_wire = system("second", nodes(node<on_first_wire>("m"), node<taker_table>("b")), good_wire("right"),
+    crossings(across(data("m.bridge.doubled", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
+              presence("m", "b.taker.other_is_there")));
+// clang-format on
+using BridgeFirmware = Firmware<station<second_wire, "m", on_first_wire>, board::host>;
+
+TEST(TwoWires, a_node_of_two_systems_stands_on_both) {
+    const AcceptedMachine machine = BridgeFirmware::machine();
+    for (const std::string_view component : {"left", "left_can", "right", "right_can", "bridge"})
+        EXPECT_NE(find_component(machine.table, component), nowhere) << component;
+    EXPECT_EQ(machine.table.activities.size(), 5u) << "its own, and two of each wire";
 }
 
 TEST(Priorities, follow_deadlines_and_where_that_is_not_enough_audsley) {
