@@ -78,7 +78,7 @@ struct Station {
         // The position that is known is of the past, since when the belt went on at its speed.
         const double since = to_seconds(at - belt_position.stamp());
         const std::int64_t position =
-            belt_position.get() + static_cast<std::int64_t>(belt_speed * std::clamp(since, 0.0, 0.05));
+            belt_position.get() + static_cast<std::int64_t>(belt_speed * std::clamp(since, 0.0, 0.06));
         if (phase_ != Phase::waits || !find(position)) return; // somebody takes out what nobody knows
         if (!has_work(here_, static_cast<int>(number.get()))) {
             board_out.emit(here_);

@@ -98,14 +98,15 @@ private:
 ///     buffer<8>("can.services", "clock.received")
 /// Real-time.
 ///
-/// `error` is certain: half of both stamps' lateness, and what the clocks may have drifted since the last
-/// exchange, P at most while all is well. Only that one counts: a teller that began anew has another clock,
-/// and a small jump of it shows nowhere else. What is spoilt, comes twice, out of order or without its other
-/// half is not used. Between a restart and its first exchange, it is still the clock of before that is told;
-/// `rate` is of one start of the teller, and a jump too small to be seen is in it.
+/// `error` is certain as far as stamps are no later, and none is too early, as they can be by up to 1 ms
+/// while a wall clock is set: half of both stamps' lateness, and what the clocks may have drifted since the
+/// last exchange, P at most while all is well. Only that one counts: a teller that began anew has another
+/// clock, and a small jump of it shows nowhere else. What is spoilt, comes twice, out of order or without its
+/// other half is not used. Between a restart and its first exchange, it is still the clock of before that is
+/// told; `rate` is of one start of the teller, and a jump too small to be seen is in it.
 template <const auto& row> struct ToldClock {
     TAPPET_ACCEPTED(clock_fault(row));
-    static constexpr int max_frames_per_cycle = 16;
+    static constexpr int max_frames_per_cycle = 64;
     /// Steps of the sequence that are taken for losses; more are out of order.
     static constexpr unsigned most_steps = 4;
 
@@ -116,7 +117,7 @@ template <const auto& row> struct ToldClock {
     Output<std::int64_t> exchanges{}, discarded{}, invalid{}, jumps{};
     Property<Duration> teller_late{100us}, own_late{100us};
     Property<double> drift{210e-6};
-    Property<Duration> silent_after{std::max<Duration>(1s, 5 * row.every)}, rate_over{10s};
+    Property<Duration> silent_after{std::max<Duration>(1s, 5 * row.every)}, within{1s}, rate_over{10s};
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         Frame forgotten;
@@ -131,7 +132,8 @@ template <const auto& row> struct ToldClock {
         Frame frame;
         for (int n = 0; n < max_frames_per_cycle && received.pop(frame); ++n) take(frame, cycle.now);
         bounds_.age(cycle.now, drift.get());
-        const bool known = bounds_.known() && cycle.now - last_ <= silent_after.get();
+        const bool known =
+            bounds_.known() && cycle.now - last_ <= silent_after.get() && bounds_.error() <= within.get();
         if (known != is_known.last()) is_known.write(known);
         if (!bounds_.known()) return;
         ahead.write(bounds_.ahead());
@@ -145,7 +147,10 @@ template <const auto& row> struct ToldClock {
                                       "the teller's clock of the own one, give or take the error"),
             output<&ToldClock::error>("error", "s",
                                       "the most by which `ahead` may be wrong; it grows between exchanges"),
-            output<&ToldClock::is_known>("known", "", "the clock was told lately; written on change"),
+            output<&ToldClock::is_known>(
+                "known", "",
+                "the clock was told lately, and its error is small enough; written on "
+                "change"),
             output<&ToldClock::rate>("rate", "",
                                      "by how much the teller's clock went faster, s in a s, on the "
                                      "average of the last time over which it is taken"),
@@ -163,6 +168,8 @@ template <const auto& row> struct ToldClock {
                                         range(0.0, 1e-2)),
             property<&ToldClock::silent_after>("silent_after", "s", "then `known` is false",
                                                range(0.01, 3600.0)),
+            property<&ToldClock::within>("within", "s", "an error above it makes `known` false",
+                                         range(0.0, 1.0)),
             property<&ToldClock::rate_over>("rate_over", "s", "the rate is taken over at least this time",
                                             range(0.01, 3600.0)));
     }

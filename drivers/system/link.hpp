@@ -48,6 +48,7 @@ struct Link {
     std::array<CommandCallSlot, row_count> calls{};
     Input<Duration> ahead{};
     Input<bool> knows_time{};
+    Input<std::int64_t> exchanges{};
     Output<Text<160>> refused{};
     Output<std::int64_t> events_lost{};
     Output<std::int64_t> frames_refused{};
@@ -116,6 +117,10 @@ private:
         bool there = false;
         std::uint16_t epoch = 0;
         Time silent_at = never;
+        Time begun = Time::min();    ///< this start of it was heard first
+        std::uint16_t first_row = 0; ///< that it told of
+        std::uint8_t rounds = 0;     ///< it told of all its rows so often
+        bool has_told = false;
     };
     /// Of a command that was sent from here.
     enum class Call : std::uint8_t { none, wanted, offered, done, failed };
@@ -159,7 +164,7 @@ private:
             return;
         }
         if (what.kind == WireFrameKind::beat) {
-            take_beat(what.node, beat_of(shape, frame.data), frame.stamp);
+            take_beat(what.node, beat_of(shape, frame.data), frame.stamp, now);
         } else if (what.kind == WireFrameKind::data) {
             take_data(f, frame);
         } else if constexpr (row_count > 0) {
@@ -173,25 +178,34 @@ private:
         return verdict.kind != ProtectionVerdict::Kind::wrong_crc;
     }
 
-    void take_beat(std::size_t node, const Beat& beat, Time at) noexcept TAPPET_REALTIME {
+    void take_beat(std::size_t node, const Beat& beat, Time at, Time now) noexcept TAPPET_REALTIME {
         Peer& peer = peers_[node];
         if (!beat.runs) {
             if (peer.there && peer.epoch == beat.epoch) lose(node);
             return;
         }
-        if (!peer.there || peer.epoch != beat.epoch) begin(node, beat.epoch);
+        if (!peer.there || peer.epoch != beat.epoch) begin(node, beat.epoch, now);
         peer.silent_at = at + system.wire.silent_after;
         for (std::size_t i = 0; i < row_count; ++i) {
             if (Rows::rows[i].name != beat.row || Rows::other(i) != node) continue;
-            if (Rows::rows[i].layout == beat.layout) {
+            if (Rows::rows[i].layout == beat.layout)
                 state_[i].agreed = true;
-            } else if (!state_[i].is_refused) {
-                state_[i].is_refused = true;
-                refused.write(Rows::refusal(i));
-            }
+            else
+                refuse(i, true);
         }
+        if (!std::exchange(peer.has_told, true))
+            peer.first_row = beat.row;
+        else if (peer.rounds < told_twice && beat.row == peer.first_row && ++peer.rounds == told_twice)
+            for (std::size_t i = 0; i < row_count; ++i)
+                if (Rows::other(i) == node && !state_[i].agreed) refuse(i, false);
         if (!is_there[node].last() && knows_rows_of(node)) is_there[node].write(true);
     }
+    void refuse(std::size_t i, bool has_it) noexcept TAPPET_REALTIME {
+        if (std::exchange(state_[i].is_refused, true)) return;
+        refused.write(Rows::refusal(i, has_it));
+    }
+    /// A row that another version does not have is never told of. Twice: a beat may be lost.
+    static constexpr std::uint8_t told_twice = 2;
     [[nodiscard]] bool knows_rows_of(std::size_t node) const noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < row_count; ++i)
             if (Rows::other(i) == node && !state_[i].agreed && !state_[i].is_refused) return false;
@@ -199,10 +213,11 @@ private:
     }
     /// The other node is heard, again or in a new start of it; then whatever was under way to the one before
     /// is over. After a silence of the same start both ends go on where they were.
-    void begin(std::size_t node, std::uint16_t epoch) noexcept TAPPET_REALTIME {
+    void begin(std::size_t node, std::uint16_t epoch, Time now) noexcept TAPPET_REALTIME {
         if (peers_[node].there) lose(node); // it began anew before its silence told
         const bool is_new = peers_[node].epoch != epoch;
-        peers_[node] = {true, epoch, never};
+        const Time begun = is_new ? now : peers_[node].begun;
+        peers_[node] = {.there = true, .epoch = epoch, .begun = begun};
         for (std::size_t i = 0; is_new && i < row_count; ++i) {
             if (Rows::other(i) != node) continue;
             state_[i].sender.begin();
@@ -240,27 +255,31 @@ private:
             const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0;
             bool& was_valid = state_[port.row].was_valid;
             if (!is_valid && (!was_valid || port.max_age == Duration::zero())) continue;
-            if (is_valid && port.value.has_time && !knows_common()) continue;
+            Duration age = is_valid ? Duration::zero() : port.max_age + 1ns;
+            if (is_valid && port.value.has_time && !has_age(port, frame, age)) continue;
             std::array<std::byte, 56> value{};
             if (is_valid)
                 on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
             else // what was old when it was told is so here
                 static_cast<void>(port.facet->port->read(output, false, false, value.data()));
-            port.facet->port->write_at(output, value.data(), frame.stamp - age_of(port, is_valid, frame));
+            port.facet->port->write_at(output, value.data(), frame.stamp - age);
             was_valid = is_valid;
         }
     }
 
-    /// Of a value, when its frame came.
-    [[nodiscard]] Duration age_of(const PortPlace& port, bool is_valid, const can::Frame& frame) noexcept
-        TAPPET_REALTIME {
-        if (!is_valid) return port.max_age + 1ns;
-        if (!port.value.has_time) return {};
-        return on_wire::age_of_time(
-            on_wire::take_bits(frame.data, port.bit + 1u + port.value.bits, time_bits), common(frame.stamp));
+    /// Of a value, when its frame came. False: nobody knows.
+    bool has_age(const PortPlace& port, const can::Frame& frame, Duration& age) noexcept TAPPET_REALTIME {
+        return knows_common() &&
+               on_wire::age_of_time(
+                   on_wire::take_bits(frame.data, port.bit + 1u + port.value.bits, time_bits),
+                   common(frame.stamp), 2 * system.wire.clock.within, age);
     }
     [[nodiscard]] bool knows_common() noexcept TAPPET_REALTIME {
-        if constexpr (Rows::is_told_time) return knows_time.get();
+        if constexpr (Rows::is_told_time) {
+            // Until it has told it anew, what is known is the clock of its last start.
+            static_cast<void>(exchanges.get());
+            return knows_time.get() && exchanges.stamp() > peers_[Rows::teller].begun;
+        }
         return true;
     }
     [[nodiscard]] Time common(Time own) noexcept TAPPET_REALTIME {
@@ -403,7 +422,9 @@ private:
     }
     void offer(std::size_t i, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
         Room arguments{};
-        state_[i].may_offer = now + Rows::crossing(i).at_most_per;
+        // On its own grid: that this activity is late does not push what comes in time.
+        Time& may_offer = state_[i].may_offer;
+        may_offer = std::max(may_offer, now - system.wire.service.deadline) + Rows::crossing(i).at_most_per;
         const WireValue& as = Rows::index(i).value;
         if (on_wire::tell(packed, as, arguments, 0) != on_wire::Told::well) beyond.write(++beyond_);
         state_[i].sender.offer(std::span{arguments}.first((as.bits + 7u) / 8u), now);

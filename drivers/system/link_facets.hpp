@@ -93,7 +93,7 @@ struct LinkFacets {
         return 1;
     }
     static constexpr auto list() {
-        constexpr std::size_t fixed = 8 + (Rows::is_told_time ? 2 : 0), node_count = Link::node_count;
+        constexpr std::size_t fixed = 8 + (Rows::is_told_time ? 3 : 0), node_count = Link::node_count;
         std::array<Facet, fixed + node_count - 1 + Rows::port_count + Rows::facet_count> list{};
         std::size_t k = 0;
         for (const Facet& facet : {
@@ -115,7 +115,8 @@ struct LinkFacets {
             list[k++] = facet;
         if constexpr (Rows::is_told_time) {
             list[k++] = input<&Link::ahead>("ahead", "s", "the common clock of the own one");
-            list[k++] = input<&Link::knows_time>("knows_time", "", "it was told lately");
+            list[k++] = input<&Link::knows_time>("knows_time", "", "it is known well enough");
+            list[k++] = input<&Link::exchanges>("exchanges", "", "times that it was told");
         }
         for (std::size_t node = 0; node < node_count; ++node)
             if (node != Link::this_node)

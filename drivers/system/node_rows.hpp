@@ -140,6 +140,7 @@ public:
     static constexpr bool tells_time =
         system.wire.has_clock() && system.nodes[n].name == system.wire.clock.node;
     static constexpr bool is_told_time = system.wire.has_clock() && !tells_time;
+    static constexpr std::size_t teller = find_node(system.view(), system.wire.clock.node);
 
     /// Of a command its arguments and results; the longest.
     static constexpr std::size_t command_bytes = [] {
@@ -244,11 +245,11 @@ public:
         return count;
     }();
 
-    static Text<160> refusal(std::size_t i) noexcept TAPPET_REALTIME {
+    static Text<160> refusal(std::size_t i, bool has_it) noexcept TAPPET_REALTIME {
         Text<160> text;
         text.append("node \"");
         text.append(system.nodes[other(i)].name);
-        text.append("\" has another row \"");
+        text.append(has_it ? "\" has another row \"" : "\" has no row \"");
         text.append(crossing(i).from());
         text.append("\" -> \"");
         text.append(crossing(i).to());

@@ -223,8 +223,9 @@ struct StationRows {
         return text;
     }();
     static constexpr auto clock_received = path("received", "_clock"), clock_ahead = path("ahead", "_clock"),
-                          clock_known = path("known", "_clock"), ahead = path("ahead", ""),
-                          knows_time = path("knows_time", "");
+                          clock_known = path("known", "_clock"),
+                          clock_exchanges = path("exchanges", "_clock"), ahead = path("ahead", ""),
+                          exchanges = path("exchanges", ""), knows_time = path("knows_time", "");
     static constexpr auto port_paths = [] {
         std::array<Path, Rows::port_count> all{};
         for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view(), "");
@@ -254,7 +255,7 @@ struct StationRows {
         return {};
     }
     static constexpr std::size_t connection_count = [] {
-        std::size_t count = 2 + (Rows::is_told_time ? 3u : 0u);
+        std::size_t count = 2 + (Rows::is_told_time ? 4u : 0u);
         for (const PortPlace& port : Rows::ports) count += port.is_input ? 1u : 0u;
         for (std::size_t x = 0; x < system.crossings.size(); ++x)
             count += plan.index[x].to.node == n && (system.crossings[x].kind == CrossingKind::data ||
@@ -272,6 +273,7 @@ struct StationRows {
             all[k++] = buffer<64>(bus_services.view(), clock_received.view());
             all[k++] = data(clock_ahead.view(), ahead.view());
             all[k++] = data(clock_known.view(), knows_time.view());
+            all[k++] = data(clock_exchanges.view(), exchanges.view());
         }
         for (std::size_t p = 0; p < Rows::port_count; ++p) {
             if (!Rows::ports[p].is_input) continue;
@@ -338,7 +340,8 @@ struct StationRows {
         else if constexpr (Rows::is_told_time)
             return std::array{component<can::ToldClock<clock_row>>(
                 clock_name.view(), set("teller_late", system.wire.clock.stamps_late),
-                set("own_late", system.wire.clock.stamps_late), set("drift", system.wire.clock.drift))};
+                set("own_late", system.wire.clock.stamps_late), set("drift", system.wire.clock.drift),
+                set("within", system.wire.clock.within))};
         else
             return std::array<ComponentRow, 0>{};
     }();

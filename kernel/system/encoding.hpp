@@ -27,8 +27,10 @@ struct WireValue {
 /// A time on the wire: the common one in these steps, modulo 2 to the power of the bits.
 inline constexpr std::int64_t time_step_ns = 10'000;
 inline constexpr std::uint16_t time_bits = 16;
-/// A value is told so long after it was true at most; a quarter of the turn is left for what clocks differ.
+/// What is older when it comes is not valid; a quarter of the turn is left for what clocks differ.
 inline constexpr Duration oldest_told{(std::int64_t{1} << time_bits) * time_step_ns / 4 * 3};
+/// A frame that waits longer in a driver or a controller was given up.
+inline constexpr Duration longest_under_way = 100ms;
 
 constexpr std::uint16_t WireValue::bits_in_frame() const noexcept {
     return static_cast<std::uint16_t>(1 + bits + (has_time ? time_bits : 0));
@@ -153,11 +155,16 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
 constexpr std::uint64_t tell_time(Time common) noexcept TAPPET_REALTIME {
     return static_cast<std::uint64_t>(to_ns(common) / time_step_ns) & ((1u << time_bits) - 1);
 }
-/// How long before `now` that was. What seems to be later than now, by what clocks differ, is now.
-constexpr Duration age_of_time(std::uint64_t told, Time now) noexcept TAPPET_REALTIME {
-    const auto steps = static_cast<std::int64_t>((tell_time(now) - told) & ((1u << time_bits) - 1));
-    const Duration age{steps * time_step_ns};
-    return age <= oldest_told ? age : Duration::zero();
+/// How long before `now` that was; what seems to be later, by no more than clocks may differ, is now. False:
+/// it is of neither.
+constexpr bool age_of_time(std::uint64_t told, Time now, Duration clocks_differ, Duration& age) noexcept
+    TAPPET_REALTIME {
+    constexpr std::int64_t turn = std::int64_t{1} << time_bits;
+    const auto steps = static_cast<std::int64_t>((tell_time(now) - told) & (turn - 1));
+    age = Duration{steps * time_step_ns};
+    if (age <= oldest_told) return true;
+    age = Duration::zero();
+    return Duration{(turn - steps) * time_step_ns} <= clocks_differ + Duration{2 * time_step_ns};
 }
 
 /// The way back.

@@ -98,6 +98,22 @@ constexpr void add_value(Digest& digest, const WireValue& value) noexcept {
     digest.add(std::bit_cast<std::uint64_t>(value.step));
 }
 
+/// How the bytes of a value stand that crosses as it is. Of what names no fields only its size is known.
+constexpr void add_type(Digest& digest, TypeId type) noexcept {
+    if (type == nullptr) return;
+    digest.add(static_cast<std::uint64_t>(type->kind));
+    digest.add(std::uint64_t{type->size} | std::uint64_t{type->rows} << 16 |
+               std::uint64_t{type->columns} << 32 | std::uint64_t{type->row_major ? 1u : 0u} << 48);
+    add_type(digest, type->element);
+    for (const TypeId each : type->elements) add_type(digest, each);
+    for (const std::string_view each : type->names) add_text(digest, each);
+    for (const RecordField& each : type->fields) {
+        add_text(digest, each.name);
+        add_text(digest, each.unit);
+        add_type(digest, each.type);
+    }
+}
+
 /// From the arrival of a value or a message until the component there has seen it: a periodic activity waits
 /// for its next period, whatever comes.
 constexpr Duration read_within(const SystemView& s, const NodeEnd& end) {
@@ -306,10 +322,11 @@ constexpr Digest key_of(const SystemView& s, const SystemPlan<N, X>& plan, std::
     return key;
 }
 
-/// Of 29 bits: how urgent it is, in 32 steps an octave of its deadline, and which frame.
+/// Of 29 bits: how urgent it is, in 32 steps an octave of how soon the next one may follow, and which frame.
+/// Not by its deadline, which the activities of its readers have a part in.
 constexpr std::uint32_t fixed_identifier(const WireFrame& frame, std::uint64_t key) noexcept {
     constexpr unsigned steps_bits = 5, key_bits = 18;
-    const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.deadline.count() / 1000, 1));
+    const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.apart.count() / 1000, 1));
     const unsigned octave = static_cast<unsigned>(std::bit_width(us)) - 1;
     const std::uint64_t step =
         (octave >= steps_bits ? us >> (octave - steps_bits) : us << (steps_bits - octave)) &
@@ -450,6 +467,16 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
         systems::add_value(layout, index.value);
         systems::add_value(layout, index.result);
         if (index.from.facet != nullptr) systems::add_text(layout, index.from.facet->unit);
+        if (index.from.facet != nullptr && index.value.kind == ValueKind::opaque)
+            systems::add_type(layout, index.from.facet->type);
+        if (row.kind == CrossingKind::command) systems::add_type(layout, index.to.facet->command->results);
+        if (row.with_time) {
+            const CommonClock& clock = s.wire.clock;
+            systems::add_text(layout, clock.node);
+            for (const Duration each : {clock.every, clock.within, clock.stamps_late})
+                layout.add(static_cast<std::uint64_t>(each.count()));
+            layout.add(std::bit_cast<std::uint64_t>(clock.drift));
+        }
         layout.add(std::uint64_t{place.at});
         for (const std::size_t f : {place.frame, place.answer, place.reply, place.received})
             if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id});
@@ -472,7 +499,8 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
                                s.wire.first_identifier, " on go beyond the last of 11 bits; begin lower"}),
                plan;
     for (std::size_t f = 1; f < plan.frames.size(); ++f)
-        if (plan.frames[f].id == plan.frames[f - 1].id && !plan.frames[f].is_of_clock())
+        if (plan.frames[f].id == plan.frames[f - 1].id &&
+            !(plan.frames[f].is_of_clock() && plan.frames[f - 1].is_of_clock()))
             return refuse(Sentence{"wire \"", s.wire.name, "\": two frames of node \"",
                                    s.nodes[plan.frames[f].node].name, "\" and node \"",
                                    s.nodes[plan.frames[f - 1].node].name,

@@ -85,7 +85,7 @@ constexpr Sentence resolve_data(const SystemView& s, const Crossing& row, Crossi
         if (!s.wire.has_clock())
             return Sentence{" is told with_time, but wire \"", s.wire.name,
                             "\" has no common time; add common_clock(\"node\", every(100ms), within(200us))"};
-        const Duration oldest = oldest_told - row.every;
+        const Duration oldest = oldest_told - row.every - longest_under_way;
         if (row.data.max_age <= Duration::zero() || row.data.max_age > oldest)
             return Sentence{" is told with_time, which holds for ", oldest.count() / 1'000'000,
                             " ms; say stale_after(...) of at most that"};
@@ -235,13 +235,35 @@ constexpr Sentence check_nodes(const SystemView& s) {
                         " bit/s in the data phase, less than its ",
                         s.wire.rate.bits_per_second,
                         "; write the faster one behind the other"};
+    if (s.wire.fixed_identifiers && s.wire.states_first)
+        return Sentence{
+            "wire \"", s.wire.name,
+            "\" says identifiers_from(...) and fixed_identifiers, which are made of what a frame is; "
+            "remove one of them"};
     if (const CommonClock& clock = s.wire.clock; s.wire.has_clock()) {
+        if (clock.told > 1)
+            return Sentence{"wire \"", s.wire.name, "\" has ", clock.told,
+                            " common_clock(...); one node tells the time, remove the others"};
         if (find_node(s, clock.node) == nowhere)
             return Sentence{"common_clock(\"", clock.node,
                             "\"): there is no such node; name one of nodes(...)"};
         if (clock.every < 10ms || clock.every > 10s)
             return Sentence{"common_clock(\"", clock.node, "\") is told every ",
                             clock.every.count() / 1'000'000, " ms; write every(...) from 10 ms to 10 s"};
+        if (const Duration least = 8 * (s.wire.service.deadline + 1ms); clock.every < least)
+            return Sentence{"common_clock(\"",
+                            clock.node,
+                            "\") is told every ",
+                            clock.every.count() / 1'000'000,
+                            " ms, of which a quarter must do for a frame and served_within(...) twice; write "
+                            "every(...) of ",
+                            least.count() / 1'000'000,
+                            " ms at least, or serve the wire sooner"};
+        if (clock.stamps_late <= Duration::zero() || !(clock.drift >= 0 && clock.drift <= 1e-2))
+            return Sentence{
+                "common_clock(\"", clock.node,
+                "\"): stamps are late by more than nothing, and clocks part by at most 1e-2; correct "
+                "stamps_late(...) or drift(...)"};
         if (clock.within <= Duration::zero())
             return Sentence{"common_clock(\"", clock.node,
                             "\") does not say how well it is to be known; add within(200us)"};

@@ -66,11 +66,18 @@ struct CommonClock {
     /// From the end of a frame to its stamp at most, at any node: of a kernel that stamps what arrives.
     Duration stamps_late = 100us;
     double drift = 210e-6; ///< of two clocks against each other at most, s in a s
+    int told = 0;          ///< how often the wire says it
 };
 struct StampsLate {
     Duration time{};
 };
 constexpr StampsLate stamps_late(Duration time) noexcept { return {time}; }
+struct Drift {
+    double most = 0;
+};
+/// By how much two nodes' clocks may part, s in a s: of crystals some 200e-6; a daemon that steers them adds
+/// what it may.
+constexpr Drift drift(double most) noexcept { return {most}; }
 
 /// The wire between the nodes: classical CAN, or CAN FD where its bit rate has a second number.
 struct WireRow {
@@ -81,11 +88,12 @@ struct WireRow {
     Duration silent_after = 70ms;
     Service service{};
     std::uint32_t first_identifier = 0x181;
+    bool states_first = false;
     bool fixed_identifiers = false;
     CommonClock clock{};
 
     [[nodiscard]] constexpr bool is_fd() const noexcept { return rate.in_data_phase != 0; }
-    [[nodiscard]] constexpr bool has_clock() const noexcept { return clock.every > Duration::zero(); }
+    [[nodiscard]] constexpr bool has_clock() const noexcept { return clock.told != 0; }
 };
 
 struct FirstIdentifier {
@@ -96,19 +104,28 @@ struct FirstIdentifier {
 constexpr FirstIdentifier identifiers_from(std::uint32_t number) noexcept { return {number}; }
 
 struct FixedIdentifiers {};
-/// The wire's frames have identifiers of 29 bits, made of what each frame is and by when it must be there
-/// alone: no other row moves them, so that nodes of two versions of a system work together in all rows that
-/// both have. They cost 20 to 25 bits a frame. Nothing else of 29 bits may be on the wire.
+/// The wire's frames have identifiers of 29 bits, made of what each frame is and how often it comes alone: no
+/// other row moves them, so that nodes of two versions of a system work together in all rows that both have,
+/// if new rows stand behind the old ones. They cost 20 to 25 bits a frame. Nothing else of 29 bits may be on
+/// the wire, and what two versions bring to it together is proven by neither.
 inline constexpr FixedIdentifiers fixed_identifiers{};
 
 namespace detail {
 
 constexpr void apply(CommonClock& clock, Within option) noexcept { clock.within = option.time; }
 constexpr void apply(CommonClock& clock, StampsLate option) noexcept { clock.stamps_late = option.time; }
+constexpr void apply(CommonClock& clock, Drift option) noexcept { clock.drift = option.most; }
 
-constexpr void apply(WireRow& row, const CommonClock& option) noexcept { row.clock = option; }
+constexpr void apply(WireRow& row, const CommonClock& option) noexcept {
+    const int before = row.clock.told;
+    row.clock = option;
+    row.clock.told = before + 1;
+}
 constexpr void apply(WireRow& row, FixedIdentifiers) noexcept { row.fixed_identifiers = true; }
-constexpr void apply(WireRow& row, FirstIdentifier option) noexcept { row.first_identifier = option.number; }
+constexpr void apply(WireRow& row, FirstIdentifier option) noexcept {
+    row.first_identifier = option.number;
+    row.states_first = true;
+}
 constexpr void apply(WireRow& row, BitRate rate) noexcept { row.rate = rate; }
 constexpr void apply(WireRow& row, BusErrors errors) noexcept { row.errors = errors; }
 constexpr void apply(WireRow& row, Beats option) noexcept { row.beats = option.every; }
@@ -118,7 +135,8 @@ constexpr void apply(WireRow& row, Service option) noexcept { row.service = opti
 } // namespace detail
 
 /// common_clock("conveyor", every(100ms), within(200us)): that node tells its time (AUTOSAR CanTSyn), and the
-/// others know it to within so much, which the compiler proves while no exchange is lost. What they know, and
+/// others know it to within so much, or say that they do not: the compiler proves that they do while no
+/// exchange is lost. That rests on stamps_late(...) and drift(...), which are believed. What they know, and
 /// how surely, is told by the outputs `ahead`, `error` and `known` of the component "<wire>_clock".
 template <class... Options>
 constexpr CommonClock common_clock(std::string_view node, const TriggerOption& rate,
@@ -158,7 +176,8 @@ constexpr IfLost if_lost(std::string_view operation) noexcept { return {operatio
 
 struct WithTime {};
 /// Of data: it crosses with the common time at which it was true, so that its stamp there is what it was
-/// here, to within the common clock's bound; while one of the two does not know that time it is not valid.
+/// here, to within the common clock's bound of either node; while one of the two does not know that time it
+/// is not valid.
 inline constexpr WithTime with_time{};
 
 enum class CrossingKind : std::uint8_t { data, event, command, presence };

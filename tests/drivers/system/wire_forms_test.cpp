@@ -151,20 +151,93 @@ TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
     run.run_for(400ms);
     EXPECT_DOUBLE_EQ(taker.level.get(), 12);
     EXPECT_TRUE(taker.level.good());
+    EXPECT_TRUE(taker.other_is_there.get() && giver.other_is_there.get());
+    EXPECT_EQ((run.instance(0).find<systems::Link<newer, 0>>("wire")->refused.last().view().substr(0, 17)),
+              "node \"b\" has no r");
     EXPECT_TRUE(taker.got.empty()) << "of that row the older one knows nothing";
     EXPECT_EQ((run.instance(1).find<systems::Link<older, 1>>("wire")->frames_refused.last()), 0);
     run.stop();
 }
 
-TEST(FixedIdentifiers, win_the_wire_by_their_deadlines) {
+TEST(FixedIdentifiers, win_the_wire_by_how_soon_the_next_one_may_follow) {
     const auto& frames = systems::plan_of<newer>.frames;
     EXPECT_EQ(frames[0].kind, WireFrameKind::beat);
     EXPECT_EQ(frames[1].kind, WireFrameKind::beat);
     for (std::size_t f = 3; f < frames.size(); ++f) {
         EXPECT_LT(frames[f - 1].id, frames[f].id);
         // In 32 steps an octave.
-        EXPECT_LE(to_seconds(frames[f - 1].deadline), to_seconds(frames[f].deadline) * 33 / 32);
+        EXPECT_LE(to_seconds(frames[f - 1].apart), to_seconds(frames[f].apart) * 33 / 32);
     }
+}
+
+/// Tells a value of that type.
+template <class T>
+struct Teller {
+    Output<T> value{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return facets(output<&Teller::value>("value", "", "any")); }
+};
+template <class T>
+struct Hearer {
+    Input<T> value{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return facets(input<&Hearer::value>("value", "", "any")); }
+};
+template <class T>
+constexpr auto teller_table =
+    machine("t", components(component<Teller<T>>("x")), activities(activity("x", every(5ms), runs("x"))),
+            connections(), reactions(), behaviours());
+template <class T>
+constexpr auto hearer_table =
+    machine("h", components(component<Hearer<T>>("x")), activities(activity("x", every(5ms), runs("x"))),
+            connections(), reactions(), behaviours());
+struct Metres {
+    float value = 0;
+};
+struct Turns {
+    float value = 0;
+};
+
+} // namespace
+} // namespace tappet::pair
+template <>
+inline constexpr auto tappet::fields_of<tappet::pair::Metres> =
+    tappet::fields(tappet::field<&tappet::pair::Metres::value>("metres", "m"));
+template <>
+inline constexpr auto tappet::fields_of<tappet::pair::Turns> =
+    tappet::fields(tappet::field<&tappet::pair::Turns::value>("turns", "rev"));
+namespace tappet::pair {
+namespace {
+
+template <class T>
+std::uint16_t layout_of(const WireRow& on) {
+    static constexpr auto& from = teller_table<T>;
+    static constexpr auto& to = hearer_table<T>;
+    const auto table = system(
+        "typed", nodes(node<from>("a"), node<to>("b")), on,
+        crossings(across(data("a.x.value", "b.x.value", stale_after(60ms), hold), every(10ms), with_time)));
+    const auto plan = plan_system(table, &systems::analyse_can);
+    EXPECT_EQ(plan.fault.view(), "");
+    return plan.index[0].layout;
+}
+
+TEST(Layouts, differ_where_the_same_bits_mean_something_else) {
+    const auto on = [](const CommonClock& clock) {
+        return wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms),
+                    served_within(1ms, budget(40us)), fixed_identifiers, clock);
+    };
+    const WireRow usual = on(common_clock("a", every(100ms), within(200us)));
+    std::vector<std::uint16_t> all{
+        layout_of<std::int32_t>(usual),
+        layout_of<std::uint32_t>(usual),
+        layout_of<float>(usual),
+        layout_of<Metres>(usual),
+        layout_of<Turns>(usual),
+        layout_of<std::int32_t>(on(common_clock("b", every(100ms), within(200us)))),
+        layout_of<std::int32_t>(on(common_clock("a", every(200ms), within(200us)))),
+        layout_of<std::int32_t>(on(common_clock("a", every(100ms), within(200us), stamps_late(50us))))};
+    std::ranges::sort(all);
+    EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
 /// Stands on two wires: it hears the giver on one, and tells the arm's desk on the other.
