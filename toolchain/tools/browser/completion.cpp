@@ -52,7 +52,7 @@ Completion complete(Machines& machines, std::string_view before_cursor) {
         } else if (before.front() == "help") {
             for (const Command& each : commands()) names.emplace_back(each.name);
         } else if (const Command* command = find_command(before.front());
-                   command != nullptr && before.size() <= command->most) {
+                   command != nullptr && before.size() <= command->most + (machines.are_several() ? 1 : 0)) {
             names = names_in(machines, *command, std::span{before}.subspan(1));
         }
     }
