@@ -45,7 +45,8 @@ Findings dead(const Tree& files) {
     std::set<std::string> headers;
     std::string cmake_text;
     std::set<std::string> given_to_mains;
-    static const std::regex given("(TABLE|BINDINGS|PLANT|HOOKS)\\s+([^\\s()]+\\.hpp)");
+    static const std::regex given(
+        "(TABLE|BINDINGS|PLANT|HOOKS|BOARDS)(?:\\s+[a-z0-9_-]+)*\\s+([^\\s()]+\\.hpp)");
     for (const File& file : files) {
         if (file.is_cmake()) {
             std::ranges::move(sources_of(file), std::back_inserter(sources));
@@ -95,6 +96,15 @@ TEST(ReachRule, knows_how_a_source_can_be_named) {
         EXPECT_TRUE(dead({source, header, file("kernel/os/CMakeLists.txt", line)}).empty()) << line;
     EXPECT_TRUE(
         dead({source, header, file("kernel/CMakeLists.txt", "add_library(a os/a_main.cpp)")}).empty());
+}
+
+TEST(ReachRule, knows_the_headers_that_a_machine_hands_to_its_mains) {
+    const auto* const line = "tappet_machine(saw TABLE saw.hpp BOARDS bench boards/box.hpp)";
+    EXPECT_TRUE(dead({file("apps/saw/saw.hpp", "// S.\n"), file("apps/saw/boards/box.hpp", "// B.\n"),
+                      file("apps/saw/CMakeLists.txt", line)})
+                    .empty());
+    EXPECT_EQ(dead({file("apps/saw/other.hpp", "// O.\n"), file("apps/saw/CMakeLists.txt", line)}).size(),
+              1u);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "kernel/base/digest.hpp"
 
 #include <cmath>
+#include <thread>
 
 namespace tappet {
 
@@ -71,6 +72,19 @@ SystemRun::SystemRun(const SystemView& system, std::span<const AcceptedMachine> 
             std::make_unique<Node>(machines[n], n < plants.size() ? plants[n] : nullptr, seed + n));
 }
 
+void SystemRun::browse_in(std::string_view directory) {
+    for (const auto& node : nodes_) node->run.browse_in(directory);
+    has_pace_ = true;
+    began_at_ = now_;
+    began_ = std::chrono::steady_clock::now();
+}
+
+/// What is not a millisecond ahead is not worth a sleep.
+void SystemRun::keep_pace() {
+    const auto due = began_ + (now_ - began_at_);
+    if (due - std::chrono::steady_clock::now() > 1ms) std::this_thread::sleep_until(due);
+}
+
 std::expected<void, Sentence> SystemRun::start() {
     for (std::size_t n = 0; n < nodes_.size(); ++n)
         if (auto started = start(n); !started) return started;
@@ -128,6 +142,7 @@ bool SystemRun::run_for(Duration time) {
     for (;;) {
         const Time then = std::max(next(), now_);
         now_ = std::min(then, end);
+        if (has_pace_) keep_pace();
         // Before something comes to a machine: it is served at the time at which it came.
         for (const auto& node : nodes_)
             if (node->is_alive)

@@ -6,6 +6,7 @@
 #include "kernel/system/rows.hpp"
 #include "toolchain/machine/host.hpp"
 
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -71,6 +72,9 @@ public:
     SystemRun(const SystemView& system, std::span<const AcceptedMachine> machines,
               std::span<Plant* const> plants, std::uint64_t seed);
 
+    /// Before start(): each machine has a socket for browsers there. True time then goes at the pace of the
+    /// host's clock, which is what people see. The characters outlive the run.
+    void browse_in(std::string_view directory);
     /// Before start().
     void set_clock(std::size_t node, const ClockFault& fault) { nodes_[node]->clock = fault; }
     std::expected<void, Sentence> start();
@@ -117,7 +121,12 @@ private:
     SystemView system_;
     can::TwinBus wire_;
     std::vector<std::unique_ptr<Node>> nodes_{};
+    void keep_pace();
+
     Time now_{};
+    bool has_pace_ = false;
+    Time began_at_{};
+    std::chrono::steady_clock::time_point began_{};
     std::function<void(Time now)> look_{};
 };
 

@@ -22,6 +22,8 @@ constexpr std::array options{
            .least = 1,
            .most = 1000},
     Option{"--silence", "NODE", "that machine is killed after 40 s and started again after 50 s"},
+    Option{"--browse", "DIR",
+           "each machine has a socket for tappet-browse there; time then goes at the pace of this host's"},
     Option{"--picture", "FILE", "draws boards over time and position, as SVG"},
     Option{"--help", "", "this text"}};
 
@@ -36,6 +38,8 @@ int run_lane(const CommandLine& given) {
     const std::size_t node = silent.empty() ? 0 : tappet::find_node(lane_view(), silent);
     if (!silent.empty() && node >= node_count)
         return fail("--silence: name conveyor, saw, drill, polish or glue");
+    if (const std::string_view sockets = given.text("--browse"); !sockets.empty())
+        lane.system.browse_in(sockets);
     if (const auto started = lane.start(); !started) return fail(started.error().view());
     if (!silent.empty()) {
         lane.run_for(40s);

@@ -81,6 +81,9 @@ TEST_F(Lane, stops_in_the_time_that_was_proven_when_a_machine_is_killed_and_goes
         machines[n]->signal(SIGKILL);
         ASSERT_TRUE(soon([] { return !runs(); }));
         std::this_thread::sleep_for(100ms);
+        const Outcome without = Browser{}.run({"list"});
+        EXPECT_EQ(without.code, 3);
+        EXPECT_THAT(without.text, HasSubstr("'" + std::string{names[n]} + "' does not answer"));
         logger.signal(SIGTERM);
         static_cast<void>(logger.wait());
         const std::string log = logger.output();
@@ -113,9 +116,13 @@ TEST_F(Lane, a_board_reaches_the_saw_and_is_worked_on) {
         EXPECT_EQ(conveyor.value_of(name), 0.0) << name;
 }
 
-TEST_F(Lane, all_machines_are_seen_by_name) {
+TEST_F(Lane, all_machines_are_seen_and_addressed_in_one_command) {
     const Outcome found = Browser{}.run({"list"});
+    EXPECT_EQ(found.code, 0) << found.text;
     for (const char* name : names) EXPECT_THAT(found.text, HasSubstr(name));
+    EXPECT_THAT(found.text, testing::Not(HasSubstr("NOT")));
+    const Outcome values = Browser{}.run({"get", "saw.station.number", "glue.station.number"});
+    EXPECT_EQ(values.text, "saw.station.number = 0\nglue.station.number = 3\n");
 }
 
 TEST_F(Lane, ends_when_it_is_told_to) {

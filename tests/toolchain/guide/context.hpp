@@ -18,6 +18,7 @@
 #include "drivers/modbus/client.hpp"
 #include "drivers/modbus/far_end.hpp"
 #include "drivers/plant/plant.hpp"
+#include "drivers/system/station.hpp"
 #include "kernel/control/control.hpp"
 #include "kernel/limits/limits.hpp"
 #include "kernel/machine/firmware.hpp"
@@ -27,6 +28,6 @@
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/reporting/reporting.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
-#include "toolchain/machine/host.hpp"
+#include "toolchain/machine/system_run.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,10 @@
 // The table of commands, and names that are checked before the machine is asked.
 #include "toolchain/tools/browser/commands.hpp"
 
+#include "toolchain/tools/browser/value.hpp"
+
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 
@@ -12,15 +16,15 @@ constexpr std::size_t any = browsing::max_words;
 
 // clang-format off
 constexpr auto table = std::to_array<Command>({
-    {"list",    "list [COMPONENT]",                        "components, or the facets of one with type, unit and meaning", Takes::component, 0, 1, run_list},
-    {"get",     "get NAME...",                             "values, those of one activity of one moment; a component's name: all of its values", Takes::value, 1, any, run_get},
-    {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch},
-    {"tree",    "tree [COMPONENT]",                        "components, facets and what is connected to them", Takes::component, 0, 1, run_tree},
-    {"info",    "info [NAME]",                             "the machine and its activities, or everything about one name", Takes::anything, 0, 1, run_info},
-    {"manifest", "manifest",                               "the machine's table as it is in effect: properties, derived priorities, all rows", Takes::nothing, 0, 0, run_manifest},
-    {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions},
-    {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced},
-    {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events},
+    {"list",    "list [COMPONENT]",                        "components, or the facets of one with type, unit and meaning", Takes::component, 0, 1, run_list, Among::each},
+    {"get",     "get NAME...",                             "values, those of one activity of one moment; a component's name: all of its values", Takes::value, 1, any, run_get, Among::values},
+    {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch, Among::values},
+    {"tree",    "tree [COMPONENT]",                        "components, facets and what is connected to them", Takes::component, 0, 1, run_tree, Among::each},
+    {"info",    "info [NAME]",                             "the machine and its activities, or everything about one name", Takes::anything, 0, 1, run_info, Among::each},
+    {"manifest", "manifest",                               "the machine's table as it is in effect: properties, derived priorities, all rows", Takes::nothing, 0, 0, run_manifest, Among::each},
+    {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions, Among::each},
+    {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced, Among::each},
+    {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events, Among::values},
     {"set",     "set PROPERTY VALUE [PROPERTY VALUE...]",  "properties of one component, all at once or none (engineer)", Takes::property, 2, any, run_set},
     {"call",    "call METHOD [ARGUMENT...]",               "a method or an operation, answered at once (operator)", Takes::callable, 1, any, run_call},
     {"send",    "send COMMAND [ARGUMENT...] [--follow]",   "a command; --follow: told until it has come to its end (operator)", Takes::command, 1, any, run_send},
@@ -32,13 +36,13 @@ constexpr auto table = std::to_array<Command>({
     {"stop",    "stop COMPONENT|ACTIVITY",                 "stops it; it leaves safe values (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"restart", "restart COMPONENT|ACTIVITY",              "stops and starts it (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
     {"behaviour", "behaviour [list [NAME] | watch [NAME] [--every TIME] [--count N] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
-                                                           "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour},
+                                                           "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour, Among::each},
     {"why",     "why COMPONENT.STATE",                     "why its state machine is not in that state: the transitions that lead nearer, the events they await, the guards that refuse and their reasons", Takes::nothing, 1, 1, run_why},
     {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "what a guardian kept of a machine that ended otherwise than asked: why, where each activity stood; or a command that reads, as of a machine that lives", Takes::nothing, 1, any, run_post_mortem},
     {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
                                                            "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
     {"report", "report [list | start FILE.mcap [--for TIME] | stop FILE.mcap | convert FILE.mcap FILE.csv]",
-                                                           "the values that the machine's table says are recorded; start: into a file, until ^C, stop or TIME; convert: such a file as a table", Takes::nothing, 0, 3, run_report},
+                                                           "the values that the machine's table says are recorded; start: into a file, until ^C, stop or TIME; convert: such a file as a table", Takes::nothing, 0, 3, run_report, Among::each},
 });
 // clang-format on
 
@@ -116,6 +120,32 @@ Result<void> run_command(Work& work) {
     return command->run(work);
 }
 
+bool is_name(const Command& command, std::span<const std::string> arguments, std::size_t argument) {
+    if (command.among == Among::values) return true;
+    if (command.name == "set") return argument % 2 == 0;
+    if (command.name == "scope") return argument == 1;
+    if (command.name == "behaviour")
+        return arguments.size() > argument && argument == (arguments[0] == "load" ? 2u : 1u);
+    constexpr std::array<std::string_view, 3> without{"execute", "report", "post-mortem"};
+    return argument == 0 && std::ranges::find(without, command.name) == without.end();
+}
+
+std::string request_of(const Work& work) {
+    const Command& command = *find_command(work.line.words.front());
+    std::string text{command.name};
+    const auto arguments = work.arguments();
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+        text += " " + as_word(is_name(command, arguments, i) ? work.session.map().own_name(arguments[i])
+                                                             : std::string_view{arguments[i]});
+    return text;
+}
+
+std::string packet_text(const Work& work, nlohmann::ordered_json packet) {
+    packet.erase("id");
+    if (!work.place().empty()) packet["machine"] = work.place().substr(0, work.place().size() - 1);
+    return packet.dump();
+}
+
 bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet) {
     const std::string_view kind = map.text(facet.kind);
     switch (takes) {
@@ -152,9 +182,9 @@ std::vector<std::string> names_for(const MapReader& map, Takes takes) {
     const bool components = takes == Takes::component || takes == Takes::component_or_activity ||
                             takes == Takes::value || takes == Takes::anything;
     if (components)
-        for (const map::Component& each : map.components()) names.emplace_back(map.text(each.name));
+        for (const map::Component& each : map.components()) names.push_back(map.named(each.name));
     if (takes == Takes::component_or_activity || takes == Takes::anything)
-        for (const map::Activity& each : map.activities()) names.emplace_back(map.text(each.name));
+        for (const map::Activity& each : map.activities()) names.push_back(map.named(each.name));
     for (std::uint32_t i = 0; i < map.facets().size(); ++i)
         if (takes_facet(map, takes, map.facets()[i])) names.push_back(map.full_name(i));
     // A component and its activity often have one name.
@@ -180,6 +210,16 @@ Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<c
     return facets;
 }
 
+Result<std::vector<Seen>> find_seen(const Work& work) {
+    std::vector<Seen> all;
+    for (const Part& part : work.parts()) {
+        auto facets = find_values(part.session->map(), part.names);
+        if (!facets) return std::unexpected(facets.error());
+        all.push_back({part.session, std::move(*facets)});
+    }
+    return all;
+}
+
 std::string usage() {
     std::string text = "tappet-browse: looks into a running machine of this box, and asks it to change.\n\n"
                        "  tappet-browse [OPTION...] COMMAND [ARGUMENT...]     one command\n"
@@ -193,10 +233,14 @@ std::string usage() {
     }
     text +=
         "\n"
-        "  --socket FILE      of the machine; else the only one in /run/tappet\n"
-        "  --directory DIR    where machines have their sockets\n"
-        "  --json             one JSON object a line\n"
-        "  --timeout TIME     how long an answer may take (3s)\n\n"
+        "  --socket [NAME=]FILE  of the machine, once for each; else of all that are in the directory\n"
+        "  --directory DIR       where machines have their sockets (/run/tappet)\n"
+        "  --json                one JSON object a line\n"
+        "  --timeout TIME        how long an answer may take (3s)\n\n"
+        "Where several machines are, list tells who is there, and names begin with the machine's, as in "
+        "saw.station.number;\n"
+        "any command may be given a machine first, as in manifest saw. Who does not answer is told, and the "
+        "others go on.\n\n"
         "Values are written as they are shown: 4ms, 0.25, true, \"text\", [1, 2, 3]; --json shows all "
         "digits.\n"
         "Negative numbers need no care; after -- everything is a word.\n\n"

@@ -2,8 +2,9 @@
 // completion.
 #pragma once
 
-#include "toolchain/tools/browser/options.hpp"
-#include "toolchain/tools/browser/session.hpp"
+#include "toolchain/tools/browser/machines.hpp"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <csignal>
 #include <iosfwd>
@@ -24,18 +25,39 @@ enum class Takes {
     anything
 };
 
+/// Where there are several machines, and a line does not name one of them.
+enum class Among {
+    one,   ///< it has to
+    each,  ///< without an argument it is about each of them in turn
+    values ///< each argument may be of another machine
+};
+
+/// What a line wants of one machine.
+struct Part {
+    Session* session = nullptr;
+    std::vector<std::string> names{};
+};
+
 struct Work {
     Session& session;
     const Line& line;
     std::ostream& out;
     bool screen = false;                                ///< `out` is a terminal that can be drawn on
     const volatile std::sig_atomic_t* signal = nullptr; ///< not 0 once the user wants no more
+    std::span<const Part> among{}; ///< whose names the arguments are, if not the session's
 
     /// Asked between two pictures and while waiting.
     [[nodiscard]] bool stopped() const { return signal != nullptr && *signal != 0; }
 
     /// After the command's name.
     [[nodiscard]] std::span<const std::string> arguments() const { return std::span{line.words}.subspan(1); }
+    /// The arguments, machine by machine.
+    [[nodiscard]] std::vector<Part> parts() const {
+        if (!among.empty()) return {among.begin(), among.end()};
+        return {{&session, {line.words.begin() + 1, line.words.end()}}};
+    }
+    /// What stands before the machine's own names, where others are there.
+    [[nodiscard]] const std::string& place() const { return session.map().place(); }
 };
 
 struct Command {
@@ -46,6 +68,7 @@ struct Command {
     std::size_t fewest; ///< arguments
     std::size_t most;
     Result<void> (*run)(Work& work);
+    Among among = Among::one;
 };
 
 [[nodiscard]] std::span<const Command> commands();
@@ -53,6 +76,13 @@ struct Command {
 [[nodiscard]] std::string unknown_command(std::string_view name);
 /// Runs the line's command; its words are not empty.
 Result<void> run_command(Work& work);
+/// Whether the argument of that number, from 0, is a name of something in a machine.
+[[nodiscard]] bool is_name(const Command& command, std::span<const std::string> arguments,
+                           std::size_t argument);
+/// The line as one request: the machine hears its own names.
+[[nodiscard]] std::string request_of(const Work& work);
+/// A machine's packet for programs: without what is for the two ends only, with the machine among others.
+[[nodiscard]] std::string packet_text(const Work& work, nlohmann::ordered_json packet);
 /// True for facets of which a command may be given the name.
 [[nodiscard]] bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet);
 /// The facet, or why it is none that this command takes, with the nearest name.
@@ -61,6 +91,18 @@ Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_vie
 [[nodiscard]] std::vector<std::string> names_for(const MapReader& map, Takes takes);
 /// Facets of values: names of facets as they are, names of components for all values in them.
 Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names);
+/// The values that a line names, machine by machine.
+struct Seen {
+    Session* session = nullptr;
+    std::vector<std::uint32_t> facets{};
+};
+Result<std::vector<Seen>> find_seen(const Work& work);
+/// Runs the line at the machine or the machines that it is about. What went wrong, machine by machine; empty:
+/// nothing did.
+[[nodiscard]] std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out,
+                                             bool screen, const volatile std::sig_atomic_t* signal);
+/// list, where several machines are: who is there, and what each is about.
+std::vector<Failure> list_machines(Machines& machines, const Line& line, std::ostream& out);
 /// Whether the command takes each option of the line; null: no command, which takes those of all only.
 Result<void> check_options(const Command* command, const Line& line);
 [[nodiscard]] std::string usage();

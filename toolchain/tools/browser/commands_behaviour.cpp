@@ -39,8 +39,8 @@ std::string text_of(const ordered_json& object, const char* key) {
     return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
-void print_behaviour(std::ostream& out, const ordered_json& each) {
-    out << text_of(each, "name") << ": " << text_of(each, "status");
+void print_behaviour(std::ostream& out, const std::string& place, const ordered_json& each) {
+    out << place << text_of(each, "name") << ": " << text_of(each, "status");
     if (const std::string state = text_of(each, "state"); !state.empty()) out << ", in " << state;
     if (const std::string line = text_of(each, "line"); !line.empty()) out << ", line " << line;
     if (const std::string reason = text_of(each, "reason"); !reason.empty()) out << " (" << reason << ")";
@@ -51,27 +51,31 @@ void print_behaviour(std::ostream& out, const ordered_json& each) {
             out << "    " << name << " = " << value.dump() << "\n";
 }
 
-void print_slot(std::ostream& out, const ordered_json& each) {
-    out << "slot of " << text_of(each, "slot") << ": " << text_of(each, "phase");
+void print_slot(std::ostream& out, const std::string& place, const ordered_json& each) {
+    out << "slot of " << place << text_of(each, "slot") << ": " << text_of(each, "phase");
     if (const std::string script = text_of(each, "script"); !script.empty()) out << ", " << script;
     if (const std::string news = text_of(each, "news"); !news.empty()) out << "; " << news;
     out << "\n";
 }
 
+/// The name as the machine itself has it, as a word of a request.
+std::string own_word(const Work& work, std::string_view name) {
+    return as_word(work.session.map().own_name(name));
+}
+
 Result<ordered_json> ask(Work& work, std::string_view name) {
-    return work.session.link().request("behaviours" + (name.empty() ? "" : " " + as_word(name)));
+    return work.session.link().request("behaviours" + (name.empty() ? "" : " " + own_word(work, name)));
 }
 
 Result<void> show(Work& work, std::string_view name) {
     auto reply = ask(work, name);
     if (!reply) return std::unexpected(reply.error());
     if (work.line.json) {
-        reply->erase("id");
-        work.out << reply->dump() << std::endl;
+        work.out << packet_text(work, std::move(*reply)) << std::endl;
         return {};
     }
-    for (const ordered_json& each : (*reply)["behaviours"]) print_behaviour(work.out, each);
-    for (const ordered_json& each : (*reply)["slots"]) print_slot(work.out, each);
+    for (const ordered_json& each : (*reply)["behaviours"]) print_behaviour(work.out, work.place(), each);
+    for (const ordered_json& each : (*reply)["slots"]) print_slot(work.out, work.place(), each);
     work.out.flush();
     return {};
 }
@@ -87,8 +91,7 @@ Result<void> watch(Work& work, std::string_view name) {
 Result<void> asked(Work& work, const std::string& line, const std::string& sentence) {
     auto reply = work.session.link().request(line);
     if (!reply) return std::unexpected(reply.error());
-    reply->erase("id");
-    work.out << (work.line.json ? reply->dump() : sentence) << "\n";
+    work.out << (work.line.json ? packet_text(work, std::move(*reply)) : sentence) << "\n";
     return {};
 }
 
@@ -100,13 +103,13 @@ Result<void> load(Work& work, const std::string& file, const std::string& slot) 
     const std::string text = read.str();
     for (std::size_t at = 0; at < text.size(); at += piece_characters) {
         const auto sent =
-            work.session.link().request("script " + as_word(slot) + " " + std::to_string(at) + " " +
+            work.session.link().request("script " + own_word(work, slot) + " " + std::to_string(at) + " " +
                                         quoted(std::string_view{text}.substr(at, piece_characters)));
         if (!sent) return std::unexpected(sent.error());
     }
     const std::string name = std::filesystem::path{file}.filename().string();
     const std::string moment = work.line.at.empty() ? "now" : work.line.at;
-    return asked(work, "load " + as_word(slot) + " " + as_word(name) + " " + as_word(moment),
+    return asked(work, "load " + own_word(work, slot) + " " + as_word(name) + " " + as_word(moment),
                  name + ": compiled; it takes over " + (moment == "now" ? "now" : "at " + moment));
 }
 
@@ -140,11 +143,10 @@ void print_way(std::ostream& out, const ordered_json& way) {
 } // namespace
 
 Result<void> run_why(Work& work) {
-    auto reply = work.session.link().request("why " + as_word(work.arguments()[0]));
+    auto reply = work.session.link().request("why " + own_word(work, work.arguments()[0]));
     if (!reply) return std::unexpected(reply.error());
     if (work.line.json) {
-        reply->erase("id");
-        work.out << reply->dump() << "\n";
+        work.out << packet_text(work, std::move(*reply)) << "\n";
         return {};
     }
     const auto path = (*reply)["path"];
@@ -177,15 +179,17 @@ Result<void> run_behaviour(Work& work) {
     if (action == "watch" && needs(0, 1)) return watch(work, given == 0 ? std::string_view{} : words[1]);
     if (action == "load" && needs(2, 2)) return load(work, words[1], words[2]);
     if (action == "unload" && needs(1, 1))
-        return asked(work, "unload " + as_word(words[1]), words[1] + ": the slot is emptied");
+        return asked(work, "unload " + own_word(work, words[1]), words[1] + ": the slot is emptied");
     if (action == "rollback" && needs(1, 1))
-        return asked(work, "roll_back " + as_word(words[1]), words[1] + ": the earlier behaviour comes back");
+        return asked(work, "roll_back " + own_word(work, words[1]),
+                     words[1] + ": the earlier behaviour comes back");
     constexpr std::array<std::string_view, 7> plain{"start", "stop",       "pause",   "step",
                                                     "reset", "deactivate", "reactive"};
     if (std::ranges::find(plain, action) != plain.end() && needs(1, 1))
-        return asked(work, "behave " + action + " " + as_word(words[1]), words[1] + ": " + action + " done");
+        return asked(work, "behave " + action + " " + own_word(work, words[1]),
+                     words[1] + ": " + action + " done");
     if (action == "request" && needs(2, 2))
-        return asked(work, "behave request " + as_word(words[1]) + " " + as_word(words[2]),
+        return asked(work, "behave request " + own_word(work, words[1]) + " " + as_word(words[2]),
                      words[1] + ": goes to " + words[2]);
     constexpr std::array<std::string_view, 6> others{"list",   "watch",    "load",
                                                      "unload", "rollback", "request"};

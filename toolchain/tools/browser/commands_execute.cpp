@@ -76,9 +76,8 @@ Result<void> run_execute(Work& work) {
     if (!begun) return std::unexpected(begun.error());
     auto end = await_end(work, number);
     if (!end) return std::unexpected(end.error());
-    end->erase("id");
     if (work.line.json)
-        work.out << end->dump() << "\n";
+        work.out << packet_text(work, *end) << "\n";
     else if (end->value("line", std::string{}) == "done")
         tell(work, *end);
     if (end->value("line", std::string{}) == "done") return {};

@@ -25,7 +25,7 @@ std::string padded(std::string_view text, std::size_t width) {
 }
 
 std::string activity_name(const MapReader& map, std::uint32_t activity) {
-    return activity == none ? "-" : std::string{map.text(map.activities()[activity].name)};
+    return activity == none ? "-" : map.named(map.activities()[activity].name);
 }
 
 /// "double", or "(double) -> bool" for what is called.
@@ -139,7 +139,7 @@ void tell_activity(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     const map::Activity& each = map.activities()[index];
     if (work.line.json) {
-        work.out << "{\"activity\": " << in_quotes(map.text(each.name))
+        work.out << "{\"activity\": " << in_quotes(map.named(each.name))
                  << json_text("trigger", map.text(each.trigger)) << ", \"period_ns\": " << each.period_ns
                  << ", \"deadline_ns\": " << each.deadline_ns << ", \"budget_ns\": " << each.budget_ns
                  << ", \"real_time\": " << (each.real_time != 0 ? "true" : "false")
@@ -148,7 +148,7 @@ void tell_activity(Work& work, std::uint32_t index) {
         work.out << "}\n";
         return;
     }
-    work.out << "activity " << map.text(each.name) << ": " << map.text(each.trigger);
+    work.out << "activity " << map.named(each.name) << ": " << map.text(each.trigger);
     if (each.period_ns > 0) work.out << " " << duration_text(each.period_ns);
     if (each.at_most_n > 0 && each.period_ns == 0)
         work.out << ", at most " << each.at_most_n << " in " << duration_text(each.at_most_per_ns);
@@ -165,7 +165,7 @@ void tell_component(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     const map::Component& each = map.components()[index];
     if (work.line.json) {
-        work.out << "{\"component\": " << in_quotes(map.text(each.name))
+        work.out << "{\"component\": " << in_quotes(map.named(each.name))
                  << json_text("type", user_name(map.text(each.type)))
                  << json_text("activity", activity_name(map, each.activity))
                  << ", \"facets\": " << each.facet_count;
@@ -173,8 +173,7 @@ void tell_component(Work& work, std::uint32_t index) {
         work.out << "}\n";
         return;
     }
-    work.out << padded(std::string{map.text(each.name)}, 16) << " "
-             << padded(user_name(map.text(each.type)), 28) << " "
+    work.out << padded(map.named(each.name), 16) << " " << padded(user_name(map.text(each.type)), 28) << " "
              << padded(activity_name(map, each.activity), 12) << " " << each.facet_count << " facets";
     if (each.device.length > 0) work.out << ", device " << map.text(each.device);
     work.out << "\n";
@@ -282,13 +281,15 @@ Result<void> run_list(Work& work) {
 }
 
 Result<void> run_get(Work& work) {
-    const MapReader& map = work.session.map();
-    const auto facets = find_values(map, work.arguments());
-    if (!facets) return std::unexpected(facets.error());
     std::string busy;
-    for (const Reading& reading : work.session.observer().read(*facets)) {
-        work.out << (work.line.json ? json_of(map, reading) : line_of(map, reading)) << "\n";
-        if (reading.busy && busy.empty()) busy = map.full_name(reading.facet);
+    const auto all = find_seen(work);
+    if (!all) return std::unexpected(all.error());
+    for (const Seen& seen : *all) {
+        const MapReader& map = seen.session->map();
+        for (const Reading& reading : seen.session->observer().read(seen.facets)) {
+            work.out << (work.line.json ? json_of(map, reading) : line_of(map, reading)) << "\n";
+            if (reading.busy && busy.empty()) busy = map.full_name(reading.facet);
+        }
     }
     if (busy.empty()) return {};
     return std::unexpected(
@@ -311,7 +312,7 @@ Result<void> run_tree(Work& work) {
             continue;
         }
         const map::Component& component = map.components()[c];
-        work.out << map.text(component.name) << " (" << user_name(map.text(component.type)) << ", activity "
+        work.out << map.named(component.name) << " (" << user_name(map.text(component.type)) << ", activity "
                  << activity_name(map, component.activity) << ")\n";
         for (std::uint32_t i = component.first_facet; i < component.first_facet + component.facet_count;
              ++i) {
@@ -338,7 +339,7 @@ Result<void> run_info(Work& work) {
         told = true;
     }
     for (std::uint32_t i = 0; i < map.activities().size(); ++i) {
-        if (map.text(map.activities()[i].name) != name) continue;
+        if (map.named(map.activities()[i].name) != name) continue;
         tell_activity(work, i);
         told = true;
     }

@@ -13,21 +13,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string line_of(const Line& line) {
-    std::string text;
-    for (const std::string& word : line.words) text += (text.empty() ? "" : " ") + as_word(word);
-    return text;
-}
-
-/// Without what is for the two programs only.
-std::string json_line(ordered_json reply) {
-    reply.erase("id");
-    return reply.dump();
-}
-
 Result<void> told(Work& work, const Result<ordered_json>& reply, const std::string& sentence) {
     if (!reply) return std::unexpected(reply.error());
-    work.out << (work.line.json ? json_line(*reply) : sentence) << "\n";
+    work.out << (work.line.json ? packet_text(work, *reply) : sentence) << "\n";
     return {};
 }
 
@@ -44,7 +32,7 @@ Result<void> run_set(Work& work) {
     for (std::size_t i = 0; i < arguments.size(); i += 2)
         if (const auto found = find_facet(work.session.map(), Takes::property, arguments[i]); !found)
             return std::unexpected(found.error());
-    const auto reply = work.session.link().request(line_of(work.line));
+    const auto reply = work.session.link().request(request_of(work));
     std::string sentence = "set:";
     for (std::size_t i = 0; i < arguments.size(); i += 2)
         sentence += (i > 0 ? ", " : " ") + arguments[i] + " = " + arguments[i + 1];
@@ -54,7 +42,7 @@ Result<void> run_set(Work& work) {
 Result<void> run_call(Work& work) {
     if (const auto found = find_facet(work.session.map(), Takes::callable, work.arguments()[0]); !found)
         return std::unexpected(found.error());
-    const auto reply = work.session.link().request(line_of(work.line));
+    const auto reply = work.session.link().request(request_of(work));
     std::string sentence = work.arguments()[0] + ": done";
     if (reply && reply->contains("result"))
         sentence = work.arguments()[0] + " = " + plain((*reply)["result"]);
@@ -66,7 +54,7 @@ Result<void> run_send(Work& work) {
         return std::unexpected(found.error());
     Link& link = work.session.link();
     std::uint32_t number = 0;
-    const auto reply = link.request(line_of(work.line), number);
+    const auto reply = link.request(request_of(work), number);
     const std::string& name = work.arguments()[0];
     const auto begun = told(work, reply, name + ": sent");
     if (!begun || !work.line.follow) return begun;
@@ -77,7 +65,7 @@ Result<void> run_send(Work& work) {
         const ordered_json& news = **packet;
         const auto state = news.value("state", std::string{});
         if (work.line.json)
-            work.out << json_line(news) << std::endl;
+            work.out << packet_text(work, news) << std::endl;
         else
             work.out << name << ": " << state
                      << (news.contains("results") && !news["results"].empty() ? " " + plain(news["results"])
@@ -95,7 +83,7 @@ Result<void> run_force(Work& work) {
     const auto arguments = work.arguments();
     if (const auto found = find_facet(work.session.map(), Takes::port, arguments[0]); !found)
         return std::unexpected(found.error());
-    return told(work, work.session.link().request(line_of(work.line)),
+    return told(work, work.session.link().request(request_of(work)),
                 arguments.size() == 2 ? "forced: " + arguments[0] + " = " + arguments[1]
                                       : "released: " + arguments[0]);
 }
@@ -112,7 +100,7 @@ Result<void> run_plain_request(Work& work) {
                                         (nearest.empty() ? "; list shows the components" : nearest)});
         }
     }
-    const auto reply = work.session.link().request(line_of(work.line));
+    const auto reply = work.session.link().request(request_of(work));
     std::string sentence = work.line.words.front() + ": done";
     if (reply && reply->contains("files")) sentence = "saved: " + plain((*reply)["files"]) + " files";
     return told(work, reply, sentence);

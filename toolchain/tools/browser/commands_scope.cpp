@@ -240,7 +240,10 @@ Result<void> run_scope(Work& work) {
     if (!scope) return std::unexpected(Failure{Fault::refused, scope.error()});
     const auto words = work.arguments();
     if (words.empty()) return overview(work, *scope);
-    if (words[0] == "worst") return show_worst(work, *scope, words.size() > 1 ? words[1] : std::string{});
+    if (words[0] == "worst")
+        return show_worst(work, *scope,
+                          words.size() > 1 ? std::string{work.session.map().own_name(words[1])}
+                                           : std::string{});
     if (words[0] == "record" && words.size() == 1) return record(work, *scope);
     return wrong("scope has no '" + words[0] +
                  "'; it is spelled: scope, scope worst [ACTIVITY], scope record");

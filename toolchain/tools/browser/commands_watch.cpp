@@ -15,9 +15,25 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-std::unexpected<Failure> ended() {
+/// Of those that were looked at, who has ended; nothing: none has.
+Result<void> ended(std::span<const Seen> all, const std::vector<bool>& has_ended) {
+    std::string names;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (has_ended[i]) {
+            const MapReader& map = all[i].session->map();
+            names += (names.empty() ? "" : ", ") + std::string{map.text(map.header().machine)};
+        }
+    if (names.empty()) return {};
     return std::unexpected(
-        Failure{Fault::no_machine, "the machine has ended; what was shown last is its last"});
+        Failure{Fault::no_machine, all.size() == 1 ? "the machine has ended; what was shown last is its last"
+                                                   : names + " ended; what was shown last is the last"});
+}
+
+/// Looks at those that are still there; true: none is.
+bool all_ended(std::span<const Seen> all, std::vector<bool>& has_ended) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (!has_ended[i]) has_ended[i] = all[i].session->link().ended();
+    return std::ranges::find(has_ended, false) == has_ended.end();
 }
 
 WatchRow row_of(const MapReader& map, const Reading& reading, const std::string& last_value) {
@@ -32,77 +48,93 @@ WatchRow row_of(const MapReader& map, const Reading& reading, const std::string&
     return row;
 }
 
-std::string title_of(Session& session, long picture) {
-    const std::uint32_t forced = session.observer().forced();
-    std::string title =
-        std::string{session.map().text(session.map().header().machine)} + "  " + session.role();
-    if (forced > 0) title += "  " + std::to_string(forced) + " FORCED";
-    return title + "  picture " + std::to_string(picture);
+std::string title_of(std::span<const Seen> all, long picture) {
+    std::string title;
+    for (const Seen& each : all) {
+        const MapReader& map = each.session->map();
+        const std::uint32_t forced = each.session->observer().forced();
+        title += std::string{map.text(map.header().machine)} + "  " + each.session->role() + "  ";
+        if (forced > 0) title += std::to_string(forced) + " FORCED  ";
+    }
+    return title + "picture " + std::to_string(picture);
 }
 
-Result<void> watch_on_screen(Work& work, const std::vector<std::uint32_t>& facets) {
+std::vector<WatchRow> rows_of(std::span<const Seen> all, const std::vector<bool>& has_ended,
+                              const std::vector<WatchRow>& before) {
+    std::vector<WatchRow> rows;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const Reading& reading : all[i].session->observer().read(all[i].facets)) {
+            const std::size_t n = rows.size();
+            rows.push_back(
+                row_of(all[i].session->map(), reading, n < before.size() ? before[n].value : std::string{}));
+            if (has_ended[i]) rows.back().marks = "ended";
+        }
+    return rows;
+}
+
+Result<void> watch_on_screen(Work& work, std::span<const Seen> all) {
     const Screen screen;
     WatchPicture picture;
     picture.status = "q ends";
+    std::vector<bool> has_ended(all.size(), false);
     const auto turn = [&](std::ptrdiff_t by) {
-        const std::size_t seen = visible_rows(picture, screen.size());
-        const auto last = static_cast<std::ptrdiff_t>(facets.size() - std::min(facets.size(), seen));
+        const std::size_t seen = visible_rows(picture, screen.size()), rows = picture.rows.size();
+        const auto last = static_cast<std::ptrdiff_t>(rows - std::min(rows, seen));
         picture.first = static_cast<std::size_t>(
             std::clamp(static_cast<std::ptrdiff_t>(picture.first) + by, std::ptrdiff_t{0}, last));
     };
     for (long n = 1; !work.stopped(); ++n) {
-        const std::vector<WatchRow> before = std::move(picture.rows);
-        picture.rows.clear();
-        const auto readings = work.session.observer().read(facets);
-        for (std::size_t i = 0; i < readings.size(); ++i)
-            picture.rows.push_back(
-                row_of(work.session.map(), readings[i], before.empty() ? std::string{} : before[i].value));
-        picture.title = title_of(work.session, n);
+        picture.rows = rows_of(all, has_ended, picture.rows);
+        picture.title = title_of(all, n);
         screen.show(draw(picture, screen.size(), true));
-        if (n == work.line.count) return {};
-        if (work.session.link().ended()) return ended();
+        if (n == work.line.count) break;
+        if (all_ended(all, has_ended)) break;
         const auto until = Steady::now() + work.line.every;
         for (auto left = work.line.every; left.count() > 0;
              left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Steady::now())) {
             const auto key = screen.key(left);
             if (!key) break;
             const auto page = static_cast<std::ptrdiff_t>(visible_rows(picture, screen.size()));
-            if (*key == Key::quit) return {};
+            if (*key == Key::quit) return ended(all, has_ended);
             if (*key == Key::other) continue;
             turn(*key == Key::up ? -1 : *key == Key::down ? 1 : *key == Key::page_up ? -page : page);
             screen.show(draw(picture, screen.size(), true));
         }
     }
-    return {};
+    return ended(all, has_ended);
 }
 
-Result<void> watch_in_lines(Work& work, const std::vector<std::uint32_t>& facets) {
+Result<void> watch_in_lines(Work& work, std::span<const Seen> all) {
     auto next = Steady::now();
+    std::vector<bool> has_ended(all.size(), false);
     for (long n = 1; !work.stopped(); ++n) {
-        for (const Reading& reading : work.session.observer().read(facets))
-            work.out << (work.line.json ? json_of(work.session.map(), reading)
-                                        : line_of(work.session.map(), reading))
-                     << "\n";
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (has_ended[i]) continue;
+            const MapReader& map = all[i].session->map();
+            for (const Reading& reading : all[i].session->observer().read(all[i].facets))
+                work.out << (work.line.json ? json_of(map, reading) : line_of(map, reading)) << "\n";
+        }
         work.out.flush();
-        if (n == work.line.count) return {};
+        if (n == work.line.count) break;
         next += work.line.every;
         while (!work.stopped() && Steady::now() < next) {
             std::this_thread::sleep_for(
                 std::min<Steady::duration>(next - Steady::now(), std::chrono::milliseconds{100}));
-            if (work.session.link().ended()) return ended();
+            if (all_ended(all, has_ended)) return ended(all, has_ended);
         }
     }
-    return {};
+    return ended(all, has_ended);
 }
 
-void tell_event(Work& work, nlohmann::ordered_json packet) {
+void tell_event(Work& work, const Session& from, nlohmann::ordered_json packet) {
+    const std::string name = from.map().place() + packet.value("event", std::string{});
     if (work.line.json) {
+        packet["event"] = name;
         packet.erase("id");
         work.out << packet.dump() << std::endl;
         return;
     }
-    work.out << packet.value("event", std::string{}) << " "
-             << (packet.contains("arguments") ? packet["arguments"].dump() : "[]") << " at "
+    work.out << name << " " << (packet.contains("arguments") ? packet["arguments"].dump() : "[]") << " at "
              << clock_text(packet.value("time_ns", std::int64_t{0}));
     if (const auto lost = packet.value("lost", std::int64_t{0}); lost > 0)
         work.out << ", " << lost << " lost so far";
@@ -111,33 +143,52 @@ void tell_event(Work& work, nlohmann::ordered_json packet) {
     work.out << std::endl;
 }
 
+Result<void> ask_for_events(const Part& part, const char* verb) {
+    for (const std::string& name : part.names)
+        if (const auto reply =
+                part.session->link().request(verb + (" " + as_word(part.session->map().own_name(name))));
+            !reply)
+            return std::unexpected(reply.error());
+    return {};
+}
+
 } // namespace
 
 Result<void> run_watch(Work& work) {
-    const auto facets = find_values(work.session.map(), work.arguments());
-    if (!facets) return std::unexpected(facets.error());
-    return work.screen && !work.line.json ? watch_on_screen(work, *facets) : watch_in_lines(work, *facets);
+    const auto all = find_seen(work);
+    if (!all) return std::unexpected(all.error());
+    return work.screen && !work.line.json ? watch_on_screen(work, *all) : watch_in_lines(work, *all);
 }
 
 Result<void> run_events(Work& work) {
-    for (const std::string& name : work.arguments())
-        if (const auto found = find_facet(work.session.map(), Takes::event, name); !found)
-            return std::unexpected(found.error());
-    Link& link = work.session.link();
-    for (const std::string& name : work.arguments())
-        if (const auto reply = link.request("subscribe " + as_word(name)); !reply)
-            return std::unexpected(reply.error());
+    std::vector<Part> parts = work.parts();
+    for (const Part& part : parts)
+        for (const std::string& name : part.names)
+            if (const auto found = find_facet(part.session->map(), Takes::event, name); !found)
+                return std::unexpected(found.error());
+    for (const Part& part : parts)
+        if (auto asked = ask_for_events(part, "subscribe"); !asked) return asked;
     Result<void> outcome{};
-    for (long told = 0; !work.stopped() && (work.line.count == 0 || told < work.line.count);) {
-        auto packet = link.next(std::chrono::milliseconds{100});
-        if (!packet) return std::unexpected(packet.error());
-        if (!*packet || !(*packet)->contains("event")) continue;
-        tell_event(work, std::move(**packet));
-        ++told;
+    const std::chrono::milliseconds patience{100 / parts.size()};
+    for (long told = 0; !work.stopped() && !parts.empty();) {
+        for (std::size_t i = 0; i < parts.size();) {
+            if (work.line.count != 0 && told >= work.line.count) break;
+            auto packet = parts[i].session->link().next(patience);
+            if (!packet) { // who has ended hinders no other
+                outcome = std::unexpected(packet.error());
+                parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(i));
+                continue;
+            }
+            if (*packet && (*packet)->contains("event")) {
+                tell_event(work, *parts[i].session, std::move(**packet));
+                ++told;
+            }
+            ++i;
+        }
+        if (work.line.count != 0 && told >= work.line.count) break;
     }
-    for (const std::string& name : work.arguments())
-        if (const auto reply = link.request("unsubscribe " + as_word(name)); !reply)
-            outcome = std::unexpected(reply.error());
+    for (const Part& part : parts)
+        if (auto asked = ask_for_events(part, "unsubscribe"); !asked) outcome = asked;
     return outcome;
 }
 

@@ -7,12 +7,19 @@ namespace tappet::browser {
 
 namespace {
 
-/// Every second word of set is a value; of call, send and force only the first is a name.
-bool is_name(const Command& command, std::size_t argument) {
-    if (command.name == "set") return argument % 2 == 0;
-    if (command.takes == Takes::value || command.takes == Takes::event || command.name == "execute")
-        return true;
-    return argument == 0;
+/// Of all machines that answered before, and the machines themselves where there are several.
+std::vector<std::string> names_in(Machines& machines, const Command& command,
+                                  std::span<const std::string> arguments) {
+    std::vector<std::string> names;
+    const bool may_be_machine = machines.are_several() && arguments.empty() && command.among != Among::values;
+    for (const Machine& each : machines.all()) {
+        if (may_be_machine) names.push_back(each.name);
+        if (each.session == nullptr) continue;
+        if (!is_name(command, arguments, arguments.size()) && command.name != "execute") continue;
+        for (std::string& name : names_for(each.session->map(), command.takes))
+            names.push_back(std::move(name));
+    }
+    return names;
 }
 
 } // namespace
@@ -25,7 +32,7 @@ std::string Completion::common() const {
     return std::string{same};
 }
 
-Completion complete(const MapReader& map, std::string_view before_cursor) {
+Completion complete(Machines& machines, std::string_view before_cursor) {
     Completion completion;
     const std::size_t blank = before_cursor.find_last_of(" \t");
     completion.begin = blank == std::string_view::npos ? 0 : blank + 1;
@@ -45,9 +52,8 @@ Completion complete(const MapReader& map, std::string_view before_cursor) {
         } else if (before.front() == "help") {
             for (const Command& each : commands()) names.emplace_back(each.name);
         } else if (const Command* command = find_command(before.front());
-                   command != nullptr && before.size() <= command->most &&
-                   is_name(*command, before.size() - 1)) {
-            names = names_for(map, command->takes);
+                   command != nullptr && before.size() <= command->most + (machines.are_several() ? 1 : 0)) {
+            names = names_in(machines, *command, std::span{before}.subspan(1));
         }
     }
     for (std::string& name : names)

@@ -13,6 +13,6 @@ struct Completion {
 };
 
 /// `before_cursor`: the line up to the cursor.
-[[nodiscard]] Completion complete(const MapReader& map, std::string_view before_cursor);
+[[nodiscard]] Completion complete(Machines& machines, std::string_view before_cursor);
 
 } // namespace tappet::browser

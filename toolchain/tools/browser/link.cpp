@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -49,22 +48,6 @@ std::string why_not_connected(const std::string& path, int error) {
 }
 
 } // namespace
-
-Result<std::string> find_socket(const std::string& directory) {
-    std::vector<std::string> found;
-    std::error_code error;
-    for (std::filesystem::directory_iterator each{directory, error}, end; !error && each != end;
-         each.increment(error))
-        if (each->path().native().ends_with(browsing::socket_suffix)) found.push_back(each->path().native());
-    std::ranges::sort(found);
-    if (found.size() == 1) return found.front();
-    if (found.empty())
-        return failure(Fault::no_machine, "no machine has a socket in '" + directory +
-                                              "'; start one, or name its socket with --socket");
-    std::string names;
-    for (const std::string& name : found) names += (names.empty() ? "" : ", ") + name;
-    return failure(Fault::bad_request, "there are several machines (" + names + "); name one with --socket");
-}
 
 Result<SharedBlock> SharedBlock::map(int descriptor, std::size_t at_byte) {
     struct stat state{};

@@ -1,5 +1,5 @@
-// The wire to a running machine: its socket, found and connected; requests with their replies; the memory
-// that it hands over.
+// The wire to a running machine: its socket, connected; requests with their replies; the memory that it hands
+// over.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -34,9 +34,6 @@ struct Failure {
 };
 
 template <class T> using Result = std::expected<T, Failure>;
-
-/// A socket under `directory` whose machine is meant: the only one there is.
-[[nodiscard]] Result<std::string> find_socket(const std::string& directory);
 
 /// Memory of the machine, read-only; unmapped at the end.
 class SharedBlock {

@@ -30,10 +30,11 @@ MapReader::MapReader(const map::View& view) : view_{view} {
     take(view.figures(), figures_);
 }
 
-std::expected<MapReader, std::string> MapReader::open(std::span<const std::byte> block) {
+std::expected<MapReader, std::string> MapReader::open(std::span<const std::byte> block, std::string place) {
     const auto view = map::View::open(block);
     if (!view) return std::unexpected(std::string{view.error().view()});
     MapReader reader{*view};
+    reader.place_ = std::move(place);
     if (const std::string wrong = reader.check(); !wrong.empty())
         return std::unexpected("the map contradicts itself: " + wrong);
     for (std::uint32_t i = 0; i < reader.facets_.size(); ++i) reader.by_name_.emplace(reader.full_name(i), i);
@@ -146,7 +147,7 @@ std::string MapReader::check_places() const {
 
 std::string MapReader::full_name(std::uint32_t facet) const {
     const map::Facet& record = facets_[facet];
-    std::string name{text(components_[record.component].name)};
+    std::string name = named(components_[record.component].name);
     name += '.';
     name += text(record.name);
     return name;
@@ -160,7 +161,7 @@ std::optional<FoundFacet> MapReader::find(std::string_view full_name) const {
 
 std::optional<std::uint32_t> MapReader::find_component(std::string_view name) const {
     for (std::uint32_t i = 0; i < components_.size(); ++i)
-        if (text(components_[i].name) == name) return i;
+        if (named(components_[i].name) == name) return i;
     return std::nullopt;
 }
 

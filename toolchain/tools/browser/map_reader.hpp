@@ -25,8 +25,10 @@ struct FoundFacet {
 /// half-written or foreign block gets a sentence, never a place outside the block.
 class MapReader {
 public:
-    /// The block outlives the reader. The error says what does not fit and how to put it right.
-    static std::expected<MapReader, std::string> open(std::span<const std::byte> block);
+    /// The block outlives the reader. The error says what does not fit and how to put it right. `place`: what
+    /// all names begin with, "saw." of a machine among others.
+    static std::expected<MapReader, std::string> open(std::span<const std::byte> block,
+                                                      std::string place = {});
 
     [[nodiscard]] const map::View& view() const { return view_; }
     [[nodiscard]] const map::Header& header() const { return view_.header(); }
@@ -43,7 +45,15 @@ public:
     [[nodiscard]] const std::vector<map::Enumerator>& enumerators() const { return enumerators_; }
     [[nodiscard]] const std::vector<map::Figure>& figures() const { return figures_; }
 
-    /// "shaft.angle_deg".
+    /// The name of a component or an activity, behind the machine's place.
+    [[nodiscard]] std::string named(map::Text name) const { return place_ + std::string{text(name)}; }
+    /// As the machine itself has it: without its place.
+    [[nodiscard]] std::string_view own_name(std::string_view name) const {
+        return name.starts_with(place_) ? name.substr(place_.size()) : name;
+    }
+    [[nodiscard]] const std::string& place() const { return place_; }
+
+    /// "shaft.angle_deg", or "loom.shaft.angle_deg" of a machine among others.
     [[nodiscard]] std::string full_name(std::uint32_t facet) const;
     [[nodiscard]] std::optional<FoundFacet> find(std::string_view full_name) const;
     [[nodiscard]] std::optional<std::uint32_t> find_component(std::string_view name) const;
@@ -70,6 +80,7 @@ private:
     [[nodiscard]] bool inside(std::uint64_t at, std::uint64_t bytes) const;
 
     map::View view_{};
+    std::string place_{};
     std::vector<map::Component> components_{};
     std::vector<map::Facet> facets_{};
     std::vector<map::Activity> activities_{};

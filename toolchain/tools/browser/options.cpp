@@ -77,8 +77,10 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
             line.at = value;
         } else if (word == "--to") {
             line.to = value;
-        } else if (word == "--socket" || word == "--directory") {
-            (word == "--socket" ? line.socket : line.directory) = value;
+        } else if (word == "--socket") {
+            line.sockets.push_back(value);
+        } else if (word == "--directory") {
+            line.directory = value;
         } else if (word == "--count") {
             const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), line.count);
             if (error != std::errc{} || end != value.data() + value.size() || line.count < 1)

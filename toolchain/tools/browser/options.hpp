@@ -25,7 +25,7 @@ struct Line {
     long count = 0;                       ///< of pictures or events; 0: without end
     std::chrono::milliseconds every{200}; ///< between two pictures
     std::chrono::milliseconds patience{3000};
-    std::string socket{}; ///< empty: the only one in `directory`
+    std::vector<std::string> sockets{}; ///< [NAME=]FILE; empty: those in `directory`
     std::string directory{browsing::default_directory};
 };
 

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <iostream>
 #include <ostream>
 
@@ -24,16 +25,17 @@ int tell(const Surroundings& surroundings, const Failure& failure, bool json) {
     return code;
 }
 
-Result<std::unique_ptr<Session>> open_session(const Line& line) {
-    if (line.words.size() > 1 && line.words.front() == "post-mortem")
-        return Session::open_black_box(line.words[1]);
-    std::string socket = line.socket;
-    if (socket.empty()) {
-        const auto found = find_socket(line.directory);
-        if (!found) return std::unexpected(found.error());
-        socket = *found;
-    }
-    return Session::open(socket, line.patience);
+Result<Machines> open_machines(const Line& line) {
+    if (line.words.size() < 2 || line.words.front() != "post-mortem") return Machines::find(line);
+    auto box = Session::open_black_box(line.words[1]);
+    if (!box) return std::unexpected(box.error());
+    return Machines::of(std::move(*box));
+}
+
+std::vector<Failure> run_line(Machines& machines, const Line& line, const Surroundings& surroundings) {
+    auto failures = run_among(machines, line, surroundings.out, surroundings.screen, surroundings.signal);
+    surroundings.out.flush();
+    return failures;
 }
 
 std::string help_about(std::span<const std::string> words) {
@@ -49,8 +51,8 @@ std::string help_about(std::span<const std::string> words) {
 /// One line of the prompt. The code of the last that failed is the program's, for lines from a file.
 class Lines {
 public:
-    Lines(Session& session, const Line& first, Surroundings& surroundings)
-        : session_{session}, first_{first}, surroundings_{surroundings} {}
+    Lines(Machines& machines, const Line& first, Surroundings& surroundings)
+        : machines_{machines}, first_{first}, surroundings_{surroundings} {}
 
     Next run(const std::string& text) {
         if (surroundings_.signal != nullptr) *surroundings_.signal = 0;
@@ -68,11 +70,10 @@ public:
             return Next::prompt;
         }
         line->json = line->json || first_.json;
-        Work work{session_, *line, surroundings_.out, surroundings_.screen, surroundings_.signal};
-        const auto done = run_command(work);
-        surroundings_.out.flush();
-        if (!done) return fail(done.error());
-        return Next::prompt;
+        Next next = Next::prompt;
+        for (const Failure& failure : run_line(machines_, *line, surroundings_))
+            if (fail(failure) == Next::end) next = Next::end;
+        return next;
     }
     [[nodiscard]] int code() const { return code_; }
 
@@ -80,24 +81,30 @@ private:
     Next fail(const Failure& failure) {
         const int code = tell(surroundings_, failure, first_.json);
         if (!surroundings_.interactive) code_ = code;
-        if (failure.fault != Fault::no_machine) return Next::prompt;
+        if (failure.fault != Fault::no_machine || machines_.are_several()) return Next::prompt;
         code_ = code;
         return Next::end;
     }
 
-    Session& session_;
+    Machines& machines_;
     const Line& first_;
     Surroundings& surroundings_;
     int code_ = 0;
 };
 
-int run_lines(Session& session, const Line& first, Surroundings& surroundings) {
-    Lines lines{session, first, surroundings};
+int run_lines(Machines& machines, const Line& first, Surroundings& surroundings) {
+    Lines lines{machines, first, surroundings};
     const auto run = [&lines](const std::string& line) { return lines.run(line); };
     if (surroundings.interactive) {
-        surroundings.out << "tab completes, help explains, quit ends; you are its " << session.role()
-                         << std::endl;
-        Shell{session, surroundings.history_file, surroundings.signal, run}.run();
+        surroundings.out << "tab completes, help explains, quit ends";
+        const std::vector<Session*> sessions = machines.reachable();
+        if (machines.are_several())
+            surroundings.out << "; " << sessions.size() << " of " << machines.names()
+                             << " answer, list shows them";
+        else
+            surroundings.out << "; you are its " << sessions.front()->role();
+        surroundings.out << std::endl;
+        Shell{machines, surroundings.history_file, surroundings.signal, run}.run();
         return lines.code();
     }
     for (std::string line; std::getline(std::cin, line);)
@@ -130,13 +137,13 @@ int run(std::span<const std::string> words, Surroundings& surroundings) {
         const auto done = run_report_of_files(*line, surroundings.out);
         return done ? 0 : tell(surroundings, done.error(), line->json);
     }
-    auto session = open_session(*line);
-    if (!session) return tell(surroundings, session.error(), line->json);
-    if (line->words.empty()) return run_lines(**session, *line, surroundings);
-    Work work{**session, *line, surroundings.out, surroundings.screen, surroundings.signal};
-    const auto done = run_command(work);
-    surroundings.out.flush();
-    return done ? 0 : tell(surroundings, done.error(), line->json);
+    auto machines = open_machines(*line);
+    if (!machines) return tell(surroundings, machines.error(), line->json);
+    if (line->words.empty()) return run_lines(*machines, *line, surroundings);
+    int code = 0;
+    for (const Failure& failure : run_line(*machines, *line, surroundings))
+        code = std::max(code, tell(surroundings, failure, line->json));
+    return code;
 }
 
 } // namespace

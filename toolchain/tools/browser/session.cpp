@@ -13,8 +13,8 @@
 
 namespace tappet::browser {
 
-Result<std::unique_ptr<Session>> Session::open(const std::string& socket,
-                                               std::chrono::milliseconds patience) {
+Result<std::unique_ptr<Session>> Session::open(const std::string& socket, std::chrono::milliseconds patience,
+                                               std::string place) {
     auto link = Link::connect(socket);
     if (!link) return std::unexpected(link.error());
     link->patience = patience;
@@ -34,7 +34,7 @@ Result<std::unique_ptr<Session>> Session::open(const std::string& socket,
     auto block = SharedBlock::map(descriptor);
     ::close(descriptor);
     if (!block) return std::unexpected(block.error());
-    auto map = MapReader::open(block->bytes());
+    auto map = MapReader::open(block->bytes(), std::move(place));
     if (!map) return std::unexpected(Failure{Fault::no_machine, map.error()});
     return std::unique_ptr<Session>{new Session{std::move(*link), std::move(*block), std::move(*map),
                                                 hello->value("role", std::string{"unknown"})}};

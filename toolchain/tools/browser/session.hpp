@@ -10,9 +10,9 @@ namespace tappet::browser {
 
 class Session {
 public:
-    /// Connects, asks who is there, and maps the memory.
+    /// Connects, asks who is there, and maps the memory. `place`: what its names begin with.
     static Result<std::unique_ptr<Session>> open(const std::string& socket,
-                                                 std::chrono::milliseconds patience);
+                                                 std::chrono::milliseconds patience, std::string place = {});
     /// What is left of a machine, in a file that its guardian kept.
     static Result<std::unique_ptr<Session>> open_black_box(const std::string& file);
     /// Null: the machine lives.

@@ -20,7 +20,7 @@ constexpr std::size_t listed_most = 60;
 
 /// What libedit's callbacks reach through EL_CLIENTDATA.
 struct Client {
-    const MapReader& map;
+    Machines& machines;
     std::string prompt{};
 };
 
@@ -48,7 +48,7 @@ void print_candidates(const Completion& completion) {
 unsigned char on_tab(EditLine* editor, int) {
     const LineInfo* line = ::el_line(editor);
     const std::string before{line->buffer, static_cast<std::size_t>(line->cursor - line->buffer)};
-    const Completion completion = complete(client_of(editor).map, before);
+    const Completion completion = complete(client_of(editor).machines, before);
     if (completion.candidates.empty()) return CC_REFRESH_BEEP;
     std::string more = completion.common().substr(before.size() - completion.begin);
     // A component's name goes on with a dot: no blank after it while others begin with it.
@@ -102,7 +102,8 @@ std::string without_end(const char* text, int count) {
 } // namespace
 
 void Shell::run() {
-    Client client{session_.map(), std::string{session_.map().text(session_.map().header().machine)} + "> "};
+    Client client{machines_, machines_.are_several() ? std::to_string(machines_.all().size()) + " machines> "
+                                                     : machines_.all().front().name + "> "};
     EditLine* const editor = ::el_init("tappet-browse", stdin, stdout, stderr);
     if (editor == nullptr) return;
     History* const history = ::history_init();

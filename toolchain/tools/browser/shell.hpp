@@ -1,7 +1,7 @@
 // The prompt: lines edited with completion and history, each run as if it were given on a command line.
 #pragma once
 
-#include "toolchain/tools/browser/session.hpp"
+#include "toolchain/tools/browser/machines.hpp"
 
 #include <csignal>
 #include <functional>
@@ -19,14 +19,17 @@ public:
 
     /// `history_file`: kept over sessions; empty for none. `signal`: the last that came; an interrupt gives
     /// the typed line up, any other ends the prompt.
-    Shell(Session& session, std::string history_file, const volatile std::sig_atomic_t* signal, Run run)
-        : session_{session}, history_file_{std::move(history_file)}, signal_{signal}, run_{std::move(run)} {}
+    Shell(Machines& machines, std::string history_file, const volatile std::sig_atomic_t* signal, Run run)
+        : machines_{machines},
+          history_file_{std::move(history_file)},
+          signal_{signal},
+          run_{std::move(run)} {}
 
     /// Until "quit" or the end of the input.
     void run();
 
 private:
-    Session& session_;
+    Machines& machines_;
     std::string history_file_;
     const volatile std::sig_atomic_t* signal_;
     Run run_;

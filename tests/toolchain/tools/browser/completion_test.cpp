@@ -8,7 +8,6 @@
 namespace tappet::browser {
 namespace {
 
-using namespace std::chrono_literals;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -17,13 +16,13 @@ using testing::Not;
 class Completing : public testing::Test {
 protected:
     void SetUp() override {
-        auto opened = Session::open(machine.socket(), 2s);
-        ASSERT_TRUE(opened.has_value()) << opened.error().sentence;
-        session = std::move(*opened);
+        auto found = Machines::find({.directory = machine.directory()});
+        ASSERT_TRUE(found.has_value()) << found.error().sentence;
+        machines = std::move(*found);
     }
-    Completion after(std::string_view typed) { return complete(session->map(), typed); }
+    Completion after(std::string_view typed) { return complete(machines, typed); }
     SampleMachine machine;
-    std::unique_ptr<Session> session;
+    Machines machines;
 };
 
 TEST_F(Completing, an_empty_line_offers_the_commands) {
@@ -59,6 +58,21 @@ TEST_F(Completing, goes_as_far_as_all_candidates_agree) {
 TEST_F(Completing, options_are_offered_after_a_dash) {
     EXPECT_THAT(after("get --js").candidates, ElementsAre("--json"));
     EXPECT_THAT(after("--json ge").candidates, ElementsAre("get"));
+}
+
+TEST(CompletingAmongSeveral, a_name_begins_with_a_machine_that_answers) {
+    SampleMachine left, right, silent;
+    silent.end();
+    auto machines = Machines::find(
+        {.sockets = {"left=" + left.socket(), "right=" + right.socket(), "silent=" + silent.socket()}});
+    ASSERT_TRUE(machines.has_value()) << machines.error().sentence;
+    EXPECT_EQ(machines->reachable().size(), 2u);
+    const auto after = [&](std::string_view typed) { return complete(*machines, typed).candidates; };
+    EXPECT_THAT(after("send "),
+                ElementsAre("left", "left.shaft.stop", "right", "right.shaft.stop", "silent"));
+    EXPECT_THAT(after("set left.shaft.gains.p 1 l"), ElementsAre("left.shaft.gains.i", "left.shaft.gains.p"));
+    EXPECT_THAT(after("events l"), ElementsAre("left.shaft.beat_up"));
+    EXPECT_THAT(after("manifest r"), ElementsAre("right"));
 }
 
 } // namespace

@@ -1,0 +1,101 @@
+// The lane as one looks at it: all its machines by the names of their system, whatever one of them does.
+#include "apps/woodworking_lane/host/lane_run.hpp"
+#include "toolchain/tools/browser/program.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <filesystem>
+#include <sstream>
+#include <thread>
+
+namespace tappet::browser {
+namespace {
+
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+struct Outcome {
+    int code = -1;
+    std::string out{};
+    std::string errors{};
+};
+
+/// Five machines in a thread of their own, at the pace of this host's clock.
+class LaneBrowsed : public testing::Test {
+protected:
+    LaneBrowsed() {
+        std::string pattern = testing::TempDir() + "tappet-lane-XXXXXX";
+        directory = ::mkdtemp(pattern.data());
+        lane.system.browse_in(directory);
+    }
+    void SetUp() override {
+        const auto started = lane.start();
+        ASSERT_TRUE(started) << started.error().view();
+        runs = true;
+        thread = std::thread{[this] {
+            while (runs) {
+                if (const std::size_t node = killed.exchange(none); node != none) lane.kill(node);
+                lane.run_for(20ms);
+            }
+        }};
+    }
+    void TearDown() override {
+        runs = false;
+        if (thread.joinable()) thread.join();
+        lane.system.stop();
+        std::filesystem::remove_all(directory);
+    }
+    Outcome run(std::vector<std::string> words, const std::string& patience = "10s") const {
+        std::ostringstream out;
+        std::ostringstream errors;
+        Surroundings surroundings{out, errors};
+        words.insert(words.begin(), {"--directory", directory, "--timeout", patience});
+        const int code = run_program(words, surroundings);
+        return {code, out.str(), errors.str()};
+    }
+
+    static constexpr std::size_t none = woodworking::node_count;
+    std::string directory;
+    woodworking::LaneRun lane{1, 1000};
+    std::atomic<bool> runs{false};
+    std::atomic<std::size_t> killed{none};
+    std::thread thread;
+};
+
+TEST_F(LaneBrowsed, shows_all_its_machines_and_goes_on_when_one_is_gone) {
+    const Outcome all = run({"list"});
+    EXPECT_EQ(all.code, 0) << all.errors;
+    EXPECT_THAT(all.out,
+                AllOf(ContainsRegex("conveyor +on host, process [0-9]+; belt.belt_states in running; hears "
+                                    "saw, drill, polish, glue\n"),
+                      ContainsRegex("saw +on host")));
+    EXPECT_THAT(run({"get", "saw.station.number", "glue.station.number", "conveyor.belt.position"}).out,
+                ContainsRegex("^saw.station.number = 0\nglue.station.number = 3\nconveyor.belt.position = "));
+    EXPECT_EQ(run({"set", "glue.station.number", "4"}).code, 0);
+    EXPECT_EQ(run({"get", "glue.station.number"}).out, "glue.station.number = 4\n");
+
+    killed = 2; // the drill
+    Outcome without;
+    for (int i = 0; i < 100; ++i)
+        if (without = run({"list"}, "1s"); without.out.find("does NOT hear drill") != std::string::npos)
+            break;
+    EXPECT_EQ(without.code, 5);
+    EXPECT_THAT(without.out, AllOf(ContainsRegex("drill +does not answer\n"),
+                                   ContainsRegex("saw +on host.*; does NOT hear drill")));
+    EXPECT_THAT(without.errors, HasSubstr("'drill' does not answer: no answer within 1000 ms"));
+    EXPECT_EQ(run({"get", "saw.station.number"}).out, "saw.station.number = 0\n");
+
+    std::filesystem::remove(directory + "/drill.socket");
+    EXPECT_THAT(run({"list"}).out, HasSubstr("has no socket in '" + directory + "'; nobody hears it"));
+    const Outcome asked = run({"get", "drill.station.number"});
+    EXPECT_EQ(asked.code, 3);
+    EXPECT_THAT(asked.errors, HasSubstr("'drill' is a node of this system, and has no socket in"));
+    std::filesystem::remove(directory + "/polish.socket");
+    EXPECT_THAT(run({"list"}).out,
+                ContainsRegex("polish +has no socket in .*; heard by conveyor, glue, saw"));
+}
+
+} // namespace
+} // namespace tappet::browser
