@@ -69,7 +69,7 @@ public:
             if (weather_.doubles) run_.end(n).doubles_one_in = 10;
         }
         run_.run_for(200ms); // each row was told
-        for (int step = 0; step < 30; ++step) {
+        for (const Time end = run_.now() + 700ms; run_.now() < end;) {
             strike();
             run_.run_for(weather_.crowds ? pause : Duration{random_.between(10'000'000, 50'000'000)});
             for (std::size_t n = 0; n < taker_node; ++n)
@@ -81,7 +81,7 @@ public:
         }
         for (std::size_t n = 0; n < nodes; ++n)
             if (!run_.is_alive(n)) restart(n);
-        run_.run_for(400ms); // whatever waits is answered
+        run_.run_for(300ms); // whatever waits is answered
         for (std::size_t n = 0; n < nodes; ++n) look(n, Count::waits);
         run_.stop();
         return history();
