@@ -114,5 +114,26 @@ TEST_F(LinkTest, an_event_for_a_node_that_is_gone_is_known_to_be_lost) {
     EXPECT_EQ(giver().losses, 1);
 }
 
+TEST_F(LinkTest, an_event_for_a_component_that_does_not_run_counts_as_delivered_and_is_dropped_there) {
+    MachineInstance& there = run.instance(1);
+    const std::size_t part = find_component(there.machine().table, "taker");
+    const LifeTicket stop = there.life().ask_component(part, LifeChange::stop);
+    run.run_for(20ms);
+    ASSERT_EQ(there.life().answer_of_component(part, stop).outcome, LifeOutcome::done);
+    giver().to_send = {7};
+    giver().asks = 1;
+    run.run_for(60ms);
+    EXPECT_EQ(from().sent(1), (SendCounts{.offered = 1, .delivered = 1}));
+    EXPECT_EQ(giver().losses, 0) << "its node took it up";
+    EXPECT_EQ(giver().doubled.state(), CommandState::failed) << "a command says that it was rejected there";
+
+    const LifeTicket start = there.life().ask_component(part, LifeChange::start);
+    run.run_for(20ms);
+    ASSERT_EQ(there.life().answer_of_component(part, start).outcome, LifeOutcome::done);
+    giver().to_send = {8};
+    run.run_for(60ms);
+    EXPECT_EQ(taker().got, (std::vector<std::int32_t>{8}));
+}
+
 } // namespace
 } // namespace tappet::pair
