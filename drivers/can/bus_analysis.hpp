@@ -62,24 +62,25 @@ public:
     constexpr BusAnalysis(std::span<const FrameTiming> by_priority_highest_first,
                           const BusTiming& bus) noexcept
         : frames_{by_priority_highest_first}, bus_{bus} {
-        for (std::size_t i = 0; i < frames_.size(); ++i)
-            if (frames_[i].own) last_own_ = i;
+        for (std::size_t i = 0; i < std::min(frames_.size(), most_frames); ++i)
+            if (frames_[i].own) own_[own_count_++] = last_own_ = i;
         for (const FrameTiming& frame : frames_) {
             sensible_ &= frame.period_ns > 0 && frame.period_ns <= analysis_max_ns && frame.wire_ns > 0 &&
                          frame.wire_ns <= analysis_max_ns && Span{frame.jitter_ns}.exists();
             if (frame.own) shortest_own_ns_ = std::min(shortest_own_ns_, frame.wire_ns);
         }
+        for (std::size_t i = 0; i < std::min(frames_.size(), most_frames); ++i) set_late(i, Span{0});
         sensible_ &= frames_.size() <= most_frames && bus_.bit_ns > 0 && bus_.in_flight >= 1 &&
                      Span{bus_.hand_over_ns}.exists() && bus_.errors >= 0 && bus_.errors_every_ns > 0;
         // Begins with none in flight but those on demand, and takes in what is found not to be through in
         // time, until nothing more is: no frame can be the first one that is late.
         for (bool again = sensible_; again;) {
             again = false;
-            for (std::size_t i = 0; i < frames_.size(); ++i)
-                if (frames_[i].own) late_ns_[i] = behind_those_in_flight(i).ns;
-            for (std::size_t i = 0; i < frames_.size(); ++i) {
-                if (!frames_[i].own) continue;
-                const Response found = of_own(i).response;
+            for (std::size_t o = 0; o < own_count_; ++o) set_late(own_[o], behind_those_in_flight(own_[o]));
+            for (std::size_t o = 0; o < own_count_; ++o) {
+                const std::size_t i = own_[o];
+                of_own_[i] = of_own(i);
+                const Response& found = of_own_[i].response;
                 const std::int64_t worst_ns = found.bounded ? found.worst_ns : analysis_max_ns;
                 again |= worst_ns > worst_ns_[i];
                 worst_ns_[i] = std::max(worst_ns_[i], worst_ns);
@@ -90,7 +91,7 @@ public:
     /// From the release of a frame to its end on the wire.
     [[nodiscard]] constexpr FrameResponse of(std::size_t index) const noexcept {
         if (index >= frames_.size() || !sensible_) return {};
-        return frames_[index].own ? of_own(index) : of_another_node(index);
+        return frames_[index].own ? of_own_[index] : of_another_node(index);
     }
 
     /// Of one of ours: how much later than its queue says it may come to the wire, behind less urgent ones in
@@ -132,10 +133,11 @@ private:
         std::size_t taken = frames_.size();
         while (found.count < bus_.in_flight) {
             std::size_t next = frames_.size();
-            for (std::size_t k = index + 1; k < frames_.size(); ++k) {
-                if (!frames_[k].own || is_through_before(k, index)) continue;
+            for (std::size_t i = own_count_; i-- > 0 && own_[i] > index;) {
+                const std::size_t k = own_[i];
+                if (is_through_before(k, index)) continue;
                 const bool left = frames_[k].wire_ns < limit || (frames_[k].wire_ns == limit && k > taken);
-                if (left && (next == frames_.size() || frames_[k].wire_ns > frames_[next].wire_ns)) next = k;
+                if (left && (next == frames_.size() || frames_[k].wire_ns >= frames_[next].wire_ns)) next = k;
             }
             if (next == frames_.size()) break;
             limit = frames_[next].wire_ns, taken = next;
@@ -153,14 +155,35 @@ private:
             bus_.errors + std::max<std::int64_t>(0, analysis::arrivals(window, bus_.errors_every_ns) - 1);
         return count * Span{error_frame_bits * bus_.bit_ns + longest};
     }
-    /// The wire is lost to whoever is ready up to one bit after this frame would begin.
-    [[nodiscard]] constexpr std::int64_t arrivals(Span window, std::size_t k) const noexcept {
-        const FrameTiming& frame = frames_[k];
-        const Span from = window + Span{frame.jitter_ns} + Span{late_ns_[k]} + Span{bus_.bit_ns};
-        return analysis::arrivals(from, frame.period_ns);
+    constexpr void set_late(std::size_t index, Span late) noexcept {
+        late_ns_[index] = late.ns;
+        lead_ns_[index] = (Span{frames_[index].jitter_ns} + late + Span{bus_.bit_ns}).ns;
     }
+    /// The wire is lost to whoever is ready up to one bit after this frame would begin.
     [[nodiscard]] constexpr Span passing(Span window, std::size_t k) const noexcept {
-        return arrivals(window, k) * Span{frames_[k].wire_ns};
+        return analysis::arrivals(window + Span{lead_ns_[k]}, frames_[k].period_ns) *
+               Span{frames_[k].wire_ns};
+    }
+    /// The same of all frames before `end`, of other nodes only or of ours too; how many of ours is added to
+    /// `ours`. Written out, since the compiler goes through it most of the time.
+    [[nodiscard]] constexpr Span passing_before(std::size_t end, bool others_only, Span window,
+                                                std::int64_t& ours) const noexcept {
+        if (!window.exists()) return Span{};
+        std::int64_t sum = 0;
+        const FrameTiming* frame = frames_.data();
+        const std::int64_t* lead = lead_ns_.data();
+        for (std::size_t k = 0; k < end; ++k, ++frame, ++lead) {
+            if (others_only && frame->own) continue;
+            const std::int64_t from = window.ns + *lead;
+            if (*lead < 0 || from > analysis_max_ns) return Span{};
+            const std::int64_t count = (from + frame->period_ns - 1) / frame->period_ns;
+            std::int64_t time = 0;
+            if (__builtin_mul_overflow(count, frame->wire_ns, &time) || time > analysis_max_ns - sum)
+                return Span{};
+            sum += time;
+            if (frame->own) ours += count;
+        }
+        return Span{sum};
     }
     /// Until the less urgent ones in flight are through: what of ours waits meanwhile is late for everybody.
     [[nodiscard]] constexpr Span behind_those_in_flight(std::size_t index) const noexcept {
@@ -171,13 +194,11 @@ private:
         const Span first{std::max(longest_below_of_others(last_own_, which), frames_[index].wire_ns) +
                          before.ns};
         return analysis::fixed_point(first, steps, [&](Span window) {
-            Span sum = first + spoilt(window, last_own_);
-            for (std::size_t k = 0; k < last_own_; ++k)
-                if (!frames_[k].own) sum = sum + passing(window, k);
-            return sum;
+            std::int64_t ours = 0;
+            return first + spoilt(window, last_own_) + passing_before(last_own_, true, window, ours);
         });
     }
-    [[nodiscard]] constexpr FrameResponse of_own(std::size_t index) const noexcept {
+    [[nodiscard]] constexpr FrameResponse of_own(std::size_t index) noexcept {
         const FrameTiming& own = frames_[index];
         std::int64_t steps = analysis_max_steps;
         const InFlight before = in_flight_below(index);
@@ -191,11 +212,8 @@ private:
         std::size_t unused = 0;
         const std::int64_t idle = bus_.hand_over_ns - (bus_.in_flight - 1) * shortest_own_ns_;
         const std::int64_t gap = idle > 0 ? idle + longest_below_of_others(index, unused) : 0;
-        const auto gaps = [&](Span window) {
-            std::int64_t ahead = before.count;
-            for (std::size_t k = 0; k < index; ++k)
-                if (frames_[k].own) ahead += std::max<std::int64_t>(0, arrivals(window, k));
-            return (ahead + bus_.in_flight - 1) / bus_.in_flight * Span{gap};
+        const auto gaps = [&](std::int64_t ours) {
+            return (before.count + ours + bus_.in_flight - 1) / bus_.in_flight * Span{gap};
         };
         FrameResponse found;
         Span less_urgent{0}; // of others, while ours in flight wait
@@ -207,17 +225,21 @@ private:
             }
         const Span fixed = Span{blocking} + Span{before.ns} + less_urgent;
         const std::size_t spoils = before.count > 0 ? last_own_ : index; // up to the least urgent one ahead
-        const Span wait = analysis::fixed_point(fixed, steps, [&](Span window) {
-            Span sum = fixed + gaps(window) + spoilt(window + Span{own.wire_ns}, spoils);
-            for (std::size_t k = 0; k < index; ++k) sum = sum + passing(window, k);
-            return sum;
+        std::int64_t ours = 0; // that are more urgent, in the window
+        // What was found before can only have grown.
+        const Span start{std::max(fixed.ns, wait_ns_[index])};
+        const Span wait = analysis::fixed_point(fixed.exists() ? start : fixed, steps, [&](Span window) {
+            ours = 0;
+            const Span passed = passing_before(index, false, window, ours);
+            return fixed + gaps(ours) + spoilt(window + Span{own.wire_ns}, spoils) + passed;
         });
         if (!wait.exists()) return found;
-        for (std::size_t k = 0; k < index; ++k) consider(found, Part::others, k, passing(wait, k));
+        wait_ns_[index] = wait.ns;
+        consider_passing(found, wait, index);
         consider(found, Part::jitter, index, Span{own.jitter_ns});
         consider(found, Part::own_time, index, Span{own.wire_ns});
         consider(found, Part::in_flight, index, Span{before.ns});
-        consider(found, Part::handing_over, index, gaps(wait));
+        consider(found, Part::handing_over, index, gaps(ours));
         consider(found, blocker == index ? Part::own_time : Part::blocking, blocker, Span{blocking});
         consider(found, Part::errors, index, spoilt(wait + Span{own.wire_ns}, spoils));
         // Longer than a period: then the one before it waits as well, and nothing is known.
@@ -250,15 +272,14 @@ private:
         for (std::int64_t nth = 0; nth < frames; ++nth) {
             const Span before = blocking + nth * frame;
             const Span wait = analysis::fixed_point(before, steps, [&](Span window) {
-                Span sum = before + spoilt(window + frame, index);
-                for (std::size_t k = 0; k < index; ++k) sum = sum + passing(window, k);
-                return sum;
+                std::int64_t ours = 0;
+                return before + spoilt(window + frame, index) + passing_before(index, false, window, ours);
             });
             if (!wait.exists()) return found;
             if (const std::int64_t ns = jitter.ns + wait.ns - nth * own.period_ns + frame.ns; ns > worst_ns)
                 worst_ns = ns, worst_wait = wait;
         }
-        for (std::size_t k = 0; k < index; ++k) consider(found, Part::others, k, passing(worst_wait, k));
+        consider_passing(found, worst_wait, index);
         consider(found, Part::jitter, index, jitter);
         consider(found, Part::own_time, index, frame);
         consider(found, Part::blocking, blocker, blocking);
@@ -267,6 +288,15 @@ private:
         return found;
     }
 
+    /// What passing_before() has found to be a time.
+    constexpr void consider_passing(FrameResponse& found, Span window, std::size_t end) const noexcept {
+        for (std::size_t k = 0; k < end; ++k) {
+            const FrameTiming& frame = frames_.data()[k];
+            const std::int64_t from = window.ns + lead_ns_.data()[k];
+            const std::int64_t time = (from + frame.period_ns - 1) / frame.period_ns * frame.wire_ns;
+            if (time > found.largest_ns) found.largest = Part::others, found.of = k, found.largest_ns = time;
+        }
+    }
     static constexpr void consider(FrameResponse& found, Part part, std::size_t of, Span ns) noexcept {
         if (ns.ns <= found.largest_ns) return;
         found.largest = part, found.of = of, found.largest_ns = ns.ns;
@@ -274,10 +304,16 @@ private:
 
     std::span<const FrameTiming> frames_;
     BusTiming bus_;
+    std::array<std::size_t, most_frames> own_{}; // their places
+    std::size_t own_count_ = 0;
     std::size_t last_own_ = 0;
     std::int64_t shortest_own_ns_ = analysis_max_ns;
     std::array<std::int64_t, most_frames> worst_ns_{}; // of ours, as far as it is known
     std::array<std::int64_t, most_frames> late_ns_{};  // of ours, behind the less urgent ones in flight
+    std::array<std::int64_t, most_frames>
+        lead_ns_{}; // how much sooner than a window begins one still comes into it
+    std::array<std::int64_t, most_frames> wait_ns_{}; // of ours, as found so far
+    std::array<FrameResponse, most_frames> of_own_{};
     bool sensible_ = true;
 };
 

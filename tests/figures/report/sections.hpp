@@ -24,6 +24,9 @@ inline constexpr std::array sections{
             "What the ports of a component cost: a value or a packet from one component to another, in one activity and across two, on one core and on two."},
     Section{"dispatch", "Methods, commands, events and the engine",
             "What it costs to call, to ask and to tell; and what the engine of an activity adds to the components that it runs."},
+    Section{"wire", "From machine to machine",
+            "What crosses the CAN wire of a system: a value told and heard, an event with its answer, beside a program that packs, protects and sends the same "
+            "frames by hand, at a controller of memory."},
     Section{"behaviour", "State machines and programs",
             "Behaviours as C++ tables and as scripts, compiled with the firmware and loaded into the running machine."},
     Section{"motion", "The mathematics of motion",
