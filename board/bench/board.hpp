@@ -1,6 +1,6 @@
-// The bench: a PREEMPT_RT guest under QEMU with vcan, gpio-sim and Modbus servers on its own loopback. The
-// real kernel interfaces, no real wires; a scenario brings those of these devices up that its machine is
-// bound to.
+// The bench: a PREEMPT_RT guest under QEMU with vcan, gpio-sim and Modbus servers on its own loopback or on
+// pairs of pseudo-terminals. The real kernel interfaces, no real wires; a scenario brings those of these
+// devices up that its machine is bound to.
 #pragma once
 
 #include "kernel/machine/table/board.hpp"
@@ -18,7 +18,8 @@ inline constexpr Board bench{
                              board_device("can1", "can", "can1", bit_rate(1'000'000, 5'000'000)),
                              board_device("can2", "can", "can2", bit_rate(500'000)), // as 100 m have it
                              board_device("io", "gpio", "/dev/io", lines(32)),
-                             board_device("panel", "gpio", "/dev/panel", lines(32))),
+                             board_device("panel", "gpio", "/dev/panel", lines(32)),
+                             board_device("line", "serial", "/dev/line")), // a pseudo-terminal's end
     // The emulator has neither a frequency governor nor a clock that Linux trusts.
     .only_warned = warn_only("clock-source", "cpu-governor"),
     .kernel_command_line = "quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests",

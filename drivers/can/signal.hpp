@@ -3,7 +3,9 @@
 
 #include "drivers/can/frame.hpp"
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/realtime.hpp"
+#include "kernel/base/text.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -57,7 +59,8 @@ struct Signal {
     std::string_view unit{};
     double safe_value = 0; ///< of what is transmitted: sent when the machine's process is no more
     bool says_safe = false;
-    bool has_range = false; ///< of physical values, as they are sent: `least` and `most`
+    std::string_view safe_name{}; ///< instead of `safe_value`, which the map takes from `names`
+    bool has_range = false;       ///< of physical values, as they are sent: `least` and `most`
     double least = 0;
     double most = 0;
     /// The signal of the same frame that says by its value whether this one is in it; empty: it always is.
@@ -100,6 +103,14 @@ struct Signal {
     constexpr Signal safe(double value) const noexcept {
         Signal copy = *this;
         copy.safe_value = value;
+        copy.safe_name = {};
+        copy.says_safe = true;
+        return copy;
+    }
+    /// The value that its file calls so, or the list behind named(): safe("Neutral").
+    constexpr Signal safe(std::string_view value_name) const noexcept {
+        Signal copy = *this;
+        copy.safe_name = value_name;
         copy.says_safe = true;
         return copy;
     }
@@ -331,6 +342,42 @@ constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPE
     if (s.has_range && s.bits < 64)
         if (const Raw raw = to_raw(s, static_cast<double>(value)); raw.saturated) return raw;
     return {.bits = static_cast<std::uint64_t>(value) & detail::mask_of(s)};
+}
+
+/// The first value that is called so; null: none.
+constexpr const ValueName* value_called(const Signal& s, std::string_view name) noexcept {
+    for (const ValueName& each : s.names)
+        if (each.name == name) return &each;
+    return nullptr;
+}
+/// As its facet has it.
+constexpr double physical_of(const Signal& s, const ValueName& value) noexcept {
+    return static_cast<double>(value.value) * s.factor + s.offset;
+}
+/// Why a name does not say which value is meant.
+constexpr Sentence name_fault(std::string_view frame, const Signal& s, std::string_view name) noexcept {
+    const Sentence who{"signal \"", frame, ".", s.name, "\" calls "};
+    const ValueName* const value = value_called(s, name);
+    Nearest nearest{name};
+    for (const ValueName& each : s.names) {
+        nearest.consider(each.name);
+        if (each.name == name && &each != value)
+            return Sentence{who,
+                            value->value,
+                            " and ",
+                            each.value,
+                            " \"",
+                            name,
+                            "\"; name them apart, by VAL_ or by .named(..)"};
+    }
+    if (value != nullptr) return {};
+    const bool none = nearest.best().empty();
+    return Sentence{who,
+                    "no value \"",
+                    name,
+                    none ? "\"" : "\"; did you mean \"",
+                    nearest.best(),
+                    none ? "; name it by VAL_ in its file, or by .named(..)" : "\"?"};
 }
 
 } // namespace tappet::can

@@ -259,6 +259,8 @@ constexpr Sentence safe_fault(const FrameRow& frame, const Signal& s) noexcept {
                    ? Sentence{who, " has a safe value, but its frame is safe by silence: keep one of the two"}
                    : Sentence{who, " does not say its safe value: write .safe(..) behind it, or "
                                    ".safe_by_silence() behind the frame"};
+    if (!s.safe_name.empty())
+        if (const Sentence fault = name_fault(frame.name, s, s.safe_name); !fault.empty()) return fault;
     if (const Raw raw = to_raw(s, s.safe_value); s.says_safe && (raw.saturated || raw.refused))
         return Sentence{who, " cannot hold its safe value: it is outside of the signal's range"};
     return {};
@@ -433,6 +435,10 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
             map.frame_of[s] = f;
             map.places[s] = place_of(map.signals[s]);
+            Signal& one = map.signals[s];
+            if (!one.safe_name.empty())
+                if (const ValueName* const safe = value_called(one, one.safe_name); safe != nullptr)
+                    one.safe_value = physical_of(one, *safe);
             row.multiplexed |= !map.signals[s].multiplexor.empty();
             for (std::size_t other = row.first; other < s; ++other)
                 if (map.signals[other].name == map.signals[s].multiplexor) map.multiplexor_of[s] = other;

@@ -4,6 +4,7 @@
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/modbus/session.hpp"
 #include "drivers/modbus/transport.hpp"
+#include "drivers/modbus/trouble_text.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/facet_name.hpp"
 
@@ -39,6 +40,7 @@ template <const auto& map> struct Client {
     Output<bool> connected{};
     Output<std::int64_t> outages{};
     Output<std::int64_t> outages_survived{};
+    Output<Text<200>> reason{};
     Event<> lost{};
     Event<> back{};
 
@@ -54,6 +56,8 @@ template <const auto& map> struct Client {
         TAPPET_ESCAPE("this activity is not real-time", session_.emplace(map, *transport_));
         is_set_ = {};
         was_lost_ = false;
+        told_ = {};
+        reason.write({});
         connected.write(false);
         outages.write(0);
         outages_survived.write(0);
@@ -70,6 +74,7 @@ template <const auto& map> struct Client {
         connected.write(session_->connected());
         outages.write(static_cast<std::int64_t>(session_->counters().outages));
         outages_survived.write(static_cast<std::int64_t>(session_->counters().outages_survived));
+        tell_trouble();
         if (session_->outage() == was_lost_) return;
         was_lost_ = !was_lost_;
         if (was_lost_)
@@ -87,7 +92,7 @@ template <const auto& map> struct Client {
     [[nodiscard]] Counters counters() const noexcept { return session_->counters(); }
 
     static constexpr auto interface() {
-        std::array<Facet, count + 5> list{};
+        std::array<Facet, count + 6> list{};
         std::size_t n = 0;
         for (std::size_t v = 0; v < count; ++v) {
             const bool sent = is_written(v);
@@ -112,6 +117,8 @@ template <const auto& map> struct Client {
         list[n++] = output<&Client::connected>("connected", "", "the server answers");
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
         list[n++] = output<&Client::outages_survived>("outages_survived", "", "times it came back");
+        list[n++] = output<&Client::reason>(
+            "reason", "", "why it is lost, or which row it refuses, and the cure; written on change");
         list[n++] = event<&Client::lost>("lost", "the server does not answer");
         list[n++] = event<&Client::back>("back", "the server answers again");
         return list;
@@ -119,6 +126,15 @@ template <const auto& map> struct Client {
 
 private:
     static constexpr bool is_written(std::size_t v) noexcept { return map.rows[map.row_of[v]].write; }
+
+    void tell_trouble() noexcept {
+        const Trouble trouble = session_->trouble();
+        if (trouble == told_) return;
+        told_ = trouble;
+        Text<200> text;
+        if (trouble.outcome != Outcome::ok) text.append(to_text(map.rows[trouble.row].name, trouble).view());
+        reason.write(text);
+    }
 
     void exchange(const Cycle& cycle) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
@@ -154,6 +170,7 @@ private:
     }();
     std::array<bool, count> is_set_{}; ///< in the client, since start
     bool was_lost_ = false;
+    Trouble told_{};
 };
 
 } // namespace tappet::modbus

@@ -37,6 +37,14 @@ struct Counters {
     bool operator==(const Counters&) const = default;
 };
 
+/// A request that did not work, and how. `outcome` is ok when there is none.
+struct Trouble {
+    std::size_t row = 0;
+    Outcome outcome = Outcome::ok;
+    std::uint8_t exception = 0;
+    bool operator==(const Trouble&) const = default;
+};
+
 struct Backoff {
     Duration first = 100ms;
     /// Each failure doubles the wait, up to this. Its users wait as much longer for a server that is back.
@@ -87,6 +95,13 @@ public:
     [[nodiscard]] bool connected() const noexcept { return connected_; }
     /// Whether the server is lost: it answered once, or was tried, and does not answer now.
     [[nodiscard]] bool outage() const noexcept { return outage_; }
+    /// What is wrong now: why the server is lost, or else the first row that it refuses.
+    [[nodiscard]] Trouble trouble() const noexcept {
+        if (outage_) return lost_by_;
+        for (std::size_t r = 0; r < R; ++r)
+            if (exception_[r] != 0) return {r, Outcome::exception, exception_[r]};
+        return {};
+    }
     [[nodiscard]] Counters counters() const noexcept { return count_; }
     /// Rises with every answer: what stands for "something arrived".
     [[nodiscard]] std::uint64_t generation() const noexcept { return count_.answers; }
@@ -97,7 +112,7 @@ private:
         busy_until_ = now + answer.took;
         if (answer.outcome != Outcome::ok) {
             ++count_.refused;
-            return lose(now + answer.took);
+            return lose(now + answer.took, {most_urgent(), answer.outcome});
         }
         ++count_.connects;
         connected_ = true;
@@ -124,6 +139,7 @@ private:
                                         : transport_->read(row.run.table, address, words);
         const Time done = now + answer.took;
         busy_until_ = done;
+        exception_[r] = answer.exception;
         switch (answer.outcome) {
         case Outcome::ok:
             if (!row.write) take(row, done);
@@ -145,7 +161,7 @@ private:
         case Outcome::disconnected: break;
         }
         connected_ = transport_->recover();
-        return lose(done);
+        return lose(done, {r, answer.outcome});
     }
     /// False, and the change forgotten, when the row's values were never set or are too old to be sent.
     bool fresh(std::size_t r, Time now) noexcept {
@@ -178,8 +194,9 @@ private:
         if (outage_) ++count_.outages_survived;
         outage_ = false;
     }
-    Time lose(Time now) noexcept {
+    Time lose(Time now, const Trouble& by) noexcept {
         if (!outage_) ++count_.outages;
+        lost_by_ = by;
         outage_ = true;
         busy_until_ = now + wait_;
         wait_ = std::min(wait_ * 2, backoff_.most);
@@ -193,6 +210,8 @@ private:
     Time busy_until_ = Time::min();
     bool connected_ = false;
     bool outage_ = false;
+    Trouble lost_by_{};
+    std::array<std::uint8_t, R> exception_{}; ///< of each row's last answer; 0: none
     std::array<Time, R> due_at_{};
     std::array<Time, R> changed_at_ = [] {
         std::array<Time, R> none{};

@@ -33,6 +33,13 @@ inline std::string content_of(const std::string& path) {
     return {std::istreambuf_iterator<char>{file}, {}};
 }
 
+/// The process of the machine, a child of its guardian's; 0: it has none.
+inline pid_t machine_of(const Foreign& guardian) {
+    const std::string number = std::to_string(guardian.number());
+    return static_cast<pid_t>(
+        std::strtol(content_of("/proc/" + number + "/task/" + number + "/children").c_str(), nullptr, 10));
+}
+
 /// A number in the summary of the firmware; -1 when it is not there.
 inline double number_in(const std::string& json, std::string_view key) {
     const std::string wanted = "\"" + std::string{key} + "\": ";
@@ -83,12 +90,11 @@ public:
         outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
         return outcome;
     }
-    /// The number after "NAME = ".
+    /// A number with all of its digits; -1 when it is none.
     [[nodiscard]] double value_of(const std::string& name) const {
-        const Outcome outcome = run({"get", name});
-        const std::size_t at = outcome.text.find(" = ");
+        const Outcome outcome = run({"get", "--json", name});
         EXPECT_EQ(outcome.code, 0) << outcome.text;
-        return at == std::string::npos ? -1.0 : std::strtod(outcome.text.c_str() + at + 3, nullptr);
+        return number_in(outcome.text, "value");
     }
 
 private:

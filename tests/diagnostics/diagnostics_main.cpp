@@ -191,8 +191,8 @@ void judge(Case& each, const Options& options, const std::string& headers) {
     const auto [error, source] = first_error(output.text);
     const std::size_t lines = lines_of(output.text);
     const std::string stem = each.file.stem().string();
-    const bool is_script =
-        stem.starts_with("script_") || stem.starts_with("eds_") || stem.starts_with("network_");
+    const bool is_script = stem.starts_with("script_") || stem.starts_with("eds_") ||
+                           stem.starts_with("network_") || stem.starts_with("dbc_value_");
     const std::size_t most = !options.lines.empty() ? std::stoul(options.lines)
                              : is_script            ? most_script_lines
                                                     : most_lines;

@@ -250,6 +250,7 @@ private:
         if (!row.row->names.empty()) signal.names = row.row->names;
         signal.says_safe = row.row->says_safe;
         signal.safe_value = row.row->safe_value;
+        signal.safe_name = row.row->safe_name;
         return signal;
     }
 

@@ -22,13 +22,6 @@ using WallDuration = std::chrono::microseconds;
 
 inline WallTime wall_now() { return std::chrono::system_clock::now(); }
 
-/// The process of the machine, a child of its guardian's; 0: it has none.
-inline pid_t machine_of(const Foreign& guardian) {
-    const std::string number = std::to_string(guardian.number());
-    return static_cast<pid_t>(
-        std::strtol(content_of("/proc/" + number + "/task/" + number + "/children").c_str(), nullptr, 10));
-}
-
 /// The level that stands on a line of the simulated chip, whoever drives it.
 inline bool level(unsigned line) {
     return content_of("/sim/io/sim_gpio" + std::to_string(line) + "/value").starts_with('1');

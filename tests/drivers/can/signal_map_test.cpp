@@ -200,6 +200,24 @@ TEST(SignalMap, refuses_what_is_sent_and_says_no_safe_value) {
               "signal \"f.speed\" is received and has a safe value: only what is sent has one");
 }
 
+constexpr ValueName states[]{{0, "off"}, {1, "on"}, {2, "reserved"}, {3, "reserved"}};
+
+TEST(SignalMap, refuses_a_safe_value_whose_name_says_no_value) {
+    const auto named = [](const Signal& s) {
+        return fault(transmit(standard(1), "f", bytes(1), every(1ms), s));
+    };
+    const Signal lamp = signal("lamp", 0, 2).named(states);
+    EXPECT_EQ(named(lamp.safe("on")), "");
+    EXPECT_EQ(named(lamp.safe("onn")), "signal \"f.lamp\" calls no value \"onn\"; did you mean \"on\"?");
+    EXPECT_EQ(named(lamp.safe("glowing")),
+              "signal \"f.lamp\" calls no value \"glowing\"; name it by VAL_ in its file, or by .named(..)");
+    EXPECT_EQ(named(signal("lamp", 0, 2).safe("on")),
+              "signal \"f.lamp\" calls no value \"on\"; name it by VAL_ in its file, or by .named(..)");
+    EXPECT_EQ(named(lamp.safe("reserved")),
+              "signal \"f.lamp\" calls 2 and 3 \"reserved\"; name them apart, by VAL_ or by .named(..)");
+    EXPECT_EQ(named(lamp.safe(0)), "") << "a number is no name";
+}
+
 Frame drive_frame(std::uint8_t length = 6) {
     Frame f;
     f.id = 0x181;

@@ -194,6 +194,45 @@ TEST_F(Utility, gives_no_fresh_value_for_an_exception) {
     EXPECT_TRUE(reader->connected.get()) << "it does answer";
 }
 
+TEST_F(Utility, says_which_row_is_refused_and_how_until_it_is_answered) {
+    const auto reason = [this] { return server->reason.last().view(); };
+    run_until(1s);
+    EXPECT_EQ(reason(), "");
+    twin.set_exception(2);
+    twin.inject(modbus::Fault::exception);
+    run_until(2s);
+    EXPECT_EQ(reason(),
+              "row \"unit\": the server refuses it, exception 2 (illegal data address); correct the "
+              "map, or the server");
+    twin.inject(modbus::Fault::none);
+    run_until(3s);
+    EXPECT_EQ(reason(), "");
+    twin.set_exception(99);
+    twin.inject(modbus::Fault::exception);
+    run_until(4s);
+    EXPECT_EQ(reason(), "row \"unit\": the server refuses it, exception 99 (a code of the device's own); "
+                        "correct the map, or the server");
+}
+
+TEST_F(Utility, says_why_the_server_is_lost_and_no_more_when_it_is_back) {
+    const std::pair<modbus::Fault, std::string_view> reasons[]{
+        {modbus::Fault::silent,
+         "row \"unit\": no answer in time; look at the server's supply, its unit and the line's setting"},
+        {modbus::Fault::garbage_length,
+         "row \"unit\": what came is no answer to it; look at the line's setting, its cable and its ends"},
+        {modbus::Fault::down, "row \"unit\": no connection; look at the server's address, supply and cable"}};
+    for (const auto& [fault, reason] : reasons) {
+        run_until(clock.now() - Time{} + 2s);
+        EXPECT_EQ(server->reason.last().view(), "");
+        twin.inject(fault);
+        run_until(clock.now() - Time{} + 2s);
+        EXPECT_EQ(server->reason.last().view(), reason);
+        twin.inject(modbus::Fault::none);
+        run_until(clock.now() - Time{} + 5s);
+        EXPECT_EQ(server->reason.last().view(), "");
+    }
+}
+
 TEST_F(Utility, waits_for_one_answer_only_when_the_server_is_silent_and_two_rows_are_due) {
     run_until(1s);
     twin.inject(modbus::Fault::silent);

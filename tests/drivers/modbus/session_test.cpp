@@ -39,6 +39,21 @@ struct ModbusSession : testing::Test {
     Time now{};
 };
 
+TEST_F(ModbusSession, knows_what_is_wrong_and_that_a_lost_server_is_worse_than_a_refused_row) {
+    run_until(Time{1s});
+    EXPECT_EQ(session.trouble(), Trouble{});
+    server.set_exception(6);
+    server.inject(Fault::exception);
+    run_until(Time{2s});
+    EXPECT_EQ(session.trouble(), (Trouble{0, Outcome::exception, 6})) << "the first of both";
+    server.inject(Fault::silent);
+    run_until(Time{4s});
+    EXPECT_EQ(session.trouble().outcome, Outcome::timeout);
+    server.inject(Fault::none);
+    run_until(Time{8s});
+    EXPECT_EQ(session.trouble(), Trouble{});
+}
+
 TEST_F(ModbusSession, polls_its_rows_at_their_periods) {
     EXPECT_EQ(session.value(temperature).quality, Quality::never);
     run_until(Time{10s});

@@ -9,6 +9,7 @@
 #include "drivers/canopen/axis.hpp"
 #include "drivers/canopen/eds.hpp"
 #include "drivers/canopen/manager.hpp"
+#include "drivers/can/value_names.hpp"
 #include "drivers/gpio/far_end.hpp"
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/instruments/analog.hpp"

@@ -1,0 +1,76 @@
+// A signal's values by the names that its DBC file (VAL_), or the list behind named(), gives them: constants,
+// of which a machine makes its enumerations.
+//
+//     enum class Gear : std::int64_t {
+//         neutral = can::value_of<gearbox_signals, "gearbox.gear", "Neutral">,
+//         reverse = can::value_of<gearbox_signals, "gearbox.gear", "Reverse gear">,
+//     };
+//     static_assert(can::values_called<gearbox_signals, "gearbox.gear"> == 2); // the file has no others
+//     ...
+//     if (Gear{gear.get()} == Gear::reverse) ...
+#pragma once
+
+#include "drivers/can/signal_map.hpp"
+
+namespace tappet::can {
+
+namespace detail {
+
+template <std::size_t F, std::size_t S>
+constexpr Sentence path_fault(const SignalMap<F, S>& map, std::string_view path) noexcept {
+    if (!map.fault.empty() || map.signal(path) != no_such) return map.fault;
+    Nearest nearest{path};
+    std::array<Sentence, S> all{};
+    for (std::size_t s = 0; s < S; ++s) {
+        all[s] = Sentence{map.frames[map.frame_of[s]].name, ".", map.signals[s].name};
+        nearest.consider(all[s].view());
+    }
+    const bool none = nearest.best().empty();
+    return Sentence{"the map has no signal \"", path, none ? "\"" : "\"; did you mean \"", nearest.best(),
+                    none ? "; write it as frame.signal" : "\"?"};
+}
+template <std::size_t F, std::size_t S>
+constexpr Sentence value_fault(const SignalMap<F, S>& map, std::string_view path,
+                               std::string_view name) noexcept {
+    if (const Sentence fault = path_fault(map, path); !fault.empty()) return fault;
+    const std::size_t s = map.signal(path);
+    return name_fault(map.frames[map.frame_of[s]].name, map.signals[s], name);
+}
+
+template <const auto& map, text path, text name> struct CalledValue {
+    static constexpr Sentence fault = value_fault(map, path.view(), name.view());
+    TAPPET_ACCEPTED(fault);
+
+    static constexpr auto get() {
+        if constexpr (!fault.empty()) {
+            return std::int64_t{0};
+        } else {
+            constexpr const Signal& signal = map.signals[map.signal(path.view())];
+            constexpr const ValueName& value = *value_called(signal, name.view());
+            if constexpr (is_integer(signal))
+                return value.value;
+            else
+                return physical_of(signal, value);
+        }
+    }
+};
+
+template <const auto& map, text path> struct CalledValues {
+    static constexpr Sentence fault = path_fault(map, path.view());
+    TAPPET_ACCEPTED(fault);
+    static constexpr std::size_t count =
+        fault.empty() ? map.signals[map.signal(path.view())].names.size() : 0;
+};
+
+} // namespace detail
+
+/// The value that the signal "frame.signal" calls so, as its facet has it: an std::int64_t, or a double where
+/// it has a factor, an offset or is a float. A name that it has not stops the compiler.
+template <const auto& map, text path, text name>
+inline constexpr auto value_of = detail::CalledValue<map, path, name>::get();
+
+/// How many of its values have a name.
+template <const auto& map, text path>
+inline constexpr std::size_t values_called = detail::CalledValues<map, path>::count;
+
+} // namespace tappet::can

@@ -1,0 +1,12 @@
+// Where the device of this machine is reached on the bench.
+#pragma once
+
+#include "kernel/machine/table/binding.hpp"
+
+namespace tappet::modbus_line::bindings {
+
+// A pseudo-terminal has no parity.
+inline constexpr Binding bench =
+    binding(wired("line", "line", unit(1), serial_line(19'200, 'N', 1), answer_within(300ms)));
+
+} // namespace tappet::modbus_line::bindings
