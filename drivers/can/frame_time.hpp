@@ -39,6 +39,10 @@ constexpr std::int64_t frame_time_ns(Format format, bool extended, unsigned byte
     return time(slow_bits, slow) + time(fast_bits, fast);
 }
 
+/// The least that a frame takes whose longest time is known: without any stuffing at least four fifths of its
+/// bits are left.
+constexpr std::int64_t least_time_ns(std::int64_t longest_ns) noexcept { return longest_ns * 4 / 5; }
+
 /// Of one frame; a remote one carries nothing, whatever its length says.
 constexpr std::int64_t frame_time_ns(const Frame& frame, BitRates rates) noexcept {
     return frame_time_ns(format_of(frame), frame.extended, frame.remote ? 0u : frame.length, rates);

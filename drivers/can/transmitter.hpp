@@ -2,6 +2,7 @@
 // them stale.
 #pragma once
 
+#include "drivers/can/frame_time.hpp"
 #include "drivers/can/transmit_queue.hpp"
 #include "kernel/base/bounded.hpp"
 
@@ -12,10 +13,12 @@ namespace tappet::can {
 inline constexpr std::uint32_t most_in_flight = 8; // the kernel's own queue refuses the eleventh
 
 /// The fewest that keep the bus busy until the next one is handed over, which takes `hand_over`; more would
-/// only hold up what is more urgent. `shortest`: of this machine's frames, on the wire.
+/// only hold up what is more urgent. `shortest`: of this machine's frames, on the wire with all their
+/// stuffing.
 constexpr std::uint32_t frames_in_flight(Duration hand_over, Duration shortest) noexcept {
+    const Duration least{least_time_ns(shortest.count())};
     std::uint32_t fewest = 2;
-    while (fewest < most_in_flight && hand_over > (fewest - 1) * shortest) ++fewest;
+    while (fewest < most_in_flight && hand_over > (fewest - 1) * least) ++fewest;
     return fewest;
 }
 

@@ -159,14 +159,7 @@ struct StationRows {
         for (const WireFrame& frame : plan.frames) {
             if (frame.node != n && !is_heard(frame)) continue;
             on_wire += (window + frame.jitter) / frame.apart + 1;
-            // Without any stuffing; of CAN FD what goes in each of its two rates.
-            const std::int64_t bits = 8 * std::int64_t{frame.bytes};
-            const BitRate rate = system.wire.rate;
-            const std::int64_t ns = format_of(system.wire, frame) == can::Format::classical
-                                        ? (47 + bits) * 1'000'000'000 / rate.bits_per_second
-                                        : 29 * 1'000'000'000LL / rate.bits_per_second +
-                                              (26 + bits) * 1'000'000'000 / rate.in_data_phase;
-            shortest = std::min(shortest, Duration{ns});
+            shortest = std::min(shortest, Duration{can::least_time_ns(frame.on_wire.count())});
             if (frame.node == n && frame.kind != WireFrameKind::answer &&
                 frame.kind != WireFrameKind::received)
                 timers += window / frame.apart + 1;
