@@ -35,7 +35,8 @@ struct Longest {
 class Story {
 public:
     static constexpr std::size_t first_event = 1, first_command = 3; ///< crossings, of either sender
-    static constexpr Duration pause = trio.crossings[first_event].at_most_per;
+    // And a cycle of the sender's more: what is asked for is emitted or sent in the next one.
+    static constexpr Duration pause = trio.crossings[first_event].at_most_per + 5ms;
     static constexpr Duration reader =
         sender_table.activities[0].period + sender_table.activities[0].deadline();
 
