@@ -210,8 +210,13 @@ private:
         // When all that were in flight are through before more are handed over, somebody less urgent may
         // begin in between; then as many as may be in flight are handed over together.
         std::size_t unused = 0;
-        const std::int64_t idle = bus_.hand_over_ns - (bus_.in_flight - 1) * least_time_ns(shortest_own_ns_);
-        const std::int64_t gap = idle > 0 ? idle + longest_below_of_others(index, unused) : 0;
+        // With all their stuffing or without it: what they take less of the bus they leave to that gap.
+        const std::int64_t behind = (bus_.in_flight - 1) * shortest_own_ns_;
+        const bool may_idle = bus_.hand_over_ns > least_time_ns(behind);
+        const std::int64_t gap = may_idle
+                                     ? std::max<std::int64_t>(0, bus_.hand_over_ns - behind +
+                                                                     longest_below_of_others(index, unused))
+                                     : 0;
         const auto gaps = [&](std::int64_t ours) {
             return (before.count + ours + bus_.in_flight - 1) / bus_.in_flight * Span{gap};
         };

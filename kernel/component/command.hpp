@@ -96,7 +96,8 @@ public:
 
     /// Before anybody sends. `values` has room for the command's value_bytes() and outlives the slot.
     void place(const Route& route, std::byte* values) noexcept { route_ = route, values_ = values; }
-    /// What wait() sleeps on; before anybody sends. Not in the slot, whose memory may be another's at its end.
+    /// What wait() sleeps on; before anybody sends. Not in the slot, whose memory may be another's at its
+    /// end.
     void wait_on(os::Waiter& ended) noexcept { ended_ = &ended; }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return route_.command != nullptr; }
 

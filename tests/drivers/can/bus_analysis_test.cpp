@@ -185,8 +185,8 @@ TEST(BusAnalysis, of_ours_counts_the_time_until_more_is_handed_over) {
             .response;
     };
     EXPECT_EQ(third(2, 80 * us), worst(500 * us)) << "handed over while the second is on the wire, unstuffed";
-    EXPECT_EQ(third(2, 100 * us), worst(720 * us)) << "an idle bus for 20 us, and then the frame of others";
-    EXPECT_EQ(third(2, 150 * us), worst(770 * us));
+    EXPECT_EQ(third(2, 100 * us), worst(700 * us)) << "the frame of others, as the second may be unstuffed";
+    EXPECT_EQ(third(2, 150 * us), worst(750 * us)) << "an idle bus for 50 us, and then the frame of others";
     EXPECT_EQ(frames_in_flight(150us, 100us), 3u);
     EXPECT_EQ(frames_in_flight(0us, 100us), 2u);
     EXPECT_EQ(frames_in_flight(100ms, 100us), most_in_flight);

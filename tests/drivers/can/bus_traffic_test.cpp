@@ -97,7 +97,7 @@ TEST(BusTraffic, is_refused_when_the_machine_is_too_slow_to_hand_over) {
     }(std::make_index_sequence<names.size()>{});
     EXPECT_EQ(
         refused,
-        "frame \"b\" may take 23987 us but is due within 20000 us; most of it, 15272 us, is the time until "
+        "frame \"b\" may take 23805 us but is due within 20000 us; most of it, 15090 us, is the time until "
         "more frames are handed over, when those in flight are through; shorten the response of the activity "
         "that drives the bus");
 }
