@@ -15,14 +15,18 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
+/// As the user calls it.
+std::string name_of(const Seen& seen) {
+    const MapReader& map = seen.session->map();
+    return map.place().empty() ? std::string{map.text(map.header().machine)}
+                               : map.place().substr(0, map.place().size() - 1);
+}
+
 /// Of those that were looked at, who has ended; nothing: none has.
 Result<void> ended(std::span<const Seen> all, const std::vector<bool>& has_ended) {
     std::string names;
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (has_ended[i]) {
-            const MapReader& map = all[i].session->map();
-            names += (names.empty() ? "" : ", ") + std::string{map.text(map.header().machine)};
-        }
+        if (has_ended[i]) names += (names.empty() ? "" : ", ") + name_of(all[i]);
     if (names.empty()) return {};
     return std::unexpected(
         Failure{Fault::no_machine, all.size() == 1 ? "the machine has ended; what was shown last is its last"
@@ -51,9 +55,8 @@ WatchRow row_of(const MapReader& map, const Reading& reading, const std::string&
 std::string title_of(std::span<const Seen> all, long picture) {
     std::string title;
     for (const Seen& each : all) {
-        const MapReader& map = each.session->map();
         const std::uint32_t forced = each.session->observer().forced();
-        title += std::string{map.text(map.header().machine)} + "  " + each.session->role() + "  ";
+        title += name_of(each) + "  " + each.session->role() + "  ";
         if (forced > 0) title += std::to_string(forced) + " FORCED  ";
     }
     return title + "picture " + std::to_string(picture);
@@ -104,6 +107,14 @@ Result<void> watch_on_screen(Work& work, std::span<const Seen> all) {
     return ended(all, has_ended);
 }
 
+/// Of one among others, at once: its values just stop otherwise.
+void tell_end(const Work& work, const Seen& seen) {
+    if (work.line.json)
+        work.out << "{\"machine\": " << in_quotes(name_of(seen)) << ", \"ended\": true}" << std::endl;
+    else
+        work.out << name_of(seen) << ": the machine has ended" << std::endl;
+}
+
 Result<void> watch_in_lines(Work& work, std::span<const Seen> all) {
     auto next = Steady::now();
     std::vector<bool> has_ended(all.size(), false);
@@ -120,7 +131,10 @@ Result<void> watch_in_lines(Work& work, std::span<const Seen> all) {
         while (!work.stopped() && Steady::now() < next) {
             std::this_thread::sleep_for(
                 std::min<Steady::duration>(next - Steady::now(), std::chrono::milliseconds{100}));
+            const std::vector<bool> before = has_ended;
             if (all_ended(all, has_ended)) return ended(all, has_ended);
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (has_ended[i] && !before[i]) tell_end(work, all[i]);
         }
     }
     return ended(all, has_ended);

@@ -6,8 +6,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <filesystem>
 #include <sstream>
+#include <thread>
 
 namespace tappet::browser {
 namespace {
@@ -141,6 +143,20 @@ TEST_F(Several, one_that_is_down_is_told_and_the_other_goes_on) {
     const Outcome each = run({"forced"});
     EXPECT_EQ(each.code, 3);
     EXPECT_THAT(each.out, HasSubstr("saw:\n"));
+}
+
+TEST_F(Several, one_that_ends_while_it_is_watched_is_told_and_the_other_is_watched_on) {
+    saw.write("shaft.angle", 12.5);
+    std::jthread ending{[this] {
+        std::this_thread::sleep_for(std::chrono::milliseconds{200});
+        drill.end();
+    }};
+    const Outcome watched =
+        run({"watch", "drill.shaft.angle", "saw.shaft.angle", "--every", "100ms", "--count", "20"});
+    EXPECT_EQ(watched.code, 3);
+    EXPECT_THAT(watched.out,
+                testing::ContainsRegex("\ndrill: the machine has ended\n(saw.shaft.angle = 12.5 deg\n)+$"));
+    EXPECT_THAT(watched.errors, HasSubstr("drill ended; what was shown last is the last"));
 }
 
 TEST_F(Several, one_that_does_not_answer_in_time_is_told_and_the_other_goes_on) {
