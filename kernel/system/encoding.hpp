@@ -75,16 +75,23 @@ namespace on_wire {
 constexpr std::uint64_t take_bits(std::span<const std::uint8_t> from, std::size_t at,
                                   std::size_t bits) noexcept TAPPET_REALTIME {
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < bits; ++i)
-        value |= static_cast<std::uint64_t>(from[(at + i) / 8] >> (at + i) % 8 & 1u) << i;
+    for (std::size_t done = 0; done < bits;) { // what stands in one byte at a time
+        const std::size_t shift = (at + done) % 8, count = std::min(8 - shift, bits - done);
+        const unsigned part = static_cast<unsigned>(from[(at + done) / 8]) >> shift & ((1u << count) - 1u);
+        value |= std::uint64_t{part} << done;
+        done += count;
+    }
     return value;
 }
 constexpr void put_bits(std::span<std::uint8_t> into, std::size_t at, std::size_t bits,
                         std::uint64_t value) noexcept TAPPET_REALTIME {
-    for (std::size_t i = 0; i < bits; ++i) {
-        std::uint8_t& byte = into[(at + i) / 8];
-        const auto mask = static_cast<std::uint8_t>(1u << (at + i) % 8);
-        byte = static_cast<std::uint8_t>((value >> i & 1u) != 0 ? byte | mask : byte & ~mask);
+    for (std::size_t done = 0; done < bits;) {
+        const std::size_t shift = (at + done) % 8, count = std::min(8 - shift, bits - done);
+        std::uint8_t& byte = into[(at + done) / 8];
+        const unsigned mask = ((1u << count) - 1u) << shift;
+        byte = static_cast<std::uint8_t>((byte & ~mask) |
+                                         (static_cast<unsigned>(value >> done) << shift & mask));
+        done += count;
     }
 }
 

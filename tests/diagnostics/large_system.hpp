@@ -75,7 +75,7 @@ inline void write_system(std::ostream& out, const SystemSize& size) {
     for (std::size_t n = 0; n < size.machines; ++n) {
         const auto tell = [&](const char* from, std::size_t to, const char* input) {
             out << "        across(data(" << of(n, from) << ", " << of(to, input)
-                << ", stale_after(100ms), hold), every(20ms), in_bits(12, 0.5)),\n";
+                << ", stale_after(200ms), hold), every(50ms), in_bits(12, 0.5)),\n";
         };
         tell("level", n + 1, "next_level");
         tell("force", n + 1, "next_force");

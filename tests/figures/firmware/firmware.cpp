@@ -1,5 +1,5 @@
 // What the carpet loom's firmware takes: its size, the memory it has, and how soon it is armed, as it tells
-// after weaving on the bench.
+// after weaving on the bench. And how large a station of the lane is, which has its end of a wire in it.
 #include "tests/figures/measure/candidates.hpp"
 
 #include <nlohmann/json.hpp>
@@ -93,15 +93,20 @@ int main(int argc, char** argv) {
     Result result{.program = "firmware", .setting = options.setting};
     const fs::path folder = fs::temp_directory_path() / ("tappet-firmware-" + std::to_string(::getpid()));
     fs::create_directories(folder);
-    const double size = static_cast<double>(fs::file_size(TAPPET_FIRMWARE)) / megabyte;
-    result.figures.push_back({"firmware.size",
-                              "size of the loom's firmware, stripped",
-                              "MB",
-                              "",
-                              "one static binary with kernel, drivers, script compiler and behaviours",
-                              {single("carpet loom for the bench", Standing::ours, size),
-                               single("a static program that opens a GPIO chip and a thread", Standing::floor,
-                                      stripped_bytes(TAPPET_EMPTY, folder) / megabyte)}});
+    const auto size_of = [](const char* file) { return static_cast<double>(fs::file_size(file)) / megabyte; };
+    const double size = size_of(TAPPET_FIRMWARE);
+    result.figures.push_back(
+        {"firmware.size",
+         "size of firmwares, stripped",
+         "MB",
+         "",
+         "one static binary with kernel, drivers, script compiler and behaviours",
+         {single("carpet loom for the bench", Standing::ours, size),
+          single("a static program that opens a GPIO chip and a thread", Standing::floor,
+                 stripped_bytes(TAPPET_EMPTY, folder) / megabyte),
+          single("station of the woodworking lane, with its end of the wire", Standing::ours,
+                 size_of(TAPPET_STATION)),
+          single("conveyor of the lane, likewise", Standing::ours, size_of(TAPPET_CONVEYOR))}});
     result.goals.push_back({"firmware of the loom: <= 1 MB stripped", 1, size, "MB", "firmware.size"});
     if (!options.only.empty() && std::string{"firmware.size"}.contains(options.only)) {
         result.notes.emplace_back("only the size was asked for");

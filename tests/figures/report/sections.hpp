@@ -38,8 +38,9 @@ inline constexpr std::array sections{
     Section{"scope", "Watching: the thread scope", "What recording every function of every activity costs the machine that is watched."},
     Section{"recording", "Reporting: a hundred ports", "What recording values costs the machine that is recorded."},
     Section{"scale", "Scale",
-            "Generated machines of growing size: what the compiler takes, what the firmware takes, and what one component costs at run time."},
-    Section{"firmware", "The firmware of the carpet loom", "Its size, its memory, and the time from its start to an armed machine."},
+            "Generated machines of growing size: what the compiler takes, what the firmware takes, and what one component costs at run time. And one machine of a "
+            "generated system."},
+    Section{"firmware", "The firmware of the carpet loom", "Its size, its memory, and the time from its start to an armed machine. The size of a station of the lane, too."},
     Section{"floors", "Floors of this machine",
             "What no framework can beat: copies, single words, hand-overs between cores, wakes and system calls, so that a reader knows the machine."},
 };

@@ -1,6 +1,7 @@
 // Generates, compiles, links and runs machines, and draws what it takes over their size.
 #include "tests/figures/scale/grow.hpp"
 
+#include "tests/diagnostics/large_system.hpp"
 #include "tests/figures/measure/read_result.hpp"
 #include "tests/figures/scale/child.hpp"
 #include "tests/figures/scale/generate.hpp"
@@ -103,6 +104,40 @@ public:
         }
         report();
     }
+    /// One machine's firmware of a system: what each of its boxes waits for.
+    void compile_system(const diagnostics::SystemSize& size) {
+        const std::string source = shop_.file("system.cpp"), count = std::to_string(size.machines);
+        const std::string title =
+            ", one machine of " + count + " with " + std::to_string(size.crossings()) + " rows across";
+        {
+            std::ofstream file{source};
+            diagnostics::write_system(file, size);
+            if (!file.flush()) return result_.notes.push_back(source + " cannot be written");
+        }
+        const std::string how =
+            "processor time of one compilation of one translation unit that holds the system's table, "
+            "its frames, the proof of its wire and the machine's end of it";
+        Figure time{
+            .id = "scale.system.time." + count, .title = "compiling" + title, .unit = "s", .how = how};
+        Figure memory{.id = "scale.system.memory." + count,
+                      .title = "memory of the compiler" + title,
+                      .unit = "MB",
+                      .how = "its largest resident size"};
+        for (auto& [name, words] :
+             {std::pair{std::string{"g++"}, gcc_words()}, {std::string{clang}, clang_words()}}) {
+            if (options_.setting == "smoke" && name == clang) continue;
+            const auto used = compile(words, source, shop_.file("system.o"));
+            if (!used) {
+                result_.notes.push_back("a system of " + count + " machines: " + used.error());
+                continue;
+            }
+            time.rows.push_back(row_of(name, Standing::ours, one(used->processor_s)));
+            memory.rows.push_back(row_of(name, Standing::ours, one(used->memory_mb)));
+        }
+        if (time.rows.empty()) return;
+        result_.figures.push_back(std::move(time));
+        result_.figures.push_back(std::move(memory));
+    }
 
 private:
     std::map<What, Summary>& at(std::size_t size) { return measured_[size]; }
@@ -139,10 +174,14 @@ private:
             if (!flag.starts_with("-fconstexpr")) words.push_back(flag);
         return words;
     }
+    [[nodiscard]] std::expected<Used, std::string> compile(Words words, const std::string& source,
+                                                           const std::string& object) {
+        add(words, {"-I" + tools_.words("source").front(), "-c", source, "-o", object});
+        return run_child(words, shop_.file("log"));
+    }
     Fault compile(std::size_t size, Words words, const std::string& source, const std::string& object,
                   What seconds, What memory) {
-        add(words, {"-I" + tools_.words("source").front(), "-c", source, "-o", object});
-        const auto used = run_child(words, shop_.file("log"));
+        const auto used = compile(std::move(words), source, object);
         if (!used) return used.error();
         at(size)[seconds] = one(used->processor_s);
         at(size)[memory] = one(used->memory_mb);
@@ -338,6 +377,10 @@ Growth growth(const Options& options) {
 
 void measure_growth(const Options& options, const Toolset& tools, Result& result) {
     Growing{options, tools, result}.run();
+}
+
+void measure_system(const Options& options, const Toolset& tools, Result& result) {
+    Growing{options, tools, result}.compile_system({options.setting == "smoke" ? 3u : 10u});
 }
 
 } // namespace tappet::figures

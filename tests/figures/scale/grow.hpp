@@ -29,5 +29,7 @@ Growth growth(const Options& options);
 
 /// Adds figures, plots and goals; what could not be done goes into the notes.
 void measure_growth(const Options& options, const Toolset& tools, Result& result);
+/// Likewise, of compiling one machine of a system: ten on one wire, with a hundred rows across.
+void measure_system(const Options& options, const Toolset& tools, Result& result);
 
 } // namespace tappet::figures

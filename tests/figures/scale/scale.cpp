@@ -1,4 +1,5 @@
-// What size costs: machines of 10 to 1000 components, and a jacquard head of 12288 hooks.
+// What size costs: machines of 10 to 1000 components, a system of ten machines, and a jacquard head of 12288
+// hooks.
 #include "tests/figures/scale/grow.hpp"
 #include "tests/figures/scale/jacquard.hpp"
 
@@ -28,13 +29,13 @@ int measure(int argc, char** argv) {
     Result result{.program = "scale", .setting = options.setting};
     run_candidates(options, argv, jacquard_groups(), {}, result);
     judge_picks(result);
-    if (options.only.empty() || std::string{"scale.machine"}.find(options.only) != std::string::npos) {
-        const auto tools = Toolset::read(TAPPET_SCALE_BUILD);
-        if (tools)
-            measure_growth(options, *tools, result);
-        else
-            result.notes.push_back(tools.error());
-    }
+    const auto wanted = [&](const char* id) {
+        return options.only.empty() || std::string{id}.find(options.only) != std::string::npos;
+    };
+    const auto tools = Toolset::read(TAPPET_SCALE_BUILD);
+    if (!tools) result.notes.push_back(tools.error());
+    if (tools && wanted("scale.machine")) measure_growth(options, *tools, result);
+    if (tools && wanted("scale.system")) measure_system(options, *tools, result);
     return finish(options, result);
 }
 

@@ -29,6 +29,8 @@ TEST(ScaleFigures, measure_a_machine_from_its_source_to_its_step) {
     expect_between("scale.memory.10", "all", 16, 1000); // a stack at least, in kB
     expect_between("scale.start.10", "constructed, wired, configured", 0.1, 1e6);
     expect_between("scale.step.10", "engines", 1, 1e5);
+    expect_between("scale.system.time.3", "g++", 0.1, 100);
+    expect_between("scale.system.memory.3", "g++", 50, 2000);
     for (const char* figure : {"scale.jacquard.can", "scale.jacquard.registers", "scale.step.10"})
         EXPECT_TRUE(std::ranges::any_of(result.figures, [&](const Figure& each) {
             return each.id == figure && std::ranges::count(each.rows, Standing::floor, &Row::role) == 1;
