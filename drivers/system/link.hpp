@@ -72,7 +72,7 @@ struct Link {
         state_ = {};
         for (std::size_t i = 0; i < row_count; ++i) {
             const Crossing& row = Rows::crossing(i);
-            state_[i].sender.configure(row.within - system.wire.service.deadline, row.within / 2);
+            state_[i].sender.configure(row.within - system.wire.service.deadline, row.within / 2, sent_by[i]);
         }
         for (std::size_t f = 0; f < due_.size(); ++f) due_[f] = Rows::is_periodic(f) ? cycle.now : never;
         for (ProtectionCheck& each : checks_) each.reset();
@@ -206,6 +206,18 @@ private:
     }
     /// A row that another version does not have is never told of. Twice: a beat may be lost.
     static constexpr std::uint8_t told_twice = 2;
+    /// Of each row: a message that is sent later could be served after its time. Of replies no time is
+    /// promised.
+    static constexpr std::array<Duration, row_count> sent_by = [] {
+        std::array<Duration, row_count> all{};
+        for (std::size_t i = 0; i < row_count; ++i) {
+            all[i] = Rows::crossing(i).within;
+            if (Rows::crossing(i).kind != CrossingKind::data && Rows::is_from_here(i))
+                all[i] -= plan.frames[Rows::message_frame(i)].worst + system.wire.service.deadline +
+                          read_within(system.view(), Rows::index(i).to);
+        }
+        return all;
+    }();
     [[nodiscard]] bool knows_rows_of(std::size_t node) const noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < row_count; ++i)
             if (Rows::other(i) == node && !state_[i].agreed && !state_[i].is_refused) return false;

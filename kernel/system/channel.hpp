@@ -57,8 +57,10 @@ public:
         std::span<const std::uint8_t> bytes{};
     };
 
-    /// A message is sent again after `again`, and given up after `within`.
-    constexpr void configure(Duration within, Duration again) noexcept { within_ = within, again_ = again; }
+    /// A message is sent again after `again`, but not later than `sent_by`, and given up after `within`.
+    constexpr void configure(Duration within, Duration again, Duration sent_by) noexcept {
+        within_ = within, again_ = again, sent_by_ = sent_by;
+    }
 
     /// A new session with the other end.
     constexpr void begin() noexcept TAPPET_REALTIME {
@@ -85,18 +87,21 @@ public:
         ++count.offered;
         state_ = State::sends;
         ends_ = since + within_;
+        last_ = since + sent_by_;
         was_sent_ = false;
     }
     /// When due() has something to do.
     [[nodiscard]] constexpr Time next() const noexcept TAPPET_REALTIME {
         if (state_ == State::idle) return never;
-        return state_ == State::sends ? std::min(may_send_, ends_) : may_send_;
+        if (state_ == State::gives_up) return may_send_;
+        return may_send_ <= last_ ? std::min(may_send_, ends_) : ends_;
     }
     /// The frame to send at `now`, if there is one. Two of a channel stand `again` apart, whatever they are.
     [[nodiscard]] constexpr bool due(Time now, Frame& frame) noexcept TAPPET_REALTIME {
         if (now >= ends_) give_up();
         if (state_ == State::idle || now < may_send_) return false;
         const bool sends = state_ == State::sends;
+        if (sends && now > last_) return false; // it would be served after its time
         if (was_sent_) ++count.repeated;
         was_sent_ = true;
         may_send_ = now + again_;
@@ -124,13 +129,13 @@ public:
     SendCounts count{};
 
 private:
-    Duration within_{}, again_{};
+    Duration within_{}, again_{}, sent_by_{};
     std::array<std::uint8_t, most_bytes> bytes_{};
     std::uint8_t length_ = 0;
     std::uint8_t number_ = 0, answered_ = 0, lost_answered_ = 0;
     State state_ = State::idle;
     bool was_sent_ = false;
-    Time ends_{};
+    Time ends_{}, last_{};
     Time may_send_ = Time::min();
 };
 

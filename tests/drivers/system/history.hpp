@@ -68,7 +68,6 @@ struct Channel {
 /// What the rows say.
 struct Times {
     Duration event{}, command{}; ///< from the emission, or the sending, until it is served or given up
-    Duration late{};             ///< by how much what was sent just before that is served behind it
     Duration reader{};           ///< until a sender is told of what its node knows
     Duration drift{};            ///< of clocks against the true time, in all of that
 };
@@ -203,7 +202,7 @@ inline Fault counts_agree(const History& history) {
 /// it; a command ends unless its sender does.
 inline Fault in_time(const History& history) {
     const Times& times = history.times;
-    const Duration late = times.late + times.drift;
+    const Duration late = times.drift;
     for (const Served& each : history.served) {
         const auto from = find_number(history.emitted, each.number);
         if (from != history.emitted.end() && each.at - from->at > times.event + late)

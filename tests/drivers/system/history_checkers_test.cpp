@@ -15,7 +15,7 @@ Time at(std::int64_t ms) { return Time{} + ms * 1ms; }
 /// executed all the same; 15 was refused, and 3 did not leave its node.
 History right_one() {
     History history;
-    history.times = {.event = 30ms, .command = 30ms, .late = 0ms, .reader = 5ms, .drift = 0ms};
+    history.times = {.event = 30ms, .command = 30ms, .reader = 5ms, .drift = 0ms};
     history.receiver = taker;
     history.lives = {{{at(0)}}, {{at(0)}}, {{at(0)}}};
     history.emitted = {{one, 1, at(10)}, {two, 2, at(12)}, {one, 3, at(60)}, {two, 4, at(65)}};

@@ -46,7 +46,6 @@ public:
         history().receiver = taker_node;
         history().times = {.event = trio.crossings[first_event].within,
                            .command = trio.crossings[first_command].within,
-                           .late = longest_frame + reader,
                            .reader = reader,
                            .drift = 10us};
         history().lives.resize(nodes);
@@ -107,11 +106,6 @@ public:
 
 private:
     static constexpr std::size_t nodes = trio.nodes.size();
-    static constexpr Duration longest_frame = [] {
-        Duration longest{};
-        for (const WireFrame& frame : systems::plan_of<trio>.frames) longest = std::max(longest, frame.worst);
-        return longest;
-    }();
     struct ChannelRow {
         std::string_view name{};
         std::size_t crossing = 0, sender = 0, receiver = 0;
