@@ -19,6 +19,8 @@
 #include "kernel/machine/table/board.hpp"
 #include "kernel/machine/table/machine.hpp"
 
+#include <concepts>
+
 namespace tappet {
 
 /// One machine of the system. The same table may stand in several rows.
@@ -307,15 +309,16 @@ struct System {
     }
 };
 
-template <class... Rows>
+// Of rows only: a slot of a machine has its nodes(32), too.
+template <std::same_as<SystemNode>... Rows>
 constexpr Section<SystemNode, sizeof...(Rows)> nodes(const Rows&... rows) {
     return {{rows...}};
 }
-template <class... Rows>
+template <std::same_as<Crossing>... Rows>
 constexpr Section<Crossing, sizeof...(Rows)> crossings(const Rows&... rows) {
     return {{rows...}};
 }
-template <class... Rows>
+template <std::same_as<PromiseRow>... Rows>
 constexpr Section<PromiseRow, sizeof...(Rows)> promises(const Rows&... rows) {
     return {{rows...}};
 }
