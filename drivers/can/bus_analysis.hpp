@@ -133,8 +133,8 @@ private:
         std::size_t taken = frames_.size();
         while (found.count < bus_.in_flight) {
             std::size_t next = frames_.size();
-            for (std::size_t i = own_count_; i-- > 0 && own_[i] > index;) {
-                const std::size_t k = own_[i];
+            for (std::size_t i = own_count_; i > 0 && own_[i - 1] > index; --i) {
+                const std::size_t k = own_[i - 1];
                 if (is_through_before(k, index)) continue;
                 const bool left = frames_[k].wire_ns < limit || (frames_[k].wire_ns == limit && k > taken);
                 if (left && (next == frames_.size() || frames_[k].wire_ns >= frames_[next].wire_ns)) next = k;

@@ -4,6 +4,8 @@
 
 #include "drivers/can/device.hpp"
 #include "drivers/system/link_facets.hpp"
+#include "drivers/system/link_state.hpp"
+#include "drivers/system/link_values.hpp"
 #include "drivers/system/wire_protocol.hpp"
 #include "kernel/base/bounded_text.hpp"
 #include "kernel/component/component.hpp"
@@ -20,6 +22,7 @@ struct Link {
     using Rows = NodeRows<system, n>;
     static constexpr std::size_t this_node = n;
     static constexpr auto& plan = Rows::plan;
+    static constexpr const WireRow& wire = system.wire;
     static constexpr std::size_t node_count = system.nodes.size();
     static constexpr std::size_t row_count = Rows::row_count;
     static constexpr std::size_t frame_count = Rows::plan.frames.size();
@@ -72,7 +75,8 @@ struct Link {
         state_ = {};
         for (std::size_t i = 0; i < row_count; ++i) {
             const Crossing& row = Rows::crossing(i);
-            state_[i].sender.configure(row.within - system.wire.service.deadline, row.within / 2, sent_by[i]);
+            state_[i].sender.configure(row.within - system.wire.service.deadline, row.within / 2,
+                                       Rows::sent_by[i]);
         }
         for (std::size_t f = 0; f < due_.size(); ++f) due_[f] = Rows::is_periodic(f) ? cycle.now : never;
         for (ProtectionCheck& each : checks_) each.reset();
@@ -111,39 +115,11 @@ struct Link {
 
 private:
     friend struct LinkFacets<Link>;
+    friend struct LinkValues<Link>;
 
-    /// Another node, as it is heard.
-    struct Peer {
-        bool there = false;
-        std::uint16_t epoch = 0;
-        Time silent_at = never;
-        Time begun = Time::min();    ///< this start of it was heard first
-        std::uint16_t first_row = 0; ///< that it told of
-        std::uint8_t rounds = 0;     ///< it told of all its rows so often
-        bool has_told = false;
-    };
-    /// Of a command that was sent from here.
-    enum class Call : std::uint8_t { none, wanted, offered, done, failed };
-    struct RowState;
-    static bool is_under_way(const RowState& row) noexcept TAPPET_REALTIME {
-        return row.call == Call::wanted || row.call == Call::offered;
-    }
-    struct RowState {
-        bool agreed = false;
-        bool is_refused = false;
-        bool was_valid = false;     ///< a value of it came
-        ChannelSender sender{};     ///< of events and commands to others, and of replies
-        ChannelReceiver receiver{}; ///< the other way
-        Call call = Call::none;
-        std::uint8_t asked = 0;       ///< the number by which it was sent
-        bool serves = false;          ///< a command of another node is under way here,
-        std::uint8_t serving = 0;     ///< sent by this number
-        bool refuses = false;         ///< another one came meanwhile,
-        std::uint8_t refused = 0;     ///< by this one
-        Time may_offer = Time::min(); ///< the next one, by its at_most(...)
-        bool is_held = false;         ///< one waits for that, in `values`
-        std::array<std::byte, Rows::command_bytes> values{};
-    };
+    using Peer = LinkPeer;
+    using Call = LinkCall;
+    using RowState = LinkRow<Rows::command_bytes>;
     /// What stands in a frame.
     using Room = std::array<std::uint8_t, shape.most_bits / 8>;
     static constexpr std::size_t contents = shape.channel_bits() / 8; ///< of a channel's frame
@@ -166,7 +142,7 @@ private:
         if (what.kind == WireFrameKind::beat) {
             take_beat(what.node, beat_of(shape, frame.data), frame.stamp, now);
         } else if (what.kind == WireFrameKind::data) {
-            take_data(f, frame);
+            LinkValues<Link>::take(*this, f, frame);
         } else if constexpr (row_count > 0) {
             take_channel(what, frame.data, now);
         }
@@ -206,18 +182,6 @@ private:
     }
     /// A row that another version does not have is never told of. Twice: a beat may be lost.
     static constexpr std::uint8_t told_twice = 2;
-    /// Of each row: a message that is sent later could be served after its time. Of replies no time is
-    /// promised.
-    static constexpr std::array<Duration, row_count> sent_by = [] {
-        std::array<Duration, row_count> all{};
-        for (std::size_t i = 0; i < row_count; ++i) {
-            all[i] = Rows::crossing(i).within;
-            if (Rows::crossing(i).kind != CrossingKind::data && Rows::is_from_here(i))
-                all[i] -= plan.frames[Rows::message_frame(i)].worst + system.wire.service.deadline +
-                          read_within(system.view(), Rows::index(i).to);
-        }
-        return all;
-    }();
     [[nodiscard]] bool knows_rows_of(std::size_t node) const noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < row_count; ++i)
             if (Rows::other(i) == node && !state_[i].agreed && !state_[i].is_refused) return false;
@@ -254,49 +218,8 @@ private:
             }
             row.is_held = false;
             row.sender.give_up();
-            if (is_under_way(row)) row.call = Call::failed;
+            if (row.is_under_way()) row.call = Call::failed;
         }
-    }
-
-    void take_data(std::size_t f, const can::Frame& frame) noexcept TAPPET_REALTIME {
-        for (std::size_t p = 0; p < Rows::port_count; ++p) {
-            const PortPlace& port = Rows::ports[p];
-            if (port.is_input || port.frame != f || !state_[port.row].agreed) continue;
-            if (port.bit + port.value.bits_in_frame() > 8u * frame.length) continue;
-            void* const output = storage_.data() + port.at;
-            const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0;
-            bool& was_valid = state_[port.row].was_valid;
-            if (!is_valid && (!was_valid || port.max_age == Duration::zero())) continue;
-            Duration age = is_valid ? Duration::zero() : port.max_age + 1ns;
-            if (is_valid && port.value.has_time && !has_age(port, frame, age)) continue;
-            std::array<std::byte, 56> value{};
-            if (is_valid)
-                on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
-            else // what was old when it was told is so here
-                static_cast<void>(port.facet->port->read(output, false, false, value.data()));
-            port.facet->port->write_at(output, value.data(), frame.stamp - age);
-            was_valid = is_valid;
-        }
-    }
-
-    /// Of a value, when its frame came. False: nobody knows.
-    bool has_age(const PortPlace& port, const can::Frame& frame, Duration& age) noexcept TAPPET_REALTIME {
-        return knows_common() &&
-               on_wire::age_of_time(
-                   on_wire::take_bits(frame.data, port.bit + 1u + port.value.bits, time_bits),
-                   common(frame.stamp), 2 * system.wire.clock.within, age);
-    }
-    [[nodiscard]] bool knows_common() noexcept TAPPET_REALTIME {
-        if constexpr (Rows::is_told_time) {
-            // Until it has told it anew, what is known is the clock of its last start.
-            static_cast<void>(exchanges.get());
-            return knows_time.get() && exchanges.stamp() > peers_[Rows::teller].begun;
-        }
-        return true;
-    }
-    [[nodiscard]] Time common(Time own) noexcept TAPPET_REALTIME {
-        if constexpr (Rows::is_told_time) return own + ahead.get();
-        return own;
     }
 
     void take_channel(const WireFrame& what, Contents payload, Time now) noexcept TAPPET_REALTIME {
@@ -504,22 +427,7 @@ private:
     }
     void send_data(std::size_t f, Time now) noexcept TAPPET_REALTIME {
         Room payload{};
-        for (std::size_t p = 0; p < Rows::port_count; ++p) {
-            const PortPlace& port = Rows::ports[p];
-            if (!port.is_input || port.frame != f) continue;
-            std::array<std::byte, 56> value{};
-            const Flow flow = port.facet->port->read(storage_.data() + port.at, true, false, value.data());
-            const on_wire::Told told = on_wire::tell(value.data(), port.value, payload, port.bit + 1u);
-            if (told != on_wire::Told::well) beyond.write(++beyond_);
-            const bool is_valid =
-                (flow == Flow::fresh || flow == Flow::old) && told != on_wire::Told::no_number;
-            on_wire::put_bits(payload, port.bit, 1,
-                              is_valid && (!port.value.has_time || knows_common()) ? 1 : 0);
-            if (port.value.has_time)
-                on_wire::put_bits(payload, port.bit + 1u + port.value.bits, time_bits,
-                                  on_wire::tell_time(common(
-                                      *port.facet->port->places(storage_.data() + port.at, true).stamp)));
-        }
+        LinkValues<Link>::tell(*this, f, payload);
         send(f, payload, now);
     }
     void send(std::size_t f, const Room& payload, Time now) noexcept TAPPET_REALTIME {
@@ -552,7 +460,7 @@ private:
     template <std::size_t i>
     static CommandProgress call_progress(void* self, std::byte* values) noexcept TAPPET_REALTIME {
         RowState& row = static_cast<Link*>(self)->state_[i];
-        if (is_under_way(row)) return CommandProgress::executing;
+        if (row.is_under_way()) return CommandProgress::executing;
         const bool is_done = row.call == Call::done;
         row.call = Call::none;
         if (!is_done) return CommandProgress::failed;

@@ -193,6 +193,18 @@ public:
         const CrossingPlace& place = plan.place[rows[i].crossing];
         return is_from_here(i) ? place.frame : place.reply;
     }
+    /// Of each row: a message that is sent later could be served after its time. Of replies no time is
+    /// promised.
+    static constexpr std::array<Duration, row_count> sent_by = [] {
+        std::array<Duration, row_count> all{};
+        for (std::size_t i = 0; i < row_count; ++i) {
+            all[i] = crossing(i).within;
+            if (crossing(i).kind != CrossingKind::data && is_from_here(i))
+                all[i] -= plan.frames[message_frame(i)].worst + system.wire.service.deadline +
+                          read_within(system.view(), index(i).to);
+        }
+        return all;
+    }();
     static constexpr bool is_periodic(std::size_t f) noexcept TAPPET_REALTIME {
         const WireFrame& frame = plan.frames[f];
         return frame.node == n && (frame.kind == WireFrameKind::beat || frame.kind == WireFrameKind::data);

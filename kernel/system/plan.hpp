@@ -2,95 +2,12 @@
 // they win it; how each row is told from another version's; and whether everything that was promised holds.
 #pragma once
 
-#include "kernel/base/digest.hpp"
-#include "kernel/base/response.hpp"
-#include "kernel/component/device_traffic.hpp"
-#include "kernel/system/resolve.hpp"
-
-#include <algorithm>
+#include "kernel/system/identifiers.hpp"
 
 namespace tappet {
 
-/// What a frame is for.
-enum class WireFrameKind : std::uint8_t {
-    beat,     ///< of a node: it lives, and so one of its rows looks
-    data,     ///< values of one node, of one period
-    message,  ///< an event, or a command that was sent
-    answer,   ///< to those
-    reply,    ///< how a command went
-    received, ///< the answer to that
-    sync,     ///< the common clock is told: this frame is through,
-    follow_up ///< and then that was so by the teller's clock
-};
-
-struct WireFrame {
-    std::size_t node = nowhere; ///< who sends it
-    WireFrameKind kind = WireFrameKind::beat;
-    std::size_t crossing = nowhere; ///< of data the first one in it
-    Duration apart{};               ///< the least time between two
-    Duration on_wire{};             ///< the longest that one takes there
-    Duration deadline{};    ///< from its release, which its node serves in time, to its end on the wire
-    Duration worst{};       ///< likewise, proven
-    Duration jitter{};      ///< by how much it may be late, for other nodes
-    std::uint16_t bits = 0; ///< of its contents, protection included
-    std::uint8_t bytes = 0; ///< that it has on the wire
-    std::uint32_t id = 0;
-    std::uint16_t data_id = 0; ///< protects it against being taken for another one
-
-    [[nodiscard]] constexpr bool is_of_clock() const noexcept {
-        return kind == WireFrameKind::sync || kind == WireFrameKind::follow_up;
-    }
-};
-
-/// How the frames of a wire are laid out: their protection, which is CRC and counter; then values, or four
-/// bits that say what it is and from a whole byte on the rest.
-struct WireShape {
-    std::uint16_t most_bits = 64, protection_bits = 12, head_bits = 16;
-
-    /// Of a channel's frame, before its contents: what it is, its number and session.
-    [[nodiscard]] constexpr std::uint16_t channel_bits() const noexcept {
-        return static_cast<std::uint16_t>(head_bits + 16);
-    }
-    [[nodiscard]] constexpr std::uint16_t beat_bits() const noexcept {
-        return static_cast<std::uint16_t>(head_bits + 48);
-    }
-};
-constexpr WireShape shape_of(const WireRow& wire) noexcept {
-    return wire.is_fd() ? WireShape{512, 24, 32} : WireShape{};
-}
-
-/// Where a row stands on the wire.
-struct CrossingPlace {
-    std::size_t frame = nowhere; ///< data, or the message
-    std::size_t answer = nowhere, reply = nowhere, received = nowhere;
-    std::uint16_t at = 0; ///< of data: its first bit
-};
-
-/// Proves frames that stand in the order in which they win the wire. `worst` and `bytes` of each are written;
-/// the answer is the first that is not within its deadline, or how many there are.
-using WireAnalysis = std::size_t (*)(const SystemView&, std::span<WireFrame>);
-
-template <std::size_t N, std::size_t X>
-struct SystemPlan {
-    static constexpr std::size_t most_frames = N + 2 + 4 * X;
-    WireShape shape{};
-    Duration clock_error{}; ///< of the common clock, while no exchange is lost
-    Sentence fault{};       ///< empty when everything about the wire is right
-    std::array<CrossingIndex, X> index{};
-    std::array<CrossingPlace, X> place{};
-    Bounded<WireFrame, most_frames> frames{}; ///< the most urgent first
-};
-
 namespace systems {
 
-constexpr std::uint16_t folded(const Digest& digest) noexcept {
-    const std::uint64_t value = digest.value();
-    return static_cast<std::uint16_t>(value ^ value >> 16 ^ value >> 32 ^ value >> 48);
-}
-constexpr void add_text(Digest& digest, std::string_view text) noexcept {
-    for (const char each : text) digest.add(std::uint64_t{static_cast<unsigned char>(each)});
-    digest.add(std::uint64_t{text.size()});
-}
 constexpr void add_value(Digest& digest, const WireValue& value) noexcept {
     digest.add(std::uint64_t{value.bits});
     digest.add(static_cast<std::uint64_t>(value.kind));
@@ -242,19 +159,6 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
     return {};
 }
 
-/// Moves the frame at `from` to `to`; places follow.
-template <std::size_t N, std::size_t X>
-constexpr void renumber(SystemPlan<N, X>& plan, std::span<const std::size_t> new_place) {
-    const auto moved = [&](std::size_t& frame) {
-        if (frame != nowhere) frame = new_place[frame];
-    };
-    for (CrossingPlace& place : plan.place) {
-        moved(place.frame), moved(place.answer), moved(place.reply), moved(place.received);
-    }
-    const auto before = plan.frames;
-    for (std::size_t f = 0; f < before.size(); ++f) plan.frames[new_place[f]] = before[f];
-}
-
 /// The two frames of the common clock stand before all that rows bring about: there are few of them, and how
 /// well the clock is known depends on them.
 template <std::size_t N, std::size_t X>
@@ -297,110 +201,6 @@ constexpr Sentence check_clock_error(const SystemView& s, std::span<const WireFr
             ? Sentence{"how late frames are stamped; say stamps_late(...) of less where that is so"}
             : Sentence{"what clocks part in ", age.count() / 1'000'000, " ms; tell it more often"},
         ", or promise less"};
-}
-
-/// A digest of what a frame is, whatever stands beside it in the table.
-template <std::size_t N, std::size_t X>
-constexpr Digest key_of(const SystemView& s, const SystemPlan<N, X>& plan, std::size_t f) {
-    const WireFrame& frame = plan.frames[f];
-    Digest key;
-    add_text(key, s.name);
-    add_text(key, s.nodes[frame.node].name);
-    // Both frames of the clock have one identifier.
-    key.add(static_cast<std::uint64_t>(frame.is_of_clock() ? WireFrameKind::sync : frame.kind));
-    if (frame.kind == WireFrameKind::data) {
-        std::uint64_t before = 0;
-        for (std::size_t i = 0; i < f; ++i)
-            if (plan.frames[i].kind == WireFrameKind::data && plan.frames[i].node == frame.node &&
-                plan.frames[i].apart == frame.apart)
-                ++before;
-        key.add(static_cast<std::uint64_t>(frame.apart.count()));
-        key.add(before);
-    } else if (frame.crossing != nowhere) {
-        key.add(std::uint64_t{plan.index[frame.crossing].name});
-    }
-    return key;
-}
-
-/// Of 29 bits: how urgent it is, in 32 steps an octave of how soon the next one may follow, and which frame.
-/// Not by its deadline, which the activities of its readers have a part in.
-constexpr std::uint32_t fixed_identifier(const WireFrame& frame, std::uint64_t key) noexcept {
-    constexpr unsigned steps_bits = 5, key_bits = 18;
-    const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.apart.count() / 1000, 1));
-    const unsigned octave = static_cast<unsigned>(std::bit_width(us)) - 1;
-    const std::uint64_t step =
-        (octave >= steps_bits ? us >> (octave - steps_bits) : us << (steps_bits - octave)) &
-        ((1u << steps_bits) - 1);
-    const bool goes_first = frame.kind == WireFrameKind::beat || frame.is_of_clock();
-    const std::uint64_t urgency = goes_first ? 0 : std::uint64_t{octave} << steps_bits | step;
-    return static_cast<std::uint32_t>(urgency << key_bits |
-                                      ((key ^ key >> 23 ^ key >> 46) & ((1u << key_bits) - 1)));
-}
-
-/// Deadline-monotonic first, which is right for most; where that fails, Audsley's assignment (1991): the
-/// lowest place goes to a frame that bears it, then the next lowest. The answer is the frame that bears none.
-template <std::size_t N, std::size_t X>
-constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAnalysis analysis) {
-    const std::size_t count = plan.frames.size();
-    const bool is_fixed = s.wire.fixed_identifiers;
-    const std::size_t go_first = N + (s.wire.has_clock() ? 2 : 0);
-    std::array<std::size_t, SystemPlan<N, X>::most_frames> order{}, new_place{};
-    for (std::size_t f = 0; f < count; ++f) order[f] = f;
-    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
-              [&](std::size_t a, std::size_t b) {
-                  const WireFrame &l = plan.frames[a], &r = plan.frames[b];
-                  if (is_fixed) return l.id != r.id ? l.id < r.id : a < b;
-                  // Beats have identifiers that no row moves: other versions hear them, too.
-                  if ((a < go_first) != (b < go_first)) return a < go_first;
-                  if (a < go_first) return a < b;
-                  return l.deadline != r.deadline ? l.deadline < r.deadline : a < b;
-              });
-    auto trial = plan.frames;
-    const auto tries = [&] {
-        for (std::size_t f = 0; f < count; ++f) trial[f] = plan.frames[order[f]];
-        return analysis(s, std::span{trial.items}.first(count));
-    };
-    std::size_t bad = tries();
-    if (bad < count && !is_fixed) {
-        const auto monotonic = order;
-        const std::size_t first_bad = order[bad];
-        // What fails in the best place fails in all: that is known at once, and not after n^2 of these.
-        bool may_help = bad > go_first;
-        if (may_help) {
-            const auto from = order.begin() + static_cast<std::ptrdiff_t>(go_first);
-            std::rotate(from, order.begin() + static_cast<std::ptrdiff_t>(bad),
-                        order.begin() + static_cast<std::ptrdiff_t>(bad) + 1);
-            static_cast<void>(tries());
-            may_help = trial[go_first].worst <= trial[go_first].deadline;
-            order = monotonic;
-        }
-        for (std::size_t level = count; may_help && level-- > go_first;) {
-            bool found = false;
-            for (std::size_t candidate = level + 1; candidate-- > go_first && !found;) {
-                std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
-                            order.begin() + static_cast<std::ptrdiff_t>(candidate) + 1,
-                            order.begin() + static_cast<std::ptrdiff_t>(level) + 1);
-                static_cast<void>(tries());
-                found = trial[level].worst <= trial[level].deadline;
-                if (!found)
-                    std::rotate(order.begin() + static_cast<std::ptrdiff_t>(candidate),
-                                order.begin() + static_cast<std::ptrdiff_t>(level),
-                                order.begin() + static_cast<std::ptrdiff_t>(level) + 1);
-            }
-            if (!found) break;
-        }
-        bad = tries();
-        if (bad < count) {
-            order = monotonic;
-            static_cast<void>(tries());
-            bad = first_bad;
-        }
-    }
-    for (std::size_t f = 0; f < count; ++f) new_place[order[f]] = f;
-    const std::size_t answer = bad < count ? new_place[bad] : count;
-    for (std::size_t f = 0; f < count; ++f) plan.frames[order[f]] = trial[f];
-    renumber(plan, std::span{new_place}.first(count));
-    return answer;
 }
 
 } // namespace systems

@@ -6,7 +6,6 @@
 #include "kernel/base/real_text.hpp"
 
 #include <algorithm>
-#include <vector>
 
 namespace tappet::can::dbc {
 
@@ -66,9 +65,6 @@ public:
         : machine_{name(machine)}, signals_{signals} {}
 
     void add(const FrameRow& frame) {
-        // Two that have one identifier are one message here.
-        if (std::ranges::count(written_, frame.identifier) != 0) return;
-        written_.push_back(frame.identifier);
         const bool sent = frame.direction == Direction::transmit;
         const std::string id = whole(frame.identifier.id | (frame.identifier.extended ? 0x8000'0000u : 0u));
         messages_ += "BO_ " + id + ' ' + name(frame.name) + ": " + whole(unsigned{frame.length}) + ' ' +
@@ -132,7 +128,6 @@ private:
     std::string machine_;
     std::span<const Signal> signals_;
     bool has_fd_ = false;
-    std::vector<Identifier> written_{};
     std::string messages_, formats_, periods_, values_, types_, selections_;
 };
 
@@ -141,7 +136,12 @@ private:
 std::string to_dbc(std::string_view machine, std::span<const FrameRow> frames,
                    std::span<const Signal> signals) {
     Writer writer{machine, signals};
-    for (const FrameRow& frame : frames) writer.add(frame);
+    // Two that have one identifier are one message there.
+    for (auto frame = frames.begin(); frame != frames.end(); ++frame)
+        if (std::find_if(frames.begin(), frame, [&](const FrameRow& before) {
+                return before.identifier == frame->identifier;
+            }) == frame)
+            writer.add(*frame);
     return writer.text();
 }
 

@@ -11,7 +11,7 @@ namespace tappet::figures {
 /// So long that what repeats of itself is not seen among the events.
 inline constexpr Duration value_period = 10s;
 /// A row's messages stand half of its time apart.
-inline constexpr Duration event_period = 20ms;
+inline constexpr Duration event_period = 40ms;
 /// How the level stands on the wire; the bare program has it so, too.
 inline constexpr unsigned level_bits = 24;
 inline constexpr double level_step = 0.1;
