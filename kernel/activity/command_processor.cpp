@@ -16,18 +16,19 @@ CommandState CommandProcessor::take_up(CommandSlot& slot, bool receiver_runs) no
     return CommandState::accepted;
 }
 
-namespace {
+namespace detail {
 
-// A function of its own: inlined into the loop it hides that loop's counter from who looks at the object
-// code.
+// A function of its own, with a name: inlined into the loop it hides that loop's counter from who looks at
+// the object code.
+void fail_one(CommandSlot& slot) noexcept TAPPET_REALTIME;
 [[gnu::noinline]] void fail_one(CommandSlot& slot) noexcept TAPPET_REALTIME { slot.fail(); }
 
-} // namespace
+} // namespace detail
 
 void CommandProcessor::fail(std::uint32_t part) noexcept TAPPET_REALTIME {
     static_cast<void>(follow([part](std::uint32_t of, CommandSlot& slot) noexcept TAPPET_REALTIME {
         if (of != part) return false;
-        fail_one(slot);
+        detail::fail_one(slot);
         return true;
     }));
 }

@@ -19,7 +19,7 @@ const std::vector<Size> sizes{
     {"kernel/os",             3866},
     {"kernel/exchange",       913},
     {"kernel/component",      4064},
-    {"kernel/activity",       1672},
+    {"kernel/activity",       1681},
     {"kernel/program",        3197},
     {"kernel/statechart",     3986},
     {"kernel/script",         5010},
