@@ -195,26 +195,16 @@ struct StationRows {
         text.append(facet);
         return text;
     }
-    static constexpr auto bus_name = [] {
+    static constexpr Text<64> component_name(std::string_view end) {
         Text<64> text;
         text.append(system.wire.name);
-        text.append("_can");
+        text.append(end);
         return text;
-    }();
+    }
+    static constexpr auto bus_name = component_name("_can"), restarter_name = component_name("_restarter"),
+                          clock_name = component_name("_clock");
     static constexpr auto bus_services = path("services", "_can"), received = path("received", "");
     static constexpr auto bus_faulted = path("faulted", "_can"), faulted = path("faulted", "_restarter");
-    static constexpr auto restarter_name = [] {
-        Text<64> text;
-        text.append(system.wire.name);
-        text.append("_restarter");
-        return text;
-    }();
-    static constexpr auto clock_name = [] {
-        Text<64> text;
-        text.append(system.wire.name);
-        text.append("_clock");
-        return text;
-    }();
     static constexpr auto clock_received = path("received", "_clock"), clock_ahead = path("ahead", "_clock"),
                           clock_known = path("known", "_clock"),
                           clock_exchanges = path("exchanges", "_clock"), ahead = path("ahead", ""),

@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         616},
     {"kernel/services",       5717},
     {"kernel/system",         2064},
-    {"drivers",               17376},
+    {"drivers",               17366},
     {"board",                 3977},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    763},
