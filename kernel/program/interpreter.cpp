@@ -48,10 +48,11 @@ struct ArcInMemory {
 struct NodeInMemory {
     const ProgramTables& tables;
     const NodeRow* node;
-    NodeIndex index;
 
     [[nodiscard]] const NodeRow& row() const noexcept TAPPET_REALTIME { return *node; }
-    [[nodiscard]] NodeIndex number() const noexcept TAPPET_REALTIME { return index; }
+    [[nodiscard]] NodeIndex number() const noexcept TAPPET_REALTIME {
+        return static_cast<NodeIndex>(node - tables.nodes.data());
+    }
     static constexpr bool may_stand() noexcept TAPPET_REALTIME { return true; }
     [[gnu::always_inline]] ActionResult acts(ProgramContext& context, const ProgramRun&) const noexcept
         TAPPET_REALTIME {
@@ -93,43 +94,37 @@ struct StatementInMemory : NodeInMemory {
     }
 };
 // A function of its own: what it needs would push out of the registers what the others need.
-[[gnu::noinline]] NextNode executes_any(NodeInMemory node, ProgramContext& context,
-                                        ProgramRun& shared) noexcept TAPPET_REALTIME {
-    ProgramRun run = shared;
-    const NextNode next = node_order::executes(node, context, run);
-    shared = run;
-    return next;
+[[gnu::noinline]] NextNode executes_any(NodeInMemory node, ProgramContext& context, ProgramRun& run) noexcept
+    TAPPET_REALTIME {
+    return node_order::executes(node, context, run);
 }
 
-ProgramReturn run(const ProgramTables& tables, ProgramContext& context, std::uint32_t& statements) noexcept
-    TAPPET_REALTIME {
-    NodeIndex at = context.position.node;
+[[gnu::always_inline]] inline ProgramReturn run(const ProgramTables& tables, ProgramContext& context,
+                                                std::uint32_t& statements) noexcept TAPPET_REALTIME {
     ProgramRun run{context.data, statements, context.position.entered};
-    const NodeRow* row = at == end_node ? nullptr : &tables.nodes[at];
-    while (at != end_node) {
-        const NodeInMemory node{tables, row, at};
-        NextNode next = leads_nowhere;
+    NextNode next = context.position.node;
+    const NodeRow* row = next < end_node ? &tables.nodes[next] : nullptr;
+    while (next < end_node) {
+        const NodeInMemory node{tables, row};
         if (StatementInMemory::is(tables, *row)) [[likely]] {
             next = node_order::executes(StatementInMemory{node}, context, run);
         } else {
-            ProgramRun shared = run; // so that `run` stays in registers
+            // Member by member, so that `run` stays in registers.
+            ProgramRun shared{run.data, run.left, run.stands};
             next = executes_any(node, context, shared);
-            run = shared;
+            run.left = shared.left;
+            run.stands = shared.stands;
         }
         // Mostly to the next row: a branch is predicted, a number that was read is waited for.
-        if (next == at + 1u) [[likely]] {
-            ++at, ++row;
+        if (next == node.number() + 1u) [[likely]] {
+            ++row;
             asm("" : "+r"(row)); // so that it stays a branch
-            continue;
+        } else if (next < end_node) {
+            row = tables.nodes.data() + next;
         }
-        if (next >= halted) {
-            statements = static_cast<std::uint32_t>(run.left);
-            return returns_at(next, context, run);
-        }
-        at = static_cast<NodeIndex>(next);
-        row = tables.nodes.data() + at;
     }
     statements = static_cast<std::uint32_t>(run.left);
+    if (next >= halted) return returns_at(next, context, run.stands);
     context.position = {};
     return ProgramReturn::ended;
 }
@@ -143,15 +138,16 @@ ConditionResult test_condition(const ProgramTables& tables, ProgramContext& cont
 
 ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
                           std::uint32_t& statements) noexcept TAPPET_REALTIME {
-    if (context.limit == nullptr) return run(tables, context, statements);
-    // In pieces, over all programs of a step.
     for (;;) {
-        if (statements % WorkLimit::statements == 0 && context.limit->is_reached()) statements = 0;
-        const std::uint32_t piece = statements == 0 ? 0 : (statements - 1) % WorkLimit::statements + 1;
+        std::uint32_t piece = statements;
+        if (context.limit != nullptr) { // in pieces, over all programs of a step
+            if (statements % WorkLimit::statements == 0 && context.limit->is_reached()) statements = 0;
+            piece = statements == 0 ? 0 : (statements - 1) % WorkLimit::statements + 1;
+            context.limit->has_begun = true;
+        }
         std::uint32_t left = piece;
         const ProgramReturn why = run(tables, context, left);
         statements -= piece - left;
-        context.limit->has_begun = true;
         if (why != ProgramReturn::left_over || statements == 0) return why;
     }
 }

@@ -184,7 +184,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         ProgramRun run{context.data, statements, context.position.entered};
         const NextNode next = goes_on_at(context, run, context.position.node);
         statements = static_cast<std::uint32_t>(run.left);
-        if (next >= halted) return returns_at(next, context, run);
+        if (next >= halted) return returns_at(next, context, run.stands);
         context.position = {};
         return ProgramReturn::ended;
     }

@@ -43,11 +43,11 @@ struct ProgramRun {
 };
 
 /// What the position is when the program returns there.
-inline ProgramReturn returns_at(NextNode next, ProgramContext& context, const ProgramRun& run) noexcept
+inline ProgramReturn returns_at(NextNode next, ProgramContext& context, bool stands) noexcept
     TAPPET_REALTIME {
     ProgramPosition& position = context.position;
     position.node = static_cast<NodeIndex>(next);
-    if (!run.stands) position.acted = position.entered = false;
+    if (!stands) position.acted = position.entered = false;
     return static_cast<ProgramReturn>(next >> halt_bit);
 }
 

@@ -30,8 +30,8 @@ bool StateMachineExecution::bind(const StateMachineBinding& binding) noexcept TA
     policy_ = binding.policy;
     fast_ = binding.fast;
     if (fast_.dispatch == nullptr || policy_.statements < fast_.statements) {
-        fast_.dispatch = &dispatch_in_memory;
-        fast_.step = &step_in_memory;
+        fast_.dispatch = machine_.plain ? &dispatch_in_memory<true> : &dispatch_in_memory<false>;
+        fast_.step = machine_.plain ? &step_in_memory<true> : &step_in_memory<false>;
     }
     parent_ = binding.parent;
     history_ = binding.history;
@@ -156,13 +156,16 @@ void StateMachineExecution::handle_raised(Call& call) noexcept TAPPET_REALTIME {
                                     deferred_.data() + place * machine_.sizes.captured, call));
 }
 
+template <bool quick>
 StateOutcome StateMachineExecution::dispatch_in_memory(StateMachineExecution& execution, std::size_t trigger,
                                                        Time now, const std::byte* arguments) noexcept
     TAPPET_REALTIME {
+    using Table = statechart::Memory<quick>;
     if (trigger >= execution.machine_.triggers.size()) return StateOutcome::ignored;
     if (execution.machine_.captured[trigger] != 0 && arguments == nullptr) return StateOutcome::ignored;
     Call call = execution.open(now);
-    const bool taken = Order::reacts(execution, statechart::InMemory::Cell{trigger}, arguments, call);
+    const bool taken =
+        statechart::Order<Table>::reacts(execution, typename Table::Cell{trigger}, arguments, call);
     execution.close(call);
     return taken ? StateOutcome::taken : StateOutcome::ignored;
 }
@@ -174,7 +177,7 @@ StateOutcome StateMachineExecution::dispatch_generally(std::size_t trigger, Time
     if (machine_.captured[trigger] != 0 && arguments == nullptr) return StateOutcome::ignored;
     if ((mode_ & (busy | in_hand | waiting | paused | final_wanted)) != 0)
         return queue(trigger, now, arguments);
-    return dispatch_in_memory(*this, trigger, now, arguments);
+    return dispatch_in_memory<false>(*this, trigger, now, arguments);
 }
 
 // ---- commands
@@ -223,21 +226,26 @@ StateOutcome StateMachineExecution::carry_out(Time now) noexcept TAPPET_REALTIME
     return StateOutcome::taken;
 }
 
+template <bool quick>
 void StateMachineExecution::step_in_memory(StateMachineExecution& execution, Time now) noexcept
     TAPPET_REALTIME {
-    Call call = execution.open(now);
+    Call call = quick ? execution.open_ready(now) : execution.open(now);
     execution.ran_ = {};
-    call = execution.serve_final(call);
-    execution.go_round(call);
+    if (!quick) call = execution.serve_final(call);
+    execution.go_round<quick>(call);
     execution.close(call);
 }
+template void StateMachineExecution::step_in_memory<false>(StateMachineExecution&, Time) noexcept
+    TAPPET_REALTIME;
 
-void StateMachineExecution::go_round(Call& call) noexcept TAPPET_REALTIME {
-    if (!Order::goes_on(*this, call) || is(inactive)) return;
-    if (!automatic_ && !run_once_) return;
+template <bool quick> void StateMachineExecution::go_round(Call& call) noexcept TAPPET_REALTIME {
+    if (!quick) {
+        if (!Order::goes_on(*this, call) || is(inactive)) return;
+        if (!automatic_ && !run_once_) return;
+    }
     begin_round();
     std::size_t taken = 0;
-    while (Order::goes_round(*this, taken, call)) {
+    while (statechart::Order<statechart::Memory<quick>>::goes_round(*this, taken, call)) {
     }
 }
 
@@ -253,7 +261,7 @@ bool StateMachineExecution::step_once(Time now) noexcept TAPPET_REALTIME {
         call.left = 0;
         handle_raised(call);
     } else
-        go_round(call);
+        go_round<false>(call);
     call = serve_final(call);
     single_ = statements_left_ = false;
     clear(busy);
@@ -308,7 +316,7 @@ StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_RE
     const bool has_ended = Order::goes_on(*this, call);
     if (has_ended && run_once_) {
         ran_ = {};
-        go_round(call);
+        go_round<false>(call);
     }
     return StateOutcome::taken;
 }

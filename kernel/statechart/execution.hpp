@@ -37,7 +37,7 @@ struct StateMachineFast {
 
 namespace statechart {
 template <class Table> struct Order;
-struct InMemory;
+template <bool quick> struct Memory;
 } // namespace statechart
 namespace native {
 template <const auto& source, std::size_t type> struct MachineRows;
@@ -75,8 +75,6 @@ public:
     /// entered; no_state there: none. Real-time.
     using Trace = void (*)(void* context, StateIndex from, StateIndex to, TransitionIndex transition,
                            Time now) noexcept TAPPET_REALTIME;
-    /// Called when a program failed, before the parent hears of it. Real-time.
-    using FaultHook = void (*)(void* context, const StateMachineExecution& machine) noexcept TAPPET_REALTIME;
 
     StateMachineExecution() = default;
 
@@ -93,10 +91,6 @@ public:
     void trace(Trace hook, void* context) noexcept TAPPET_REALTIME {
         trace_ = hook;
         trace_context_ = context;
-    }
-    void on_fault(FaultHook hook, void* context) noexcept TAPPET_REALTIME {
-        fault_hook_ = hook;
-        fault_context_ = context;
     }
 
     // ---- commands of thesis fig. 5.19; `now` never decreases from call to call
@@ -120,7 +114,7 @@ public:
             return true;
         }
         if (mode_ == ready && !run_once_) return false;
-        step_in_memory(*this, now);
+        step_in_memory<false>(*this, now);
         return true;
     }
     /// Of a paused machine: one statement of the program in hand, or one transition is asked (5.2.3).
@@ -235,7 +229,7 @@ public:
 
 private:
     template <class Table> friend struct statechart::Order;
-    friend struct statechart::InMemory;
+    template <bool quick> friend struct statechart::Memory;
     template <const auto& source, std::size_t type> friend struct native::MachineRows;
     template <const auto& source, std::size_t type, StateIndex leaf> friend struct native::AtLeaf;
     template <const auto& source, std::size_t type> friend struct native::MachineCode;
@@ -303,11 +297,13 @@ private:
         else
             finish(call);
     }
+    template <bool quick>
     static StateOutcome dispatch_in_memory(StateMachineExecution& execution, std::size_t trigger, Time now,
                                            const std::byte* arguments) noexcept TAPPET_REALTIME;
+    template <bool quick>
     static void step_in_memory(StateMachineExecution& execution, Time now) noexcept TAPPET_REALTIME;
     StateOutcome carry_out(Time now) noexcept TAPPET_REALTIME;
-    void go_round(Call& call) noexcept TAPPET_REALTIME;
+    template <bool quick> void go_round(Call& call) noexcept TAPPET_REALTIME;
     void begin_round() noexcept TAPPET_REALTIME {
         for (ActiveState& active : status_.states)
             if (active.run == RunPhase::waits)
@@ -367,9 +363,15 @@ private:
     /// The run program of a state that has begun; false: nothing after it is done in this call.
     bool goes_on_running(ActiveState& at, Call& call) noexcept TAPPET_REALTIME {
         context_.position = at.position;
-        return has_run_so_far(at, run(at.position, call));
+        const ProgramReturn why = run(at.position, call);
+        return why == ProgramReturn::ended || has_not_run(at, why);
     }
-    bool has_run_so_far(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME;
+    [[gnu::cold]] bool has_not_run(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME;
+    /// No condition of the active states held; the handle programs of some are left for later.
+    [[gnu::cold]] void has_asked_all() noexcept TAPPET_REALTIME {
+        for (ActiveState& active : status_.states)
+            if (active.run == RunPhase::ran) active.run = RunPhase::asked;
+    }
     /// A program of the table, from the context's position; where it stands is kept when it does not end.
     ProgramReturn run(ProgramPosition& kept, Call& call) noexcept TAPPET_REALTIME {
         auto left = static_cast<std::uint32_t>(call.left > 0 ? call.left : 0);
@@ -435,8 +437,6 @@ private:
     Time stepped_at_{};
     Trace trace_ = nullptr;
     void* trace_context_ = nullptr;
-    FaultHook fault_hook_ = nullptr;
-    void* fault_context_ = nullptr;
     StateMachineExecution* parent_ = nullptr;
     std::span<StateIndex> history_;
     std::span<std::byte> deferred_;

@@ -100,15 +100,9 @@ bool StateMachineExecution::capture(TransitionIndex transition, const std::byte*
     return true;
 }
 
-bool StateMachineExecution::has_run_so_far(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME {
-    switch (why) {
-    case ProgramReturn::ended: at.run = RunPhase::ran; return true;
-    case ProgramReturn::waits: at.run = RunPhase::waits; return true;
-    case ProgramReturn::left_over:
-    case ProgramReturn::failed: break;
-    }
-    at.run = RunPhase::under_way;
-    return breaks_off(why, StatePart::run, at.state, at.position.node);
+bool StateMachineExecution::has_not_run(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME {
+    at.run = why == ProgramReturn::waits ? RunPhase::waits : RunPhase::under_way;
+    return why == ProgramReturn::waits || breaks_off(why, StatePart::run, at.state, at.position.node);
 }
 
 bool StateMachineExecution::breaks_off(ProgramReturn why, StatePart part, StateIndex state,
@@ -129,7 +123,6 @@ void StateMachineExecution::fail(StatePart part, StateIndex state, NodeIndex nod
     const TransitionIndex transition = in_transition ? machine_.arcs[job_.arc].transition : no_transition;
     status_.fault = {part, state, transition, node, status_.fault.number + 1, context_.now};
     set(error);
-    if (fault_hook_ != nullptr) fault_hook_(fault_context_, *this);
     StateMachineExecution* child = this;
     for (StateMachineExecution* parent = parent_; parent != nullptr && child->policy_.escalates;
          child = parent, parent = parent->parent_) {
@@ -137,7 +130,6 @@ void StateMachineExecution::fail(StatePart part, StateIndex state, NodeIndex nod
         parent->status_.fault = {StatePart::child, parent->status_.active,           no_transition,
                                  end_node,         parent->status_.fault.number + 1, context_.now};
         parent->set(error);
-        if (parent->fault_hook_ != nullptr) parent->fault_hook_(parent->fault_context_, *parent);
     }
 }
 

@@ -6,7 +6,9 @@
 
 namespace tappet::statechart {
 
-struct InMemory {
+/// `quick`: nothing waits and nothing is under way, there are no regions, and a round is one of the automatic
+/// mode: so it is in nearly all steps of nearly all machines.
+template <bool quick> struct Memory {
     using Execution = StateMachineExecution;
     using Answer = Execution::Answer;
     using Call = Execution::Call;
@@ -22,7 +24,8 @@ struct InMemory {
         // A run program.
         bool begins(Execution& e, ActiveState& at, Call& call) const noexcept TAPPET_REALTIME {
             e.context_.position = {.node = first_node(e)};
-            return e.has_run_so_far(at, e.run(at.position, call));
+            const ProgramReturn why = e.run(at.position, call);
+            return why == ProgramReturn::ended || e.has_not_run(at, why);
         }
         // The one in hand: from its beginning, or from where it stands.
         template <class Step>
@@ -96,18 +99,19 @@ struct InMemory {
     // ---- what is known of it
 
     // With regions nothing runs before all have been asked; a single step only chooses.
+    static bool is_plain(const Execution& e) noexcept TAPPET_REALTIME { return quick || e.machine_.plain; }
     static bool takes_at_once(const Execution& e) noexcept TAPPET_REALTIME {
-        return e.machine_.plain && !e.single_;
+        return is_plain(e) && !is_single(e);
     }
-    static bool is_automatic(const Execution& e) noexcept TAPPET_REALTIME { return e.automatic_; }
-    static bool is_single(const Execution& e) noexcept TAPPET_REALTIME { return e.single_; }
+    static bool is_automatic(const Execution& e) noexcept TAPPET_REALTIME { return quick || e.automatic_; }
+    static bool is_single(const Execution& e) noexcept TAPPET_REALTIME { return !quick && e.single_; }
     static bool has_preconditions(const Execution& e) noexcept TAPPET_REALTIME {
         return e.machine_.preconditions;
     }
     static bool lacks_statements(const Call& call) noexcept TAPPET_REALTIME { return call.left <= 0; }
     static void is_done(Execution& e) noexcept TAPPET_REALTIME { e.job_.at = no_step; }
     static ActiveState& source_of(Execution& e, Arc arc) noexcept TAPPET_REALTIME {
-        return e.status_.states[e.machine_.plain ? arc.row().source_level : e.index_of(arc.row().source)];
+        return e.status_.states[is_plain(e) ? arc.row().source_level : e.index_of(arc.row().source)];
     }
 
     // ---- questions
@@ -134,7 +138,7 @@ struct InMemory {
         TAPPET_REALTIME {
         const ResolvedView& machine = e.machine_;
         const auto& states = e.status_.states;
-        for (std::size_t leaf = machine.plain ? states.size() - 1 : 0; leaf < states.size(); ++leaf) {
+        for (std::size_t leaf = is_plain(e) ? states.size() - 1 : 0; leaf < states.size(); ++leaf) {
             const StateIndex state = states[leaf].state;
             const StatePlan& plan = machine.plans[state];
             if (plan.regions != 0) continue;
@@ -147,11 +151,12 @@ struct InMemory {
                 if (flow == Flow::stop) return;
                 if (flow == Flow::next_leaf || asked->is_last()) break;
             }
+            if (quick) return;
         }
     }
     // From the last leaf inside its source.
     static bool is_asked_from(const Execution& e, Leaf leaf, Arc arc) noexcept TAPPET_REALTIME {
-        return e.machine_.plain || e.end_of(e.index_of(arc.row().source)) == leaf.place + 1;
+        return is_plain(e) || e.end_of(e.index_of(arc.row().source)) == leaf.place + 1;
     }
     static bool is_inside_selected(const Execution& e, Arc arc) noexcept TAPPET_REALTIME {
         for (const auto& each : e.selected_)
@@ -187,13 +192,12 @@ struct InMemory {
         Execution::Job job;
         job.at = otherwise ? row.otherwise_steps : row.steps;
         job.arc = arc.number();
-        job.from = e.machine_.plain ? e.status_.active : states[e.end_of(e.index_of(row.source)) - 1].state;
+        job.from = is_plain(e) ? e.status_.active : states[e.end_of(e.index_of(row.source)) - 1].state;
         if ((otherwise ? row.otherwise : row.to) == no_state) return job;
         const std::size_t kept = otherwise ? row.otherwise_kept : row.kept_levels;
-        const std::size_t first =
-            e.machine_.plain ? kept : e.index_of(e.machine_.ancestor(row.source, kept + 1u));
+        const std::size_t first = is_plain(e) ? kept : e.index_of(e.machine_.ancestor(row.source, kept + 1u));
         job.first = static_cast<std::uint8_t>(first);
-        job.end = static_cast<std::uint8_t>(e.machine_.plain ? states.size() : e.end_of(first));
+        job.end = static_cast<std::uint8_t>(is_plain(e) ? states.size() : e.end_of(first));
         return job;
     }
     // The conditions are asked again.
@@ -236,9 +240,23 @@ struct InMemory {
         }
         return true;
     }
-    static void remove(Execution& e, State) noexcept TAPPET_REALTIME { e.leaves_last(); }
+    static void remove(Execution& e, State) noexcept TAPPET_REALTIME {
+        if constexpr (quick) {
+            auto& states = e.status_.states;
+            e.job_.end = static_cast<std::uint8_t>(--states.used);
+            e.status_.active = states.empty() ? no_state : states[states.used - 1].state;
+        } else {
+            e.leaves_last();
+        }
+    }
     static void place(Execution& e, Step step) noexcept TAPPET_REALTIME {
-        e.insert(std::size_t{e.job_.first} + step.step.number, step.step.state);
+        const StateIndex state = step.step.state;
+        if constexpr (quick) {
+            static_cast<void>(e.status_.states.push({state, RunPhase::fresh, {}, e.context_.now}));
+            e.status_.active = state;
+        } else {
+            e.insert(std::size_t{e.job_.first} + step.step.number, state);
+        }
     }
     template <class Visit>
     static bool for_each_remembered(Execution& e, const Visit& visit) noexcept TAPPET_REALTIME {
@@ -271,5 +289,6 @@ struct InMemory {
         return true;
     }
 };
+using InMemory = Memory<false>;
 
 } // namespace tappet::statechart

@@ -70,7 +70,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
     [[gnu::noinline, gnu::cold]] static ProgramReturn halts(Execution& e, ProgramPosition& position,
                                                             bool stands, NextNode next) noexcept
         TAPPET_REALTIME {
-        const ProgramReturn why = returns_at(next, e.context_, {.stands = stands});
+        const ProgramReturn why = returns_at(next, e.context_, stands);
         position = e.context_.position;
         return why;
     }
@@ -102,7 +102,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
         [[gnu::always_inline]] static bool begins(Execution& e, ActiveState& at, Call& call) noexcept
             TAPPET_REALTIME {
             return runs(e, call, [&](bool stands, NextNode next) noexcept TAPPET_REALTIME {
-                return e.has_run_so_far(at, halts(e, at.position, stands, next));
+                return e.has_not_run(at, halts(e, at.position, stands, next));
             });
         }
         template <class Step>

@@ -280,23 +280,21 @@ template <class Table> struct Order {
                 found = answer == Answer::yes && takes<false>(e, arc, call) ? Found::taken : Found::halted;
                 return Flow::stop;
             });
-        if (found == Found::nothing)
-            Table::for_each_active(e, [&] [[gnu::always_inline]] (auto state) noexcept TAPPET_REALTIME {
-                ActiveState& at = state.at(e);
-                if (at.run == RunPhase::ran) at.run = RunPhase::asked;
-                return true;
-            });
         return found;
     }
 
     // 24
     [[gnu::always_inline]] static bool handles_all(Execution& e, Call& call) noexcept TAPPET_REALTIME {
-        return Table::for_each_active(e, [&] [[gnu::always_inline]] (auto state) noexcept TAPPET_REALTIME {
-            ActiveState& at = state.at(e);
-            if (at.run != RunPhase::asked) return true;
-            at.run = RunPhase::done;
-            return handles(e, state, call);
-        });
+        const bool all =
+            Table::for_each_active(e, [&] [[gnu::always_inline]] (auto state) noexcept TAPPET_REALTIME {
+                ActiveState& at = state.at(e);
+                if (at.run != RunPhase::ran && at.run != RunPhase::asked) return true;
+                at.run = RunPhase::done;
+                return handles(e, state, call);
+            });
+        if (!all) [[unlikely]]
+            e.has_asked_all();
+        return all;
     }
 
     // One round of run programs, conditions and handle programs: 21 - 24. True: another one follows in this
