@@ -26,9 +26,10 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     cycle_.period = plan.period;
     has_deadline_ = plan.real_time && plan.deadline > Duration::zero();
     least_excess_ = has_deadline_ ? Duration::zero() : Duration::max();
-    steps_only_ = plan.timers.empty() && plan.behaviours.empty() && plan.guarded.empty() &&
-                  (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr &&
-                  recorder_ == nullptr;
+    const bool is_simple = plan.timers.empty() && plan.guarded.empty() &&
+                           (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr &&
+                           recorder_ == nullptr;
+    serves_ = !is_simple ? Serves::everything : plan.behaviours.empty() ? Serves::steps : Serves::behaviours;
     for (EnginePart& part : plan_.parts) part.step = part.type->step;
     for (const EngineTimer& each : plan_.timers) each.timer->serve();
 }
@@ -71,30 +72,31 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
     next_release_ += lost * plan_.period;
 }
 
-template <bool steps_only>
+template <Engine::Serves serves>
 void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
+    constexpr bool everything = serves == Serves::everything, causes = serves != Serves::steps;
     const Time now = stamps_.now();
     cycle_.now = lap_ = now;
     Duration used{};
     auto expired = Expired::none;
-    if constexpr (!steps_only) {
+    if constexpr (everything) {
         if (measures_processor_) used = used_processor();
         if (!plan_.periodic) expired = look_at_expired();
     }
     const bool due = plan_.periodic ? now >= next_release_ : woken || expired == Expired::stale;
     Time release = due && plan_.periodic ? next_release_ : now;
-    if constexpr (!steps_only)
+    if constexpr (everything)
         for (const EngineTimer& each : plan_.timers) release = std::min(release, due_at(each));
     const std::uint64_t generation = begin_change();
     WakingRow* waking = nullptr;
-    if constexpr (!steps_only) {
+    if constexpr (causes) {
         waking = due && !plan_.periodic ? take_waking_row() : nullptr;
         cause_ = waking == nullptr ? no_cause : waking->cause();
         set_running_cause(cause_);
     }
     cycle_.release = release;
     worst_excess_ = least_excess_;
-    if constexpr (!steps_only) {
+    if constexpr (everything) {
         tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
         if (tape_ != nullptr) tape_->begin();
         if (due || expired == Expired::none) watch_wakes(); // a look at what is as good as it was is no wake
@@ -104,29 +106,33 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
         if (awaiting_ != 0) start_awaiting();
     }
     bool acted = false;
-    if constexpr (!steps_only) acted = run_timers();
+    if constexpr (everything) acted = run_timers();
     if (due) run_components();
     if (commands_.has_work()) acted |= run_commands();
     if (inbox_.pending()) acted |= run_messages();
-    if constexpr (!steps_only) {
+    if constexpr (causes) {
         set_running_cause(cause_);
         run_behaviours(due || acted); // what ran may have changed a condition
         if (ending_ != 0) end_parts();
         if (waking != nullptr) waking->times.add(lap_ - cause_);
         set_running_cause(no_cause);
+    }
+    if constexpr (everything) {
         watch_inputs();
         if (recorder_ != nullptr) record_values(due);
         if (measures_processor_) note_processor(used);
     }
     ++statistics_.cycles;
-    if (const Duration response = lap_ - cycle_.release; response > quiet_response_) note_response(response);
+    const Duration response = lap_ - cycle_.release;
+    if (response > (cycle_.release == now ? quiet_busy_ : quiet_response_)) note_response(response);
     if (due && plan_.periodic) end_period();
-    if constexpr (!steps_only)
+    if constexpr (everything)
         if (tape_ != nullptr) tape_->end(to_ns(cycle_.release), to_ns(cycle_.now), to_ns(lap_));
     end_change(generation);
 }
-template void Engine::cycle_as<true>(bool) noexcept TAPPET_REALTIME;
-template void Engine::cycle_as<false>(bool) noexcept TAPPET_REALTIME;
+template void Engine::cycle_as<Engine::Serves::steps>(bool) noexcept TAPPET_REALTIME;
+template void Engine::cycle_as<Engine::Serves::behaviours>(bool) noexcept TAPPET_REALTIME;
+template void Engine::cycle_as<Engine::Serves::everything>(bool) noexcept TAPPET_REALTIME;
 
 // Between the two steps a later value may name its own row: then that one is not counted, and no time is
 // wrong.
@@ -316,10 +322,10 @@ void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
         if (!measures_processor_ && plan_.budget > Duration::zero() &&
             (seen.longest_busy > plan_.budget || seen.wakes_too_many != 0)) {
             measures_processor_ = true;
-            steps_only_ = false;
+            serves_ = Serves::everything;
         }
-        quiet_response_ = std::min(seen.longest_lateness, seen.longest_busy);
-        if (has_deadline_) quiet_response_ = std::min(quiet_response_, plan_.deadline);
+        quiet_busy_ = has_deadline_ ? std::min(seen.longest_busy, plan_.deadline) : seen.longest_busy;
+        quiet_response_ = std::min(seen.longest_lateness, quiet_busy_);
     }
     if (has_deadline_ && response > plan_.deadline) note_miss(response);
 }

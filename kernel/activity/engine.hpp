@@ -160,13 +160,13 @@ public:
     void record_to(CycleTape* tape) noexcept {
         expect_standing();
         recorded_ = tape;
-        steps_only_ = steps_only_ && tape == nullptr;
+        if (tape != nullptr) serves_ = Serves::everything;
     }
     /// Likewise: values of its components. What it takes counts in the cycle's response and claim.
     void record_values_by(CycleRecorder* recorder) noexcept {
         expect_standing();
         recorder_ = recorder;
-        steps_only_ = steps_only_ && recorder == nullptr;
+        if (recorder != nullptr) serves_ = Serves::everything;
     }
 
     /// On the starter's thread, while it stands: initialises the components; those that had
@@ -245,7 +245,7 @@ public:
 
     /// When it wants to run although nothing wakes it.
     [[nodiscard]] Time next_wake() const noexcept TAPPET_REALTIME {
-        return steps_only_ && awaiting_ == 0 ? next_release_ : earliest_wake();
+        return serves_ == Serves::steps && awaiting_ == 0 ? next_release_ : earliest_wake();
     }
 
     [[nodiscard]] std::string_view name() const noexcept TAPPET_REALTIME { return plan_.name; }
@@ -374,10 +374,20 @@ private:
     void note_miss(Duration response) noexcept TAPPET_REALTIME;
     void note_response(Duration response) noexcept TAPPET_REALTIME;
     void end_period() noexcept TAPPET_REALTIME;
+    /// Beside requests, commands and messages. What most activities have none of costs them nothing.
+    enum class Serves : std::uint8_t {
+        steps,
+        behaviours, ///< and steps
+        everything  ///< also timers, guarded inputs, wakes to watch, processor time, a tape or a recorder
+    };
     void cycle(bool woken) noexcept TAPPET_REALTIME {
-        steps_only_ ? cycle_as<true>(woken) : cycle_as<false>(woken);
+        switch (serves_) {
+        case Serves::steps: return cycle_as<Serves::steps>(woken);
+        case Serves::behaviours: return cycle_as<Serves::behaviours>(woken);
+        case Serves::everything: return cycle_as<Serves::everything>(woken);
+        }
     }
-    template <bool steps_only>
+    template <Serves serves>
     void cycle_as(bool woken) noexcept TAPPET_REALTIME;
     void ask_stop(StopReason reason, std::uint64_t detail) const noexcept TAPPET_REALTIME {
         if (stop_call_ != nullptr) stop_call_(stop_context_, reason, detail, *this);
@@ -385,8 +395,7 @@ private:
 
     EnginePlan plan_{};
     bool has_deadline_ = false;
-    bool steps_only_ =
-        false; ///< it has no timers, behaviours, guarded inputs, wakes to watch, tape or recorder
+    Serves serves_ = Serves::everything;
     bool measures_processor_ = false;
     Time claim_began_ = Time::min(); ///< the time of at_most that is measured
     Duration claim_used_{};
@@ -416,6 +425,7 @@ private:
     CycleTape* tape_ = nullptr; ///< of this cycle; null: it is not recorded
     CycleRecorder* recorder_ = nullptr;
     Duration quiet_response_{-1}; ///< one up to here is no maximum of anything and no miss
+    Duration quiet_busy_{-1};     ///< likewise of a cycle that begins when it is released
     std::array<Time, max_wakes_watched> wakes_{};
     std::uint64_t wake_count_ = 0;
     std::uint64_t oldest_wake_ = 0; ///< its place

@@ -244,21 +244,25 @@ void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
 }
 
 bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
-    bool worked = false;
+    bool worked = false, failed = false, left_over = false;
     limit_work(now);
     stepped_at_ = now;
     for (UnitPart& part : parts_) {
         if (part.awaited != 0 && is_at_rest(part)) [[unlikely]]
             --part.awaited;
-        if (part.machine == nullptr) continue;
-        worked |= part.machine->step(now);
-        if (part.begins_anew) [[unlikely]] {
-            begin_anew(part, now);
-            worked = true;
+        if (part.machine != nullptr) {
+            worked |= part.machine->step(now);
+            if (part.begins_anew) [[unlikely]] {
+                begin_anew(part, now);
+                worked = true;
+            }
         }
+        left_over |= part.left_over();
+        failed |= part.has_failed();
     }
     limit_.until = never; // what makes the component safe is not cut short
-    if (worked && left_over()) ++left_over_;
+    has_failed_ = failed;
+    if (worked && left_over) ++left_over_;
     return worked;
 }
 
@@ -306,15 +310,13 @@ void BehaviourUnit::drop() noexcept TAPPET_REALTIME {
 
 const UnitPart* BehaviourUnit::failed_part() const noexcept TAPPET_REALTIME {
     for (const UnitPart& part : parts_)
-        if (part.machine != nullptr ? part.machine->in_error()
-                                    : part.program->status() == ProgramStatus::error)
-            return &part;
+        if (part.has_failed()) return &part;
     return nullptr;
 }
 
 bool BehaviourUnit::left_over() const noexcept TAPPET_REALTIME {
     for (const UnitPart& part : parts_)
-        if (part.machine != nullptr ? part.machine->left_over() : part.program->left_over()) return true;
+        if (part.left_over()) return true;
     return false;
 }
 
@@ -328,8 +330,8 @@ void BehaviourUnit::note_fault() noexcept TAPPET_REALTIME {
         fault_.machine = part->machine->fault();
 }
 
-void BehaviourUnit::report_errors() noexcept TAPPET_REALTIME {
-    const UnitPart* part = reported_ ? nullptr : failed_part();
+void BehaviourUnit::report_failure() noexcept TAPPET_REALTIME {
+    const UnitPart* part = failed_part();
     if (part == nullptr) return;
     reported_ = true;
     note_fault();

@@ -30,6 +30,13 @@ struct UnitPart {
     /// commands are followed before behaviours are stepped.
     std::uint8_t awaited = 0;
     StateMachineBinding binding{}; ///< of a machine, to bind it anew
+
+    [[nodiscard]] bool has_failed() const noexcept TAPPET_REALTIME {
+        return machine != nullptr ? machine->in_error() : program->status() == ProgramStatus::error;
+    }
+    [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME {
+        return machine != nullptr ? machine->left_over() : program->left_over();
+    }
 };
 
 /// A program that has ended or was stopped, a machine in its final state or in none. Real-time.
@@ -99,8 +106,10 @@ public:
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME;
     /// Keeps which instance is in error, for describe_fault().
     void note_fault() noexcept TAPPET_REALTIME;
-    /// Does what the row says about errors, once for each.
-    void report_errors() noexcept TAPPET_REALTIME;
+    /// After a step: does what the row says about errors, once for each.
+    void report_errors() noexcept TAPPET_REALTIME {
+        if (has_failed_ && !reported_) report_failure();
+    }
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
     void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
 
@@ -111,6 +120,7 @@ public:
 
 private:
     void bind(UnitPart& part, const BehaviourCode& native, const ResolvedView& view);
+    [[gnu::cold]] void report_failure() noexcept TAPPET_REALTIME;
     void limit_work(Time now) noexcept TAPPET_REALTIME;
     void begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME;
 
@@ -128,6 +138,7 @@ private:
         std::uint16_t line = 0; // of a program
         StateMachineFault machine{};
     } fault_;
+    bool has_failed_ = false; // after the last step
     bool reported_ = false;
     bool has_worked_ = false; // before limit_ began anew, or by an event
     bool may_begin_ = false;
