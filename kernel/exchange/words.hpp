@@ -117,7 +117,7 @@ private:
     // A small value was as a rule stored just now, field by field: a wider load would have to wait until
     // those stores have left the processor's buffer. So would one of a large value's last words: there lies
     // the stamp.
-    static constexpr std::size_t fewest_for_pairs = 12;
+    static constexpr std::size_t fewest_for_pairs = 12; // as often its loops are unrolled
     static constexpr bool is_told_of_pairs = requires { Atomic<std::uint64_t>::before_pair(); };
     static constexpr bool moves_pairs =
         TAPPET_MOVES_PAIRS != 0 && count >= fewest_for_pairs &&
@@ -138,6 +138,7 @@ public:
         const auto* bytes = reinterpret_cast<const std::byte*>(std::addressof(from));
 #pragma GCC unroll 16
         for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = detail::pair_at(bytes, i);
+#pragma GCC unroll 12
         for (std::size_t i = 0; i < singles; ++i) into.single[i] = word_of(from, 2 * pairs + i);
     }
     void store(const Copy& from) noexcept TAPPET_REALTIME {
@@ -147,6 +148,7 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) put_pair(i, from.paired[i]);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
+#pragma GCC unroll 12
         for (std::size_t i = 0; i < singles; ++i)
             words_[2 * pairs + i].store(from.single[i], std::memory_order_release); // words.store
     }
@@ -158,6 +160,7 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) put_pair(i, detail::pair_at(bytes, i));
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
+#pragma GCC unroll 12
         for (std::size_t i = 2 * pairs; i < count; ++i)
             words_[i].store(word_of(from, i), std::memory_order_release); // words.store
     }
@@ -168,6 +171,7 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) into.paired[i] = take_pair(i);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
+#pragma GCC unroll 12
         for (std::size_t i = 0; i < singles; ++i)
             into.single[i] = words_[2 * pairs + i].load(std::memory_order_acquire); // words.load
     }
@@ -180,6 +184,7 @@ public:
             for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = take_pair(i);
             std::atomic_signal_fence(std::memory_order_acq_rel);
         }
+#pragma GCC unroll 12
         for (std::size_t i = 2 * pairs; i < count; ++i)
             put(into, i, words_[i].load(std::memory_order_acquire)); // words.take
     }
@@ -187,6 +192,7 @@ public:
         auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
 #pragma GCC unroll 16
         for (std::size_t i = 0; i < pairs; ++i) detail::pair_at(bytes, i) = from.paired[i];
+#pragma GCC unroll 12
         for (std::size_t i = 0; i < singles; ++i) put(into, 2 * pairs + i, from.single[i]);
     }
 
