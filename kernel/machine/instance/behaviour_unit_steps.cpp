@@ -1,0 +1,188 @@
+// Steps what is in a unit of behaviour: what its engine calls.
+#include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/slots/behaviour_unit.hpp"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace tappet {
+
+bool BehaviourUnit::hears(std::size_t event) const noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (routes_[event * parts_.size() + i].trigger != no_trigger) return true;
+    return false;
+}
+
+bool BehaviourUnit::is_quiet() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        for (std::size_t i = 0; i < part.slot_count; ++i)
+            if (!part.slots[i].is_mine()) return false;
+    return true;
+}
+
+// The stop of a component leaves its machines in the final state; the next start leads from there.
+void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
+    reported_ = false;
+    may_begin_ = true;
+    for (UnitPart& part : parts_) {
+        if (part.row->parent != no_instance) continue;
+        if (part.program != nullptr) {
+            // What a final state commanded last, and did not see the end of, is over.
+            static_cast<void>(part.row->on_command ? part.program->stop() : part.program->start());
+            continue;
+        }
+        if (part.machine->is_active())
+            begin_anew(part, now);
+        else if (options_.reactive)
+            static_cast<void>(part.machine->activate(now));
+        else
+            static_cast<void>(part.machine->start(now));
+    }
+}
+
+// In error it stays as it is, for the report.
+void BehaviourUnit::begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME {
+    part.begins_anew =
+        part.machine->request_initial(now) == StateOutcome::ignored && !part.machine->in_error();
+}
+
+void BehaviourUnit::limit_work(Time now) noexcept TAPPET_REALTIME {
+    const Duration deadline = engine_->plan().deadline;
+    limit_.until = deadline > Duration::zero() ? now + deadline : never;
+    has_worked_ |= std::exchange(limit_.has_begun, false);
+}
+
+bool BehaviourUnit::has_worked() noexcept TAPPET_REALTIME {
+    has_worked_ |= std::exchange(limit_.has_begun, false);
+    return std::exchange(has_worked_, false);
+}
+
+void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
+    limit_work(now);
+    for (UnitPart& part : parts_) {
+        if (part.program == nullptr) continue;
+        const bool ran = part.program->status() == ProgramStatus::running;
+        part.program->step(now);
+        if (ran && is_at_rest(part)) await_rest(part); // whoever commanded it looks
+    }
+    limit_.until = never;
+}
+
+bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
+    bool worked = false, failed = false, left_over = false;
+    limit_work(now);
+    stepped_at_ = now;
+    for (UnitPart& part : parts_) {
+        if (part.awaited != 0 && is_at_rest(part)) [[unlikely]]
+            --part.awaited;
+        if (part.machine != nullptr) {
+            worked |= part.machine->step(now);
+            if (part.begins_anew) [[unlikely]] {
+                begin_anew(part, now);
+                worked = true;
+            }
+        }
+        left_over |= part.left_over();
+        failed |= part.has_failed();
+    }
+    limit_.until = never; // what makes the component safe is not cut short
+    has_failed_ = failed;
+    if (worked && left_over) ++left_over_;
+    return worked;
+}
+
+void BehaviourUnit::finish(Time now, std::string_view reason) noexcept TAPPET_REALTIME {
+    may_begin_ = false;
+    for (UnitPart& part : parts_) {
+        part.begins_anew = false;
+        if (part.program != nullptr)
+            static_cast<void>(part.program->stop());
+        else
+            static_cast<void>(part.machine->request_final(now, reason));
+    }
+}
+
+bool BehaviourUnit::is_finished() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.machine != nullptr && part.machine->is_active() && !part.machine->in_error() &&
+            (!part.machine->is_final() || part.machine->under_way()))
+            return false;
+    return true;
+}
+
+void BehaviourUnit::deactivate(Time now) noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_)
+        if (part.machine != nullptr) static_cast<void>(part.machine->deactivate(now));
+}
+
+bool BehaviourUnit::is_active() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.machine != nullptr ? part.machine->is_active() : part.program->is_at_work()) return true;
+    return false;
+}
+
+void BehaviourUnit::drop() noexcept TAPPET_REALTIME {
+    for (UnitPart& part : parts_) {
+        if (part.program != nullptr) {
+            static_cast<void>(part.program->stop());
+            continue;
+        }
+        new (part.machine) StateMachineExecution{};
+        static_cast<void>(part.machine->bind(part.binding));
+        part.machine->trace(trace_, trace_context_);
+    }
+}
+
+const UnitPart* BehaviourUnit::failed_part() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.has_failed()) return &part;
+    return nullptr;
+}
+
+bool BehaviourUnit::left_over() const noexcept TAPPET_REALTIME {
+    for (const UnitPart& part : parts_)
+        if (part.left_over()) return true;
+    return false;
+}
+
+void BehaviourUnit::note_fault() noexcept TAPPET_REALTIME {
+    const UnitPart* part = failed_part();
+    if (part == nullptr) return;
+    fault_.instance = static_cast<InstanceIndex>(part - parts_.data());
+    if (part->program != nullptr)
+        fault_.line = part->program->line();
+    else
+        fault_.machine = part->machine->fault();
+}
+
+void BehaviourUnit::report_failure() noexcept TAPPET_REALTIME {
+    const UnitPart* part = failed_part();
+    if (part == nullptr) return;
+    reported_ = true;
+    note_fault();
+    if (options_.on_error == OnError::stop_machine && part->row->parent == no_instance)
+        machine_->ask_stop(StopReason::behaviour, driven_, engine_);
+}
+
+Time BehaviourUnit::next() const noexcept TAPPET_REALTIME {
+    Time earliest = never;
+    for (const UnitPart& part : parts_)
+        earliest = std::min(earliest, part.awaited != 0 && is_at_rest(part) ? stepped_at_
+                                      : part.machine != nullptr             ? part.machine->next_timeout()
+                                                                            : part.program->wakes());
+    return earliest;
+}
+
+void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
+    limit_work(now);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const TriggerIndex trigger = routes_[event * parts_.size() + i].trigger;
+        if (trigger == no_trigger) continue;
+        has_worked_ = true;
+        static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
+    }
+    limit_.until = never;
+}
+
+} // namespace tappet
