@@ -22,7 +22,10 @@ struct MachineTest : testing::Test {
         const auto started = run.start();
         ASSERT_TRUE(started) << started.error().view();
     }
-    void TearDown() override { run.stop(); }
+    void TearDown() override {
+        run.judge_by({}); // what it may refer to lived in the test's body
+        run.stop();
+    }
 
     template <class Component>
     Component& of(std::string_view component) {
