@@ -90,6 +90,6 @@ private:
     int code_ = -1;
 };
 
-inline int run(const std::string& command) { return Foreign{command}.wait(); }
+inline int run_foreign(const std::string& command) { return Foreign{command}.wait(); }
 
 } // namespace tappet

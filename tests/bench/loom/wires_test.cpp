@@ -31,16 +31,16 @@ TEST_F(LoomWires, does_not_decode_what_is_not_on_its_map_and_keeps_weaving) {
     loom->forget();
     for (const char* frame :
          {"183#0102", "183#0102030405060708", "181#00", "703#0000", "184#"}) // wrong lengths: counted
-        ASSERT_EQ(run(std::string{"cansend can0 "} + frame), 0) << frame;
+        ASSERT_EQ(run_foreign(std::string{"cansend can0 "} + frame), 0) << frame;
     for (const char* frame :
          {"7A5#DEADBEEF", "187#0102030405060708", // of nobody
           "00000183#01020304", "00000703#00",
           "00000181#0800000000000000", // an extended frame's low bits are no standard identifier
           "183#R", "703#R"})           // a request carries no data
-        ASSERT_EQ(run(std::string{"cansend can0 "} + frame), 0) << frame;
-    ASSERT_EQ(run("cansend can0 205#01DC05"),
+        ASSERT_EQ(run_foreign(std::string{"cansend can0 "} + frame), 0) << frame;
+    ASSERT_EQ(run_foreign("cansend can0 205#01DC05"),
               0); // the machine's own identifier, from somebody else: the feeder's usual command
-    ASSERT_EQ(run("cangen can0 -e -g 1 -n 200 -L r"), 0);
+    ASSERT_EQ(run_foreign("cangen can0 -e -g 1 -n 200 -L r"), 0);
     EXPECT_TRUE(keeps_weaving(5)) << loom->since();
     EXPECT_EQ(loom->last("bus"), "0");
     EXPECT_EQ(loom->since().find("the loom goes to"), std::string::npos) << loom->since();

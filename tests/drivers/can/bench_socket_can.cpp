@@ -66,7 +66,7 @@ TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
     const Time before = now();
     for (const char* one :
          {"123#DEADBEEF", "124#00", "00000123#00", "123#R", "18FF0102#0102030405060708", "18FF0103#00"})
-        ASSERT_EQ(run(std::string{"cansend can0 "} + one), 0);
+        ASSERT_EQ(run_foreign(std::string{"cansend can0 "} + one), 0);
     const Time after = now();
     const auto got = run_for(20ms);
     ASSERT_EQ(got.size(), 2u);
@@ -117,10 +117,10 @@ TEST_F(RealCan, sends_a_burst_in_the_order_of_identifiers_with_few_frames_in_fli
 TEST_F(RealCan, says_how_many_frames_an_overflow_cost) {
     settings.receive_buffer_bytes = 8192;
     open();
-    ASSERT_EQ(run("cangen can0 -g 0 -n 500 -I 123 -L 8"), 0);
+    ASSERT_EQ(run_foreign("cangen can0 -g 0 -n 500 -I 123 -L 8"), 0);
     std::uint64_t got = run_for(50ms).size();
     EXPECT_LT(got, 500u);
-    ASSERT_EQ(run("cansend can0 123#00"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 123#00"), 0);
     got += run_for(10ms).size();
     EXPECT_GT(can.counters().lost_in_kernel, 0u);
     EXPECT_EQ(got + can.counters().lost_in_kernel, 501u);
@@ -131,7 +131,7 @@ TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_c
     open();
     Foreign dump{"candump -L can0"};
     std::this_thread::sleep_for(200ms);
-    ASSERT_EQ(run("cansend can0 20000040#0000000000000000"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 20000040#0000000000000000"), 0);
     EXPECT_EQ(can.send(frame(0x201)), Send::queued) << "the machine does not know yet";
     Frame f;
     ASSERT_EQ(can.receive(f).what, Received::error_frame);
@@ -151,7 +151,7 @@ TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_c
     EXPECT_EQ(can.counters().sent, 1u);
     EXPECT_EQ(can.counters().restarts, 1u);
 
-    ASSERT_EQ(run("cansend can0 20000040#0000000000000000"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 20000040#0000000000000000"), 0);
     run_for(20ms);
     EXPECT_EQ(can.state(), State::bus_off);
     EXPECT_EQ(can.restart(), Restart::exhausted);
@@ -195,11 +195,11 @@ TEST_F(RealCan, notices_an_interface_that_goes_down_and_costs_nothing_meanwhile)
 
 TEST_F(RealCan, reports_passive_and_active_and_keeps_sending) {
     open();
-    ASSERT_EQ(run("cansend can0 20000004#0020000000008000"), 0); // transmit error passive
+    ASSERT_EQ(run_foreign("cansend can0 20000004#0020000000008000"), 0); // transmit error passive
     run_for(10ms);
     EXPECT_EQ(can.state(), State::passive);
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
-    ASSERT_EQ(run("cansend can0 20000004#0040000000000000"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 20000004#0040000000000000"), 0);
     run_for(10ms);
     EXPECT_EQ(can.state(), State::active);
     EXPECT_EQ(can.counters().sent, 1u);
@@ -207,21 +207,21 @@ TEST_F(RealCan, reports_passive_and_active_and_keeps_sending) {
 
 TEST_F(RealCan, is_not_woken_by_a_storm_of_bus_errors) {
     open();
-    for (int i = 0; i < 20; ++i) ASSERT_EQ(run("cansend can0 20000088#0000000000000000"), 0);
+    for (int i = 0; i < 20; ++i) ASSERT_EQ(run_foreign("cansend can0 20000088#0000000000000000"), 0);
     run_for(10ms);
     EXPECT_EQ(can.counters().error_frames, 0u);
 }
 
 TEST_F(RealCan, counts_an_impostor) {
     open();
-    ASSERT_EQ(run("cansend can0 201#11"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 201#11"), 0);
     EXPECT_TRUE(run_for(10ms).empty());
     EXPECT_EQ(can.counters().impostors, 1u);
 }
 
 TEST_F(RealCan, allocates_nothing_while_it_runs) {
     open();
-    ASSERT_EQ(run("cangen can0 -g 0 -n 100 -I 123 -L 8"), 0);
+    ASSERT_EQ(run_foreign("cangen can0 -g 0 -n 100 -I 123 -L 8"), 0);
     const auto before = ::mallinfo2().uordblks;
     Frame f;
     std::uint64_t got = 0;
@@ -236,8 +236,8 @@ TEST_F(RealCan, allocates_nothing_while_it_runs) {
 
 TEST_F(RealCan, hears_no_can_fd_frame_unless_its_map_has_one) {
     open();
-    ASSERT_EQ(run("cansend can0 123##1DEADBEEF"), 0);
-    ASSERT_EQ(run("cansend can0 123#DEADBEEF"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 123##1DEADBEEF"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 123#DEADBEEF"), 0);
     const auto got = run_for(20ms);
     ASSERT_EQ(got.size(), 1u);
     EXPECT_FALSE(got[0].fd);
@@ -289,8 +289,8 @@ TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format)
                          sent(Format::flexible_faster, 12), sent(Format::flexible_faster, 0),
                          sent(Format::classical, 8)};
     for (const Frame& f : all)
-        ASSERT_EQ(run("cansend can0 123" + std::string{f.fd ? (f.bit_rate_switch ? "##1" : "##0") : "#"} +
-                      digits(f)),
+        ASSERT_EQ(run_foreign("cansend can0 123" +
+                              std::string{f.fd ? (f.bit_rate_switch ? "##1" : "##0") : "#"} + digits(f)),
                   0);
     const auto got = run_for(20ms);
     ASSERT_EQ(got.size(), all.size());
@@ -299,7 +299,7 @@ TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format)
         EXPECT_EQ(got[i].length, all[i].length);
         EXPECT_EQ(got[i].data, all[i].data);
     }
-    ASSERT_EQ(run("cansend can0 123##300"), 0);
+    ASSERT_EQ(run_foreign("cansend can0 123##300"), 0);
     const auto passive = run_for(20ms);
     ASSERT_EQ(passive.size(), 1u);
     EXPECT_TRUE(passive[0].error_state_indicator);

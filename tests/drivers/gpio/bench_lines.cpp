@@ -164,7 +164,7 @@ TEST_F(RealLines, show_a_foreign_program_who_holds_them) {
     Foreign info{"gpioinfo -c /dev/panel"};
     EXPECT_EQ(info.wait(), 0);
     EXPECT_NE(info.output().find("consumer=tappet"), std::string::npos) << info.output();
-    EXPECT_NE(run("gpioset -t0 -c /dev/panel 2=0"), 0) << "nobody else writes the brake";
+    EXPECT_NE(run_foreign("gpioset -t0 -c /dev/panel 2=0"), 0) << "nobody else writes the brake";
 }
 
 TEST_F(RealLines, are_refused_while_another_program_holds_one) {
