@@ -26,5 +26,15 @@ endif()
 
 if(tappet_sanitizer_flags)
     add_compile_options(${tappet_sanitizer_flags} -fno-omit-frame-pointer -DTAPPET_ASSERTS_THREADS)
+    if(NOT TAPPET_SANITIZE STREQUAL realtime) # whose tree is the second compiler's, too
+        add_compile_options(-O1)
+    endif()
     add_link_options(${tappet_sanitizer_flags})
+endif()
+
+# For what works while a machine starts, or tells about itself: there size counts more than speed, on a box. A sanitizer's tree
+# has one level, so that all its sources can begin with the same header, read once.
+set(TAPPET_FOR_SIZE -Os)
+if(tappet_sanitizer_flags)
+    set(TAPPET_FOR_SIZE)
 endif()

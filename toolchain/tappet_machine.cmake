@@ -152,6 +152,7 @@ function(tappet_machine name)
         else() # no static binary has a sanitizer, but the effects of its functions are looked at
             string(APPEND firmware "-effects")
             add_library(${firmware} OBJECT EXCLUDE_FROM_ALL "${mains}/firmware_main.cpp")
+            target_compile_options(${firmware} PRIVATE -O0)
             if(TAPPET_SANITIZE STREQUAL realtime AND board STREQUAL bench) # a board changes no function
                 set_target_properties(${firmware} PROPERTIES EXCLUDE_FROM_ALL FALSE)
             endif()
