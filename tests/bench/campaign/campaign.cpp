@@ -152,8 +152,8 @@ constexpr Fault faults[] = {
     {"guardian-stopped",  [](const Victims& v) { ::kill(v.guardian, SIGSTOP); }, guardian_hangs, After::stopped},
     {"can-down",          [](const Victims&) { set_interface("can0", false); },  silence,        After::goes_on},
     {"memory-exhausted",  [](const Victims&) { exhaust_memory(); },              exhausted,      After::either, 137},
-    {"component-stopped", [](const Victims&) { ::tappet::run("tappet-browse stop weft"); },  asked, After::misses, 0, "tappet-browse start weft"},
-    {"activity-stopped",  [](const Victims&) { ::tappet::run("tappet-browse stop shaft"); }, asked, After::misses, 0, "tappet-browse start shaft"},
+    {"component-stopped", [](const Victims&) { ::tappet::run_foreign("tappet-browse stop weft"); },  asked, After::misses, 0, "tappet-browse start weft"},
+    {"activity-stopped",  [](const Victims&) { ::tappet::run_foreign("tappet-browse stop shaft"); }, asked, After::misses, 0, "tappet-browse start shaft"},
     {"stdout-blocked",    [](const Victims& v) { v.output.hold(true); soon([&] { return v.output.unread() > 3600; }, 20s, 50ms); }, {}, After::untouched, 0, nullptr,
                           [](const Victims& v) { v.output.hold(false); }},
     {"modbus-gone",       [](const Victims&) { set_interface("lo", false); },    {},             After::untouched, 0, nullptr,
@@ -228,7 +228,7 @@ public:
         pull(wires::line::brake, true);
         pull(wires::line::weft_release, false);
         if (after != After::untouched) judge_drives(fault, committed, listener, verdict);
-        if (after == After::misses && ::tappet::run(fault.mended_by) != 0 && verdict.fault.empty())
+        if (after == After::misses && ::tappet::run_foreign(fault.mended_by) != 0 && verdict.fault.empty())
             verdict.fault = "it takes no \"" + std::string{fault.mended_by} + "\"";
         return verdict;
     }

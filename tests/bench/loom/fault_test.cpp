@@ -14,7 +14,7 @@ TEST(LoomBus,
     const long picks_before = loom.picks();
 
     loom.forget();
-    ASSERT_EQ(run(bus_off), 0);
+    ASSERT_EQ(run_foreign(bus_off), 0);
     EXPECT_TRUE(soon(is_safe, 100ms)) << "brake on, valve closed";
     EXPECT_TRUE(loom.says("the loom goes to \"fault\": the CAN bus is off")) << loom.since();
     EXPECT_TRUE(loom.says("state=fault"));
