@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # tappet_precompiled(<name> [HEADERS ...] [OURS ...] LIBRARIES ... [OPTIONS ...]): headers that many sources begin with, read once
 # for all of them. A target takes them by target_precompile_headers(<target> REUSE_FROM tappet_header_<name>).
-# OURS, from the root of the tree, are clang's alone, whose tests they cost half of their time. g++ tells a file that #pragma once
+# OURS, from the root of the tree, are clang's alone, whose tests spend half of their time on them. g++ tells a file that #pragma once
 # has seen by its age, which another clone's cache does not have; and it finds the source that does not include what it uses.
 include_guard(GLOBAL)
 
@@ -37,9 +37,10 @@ function(tappet_precompiled name)
     endif()
 endfunction()
 
-# Libraries whose sources begin with a machine.
+# Libraries whose sources begin with a machine. In a sanitizer's tree, which has one level of optimisation (TAPPET_FOR_SIZE): clang
+# takes no header that was read with another one.
 function(tappet_reads_machines)
-    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND NOT TAPPET_SANITIZE STREQUAL none)
         foreach(target IN LISTS ARGN)
             target_precompile_headers(${target} REUSE_FROM tappet_header_machine)
         endforeach()
