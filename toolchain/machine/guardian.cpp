@@ -129,7 +129,7 @@ private:
         static_cast<void>(devices_.write_safe_lines());
         const std::size_t frames = devices_.send_safe_frames(confirmed_within);
         const Duration confirmed = os::Clock::monotonic() - begin;
-        const std::size_t servers = devices_.write_safe_registers();
+        const std::size_t servers = devices_.write_safe_registers(5s, {});
         // A thread that waited in the kernel for memory or for a chip may have written after us.
         const bool ended = guard_.await_end(ended_within);
         const std::size_t chips = devices_.write_safe_lines();
