@@ -339,7 +339,7 @@ private:
         take_notices();
         custody_.firmware_ended(code);
         if (is_ending_) return;
-        bring_up_rest();
+        if (custody_.outputs_are_safe()) bring_up_rest(); // else nothing may hold up the reset
         last_ending_ = "the firmware ended with code " + std::to_string(code) + " after " +
                        text_of_seconds(uptime_s() - start_s_) + "; it said last: " + last_words_;
         voice_.say(last_ending_);
