@@ -3,6 +3,7 @@
 // power goes. What is missing is said on every console, in one sentence each. There is no shell and no way to
 // one.
 
+#include "board/box/custody.hpp"
 #include "board/box/disk.hpp"
 #include "board/box/ears.hpp"
 #include "board/box/hardware.hpp"
@@ -12,7 +13,6 @@
 #include "board/box/slot_check.hpp"
 #include "board/init/devices.hpp"
 #include "kernel/os/clock.hpp"
-#include "kernel/os/watchdog.hpp"
 
 #include <array>
 #include <cerrno>
@@ -37,12 +37,11 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double patience_s = 5.0; // for hardware that comes late
-constexpr int no_firmware = -1;
-constexpr int wrong_set_up = 2;          // Ending::wrong_set_up: nothing was touched
-constexpr double stop_patience_s = 15.0; // for the firmware's orderly end
-constexpr double gone_patience_s = 2.0;  // for the end of what is killed
+constexpr int no_process = -1;
+constexpr double gone_patience_s = 2.0; // for the end of what is killed
 constexpr double again_after_s = 1.0;
-constexpr double renewal_patience_s = 300.0;
+constexpr std::chrono::seconds renewal_patience{300};
+constexpr std::chrono::seconds mount_patience{300}; // its check, or making it anew
 constexpr int starts_anew = 1;
 constexpr std::size_t longest_last_words = 240;
 constexpr double tell_trial_s = 5.0; // for who stands there to read why
@@ -51,7 +50,7 @@ const std::string log_file = std::string{data_folder} + "/box.log";
 constexpr std::size_t told_of_log = 4000;
 constexpr std::uintmax_t least_free_bytes = 256 * 1024;
 
-class Init {
+class Init final : public Processes {
 public:
     [[noreturn]] void live() {
         begin();
@@ -94,7 +93,7 @@ private:
         if (const std::string path = facts_.one("watchdog"); !path.empty())
             needs.push_back({"watchdog " + path, "check that the board's modules name its driver",
                              [path] { return ::access(path.c_str(), F_OK) == 0; },
-                             [this] { return hold_watchdog(); }});
+                             [this] { return custody_.hold_watchdog(); }});
         needs.push_back({std::string{"data partition at "} + data_folder,
                          "check its disk, or flash the box anew, which loses its settings",
                          [] { return find_partition(data_partition).has_value(); },
@@ -113,7 +112,7 @@ private:
 
     /// Which version runs must be known before it touches anything.
     void look_at_slots() {
-        watchdog_.kick(os::Clock::monotonic());
+        custody_.kick();
         if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
         const Verdict verdict = judge_fallback(slots_);
         if (!verdict.said.empty()) voice_.say(verdict.said);
@@ -158,8 +157,8 @@ private:
     init::Done take_data_partition() {
         const auto device = find_partition(data_partition);
         if (!device) return std::unexpected(device.error());
-        const auto mounted =
-            mount_data(*device, data_folder, [this] { watchdog_.kick(os::Clock::monotonic()); });
+        const Time until = now() + mount_patience;
+        const auto mounted = mount_data(*device, data_folder, [&] { custody_.kick_until(until); });
         if (!mounted) return std::unexpected(mounted.error());
         if (!mounted->empty()) voice_.say(*mounted);
         data_device_ = *device;
@@ -181,11 +180,11 @@ private:
     void start_service() {
         const std::string port = facts_.one("service");
         if (port.empty()) return;
-        if (service_ == no_firmware)
+        if (service_ == no_process)
             if (const auto made = make_service_folder(); !made) voice_.say(made.error());
         tell_status();
         service_ = init::start({"/init", "service", nonce_}, ears_.mouth(), "write the image anew")
-                       .value_or(no_firmware);
+                       .value_or(no_process);
     }
 
     /// For who asks over the network.
@@ -195,9 +194,9 @@ private:
                            (is_locked_down_ ? "Secure Boot" : "no Secure Boot") + "\n";
         text += "runs: " + summary_of(slots_.running()) + "\nother: " + summary_of(slots_.other()) + "\n";
         text += std::string{"firmware: "} +
-                (firmware_ == no_firmware ? "does not run"
-                 : is_armed_              ? "is armed"
-                                          : "has not armed") +
+                (!custody_.firmware_runs() ? "does not run"
+                 : is_armed_               ? "is armed"
+                                           : "has not armed") +
                 (last_ending_.empty() ? "" : "; before: " + last_ending_) + "\n" +
                 init::read_text(std::string{data_folder} + "/" + measured_file) + "what was said last:\n";
         const std::string log = init::read_text(log_file);
@@ -213,19 +212,9 @@ private:
         last_stage_s_ = now;
     }
 
-    /// Kicked by us while no firmware has it.
-    init::Done hold_watchdog() {
-        const std::string path = facts_.one("watchdog");
-        const std::chrono::seconds within{std::atoi(facts_.one("watchdog", 1, "10").c_str())};
-        if (auto opened = watchdog_.open(path.c_str(), within); !opened)
-            return std::unexpected(std::string{opened.error().view()});
-        return {};
-    }
-
     void start_firmware() {
-        watchdog_.hand_over();
+        if (const auto free = custody_.hand_over(); !free) return voice_.say(free.error());
         start_s_ = uptime_s();
-        outputs_are_safe_ = false;
         is_armed_ = false;
         const std::string layout = facts_.one("layout"), last = last_layout();
         std::vector<std::string> words{"/bin/firmware", "--properties", properties_folder(layout),
@@ -233,7 +222,7 @@ private:
         if (!last.empty() && last != layout)
             words.insert(words.end(), {"--take-over", properties_folder(last)});
         const auto started = init::start(words, ears_.mouth(), "write the image anew");
-        firmware_ = started.value_or(no_firmware);
+        custody_.firmware_started(started.value_or(no_process));
         if (!started) voice_.say(started.error());
         tell_status();
     }
@@ -242,7 +231,7 @@ private:
     void start_plant() {
         const auto given = facts_.all("plant");
         if (given.empty()) return;
-        plant_ = init::start(given.front(), ears_.mouth(), "give the image its plant").value_or(no_firmware);
+        plant_ = init::start(given.front(), ears_.mouth(), "give the image its plant").value_or(no_process);
         for (const double until_s = uptime_s() + patience_s; !plant_is_ready_ && uptime_s() < until_s;) {
             init::pause_for(milliseconds{5});
             take_notices();
@@ -252,7 +241,7 @@ private:
 
     void look() {
         ears_.wait(milliseconds{250});
-        watchdog_.kick(os::Clock::monotonic());
+        custody_.kick();
         pass_on();
         take_notices();
         if (ears_.power_button_was_pressed()) end_in_order("the power button", false);
@@ -284,9 +273,10 @@ private:
 
     void take_notices() {
         ears_.take_notices([this](std::string_view notice) {
+            custody_.hear(notice);
             if (notice == "X_TAPPET_PLANT=ready") {
                 plant_is_ready_ = true;
-            } else if (notice == "READY=1") {
+            } else if (notice == "READY=1" && !is_ending_) {
                 const double now = uptime_s();
                 voice_.say("armed " + text_of_seconds(now - begun_s_) + " after init began, " +
                            text_of_seconds(now - start_s_) +
@@ -296,8 +286,6 @@ private:
                 bring_up_rest();
                 note_layout();
                 tell_status();
-            } else if (notice == "X_TAPPET_OUTPUTS=safe") {
-                outputs_are_safe_ = true;
             } else if (notice.starts_with("X_TAPPET_LATE=") && slots_.on_trial() && !is_ending_) {
                 voice_.say(
                     "activity \"" + std::string{notice.substr(notice.find('=') + 1)} +
@@ -336,7 +324,7 @@ private:
                 voice_.say("the plant ended with code " + std::to_string(code));
                 end_in_order("the end of its plant", false);
             }
-            if (pid == firmware_) firmware_ended(code);
+            if (custody_.is(pid)) firmware_ended(code);
             if (const std::string said = slot_check_.end(pid, code, slots_); !said.empty()) {
                 voice_.say(said);
                 tell_status();
@@ -347,21 +335,19 @@ private:
     }
 
     void firmware_ended(int code) {
-        firmware_ = no_firmware;
         pass_on();
         take_notices();
+        custody_.firmware_ended(code);
         if (is_ending_) return;
-        bring_up_rest();
+        if (custody_.outputs_are_safe()) bring_up_rest(); // else nothing may hold up the reset
         last_ending_ = "the firmware ended with code " + std::to_string(code) + " after " +
                        text_of_seconds(uptime_s() - start_s_) + "; it said last: " + last_words_;
         voice_.say(last_ending_);
-        if (outputs_are_safe_ || code == wrong_set_up) {
-            if (const auto held = hold_watchdog(); !held && !facts_.one("watchdog").empty())
-                voice_.say(held.error());
-        } else {
-            voice_.say("its outputs may not be safe: the watchdog is left alone, and resets the box");
-        }
-        if (code == 0) {
+        if (!custody_.outputs_are_safe()) {
+            is_ending_ = true;
+            tell_status();
+            custody_.await_reset();
+        } else if (code == 0) {
             voice_.say("it was asked to end; the power may go");
         } else if (slots_.on_trial()) {
             voice_.say("it was on trial: the box goes back to the other slot");
@@ -386,29 +372,41 @@ private:
         return true;
     }
 
+    /// It comes back when the outputs are safe.
     void stop_everything() {
         is_ending_ = true;
-        const double until_s = uptime_s() + stop_patience_s;
-        if (firmware_ != no_firmware) ::kill(firmware_, SIGTERM);
-        while (firmware_ != no_firmware && uptime_s() < until_s) {
-            init::reap([this](pid_t pid, int code) {
-                if (pid == firmware_) firmware_ended(code);
-            });
-            pass_on();
-            init::pause_for(milliseconds{10});
-        }
-        if (firmware_ != no_firmware) voice_.say("the firmware does not end; it is killed");
+        custody_.end_everything();
+        ::sync();
+        voice_.let_go();
+        if (!data_device_.empty() && ::umount(data_folder) != 0)
+            ::mount(nullptr, data_folder, nullptr, MS_REMOUNT | MS_RDONLY, nullptr);
+    }
+
+    // ---- for custody
+    Time now() override { return os::Clock::monotonic(); }
+    void pause(milliseconds time) override {
+        pass_on();
+        take_notices();
+        init::reap([this](pid_t pid, int code) {
+            if (custody_.is(pid)) firmware_ended(code);
+            custody_.worker_ended(pid, code);
+        });
+        init::pause_for(time);
+    }
+    void say(const std::string& sentence) override { voice_.say(sentence); }
+    void ask_to_end(pid_t process) override { ::kill(process, SIGTERM); }
+    void kill(pid_t process) override { ::kill(process, SIGKILL); }
+    void kill_children_of(pid_t process) override {
+        for (const pid_t child : init::children_of(process)) ::kill(child, SIGKILL);
+    }
+    void kill_others() override {
         ::kill(-1, SIGKILL);
         // With them go what they have open, and what they have mounted.
         for (const double gone_s = uptime_s() + gone_patience_s;
              ::waitpid(-1, nullptr, WNOHANG) >= 0 && uptime_s() < gone_s;)
             init::pause_for(milliseconds{1});
-        ::sync();
-        voice_.let_go();
-        if (!data_device_.empty() && ::umount(data_folder) != 0)
-            ::mount(nullptr, data_folder, nullptr, MS_REMOUNT | MS_RDONLY, nullptr);
-        watchdog_.stand_down();
     }
+    void reset_box() override { init::reset_box(); }
 
     /// A trial, and a start, goes on at the next boot: who switched off has not judged it.
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
@@ -425,23 +423,13 @@ private:
     /// A watchdog that cannot be stopped counts on, and writing a slot takes its time: a child does it, and
     /// is waited for so long and no longer.
     bool renew_under_watchdog() {
-        if (const auto held = hold_watchdog(); !held && !facts_.one("watchdog").empty())
-            voice_.say(held.error());
+        if (const auto held = custody_.hold_watchdog(); !held) voice_.say(held.error());
         const pid_t worker = ::fork();
         if (worker == 0)
             ::_exit(renew(facts_, nonce_, data_device_, slots_, modules_, voice_) ? starts_anew : 0);
-        int status = 0;
-        const double until_s = uptime_s() + renewal_patience_s;
-        while (worker > 0 && ::waitpid(worker, &status, WNOHANG) == 0) {
-            watchdog_.kick(os::Clock::monotonic());
-            if (uptime_s() > until_s) {
-                voice_.say("it takes too long, and is given up; what ran before starts again");
-                ::kill(worker, SIGKILL);
-            }
-            init::pause_for(milliseconds{100});
-        }
-        watchdog_.stand_down();
-        return worker > 0 && WIFEXITED(status) && WEXITSTATUS(status) == starts_anew;
+        const bool has_renewed = worker > 0 && custody_.await_worker(worker, renewal_patience) == starts_anew;
+        custody_.stand_down();
+        return has_renewed;
     }
 
     [[noreturn]] void restart() {
@@ -457,7 +445,6 @@ private:
     Voice voice_{};
     Slots slots_{};
     SlotCheck slot_check_{};
-    os::Watchdog watchdog_{};
     std::string nonce_{};
     std::vector<Need> networks_{};
     double await_networks_until_s_ = 0.0; // 0: no longer
@@ -467,15 +454,15 @@ private:
     bool is_locked_down_ = false;
     bool plant_is_ready_ = false;
     bool is_ending_ = false;
-    bool outputs_are_safe_ = false; // told by the guardian of the last firmware
     std::string data_device_{};
     std::string line_{}; // of what firmware and plant say, as far as it came
     std::string last_words_{};
     std::string last_ending_{};
     std::deque<double> restarts_s_{};
-    pid_t firmware_ = no_firmware;
-    pid_t plant_ = no_firmware;
-    pid_t service_ = no_firmware;
+    Custody custody_{*this, facts_.one("watchdog"),
+                     std::chrono::seconds{std::atoi(facts_.one("watchdog", 1, "10").c_str())}};
+    pid_t plant_ = no_process;
+    pid_t service_ = no_process;
     double start_s_ = 0.0;
     double again_at_s_ = 0.0; // 0: nothing is started or restarted
     double service_again_at_s_ = 0.0;

@@ -129,6 +129,26 @@ void reap(const std::function<void(pid_t, int)>& ended) {
     }
 }
 
+// Behind the name, which may hold anything, stand the state and the parent.
+std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    for (const std::string& name : names_in("/proc")) {
+        const pid_t pid = std::atoi(name.c_str());
+        const std::string text = pid > 0 ? read_text("/proc/" + name + "/stat") : std::string{};
+        const std::size_t end = text.rfind(')');
+        int its_parent = 0;
+        if (end != std::string::npos && std::sscanf(text.c_str() + end + 1, " %*c %d", &its_parent) == 1 &&
+            its_parent == parent)
+            children.push_back(pid);
+    }
+    return children;
+}
+
+void reset_box() {
+    ::reboot(RB_AUTOBOOT);
+    std::abort();
+}
+
 namespace {
 
 [[noreturn]] void leave(int how) {

@@ -41,6 +41,11 @@ bool write_text(const std::string& path, std::string_view text);
 /// Tells of every child that has ended; PID 1 inherits every orphan.
 void reap(const std::function<void(pid_t, int exit_code)>& ended);
 
+/// As /proc has them at this moment.
+[[nodiscard]] std::vector<pid_t> children_of(pid_t parent);
+
+/// At once: a disk that does not answer keeps nobody.
+[[noreturn]] void reset_box();
 /// For good, with everything written to the disks.
 [[noreturn]] void power_off();
 [[noreturn]] void restart_box();

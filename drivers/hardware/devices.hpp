@@ -48,6 +48,15 @@ public:
     [[nodiscard]] virtual WireCounters counters() const noexcept = 0;
 };
 
+/// Called between the steps of what may take long.
+struct Meanwhile {
+    void* context = nullptr;
+    void (*call)(void* context) noexcept = nullptr;
+    void operator()() const noexcept {
+        if (call != nullptr) call(context);
+    }
+};
+
 /// Devices whose wires lead to a machine of steel: what makes them safe when the machine's process is no
 /// more. All of it is the guardian's, whose process is a copy of the machine's from before it armed. Not
 /// real-time.
@@ -62,8 +71,9 @@ public:
     virtual std::size_t write_safe_lines() noexcept = 0;
     /// Sends the safe frames of all buses until each is confirmed, for so long at most. Frames that are not.
     virtual std::size_t send_safe_frames(Duration within) noexcept = 0;
-    /// Each server gets its safe values over a connection of its own. Servers that did not confirm them.
-    virtual std::size_t write_safe_registers() noexcept = 0;
+    /// Each server gets its safe values over a connection of its own, those that answer at once first, for so
+    /// long at most. Servers that did not confirm them.
+    virtual std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept = 0;
 };
 
 /// How many devices of each kind the drivers of a machine name.

@@ -85,11 +85,11 @@ public:
     std::size_t send_safe_frames(Duration within) noexcept override {
         return count.can == 0 ? 0 : tappet::send_safe_frames(safe_can_, within);
     }
-    std::size_t write_safe_registers() noexcept override {
-        std::size_t failed = 0;
-        for (std::size_t i = 0; i < n_.modbus; ++i)
-            failed += tappet::write_safe_registers(modbus_[i], *servers_[i].safe) ? 0u : 1u;
-        return failed;
+    std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept override {
+        if constexpr (count.modbus == 0) return 0;
+        std::array<SafeServer, count.modbus> servers;
+        for (std::size_t i = 0; i < n_.modbus; ++i) servers[i] = {&modbus_[i], *servers_[i].safe};
+        return tappet::write_safe_registers(std::span{servers}.first(n_.modbus), within, meanwhile);
     }
 
 private:

@@ -5,6 +5,7 @@
 #include "drivers/can/socket_can.hpp"
 #include "drivers/gpio/line_map.hpp"
 #include "drivers/gpio/lines.hpp"
+#include "drivers/hardware/devices.hpp"
 #include "drivers/modbus/libmodbus_transport.hpp"
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/udp/socket.hpp"
@@ -41,7 +42,18 @@ std::expected<void, Sentence> open_device(udp::Socket& socket, const BoundTo& to
 /// Sends the frames in turns until all are confirmed, for so long at most; how many are not.
 std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept;
 void rehearse(std::span<can::SafeSender> buses) noexcept;
-/// True when the server confirmed each.
-bool write_safe_registers(modbus::LibmodbusTransport& server, const modbus::SafeWrites& writes) noexcept;
+
+/// A Modbus server and what makes it safe.
+struct SafeServer {
+    modbus::LibmodbusTransport* server = nullptr;
+    modbus::SafeWrites writes{};
+    bool is_safe = false; ///< it confirmed each
+};
+/// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. The
+/// first round over Ethernet is a quick one: one that does not answer holds up the others by twice
+/// `quick_answer_within`. `meanwhile` is called before each step.
+std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
+                                 const Meanwhile& meanwhile) noexcept;
+inline constexpr Duration quick_answer_within = 50ms;
 
 } // namespace tappet

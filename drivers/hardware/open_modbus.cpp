@@ -1,7 +1,10 @@
 // A Modbus server, reached by Ethernet or by a serial port of the board.
 #include "drivers/hardware/open.hpp"
 #include "kernel/machine/check/board.hpp"
+#include "kernel/os/clock.hpp"
 #include "kernel/os/sleep.hpp"
+
+#include <algorithm>
 
 namespace tappet {
 
@@ -20,22 +23,61 @@ std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, co
     return server.open(settings);
 }
 
-// A server may still be answering the machine's last request, or hold its connection: then it is asked again.
-bool write_safe_registers(modbus::LibmodbusTransport& server, const modbus::SafeWrites& writes) noexcept {
-    constexpr int attempts = 3;
-    bool good = writes.requests.empty();
-    for (int attempt = 0; attempt < attempts && !good; ++attempt) {
-        if (attempt != 0) os::sleep_for(100ms);
-        if (server.connect().outcome != modbus::Outcome::ok) continue;
-        good = true; // and each is tried: one that is refused keeps no other from being safe
-        for (const modbus::SafeWrite& each : writes.requests)
-            good = server.write(each.run.table, static_cast<std::uint16_t>(each.run.address),
-                                writes.words.subspan(each.first, each.run.count))
-                           .outcome == modbus::Outcome::ok &&
-                   good;
-        server.disconnect();
+namespace {
+
+/// How long each call of one attempt may take.
+struct Patience {
+    Duration each;
+    Time end;
+    const Meanwhile& meanwhile;
+    void limit(modbus::LibmodbusTransport& server) const noexcept {
+        meanwhile();
+        server.wait_at_most(std::min(each, end - os::Clock::monotonic()));
     }
+};
+
+// Each request is tried: one that is refused keeps no other from being safe. After anything worse the server
+// is given up for this time.
+bool try_once(const SafeServer& to, const Patience& patience) noexcept {
+    patience.limit(*to.server);
+    if (to.server->connect().outcome != modbus::Outcome::ok) return false;
+    bool good = true;
+    for (const modbus::SafeWrite& each : to.writes.requests) {
+        patience.limit(*to.server);
+        const auto outcome = to.server
+                                 ->write(each.run.table, static_cast<std::uint16_t>(each.run.address),
+                                         to.writes.words.subspan(each.first, each.run.count))
+                                 .outcome;
+        good = good && outcome == modbus::Outcome::ok;
+        if (outcome != modbus::Outcome::ok && outcome != modbus::Outcome::exception) break;
+    }
+    to.server->disconnect();
     return good;
+}
+
+} // namespace
+
+// A server may still be answering the machine's last request, or hold its connection: then it is asked again.
+std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
+                                 const Meanwhile& meanwhile) noexcept {
+    constexpr int rounds = 4;
+    const Time end = os::Clock::monotonic() + within;
+    std::size_t left = 0;
+    for (SafeServer& each : servers) {
+        each.is_safe = each.writes.requests.empty();
+        left += each.is_safe ? 0u : 1u;
+    }
+    for (int round = 0; round < rounds && left != 0; ++round) {
+        if (round > 1) os::sleep_for(100ms);
+        for (SafeServer& each : servers) {
+            const bool is_quick = round == 0;
+            if (each.is_safe || (is_quick && each.server->is_serial())) continue;
+            if (os::Clock::monotonic() >= end) return left;
+            each.is_safe = try_once(each, {is_quick ? quick_answer_within : within, end, meanwhile});
+            left -= each.is_safe ? 1u : 0u;
+        }
+    }
+    return left;
 }
 
 } // namespace tappet

@@ -1,6 +1,7 @@
 // libmodbus's calls, its time-outs and its errors as values.
 #include "drivers/modbus/libmodbus_transport.hpp"
 
+#include <algorithm>
 #include <arpa/inet.h>
 #include <array>
 #include <cerrno>
@@ -54,6 +55,11 @@ std::expected<modbus_t*, Sentence> prepare(const Serial& serial) {
                           serial.stop_bits);
 }
 
+bool set_answer_time(modbus_t* context, Duration time) noexcept {
+    return modbus_set_response_timeout(context, static_cast<std::uint32_t>(time / 1s),
+                                       static_cast<std::uint32_t>(time % 1s / 1us)) == 0;
+}
+
 } // namespace
 
 void LibmodbusTransport::Free::operator()(_modbus* context) const noexcept { modbus_free(context); }
@@ -68,13 +74,11 @@ std::expected<void, Sentence> LibmodbusTransport::open(const TransportSettings& 
     const auto prepared = std::visit([](const auto& line) { return prepare(line); }, settings.line);
     if (!prepared) return std::unexpected{prepared.error()};
     context_.reset(*prepared);
-    const auto seconds = [](Duration d) { return static_cast<std::uint32_t>(d / 1s); };
-    const auto rest_us = [](Duration d) { return static_cast<std::uint32_t>(d % 1s / 1us); };
+    answer_within_ = settings.answer_within;
     modbus_t* m = context_.get();
     const bool ok = m != nullptr && modbus_set_slave(m, settings.unit) == 0 &&
                     modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE) == 0 &&
-                    modbus_set_response_timeout(m, seconds(settings.answer_within),
-                                                rest_us(settings.answer_within)) == 0 &&
+                    set_answer_time(m, answer_within_) &&
                     // Without one between bytes, which would begin anew with each of them, libmodbus takes
                     // the time for the whole answer out of the one above.
                     modbus_set_byte_timeout(m, 0, 0) == 0;
@@ -82,6 +86,12 @@ std::expected<void, Sentence> LibmodbusTransport::open(const TransportSettings& 
     close();
     return std::unexpected{Sentence{"Modbus unit ", settings.unit, " cannot be set up: ",
                                     modbus_strerror(errno), "; its time-out must be above 1 us"}};
+}
+
+void LibmodbusTransport::wait_at_most(Duration limit) noexcept {
+    if (context_)
+        static_cast<void>(
+            set_answer_time(context_.get(), std::min(std::max<Duration>(limit, 1ms), answer_within_)));
 }
 
 void LibmodbusTransport::close() noexcept {

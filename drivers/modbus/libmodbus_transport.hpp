@@ -41,6 +41,9 @@ public:
     /// Checks and prepares; does not connect. The error says what is wrong and how to cure it.
     std::expected<void, Sentence> open(const TransportSettings& settings);
     void close() noexcept;
+    /// From here on no call holds its caller longer, nor longer than the settings say.
+    void wait_at_most(Duration limit) noexcept;
+    [[nodiscard]] bool is_serial() const noexcept { return is_serial_; }
 
     Answer connect() noexcept override;
     void disconnect() noexcept override;
@@ -53,6 +56,7 @@ private:
         void operator()(_modbus* context) const noexcept;
     };
     std::unique_ptr<_modbus, Free> context_{};
+    Duration answer_within_{};
     bool is_serial_ = false;
     bool connected_ = false;
 };

@@ -16,7 +16,13 @@
 namespace tappet::os {
 
 std::expected<void, Sentence> Watchdog::open(const char* path, Duration within) noexcept {
-    descriptor_ = ::open(path, O_WRONLY | O_CLOEXEC);
+    close();
+    if (!outputs_.may_kick(Clock::monotonic()))
+        return std::unexpected(
+            Sentence{"the watchdog \"", path,
+                     "\" is not opened: the outputs may not be safe, and it resets the box; "
+                     "repair what keeps the guardian from making them safe"});
+    descriptor_ = ::open(path, O_WRONLY | O_CLOEXEC); // dog.open
     if (descriptor_ < 0)
         return std::unexpected(Sentence{"the watchdog \"", path, "\" cannot be opened (",
                                         std::strerror(errno),
@@ -41,23 +47,32 @@ std::expected<void, Sentence> Watchdog::open(const char* path, Duration within) 
 }
 
 void Watchdog::kick(Time now) noexcept {
-    if (descriptor_ < 0 || now < next_) return;
+    if (descriptor_ < 0 || now < next_ || !outputs_.may_kick(now)) return;
     next_ = now + every_;
-    static_cast<void>(
-        ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr)); // who fails here is reset, which tells it
+    keep_alive(); // dog.kick
 }
 
 void Watchdog::hand_over() noexcept {
     if (descriptor_ < 0) return;
-    static_cast<void>(ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr));
-    close(descriptor_);
-    descriptor_ = -1;
+    if (outputs_.may_kick(Clock::monotonic())) keep_alive(); // dog.hand_over
+    close();
 }
 
 void Watchdog::stand_down() noexcept {
     if (descriptor_ < 0) return;
-    [[maybe_unused]] const auto n = write(descriptor_, "V", 1);
-    close(descriptor_);
+    if (outputs_.is_safe()) {
+        [[maybe_unused]] const auto n = write(descriptor_, "V", 1); // dog.stand_down
+    }
+    close();
+}
+
+// Who fails here is reset, which tells it.
+void Watchdog::keep_alive() const noexcept {
+    static_cast<void>(ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr));
+}
+
+void Watchdog::close() noexcept {
+    if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
 }
 

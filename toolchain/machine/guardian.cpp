@@ -6,9 +6,11 @@
 #include "kernel/os/box.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
+#include "kernel/os/output_latch.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/os/watchdog.hpp"
 #include "toolchain/machine/black_box.hpp"
+#include "toolchain/machine/safe_ending.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -22,9 +24,19 @@ constexpr Duration look_every = 4ms;
 // Who did not look for so long was kept from it, as everybody was: a box that was frozen. The supervisor
 // comes after all.
 constexpr Duration frozen_after = 250ms, frozen_grace = 2s;
-constexpr Duration killed_within = 100ms; // a thread in the kernel ends when its call does
-constexpr Duration ended_within = 3s;
-constexpr Duration confirmed_within = 500ms;
+// From one look at a machine that lives to the next, with what keeps the guardian from it.
+constexpr Duration look_within = 1s;
+
+/// By what the guard knows of it.
+class GuardedProcess final : public EndedProcess {
+public:
+    explicit GuardedProcess(os::Guard& guard) : guard_{guard} {}
+    void kill() noexcept override { guard_.kill(); }
+    bool await_end(Duration time) noexcept override { return guard_.await_end(time); }
+
+private:
+    os::Guard& guard_;
+};
 
 class Guardian {
 public:
@@ -55,12 +67,17 @@ public:
     int live() {
         for (;;) {
             const Look look = watch();
-            watchdog_.kick(os::Clock::monotonic());
             if (look.must_act) {
                 act(look.reason);
-                return exit_code();
+                return code_handed_on(exit_code());
             }
-            if (!look.ended) continue;
+            if (!look.ended) {
+                const Time now = os::Clock::monotonic();
+                static_cast<void>(outputs_.drive(now + look_within)); // never after it acted
+                watchdog_.kick(now);
+                continue;
+            }
+            outputs_.guardian_says_safe(); // the machine's supervisor saw to it, before it ended
             stand_down();
             if (const Sentence& fault = guard_.block().fault; !fault.empty()) keep(fault, {});
             return guard_.exit_code();
@@ -74,10 +91,10 @@ private:
         Sentence reason{}; ///< empty: how it ended says why
     };
 
-    /// The outputs are safe: the box need not be reset, and its init may take the watchdog back.
+    /// When the outputs are safe the box need not be reset, and its init may take the watchdog back.
     void stand_down() {
         watchdog_.stand_down();
-        os::notify_starter("X_TAPPET_OUTPUTS=safe");
+        if (outputs_.is_safe()) os::notify_starter(os::outputs_are_safe_notice);
     }
 
     bool refuse(const Sentence& why) {
@@ -120,20 +137,8 @@ private:
     }
 
     void act(Sentence reason) {
-        const Time begin = os::Clock::monotonic();
-        // Of a dead one too: the signal meets nobody.
-        guard_.kill();
-        static_cast<void>(devices_.write_safe_lines());
-        const Duration written = os::Clock::monotonic() - begin;
-        static_cast<void>(guard_.await_end(killed_within));
-        static_cast<void>(devices_.write_safe_lines());
-        const std::size_t frames = devices_.send_safe_frames(confirmed_within);
-        const Duration confirmed = os::Clock::monotonic() - begin;
-        const std::size_t servers = devices_.write_safe_registers();
-        // A thread that waited in the kernel for memory or for a chip may have written after us.
-        const bool ended = guard_.await_end(ended_within);
-        const std::size_t chips = devices_.write_safe_lines();
-        if (chips == 0 && ended) stand_down(); // else the box's reset is the end of it
+        const SafeEnding done = end_safely(process_, devices_, outputs_, watchdog_);
+        stand_down(); // or the box's reset is the end of it
         if (guard_.block().crash.is_complete())
             reason = guard_.block().crash.describe();
         else if (!reason.empty() && instance_.stop_asked())
@@ -143,14 +148,14 @@ private:
                       ": ",
                       reason,
                       "; the guardian wrote the lines in ",
-                      written.count() / 1000,
+                      done.written.count() / 1000,
                       " us and sent the frames in ",
-                      confirmed.count() / 1000,
+                      done.confirmed.count() / 1000,
                       " us"};
-        if (!ended) said.add("; the process does not end");
-        if (chips != 0) said.add("; chips that took nothing: ").add(chips);
-        if (frames != 0) said.add("; frames that nobody confirmed: ").add(frames);
-        if (servers != 0) said.add("; servers that did not answer: ").add(servers);
+        if (!done.ended) said.add("; the process does not end");
+        if (done.chips != 0) said.add("; chips that took nothing: ").add(done.chips);
+        if (done.frames != 0) said.add("; frames that nobody confirmed: ").add(done.frames);
+        if (done.servers != 0) said.add("; servers that did not answer: ").add(done.servers);
         static_cast<void>(os::write_all(2, Sentence{said, "\n"}.view()));
         keep(reason, said);
     }
@@ -196,10 +201,12 @@ private:
     }
 
     std::string_view black_boxes_;
-    os::Watchdog watchdog_{};
+    os::OutputLatch outputs_{};
+    os::Watchdog watchdog_{outputs_};
     Time looked_{};
     Time forgiven_until_{};
     os::Guard& guard_;
+    GuardedProcess process_{guard_};
     GuardedDevices& devices_;
     MachineInstance& instance_;
     LifeWatch watch_;

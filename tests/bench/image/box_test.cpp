@@ -25,6 +25,9 @@ double seconds_after(const std::string& text, const std::string& words) {
     return std::regex_search(text, found, std::regex(words + " ([0-9.]+) s")) ? std::stod(found[1]) : -1.0;
 }
 
+constexpr const char* kernel_words =
+    "console=ttyS0 quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests rdinit=/init";
+
 TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
     EmulatedBox box{image("loom") / "disk.img"};
     ASSERT_EQ(image::install(box.disk(), image("loom") / "tappet.efi"), 3u);
@@ -50,8 +53,7 @@ TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
 TEST(Box, arms_and_works_when_its_kernel_begins) {
     EmulatedBox box{image("loom") / "disk.img"};
     box.switch_on_at_kernel(cache_folder() / "kernel/box/vmlinuz", image("loom") / "root.cpio.zst",
-                            "console=ttyS0 quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 "
-                            "cryptomgr.notests rdinit=/init");
+                            kernel_words);
     const std::string said = box.await(" picks=1");
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("data partition at /var/lib/tappet is up"));
@@ -84,6 +86,18 @@ TEST(Box, goes_back_by_its_watchdog_when_the_new_version_hangs) {
     EXPECT_THAT(said, HasSubstr("carpet-loom: armed"));
     box.switch_off();
     EXPECT_EQ(slot(box, 2).state, SlotState::failed);
+}
+
+TEST(Box, is_reset_by_its_watchdog_when_machine_and_guardian_die_at_once) {
+    EmulatedBox box{image("orphaned") / "disk.img"};
+    box.switch_on_at_kernel(cache_folder() / "kernel/box/vmlinuz", image("orphaned") / "root.cpio.zst",
+                            kernel_words);
+    box.await("its outputs may not be safe");
+    box.forget();
+    const std::string said = box.await("armed on board");
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("Tappet, carpet-loom on board")) << "it began anew before it armed again";
+    EXPECT_THAT(said, Not(HasSubstr("it is started again")));
 }
 
 TEST(Box, goes_back_when_the_new_version_crashes_at_work_and_tells_why) {

@@ -1,6 +1,6 @@
 // The plant of an image whose firmware comes to harm: it is what a new version may do that its makers never
 // saw.
-//     --sabotage crash|late, then the plant's own words
+//     --sabotage crash|late|both, then the plant's own words
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -23,6 +23,15 @@ asm(".section .rodata\n"
 
 namespace {
 
+pid_t parent_of(pid_t process) {
+    pid_t parent = 0;
+    if (std::FILE* const file = std::fopen(("/proc/" + std::to_string(process) + "/stat").c_str(), "r")) {
+        if (std::fscanf(file, "%*d (%*[^)]) %*c %d", &parent) != 1) parent = 0;
+        std::fclose(file);
+    }
+    return parent;
+}
+
 /// Of the two processes of a firmware the one that runs the machine: the guardian is its parent, and init's
 /// child.
 pid_t find_machine() {
@@ -31,12 +40,7 @@ pid_t find_machine() {
         std::error_code error;
         if (pid <= 1 || std::filesystem::read_symlink(each.path() / "exe", error) != "/bin/firmware")
             continue;
-        pid_t parent = 0;
-        if (std::FILE* const file = std::fopen((each.path() / "stat").c_str(), "r")) {
-            if (std::fscanf(file, "%*d (%*[^)]) %*c %d", &parent) != 1) parent = 0;
-            std::fclose(file);
-        }
-        if (parent > 1) return pid;
+        if (parent_of(pid) > 1) return pid;
     }
     return 0;
 }
@@ -57,6 +61,11 @@ void do_harm(const char* which) {
     }
     sched_param above_all{99};
     ::sched_setscheduler(0, SCHED_FIFO, &above_all);
+    if (std::strcmp(which, "both") == 0) { // nobody is left who could write safe values
+        ::kill(parent_of(machine), SIGKILL);
+        ::kill(machine, SIGKILL);
+        return;
+    }
     for (const double until = now_s() + 0.03; now_s() < until;) {
     }
 }

@@ -1,0 +1,132 @@
+// How a guardian ends a machine: the order of its steps, what it says of the outputs then, and that the
+// watchdog is kicked meanwhile and no longer.
+#include "toolchain/machine/safe_ending.hpp"
+
+#include "kernel/os/clock.hpp"
+#include "kernel/os/sleep.hpp"
+#include "tests/kernel/os/watchdog_device.hpp"
+#include "toolchain/machine/firmware.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tappet {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+
+class Wires final : public GuardedDevices {
+public:
+    std::vector<std::string>& done;
+    std::size_t dead_chips = 0;
+    int server_steps = 1;
+    explicit Wires(std::vector<std::string>& to) : done{to} {}
+
+    std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
+    std::span<const ProvidedDevice> provided() const noexcept override { return {}; }
+    void report(os::ArmingReport&) override {}
+    WireCounters counters() const noexcept override { return {}; }
+    Bounded<int, 16> kept_by_guardian() const noexcept override { return {}; }
+    std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
+    std::size_t write_safe_lines() noexcept override {
+        done.emplace_back("lines");
+        return dead_chips;
+    }
+    std::size_t send_safe_frames(Duration) noexcept override {
+        done.emplace_back("frames");
+        return 2;
+    }
+    std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept override {
+        EXPECT_LT(within, os::guardian_acts_within);
+        done.emplace_back("registers");
+        for (int i = 0; i < server_steps; ++i) {
+            os::sleep_for(150ms); // the watchdog of these tests takes a kick every 125 ms
+            meanwhile();
+        }
+        return 1;
+    }
+};
+
+class Process final : public EndedProcess {
+public:
+    std::vector<std::string>& done;
+    bool ends = true;
+    explicit Process(std::vector<std::string>& to) : done{to} {}
+    void kill() noexcept override { done.emplace_back("kill"); }
+    bool await_end(Duration time) noexcept override {
+        if (!ends) os::sleep_for(time);
+        return ends;
+    }
+};
+
+struct ASafeEnding : testing::Test {
+    std::vector<std::string> done{};
+    Wires wires{done};
+    Process process{done};
+    os::WatchdogDevice device{1};
+    os::OutputLatch outputs{};
+    os::Watchdog watchdog{outputs};
+
+    SafeEnding end() {
+        EXPECT_TRUE(watchdog.open(device.path(), 1s));
+        EXPECT_TRUE(outputs.drive(os::Clock::monotonic() + 1s));
+        return end_safely(process, wires, outputs, watchdog);
+    }
+    bool a_kick_goes_through() {
+        const int before = device.kicks();
+        os::sleep_for(150ms);
+        watchdog.kick(os::Clock::monotonic());
+        return device.kicks() != before;
+    }
+};
+
+TEST_F(ASafeEnding,
+       writes_the_lines_first_and_once_more_at_each_place_where_another_thread_may_have_written) {
+    const SafeEnding ending = end();
+    EXPECT_THAT(done, ElementsAre("kill", "lines", "lines", "frames", "registers", "lines"));
+    EXPECT_TRUE(ending.outputs_are_safe());
+    EXPECT_EQ(ending.frames, 2u);
+    EXPECT_EQ(ending.servers, 1u);
+    EXPECT_TRUE(outputs.is_safe());
+    EXPECT_TRUE(a_kick_goes_through());
+    watchdog.stand_down();
+    EXPECT_TRUE(device.is_stood_down());
+}
+
+TEST_F(ASafeEnding, kicks_the_watchdog_while_servers_are_asked) {
+    wires.server_steps = 10;
+    EXPECT_TRUE(end().outputs_are_safe());
+    EXPECT_GE(device.kicks(), 10);
+}
+
+TEST_F(ASafeEnding, leaves_the_box_to_its_watchdog_when_a_chip_takes_nothing) {
+    wires.dead_chips = 1;
+    EXPECT_FALSE(end().outputs_are_safe());
+    EXPECT_EQ(outputs.state(), os::OutputLatch::State::unsafe);
+    EXPECT_FALSE(a_kick_goes_through());
+    watchdog.stand_down();
+    EXPECT_FALSE(device.is_stood_down());
+}
+
+TEST_F(ASafeEnding, is_never_told_as_the_end_of_a_firmware_that_touched_nothing) {
+    EXPECT_EQ(code_handed_on(static_cast<int>(Ending::wrong_set_up)),
+              static_cast<int>(Ending::stopped_by_fault));
+    for (const int code : {0, 3, 4, 137, 139}) EXPECT_EQ(code_handed_on(code), code);
+}
+
+TEST_F(ASafeEnding, leaves_the_box_to_its_watchdog_when_the_process_does_not_end) {
+    process.ends = false;
+    const Time begin = os::Clock::monotonic();
+    EXPECT_FALSE(end().outputs_are_safe());
+    EXPECT_GE(device.kicks(), 3) << "it is waited for";
+    EXPECT_LT(os::Clock::monotonic() - begin, 60s);
+    EXPECT_FALSE(a_kick_goes_through());
+    EXPECT_THAT(done, Contains("registers"));
+}
+
+} // namespace
+} // namespace tappet

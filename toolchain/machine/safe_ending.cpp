@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order of it, and how long each step may take.
+#include "toolchain/machine/safe_ending.hpp"
+
+#include "kernel/os/clock.hpp"
+#include "toolchain/machine/firmware.hpp"
+
+namespace tappet {
+
+namespace {
+
+constexpr Duration killed_within = 100ms; // a thread in the kernel ends when its call does
+constexpr Duration confirmed_within = 500ms;
+constexpr Duration answered_within = 5s;
+constexpr Duration ended_within = 3s;
+constexpr Duration kick_every = 100ms;
+static_assert(killed_within + confirmed_within + answered_within + ended_within < os::guardian_acts_within);
+
+} // namespace
+
+SafeEnding end_safely(EndedProcess& process, GuardedDevices& devices, os::OutputLatch& outputs,
+                      os::Watchdog& watchdog) noexcept {
+    SafeEnding done;
+    const Time begin = os::Clock::monotonic();
+    outputs.lose(begin + os::guardian_acts_within);
+    const Meanwhile kick{
+        &watchdog, [](void* dog) noexcept { static_cast<os::Watchdog*>(dog)->kick(os::Clock::monotonic()); }};
+    // Of a dead one too: the signal meets nobody.
+    process.kill(); // guardian.kill
+    static_cast<void>(devices.write_safe_lines());
+    done.written = os::Clock::monotonic() - begin;
+    static_cast<void>(process.await_end(killed_within));
+    static_cast<void>(devices.write_safe_lines());
+    kick();
+    done.frames = devices.send_safe_frames(confirmed_within);
+    done.confirmed = os::Clock::monotonic() - begin;
+    done.servers = devices.write_safe_registers(answered_within, kick);
+    // A thread that waited in the kernel for memory or for a chip may have written after us.
+    for (const Time until = os::Clock::monotonic() + ended_within;
+         !(done.ended = process.await_end(kick_every)) && os::Clock::monotonic() < until;)
+        kick();
+    done.chips = devices.write_safe_lines(); // guardian.write
+    if (done.outputs_are_safe())
+        outputs.guardian_says_safe();
+    else
+        outputs.lose(Time::min());
+    return done;
+}
+
+int code_handed_on(int code) noexcept {
+    const bool touched_nothing = code == static_cast<int>(Ending::wrong_set_up);
+    return touched_nothing ? static_cast<int>(Ending::stopped_by_fault) : code;
+}
+
+} // namespace tappet
