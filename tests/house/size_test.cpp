@@ -42,7 +42,7 @@ const std::vector<Size> sizes{
     {"toolchain/machine",     4629},
     {"toolchain/tools",       13175},
     {"tests/kernel",         30053},
-    {"tests/drivers",         14760},
+    {"tests/drivers",         14767},
     {"tests/apps",            6050},
     {"tests/toolchain",       5717},
     {"tests/bench",           4294},

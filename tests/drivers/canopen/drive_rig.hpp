@@ -20,7 +20,7 @@ struct DriveRig {
         if (says_nonsense) seen.position = std::numeric_limits<double>::quiet_NaN();
         orders.push_back(axis.step(seen));
         last = orders.back();
-        if (orders.size() > cycles_out) {
+        while (orders.size() > cycles_out) {
             if (hears) servo.take(orders.front());
             orders.pop_front();
         }

@@ -129,7 +129,7 @@ struct Anybody : Watched {
         if (axis.state() == AxisMode::stopping) axis.release();
     }
     void befall_anything() {
-        switch (random.below(8)) {
+        switch (random.below(9)) {
         case 0: servo.trip(); break;
         case 1: servo.stop_quickly(); break;
         case 2: servo.lose_power(); break;
@@ -156,6 +156,13 @@ struct Anybody : Watched {
             homings_before.reset();
             break;
         }
+        case 8: // frames take another time; in cyclic position each one that comes together with the next is
+                // a jump
+            if (last.mode == 8 || servo.mode() == 8) break;
+            cycles_in = random.below(26);
+            cycles_out = random.below(26);
+            for (Old& one : old) one.until += 60;
+            break;
         default: break;
         }
     }
