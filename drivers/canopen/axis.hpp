@@ -39,12 +39,13 @@ template <text unit> struct Axis {
         tell();
     }
     void changed() noexcept TAPPET_REALTIME { standing_changed(); }
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         if (double wanted = 0; set_point.read(wanted) == Flow::fresh) motion_.follow(wanted);
         const AxisMode before = motion_.state();
         const bool heard = statusword.good() && mode_display.good() && position.good() && velocity.good();
-        const DriveOrder order = motion_.step({heard, static_cast<std::uint16_t>(statusword.get()),
-                                               mode_display.get(), position.get(), velocity.get()});
+        const DriveOrder order =
+            motion_.step({heard, static_cast<std::uint16_t>(statusword.get()), mode_display.get(),
+                          position.get(), velocity.get(), cycle.period});
         controlword.write(order.controlword);
         mode.write(order.mode);
         target_position.write(order.position);
@@ -71,14 +72,22 @@ template <text unit> struct Axis {
     }
     bool home() noexcept TAPPET_REALTIME { return motion_.home().has_value(); }
     bool move_to(double place, double at) noexcept TAPPET_REALTIME {
-        return place == place && at > 0 && motion_.move_to(place, at).has_value();
+        return motion_.move_to(place, at).has_value();
     }
-    bool move_at(double at) noexcept TAPPET_REALTIME { return at == at && motion_.move_at(at).has_value(); }
+    bool move_at(double at) noexcept TAPPET_REALTIME { return motion_.move_at(at).has_value(); }
+    bool superimpose(double distance, double at, double acceleration) noexcept TAPPET_REALTIME {
+        return motion_.superimpose(distance, at, acceleration).has_value();
+    }
     bool halt() noexcept TAPPET_REALTIME { return motion_.halt().has_value(); }
     bool stop_axis() noexcept TAPPET_REALTIME { return motion_.stop().has_value(); }
     [[nodiscard]] CommandProgress homed() noexcept TAPPET_REALTIME { return until(AxisMode::homing); }
     [[nodiscard]] CommandProgress moved(double, double) noexcept TAPPET_REALTIME {
         return until(AxisMode::discrete_motion);
+    }
+    [[nodiscard]] CommandProgress superimposed(double, double, double) noexcept TAPPET_REALTIME {
+        if (motion_.superimposes()) return CommandProgress::executing;
+        if (motion_.state() != AxisMode::synchronized_motion) return until(AxisMode::discrete_motion);
+        return CommandProgress::done;
     }
     [[nodiscard]] CommandProgress halted() noexcept TAPPET_REALTIME {
         return until(AxisMode::discrete_motion);
@@ -96,7 +105,7 @@ template <text unit> struct Axis {
             input<&Axis::mode_display>("mode_display", "", "6061h"),
             input<&Axis::position>("position", unit.view(), "6064h, as it is"),
             input<&Axis::velocity>("velocity", speed_unit.view(), "606Ch, as it is"),
-            input<&Axis::set_point>("set_point", "", "of the cyclic mode that it is in", optional),
+            input<&Axis::set_point>("set_point", "", "of the cyclic mode that it is in; positions count once it follows", optional),
             output<&Axis::controlword>("controlword", "", "6040h"),
             output<&Axis::mode>("mode", "", "6060h"),
             output<&Axis::target_position>("target_position", unit.view(), "607Ah"),
@@ -107,7 +116,7 @@ template <text unit> struct Axis {
             output<&Axis::follows>("follows", "", "its set points, in a cyclic mode; written on change"),
             output<&Axis::lags>("lags", "", "behind its set point; written on change"),
             output<&Axis::limited>("limited", "", "held by a limit of the drive's; written on change"),
-            event<&Axis::stopped_by_error>("stopped_by_error", "a fault, a silence, or power that went away"),
+            event<&Axis::stopped_by_error>("stopped_by_error", "a fault, a silence, a mode that it does not show, or power that went away"),
             property<&Axis::standing>("standing", speed_unit.view(), "slower than this it stands", range(0, 1e9)),
             operation<&Axis::power_on>("power_on", "MC_Power"),
             operation<&Axis::power_off>("power_off", "MC_Power, not enabled"),
@@ -116,6 +125,7 @@ template <text unit> struct Axis {
             command<&Axis::home, &Axis::homed>("home", "MC_Home"),
             command<&Axis::move_to, &Axis::moved>("move_to", "MC_MoveAbsolute: place, velocity"),
             command<&Axis::move_at>("move_at", "MC_MoveVelocity"),
+            command<&Axis::superimpose, &Axis::superimposed>("superimpose", "MC_MoveSuperimposed: distance, velocity, acceleration; while it follows positions, or stands"),
             command<&Axis::synchronize>("synchronize", "with set points: 8 positions, 9 velocities, 10 torques"),
             command<&Axis::halt, &Axis::halted>("halt", "MC_Halt"),
             command<&Axis::stop_axis, &Axis::is_stopped>("stop", "MC_Stop: takes no motion before it is released"));
@@ -125,9 +135,8 @@ template <text unit> struct Axis {
 private:
     void standing_changed() noexcept TAPPET_REALTIME { motion_.set_standing(standing.get()); }
     void write_speeds(const DriveOrder& order) noexcept TAPPET_REALTIME {
-        const bool to_a_place = order.mode == static_cast<std::int64_t>(OperationMode::profile_position);
-        profile_velocity.write(to_a_place ? order.velocity : 0);
-        target_velocity.write(to_a_place ? 0 : order.velocity);
+        profile_velocity.write(order.profile_velocity);
+        target_velocity.write(order.velocity);
         target_torque.write(order.torque);
     }
     void tell() noexcept TAPPET_REALTIME {

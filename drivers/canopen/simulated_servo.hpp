@@ -20,10 +20,14 @@ public:
         bool ignores_set_points = false;    ///< no acknowledgement in pp
         bool keeps_acknowledgement = false; ///< in pp, although the bit fell
         bool fails_homing = false;
-        bool refuses_mode = false; ///< 6061h stays as it was
-        bool is_blocked = false;   ///< the motor does not turn
+        bool ignores_homing = false; ///< begins none
+        bool refuses_mode = false;   ///< 6061h stays as it was
+        bool is_blocked = false;     ///< the motor does not turn
         bool is_at_limit = false;
         bool is_remote = true;
+        bool knows_no_halt_in_cyclic = false; ///< CiA 402 leaves the bit open in csp, csv and cst
+        bool remembers_home = false; ///< hm: shows the bits of the homing before until it starts anew
+        int mode_steps = 0;          ///< steps until it takes a new mode
     };
 
     SimulatedServo() noexcept TAPPET_REALTIME : SimulatedServo{Limits{}} {}
@@ -38,6 +42,13 @@ public:
     /// Where its home switch is.
     void set_home(double position) noexcept TAPPET_REALTIME { home_ = position; }
 
+    /// Somebody turns the motor; false: it has power.
+    bool turn(double by) noexcept TAPPET_REALTIME {
+        if (drive_.power() != SimulatedDrive::Power::off) return false;
+        position_ += by;
+        return true;
+    }
+
     [[nodiscard]] double position() const noexcept TAPPET_REALTIME { return position_ - zero_; }
     [[nodiscard]] double velocity() const noexcept TAPPET_REALTIME { return velocity_; }
     [[nodiscard]] std::int64_t mode() const noexcept TAPPET_REALTIME {
@@ -46,6 +57,8 @@ public:
     [[nodiscard]] DriveState state() const noexcept TAPPET_REALTIME { return drive_.state(); }
     /// Set points that it took in pp.
     [[nodiscard]] int set_points() const noexcept TAPPET_REALTIME { return set_points_; }
+    /// Homings that it has made.
+    [[nodiscard]] int homings() const noexcept TAPPET_REALTIME { return homings_; }
 
     [[nodiscard]] std::uint16_t statusword() const noexcept TAPPET_REALTIME {
         unsigned word = drive_.statusword() | 0x0010u;
@@ -63,12 +76,11 @@ public:
         const bool rises = (order.controlword & ~word_ & 0x10u) != 0;
         word_ = order.controlword;
         order_ = order;
-        if (const auto wanted = static_cast<OperationMode>(order.mode);
-            wanted != mode_ && !faults.refuses_mode) {
-            mode_ = wanted;
-            bit_12_ = bit_13_ = reached_ = homes_ = false;
-            target_ = position();
+        if (const auto wanted = static_cast<OperationMode>(order.mode); wanted != next_mode_) {
+            next_mode_ = wanted;
+            mode_steps_ = faults.mode_steps;
         }
+        if (mode_steps_ <= 0) take_mode();
         if (!drive_.is_enabled()) return;
         if (mode_ == OperationMode::profile_position) {
             if (rises && !bit_12_ && !faults.ignores_set_points) {
@@ -79,12 +91,13 @@ public:
             }
             if ((word_ & 0x10u) == 0 && !faults.keeps_acknowledgement) bit_12_ = false;
         }
-        if (mode_ == OperationMode::homing && rises) {
+        if (mode_ == OperationMode::homing && rises && !faults.ignores_homing) {
             homes_ = true;
             bit_12_ = bit_13_ = reached_ = false;
         }
     }
     void step(double dt) noexcept TAPPET_REALTIME {
+        if (mode_steps_ > 0 && --mode_steps_ == 0) take_mode();
         drive_.settle(velocity_ == 0);
         switch (drive_.power()) {
         case SimulatedDrive::Power::off: velocity_ = 0; break; // its brake falls
@@ -97,6 +110,14 @@ public:
     }
 
 private:
+    void take_mode() noexcept TAPPET_REALTIME {
+        if (next_mode_ == mode_ || faults.refuses_mode) return;
+        mode_ = next_mode_;
+        bit_12_ = bit_13_ = reached_ = homes_ = false;
+        if (mode_ == OperationMode::homing && faults.remembers_home && homings_ > 0)
+            bit_12_ = reached_ = true;
+        target_ = position();
+    }
     void approach(double velocity, double acceleration, double dt) noexcept TAPPET_REALTIME {
         const double wanted = std::clamp(velocity, -limits_.velocity, limits_.velocity);
         const double most = acceleration * dt;
@@ -120,13 +141,14 @@ private:
         return false;
     }
     void follow(double dt) noexcept TAPPET_REALTIME {
-        if ((word_ & 0x100u) != 0) {
+        const bool is_cyclic = mode_ >= OperationMode::cyclic_position;
+        if ((word_ & 0x100u) != 0 && !(is_cyclic && faults.knows_no_halt_in_cyclic)) {
             approach(0, limits_.acceleration, dt);
             reached_ = velocity_ == 0;
-            if (mode_ >= OperationMode::cyclic_position) bit_12_ = false;
+            if (is_cyclic) bit_12_ = false;
             return;
         }
-        const double profile = order_.velocity > 0 ? order_.velocity : limits_.velocity;
+        const double profile = order_.profile_velocity > 0 ? order_.profile_velocity : limits_.velocity;
         switch (mode_) {
         case OperationMode::none: approach(0, limits_.acceleration, dt); break;
         case OperationMode::profile_position:
@@ -148,6 +170,7 @@ private:
                 zero_ = position_;
                 bit_12_ = reached_ = true;
                 homes_ = false;
+                ++homings_;
             }
             break;
         case OperationMode::cyclic_position:
@@ -159,6 +182,7 @@ private:
             approach(order_.velocity, limits_.acceleration, dt);
             bit_12_ = true;
             break;
+        case OperationMode::profile_torque:
         case OperationMode::cyclic_torque:
             velocity_ = std::clamp(velocity_ + order_.torque * limits_.torque_to_acceleration * dt,
                                    -limits_.velocity, limits_.velocity);
@@ -171,10 +195,10 @@ private:
     SimulatedDrive drive_{};
     DriveOrder order_{};
     std::uint16_t word_ = 0;
-    OperationMode mode_ = OperationMode::none;
+    OperationMode mode_ = OperationMode::none, next_mode_ = OperationMode::none;
     double position_ = 0, velocity_ = 0, target_ = 0, zero_ = 0, home_ = 0;
     bool reached_ = false, bit_12_ = false, bit_13_ = false, homes_ = false;
-    int set_points_ = 0;
+    int set_points_ = 0, homings_ = 0, mode_steps_ = 0;
 };
 
 } // namespace tappet::canopen

@@ -31,8 +31,9 @@ enum class AxisCommand : std::uint8_t {
     power_on,    ///< MC_Power, Enable
     power_off,   ///< MC_Power, not Enable
     home,        ///< MC_Home
-    move,        ///< MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, MC_MoveSuperimposed
+    move,        ///< MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive
     move_on,     ///< MC_MoveVelocity, MC_TorqueControl
+    superimpose, ///< MC_MoveSuperimposed: what runs goes on
     synchronize, ///< MC_GearIn, MC_CamIn
     release,     ///< MC_GearOut, MC_CamOut
     halt,        ///< MC_Halt
@@ -70,6 +71,9 @@ inline constexpr auto axis_rows = [] {
         AxisRow{home, any_of({standstill}), homing},
         AxisRow{move, takes_motion, discrete_motion},
         AxisRow{move_on, takes_motion, continuous_motion},
+        AxisRow{superimpose, any_of({standstill, discrete_motion}), discrete_motion},
+        AxisRow{superimpose, any_of({continuous_motion}), continuous_motion},
+        AxisRow{superimpose, any_of({synchronized_motion}), synchronized_motion},
         AxisRow{synchronize, takes_motion, synchronized_motion},
         AxisRow{release, any_of({synchronized_motion}), continuous_motion},
         AxisRow{halt, moves, discrete_motion},

@@ -47,6 +47,7 @@ constexpr auto servo_network =
 struct Client {
     CommandCall<> home, halt, come_to_stop;
     CommandCall<double, double> move_to;
+    CommandCall<double, double, double> superimpose;
     CommandCall<double> move_at;
     CommandCall<std::int64_t> synchronize;
     Event<> power_on, power_off, reset, release;
@@ -72,6 +73,7 @@ struct Client {
             sends<&Client::home>("home", "its reference"), sends<&Client::halt>("halt", "to rest"),
             sends<&Client::come_to_stop>("stop", "to rest, and held"),
             sends<&Client::move_to>("move_to", "a place"), sends<&Client::move_at>("move_at", "a speed"),
+            sends<&Client::superimpose>("superimpose", "a motion on the one that runs"),
             sends<&Client::synchronize>("synchronize", "a cyclic mode"),
             event<&Client::power_on>("power_on", "asked for"),
             event<&Client::power_off>("power_off", "asked for"), event<&Client::reset>("reset", "asked for"),
@@ -117,6 +119,7 @@ constexpr auto servo_machine = machine("servo-machine",
         uses("client.stop",        "axis.stop"),
         uses("client.move_to",     "axis.move_to"),
         uses("client.move_at",     "axis.move_at"),
+        uses("client.superimpose", "axis.superimpose"),
         uses("client.synchronize", "axis.synchronize"),
         when("client.power_on",    call("axis.power_on")),
         when("client.power_off",   call("axis.power_off")),
@@ -136,7 +139,8 @@ struct ServoAxis : testing::Test, WireRig<servo_machine, Bus> {
         if (node.receive(frame, now, *this) != canopen::SimulatedNode::Heard::process_data) return;
         servo.take({static_cast<std::uint16_t>(node.get(0x6040)), node.get_signed(0x6060),
                     0.001 * static_cast<double>(node.get_signed(0x607A)),
-                    0.001 * static_cast<double>(node.get_signed(node.get(0x6060) == 1 ? 0x6081 : 0x60FF)),
+                    0.001 * static_cast<double>(node.get_signed(0x6081)),
+                    0.001 * static_cast<double>(node.get_signed(0x60FF)),
                     0.1 * static_cast<double>(node.get_signed(0x6071))});
     }
     void pass(Time now) override {
@@ -210,6 +214,46 @@ TEST_F(ServoAxis, follows_set_points_at_each_sync) {
     EXPECT_GT(client->worst_lag, 0);
     EXPECT_LT(client->worst_lag, 0.32) << "five cycles of 63 mm/s at most: out, SYNC, motion, SYNC, in";
     EXPECT_EQ(client->errors, 0);
+}
+
+TEST_F(ServoAxis, stays_where_it_was_turned_without_power) {
+    servo.faults.knows_no_halt_in_cyclic = true;
+    power();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    client->oscillates = true;
+    run(200ms);
+    client->oscillates = false;
+    client->power_off.emit();
+    ASSERT_TRUE(until([&] { return servo.turn(5.45); }));
+    run(50ms);
+    const double there = servo.position();
+    power();
+    run(500ms);
+    EXPECT_EQ(servo.position(), there);
+    EXPECT_NEAR(axis->target_position.last(), there, 1e-3);
+}
+
+TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
+    power();
+    ASSERT_TRUE(client->superimpose.send(1.0, 10.0, 500.0));
+    EXPECT_TRUE(ends(client->superimpose));
+    EXPECT_NEAR(servo.position(), 1, 1e-3) << "from a stand: a relative motion";
+    client->superimpose.reset();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    ASSERT_TRUE(client->superimpose.send(4.0, 10.0, 500.0));
+    EXPECT_TRUE(ends(client->superimpose));
+    EXPECT_EQ(axis->state.last(), AxisMode::synchronized_motion);
+    run(20ms);
+    EXPECT_NEAR(servo.position(), 5, 1e-3);
+    client->superimpose.reset();
+    ASSERT_TRUE(client->move_at.send(20.0));
+    ASSERT_TRUE(until([&] { return servo.velocity() == 20; }));
+    ASSERT_TRUE(client->superimpose.send(4.0, 10.0, 500.0));
+    EXPECT_FALSE(ends(client->superimpose)) << "the drive makes this motion, and adds none to it";
+    EXPECT_EQ(client->superimpose.state(), CommandState::rejected);
+    EXPECT_EQ(axis->state.last(), AxisMode::continuous_motion);
 }
 
 TEST_F(ServoAxis, stops_by_an_error_when_its_node_is_silent_and_comes_back_by_a_reset) {

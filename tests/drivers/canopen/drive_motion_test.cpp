@@ -1,59 +1,17 @@
 // A drive as an axis, in every mode, against a simulated one whose frames take two cycles each way.
-#include "drivers/canopen/simulated_servo.hpp"
+#include "tests/drivers/canopen/drive_rig.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <deque>
 
 namespace tappet::canopen {
 namespace {
 
 using motion::AxisMode;
 
-struct Axis : testing::Test {
-    static constexpr double dt = 0.001;
-
-    void cycle() {
-        feedback.push_back({heard, servo.statusword(), servo.mode(), servo.position(), servo.velocity()});
-        DriveFeedback seen = feedback.front();
-        if (feedback.size() > 2) feedback.pop_front();
-        seen.heard = heard;
-        orders.push_back(axis.step(seen));
-        last = orders.back();
-        if (orders.size() > 2) {
-            servo.take(orders.front());
-            orders.pop_front();
-        }
-        servo.step(dt);
-        ++cycles;
-    }
-    void run(int count) {
-        for (int i = 0; i < count; ++i) cycle();
-    }
-    /// False: not within five seconds.
-    template <class Condition> bool until(Condition condition) {
-        for (int i = 0; i < 5000; ++i) {
-            if (condition()) return true;
-            cycle();
-        }
-        return condition();
-    }
-    bool reaches(AxisMode state) {
-        return until([&] { return axis.state() == state; });
-    }
-    void power() {
-        axis.power(true);
-        ASSERT_TRUE(reaches(AxisMode::standstill));
-    }
-
-    DriveMotion axis;
-    SimulatedServo servo;
-    bool heard = true;
-    DriveOrder last;
-    int cycles = 0;
-    std::deque<DriveFeedback> feedback;
-    std::deque<DriveOrder> orders;
+struct Axis : testing::Test, DriveRig {
+    void power() { ASSERT_TRUE(gets_power()); }
 };
 
 TEST_F(Axis, has_power_when_the_drive_says_so_and_not_before) {

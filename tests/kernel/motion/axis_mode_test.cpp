@@ -14,22 +14,22 @@ using enum AxisCommand;
 
 constexpr std::array modes{disabled,          standstill,          homing,   discrete_motion,
                            continuous_motion, synchronized_motion, stopping, error_stop};
-constexpr std::array commands{power_on, power_off, home, move,  move_on, synchronize,
+constexpr std::array commands{power_on, power_off, home, move,  move_on, superimpose, synchronize,
                               release,  halt,      stop, reset, done,    error};
 
 TEST(AxisMode, follows_the_diagram_of_plcopen) {
     // Rows are modes, columns are commands, in their order; a dot refuses.
     // clang-format off
     constexpr std::array<std::string_view, 8> diagram{
-        // on off home move on sync release halt stop reset done error
-        "s..........E",
-        ".dhDCS..X..E",
-        ".d......X.sE",
-        ".d.DCS.DX.sE",
-        ".d.DCS.DX..E",
-        ".d.DCSCDX..E",
-        ".d........sE",
-        ".........s.E"};
+        // on off home move on superimpose sync release halt stop reset done error
+        "s...........E",
+        ".dhDCDS..X..E",
+        ".d.......X.sE",
+        ".d.DCDS.DX.sE",
+        ".d.DCCS.DX..E",
+        ".d.DCSSCDX..E",
+        ".d.........sE",
+        "..........s.E"};
     // clang-format on
     constexpr std::string_view letters = "dshDCSXE";
     for (std::size_t m = 0; m < modes.size(); ++m)
@@ -41,6 +41,12 @@ TEST(AxisMode, follows_the_diagram_of_plcopen) {
     EXPECT_EQ(
         describe(after(disabled, move).error()).view(),
         "element 0: the axis does not take this command in its state; bring it to standstill, or reset it");
+}
+
+TEST(AxisMode, goes_on_when_a_motion_is_superimposed) {
+    for (const AxisMode running : {discrete_motion, continuous_motion, synchronized_motion})
+        EXPECT_EQ(after(running, superimpose), running) << to_text(running);
+    EXPECT_EQ(after(standstill, superimpose), after(standstill, move)) << "a relative motion";
 }
 
 TEST(AxisMode, is_a_trap_nowhere) {

@@ -1,0 +1,303 @@
+// The one place that decides which set points a CiA 402 drive is sent: those of a motion only while the drive
+// shows that motion's mode, those of rest otherwise.
+#pragma once
+
+#include "drivers/canopen/cia402.hpp"
+#include "kernel/motion/profile.hpp"
+#include "kernel/motion/refused.hpp"
+
+#include <cstdint>
+
+namespace tappet::canopen {
+
+/// Numbers of object 6060h.
+enum class OperationMode : std::int8_t {
+    none = 0,
+    profile_position = 1,
+    profile_velocity = 3,
+    profile_torque = 4,
+    homing = 6,
+    cyclic_position = 8, ///< the set points are ours, one each cycle
+    cyclic_velocity = 9,
+    cyclic_torque = 10,
+};
+
+/// What the drive says; units are those of its signals.
+struct DriveFeedback {
+    bool heard = false; ///< false: its values are old
+    std::uint16_t statusword = 0;
+    std::int64_t mode = 0; ///< 6061h, modes of operation display
+    double position = 0, velocity = 0;
+    Duration passed{}; ///< since the step before; a superimposed motion needs it
+};
+/// What it is told. One order is taken as a whole: its objects travel together, or are latched by one SYNC.
+struct DriveOrder {
+    std::uint16_t controlword = 0;
+    std::int64_t mode = 0;       ///< 6060h
+    double position = 0;         ///< 607Ah
+    double profile_velocity = 0; ///< 6081h, of a motion to a place
+    double velocity = 0;         ///< 60FFh
+    double torque = 0;           ///< 6071h
+};
+
+/// Real-time; one step each cycle. An order of rest is safe in each mode, also in one that does not know the
+/// halt bit: velocity and torque are nought, the position is the actual one (in cyclic position: the last set
+/// point), no start bit, and the halt bit. The axis rests in profile position, where each drive knows the
+/// halt bit. The mode is ordered anew only when the drive shows the one ordered before: what it shows is
+/// never the echo of an older order, whatever the frames' round trip is.
+class SetPointGate {
+public:
+    static constexpr OperationMode rest_mode = OperationMode::profile_position;
+    /// So long it must be slow at rest until it stands: its speed may cross nought.
+    static constexpr int settling_cycles = DriveControl::low_cycles;
+    /// A drive that shows no mode, or begins no homing, for so long is lost.
+    static constexpr int patience_cycles = 3000;
+    /// A hand-over between velocity and torque goes on with the old set point for so long at most; at rest,
+    /// the bit of a set point that the drive does not acknowledge stays up for so long.
+    static constexpr int hand_over_cycles = 250;
+
+    enum class Progress : std::uint8_t { under_way, done, failed };
+
+    void set_standing(double velocity) noexcept TAPPET_REALTIME { standing_ = velocity; }
+
+    /// Ends the motion.
+    void rest() noexcept TAPPET_REALTIME {
+        rests_ = true;
+        leads_ = false;
+    }
+    /// Asks for a motion; `target` is the first set point, a place, a velocity or a torque.
+    void lead(OperationMode mode, double target, double profile_velocity = 0) noexcept TAPPET_REALTIME {
+        rests_ = false;
+        is_new_ = true;
+        began_ = false;
+        start_cycles_ = 0;
+        leads_ = leads_ && mode == asked_;
+        asked_ = mode;
+        target_ = target;
+        profile_velocity_ = profile_velocity;
+        offset_ = {};
+    }
+    /// The next set point of a cyclic mode. Positions count only once the drive shows the mode: until then it
+    /// stands, and would jump to what was meant for earlier.
+    void follow(double set_point) noexcept TAPPET_REALTIME {
+        if (rests_ || asked_ < OperationMode::cyclic_position) return;
+        if (asked_ == OperationMode::cyclic_position && !leads_) return;
+        target_ = set_point;
+        is_new_ = false;
+    }
+    /// Adds a motion to the positions that it follows.
+    void superimpose(const motion::Profile& offset) noexcept TAPPET_REALTIME {
+        offset_ = offset;
+        offset_age_ = {};
+    }
+    [[nodiscard]] motion::AxisState offset() const noexcept TAPPET_REALTIME {
+        return offset_.at(offset_age_);
+    }
+
+    [[nodiscard]] bool rests() const noexcept TAPPET_REALTIME { return rests_; }
+    /// It was told to come to rest, and has.
+    [[nodiscard]] bool stands() const noexcept TAPPET_REALTIME { return rests_ && is_still(); }
+    /// The drive shows the mode of the motion, and has its set points.
+    [[nodiscard]] bool leads(OperationMode mode) const noexcept TAPPET_REALTIME {
+        return leads_ && asked_ == mode;
+    }
+    [[nodiscard]] bool superimposes() const noexcept TAPPET_REALTIME {
+        return to_seconds(offset_age_) < offset_.duration_s();
+    }
+    /// Of the motion to a place, or of the homing.
+    [[nodiscard]] Progress progress() const noexcept TAPPET_REALTIME { return progress_; }
+    /// The drive does not do what it was told for longer than a drive may take.
+    [[nodiscard]] bool is_lost() const noexcept TAPPET_REALTIME { return waits_ > patience_cycles; }
+
+    /// `word`: where the automaton of the drive is led. Only enable_operation lets a motion through.
+    [[nodiscard]] const DriveOrder& step(const DriveFeedback& seen, std::uint16_t word) noexcept
+        TAPPET_REALTIME {
+        const OperationMode shown = shown_by(seen);
+        const DriveState state = drive_state(seen.statusword);
+        const bool enabled = seen.heard && state == DriveState::operation_enabled;
+        order_.controlword = word;
+        leads_ = false;
+        progress_ = Progress::under_way;
+        if (!enabled || word != controlword::enable_operation) {
+            without_power(seen, shown, enabled);
+        } else {
+            waits_ = shown == ordered_ ? 0 : waits_ + 1;
+            if (shown == ordered_) order_mode(next_mode());
+            leads_ = !rests_ && shown == ordered_ && ordered_ == asked_;
+            if (leads_)
+                move(seen);
+            else if (hands_over(shown))
+                hand_over(shown);
+            else
+                hold(seen, shown);
+            if (shown == OperationMode::profile_position && ordered_ == shown) shake_hands(seen);
+        }
+        order_.mode = static_cast<std::int64_t>(ordered_);
+        return order_;
+    }
+
+    /// Bits of the statusword that mean something of their own in each mode.
+    struct status {
+        static constexpr unsigned target_reached = 0x0400, internal_limit = 0x0800;
+        static constexpr unsigned acknowledged = 0x1000; ///< pp: set point; hm: attained; cyclic: follows
+        static constexpr unsigned error = 0x2000;        ///< hm: homing error; pp, csp: following error
+    };
+
+private:
+    struct order_bit {
+        static constexpr unsigned new_set_point = 0x10; ///< hm: homing operation start
+        static constexpr unsigned at_once = 0x20;       ///< a new set point ends the one before
+        static constexpr unsigned halt = 0x100;
+    };
+    /// Of a set point in pp: the bit rises, is acknowledged, falls, and the acknowledgement falls. A halt or
+    /// a new place waits for the end of it: a bit that rises again too soon has no edge for the drive.
+    enum class HandShake : std::uint8_t { over, raised, lowered };
+
+    [[nodiscard]] static OperationMode shown_by(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
+        return seen.mode < 0 || seen.mode > 10 ? OperationMode::none : static_cast<OperationMode>(seen.mode);
+    }
+    [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME { return slow_cycles_ > settling_cycles; }
+
+    /// Nothing of a motion outlives the power.
+    void without_power(const DriveFeedback& seen, OperationMode shown, bool enabled) noexcept
+        TAPPET_REALTIME {
+        const bool may_follow = enabled && (shown == OperationMode::cyclic_position ||
+                                            ordered_ == OperationMode::cyclic_position);
+        if (seen.heard && !may_follow) order_.position = seen.position;
+        order_.velocity = order_.torque = order_.profile_velocity = 0;
+        rests_ = true;
+        is_released_ = false;
+        hand_shake_ = HandShake::over;
+        slow_cycles_ = 0;
+        if (!may_follow) ordered_ = rest_mode;
+        if (order_.controlword != controlword::enable_operation) {
+            waits_ = 0;
+            return;
+        }
+        order_.controlword |= order_bit::halt;
+        if (shown != OperationMode::cyclic_position) return;
+        // It would go where the axis was some cycles ago, whatever the halt bit says.
+        order_.controlword = controlword::switch_on;
+        ++waits_;
+    }
+    /// A drive that shows the mode ordered before may be ordered the next one.
+    [[nodiscard]] OperationMode next_mode() const noexcept TAPPET_REALTIME {
+        if (rests_) return rest_mode;
+        // Into cyclic position only from a stand: there alone the place of some cycles ago is that of now.
+        if (asked_ == OperationMode::cyclic_position && ordered_ != asked_ &&
+            !(ordered_ == rest_mode && is_still()))
+            return rest_mode;
+        return asked_;
+    }
+    void order_mode(OperationMode mode) noexcept TAPPET_REALTIME {
+        if (mode == ordered_) return;
+        ordered_ = mode;
+        hand_shake_ = HandShake::over;
+        slow_cycles_ = 0;
+    }
+    /// Between velocity and torque, which are different objects, and neither knows the halt bit.
+    [[nodiscard]] bool hands_over(OperationMode shown) const noexcept TAPPET_REALTIME {
+        return !rests_ && ordered_ == asked_ && asked_ >= OperationMode::cyclic_velocity &&
+               shown >= OperationMode::cyclic_velocity && waits_ <= hand_over_cycles;
+    }
+    void hand_over(OperationMode shown) noexcept TAPPET_REALTIME {
+        (shown == OperationMode::cyclic_velocity ? order_.torque : order_.velocity) = target_;
+    }
+    void hold(const DriveFeedback& seen, OperationMode shown) noexcept TAPPET_REALTIME {
+        order_.controlword |= order_bit::halt;
+        order_.velocity = order_.torque = 0;
+        is_released_ = false;
+        const bool is_cyclic =
+            shown == OperationMode::cyclic_position || ordered_ == OperationMode::cyclic_position;
+        const bool is_quiet = hand_shake_ == HandShake::over;
+        if (!is_cyclic && is_quiet) order_.position = seen.position;
+        // While the drive shows another mode, it has not yet heard of the rest.
+        const bool is_slow = seen.velocity < standing_ && -seen.velocity < standing_;
+        slow_cycles_ = is_slow && is_quiet && shown == ordered_ ? slow_cycles_ + 1 : 0;
+        if (slow_cycles_ > settling_cycles) slow_cycles_ = settling_cycles + 1;
+    }
+    void move(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
+        slow_cycles_ = 0;
+        order_.velocity = order_.torque = 0;
+        switch (asked_) {
+        case OperationMode::profile_position:
+            if (hand_shake_ == HandShake::over && !is_new_ && (seen.statusword & status::target_reached) != 0)
+                progress_ = Progress::done;
+            break;
+        case OperationMode::homing: home(seen); break;
+        case OperationMode::cyclic_position:
+            if (is_new_) target_ = order_.position; // here it stands
+            offset_age_ += seen.passed;
+            // A sum of two numbers may be none.
+            if (const double sum = target_ + offset().position; motion::is_number(sum)) order_.position = sum;
+            break;
+        case OperationMode::profile_velocity:
+        case OperationMode::cyclic_velocity: order_.velocity = target_; break;
+        case OperationMode::cyclic_torque: order_.torque = target_; break;
+        case OperationMode::profile_torque:
+        case OperationMode::none: break;
+        }
+        if (asked_ != OperationMode::profile_position) is_new_ = false;
+    }
+    /// The bits of the drive may be those of a homing before: they count when they were seen clear since this
+    /// one was about to start. It starts late enough that they are of this mode, should they travel apart
+    /// from it.
+    void home(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
+        const bool attained = (seen.statusword & status::acknowledged) != 0;
+        const bool failed = (seen.statusword & status::error) != 0;
+        if (start_cycles_ <= patience_cycles) ++start_cycles_;
+        if (start_cycles_ <= settling_cycles) {
+            order_.controlword |= order_bit::halt;
+            return;
+        }
+        order_.controlword |= order_bit::new_set_point;
+        began_ |= !attained && !failed;
+        if (!began_)
+            waits_ = start_cycles_;
+        else if (failed)
+            progress_ = Progress::failed;
+        else if (attained && (seen.statusword & status::target_reached) != 0)
+            progress_ = Progress::done;
+    }
+    /// The halt bit falls together with the edge that brings the new place, never before: the drive would go
+    /// on to the place that it has.
+    void shake_hands(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
+        const bool acknowledged = (seen.statusword & status::acknowledged) != 0;
+        switch (hand_shake_) {
+        case HandShake::over:
+            if (!leads_ || !is_new_ || acknowledged) break;
+            order_.position = target_;
+            order_.profile_velocity = profile_velocity_;
+            is_new_ = false;
+            is_released_ = true;
+            hand_shake_ = HandShake::raised;
+            raised_cycles_ = 0;
+            break;
+        case HandShake::raised:
+            if (acknowledged || (!leads_ && ++raised_cycles_ > hand_over_cycles))
+                hand_shake_ = HandShake::lowered;
+            break;
+        case HandShake::lowered:
+            if (!acknowledged) hand_shake_ = HandShake::over;
+            break;
+        }
+        if (hand_shake_ == HandShake::raised)
+            order_.controlword |= order_bit::new_set_point | order_bit::at_once;
+        if (!is_released_) order_.controlword |= order_bit::halt;
+    }
+
+    DriveOrder order_{};
+    OperationMode ordered_ = rest_mode, asked_ = rest_mode;
+    HandShake hand_shake_ = HandShake::over;
+    Progress progress_ = Progress::under_way;
+    double target_ = 0, profile_velocity_ = 0, standing_ = 1e-3;
+    motion::Profile offset_{};
+    Duration offset_age_{};
+    bool rests_ = true, leads_ = false;
+    bool is_new_ = false;      ///< its target has not been sent
+    bool is_released_ = false; ///< in pp: the halt bit fell with a new place
+    bool began_ = false;       ///< a homing
+    int slow_cycles_ = 0, waits_ = 0, start_cycles_ = 0, raised_cycles_ = 0;
+};
+
+} // namespace tappet::canopen
