@@ -312,6 +312,10 @@ void hand_over(const std::string& path) {
         } else if (kind == "gpio") {
             const std::size_t blank = rest.find(' ');
             must(create_gpio_chip(rest.substr(0, blank), rest.substr(blank + 1)));
+        } else if (kind == "unthrottled") {
+            if (const auto stopped = stop_throttling(); !stopped) {
+                give_up(stopped.error());
+            }
         } else if (kind == "set") {
             const std::size_t blank = rest.find(' ');
             if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) {

@@ -127,6 +127,14 @@ void set_governor(const Voice& voice) {
                       "; give the board's kernel command line cpufreq.default_governor=performance");
 }
 
+void stop_throttling(const Voice& voice) {
+    const auto stopped = init::stop_throttling();
+    if (!stopped)
+        voice.say("real-time threads are throttled: " + stopped.error());
+    else if (*stopped > 0)
+        voice.say("the fair server is stopped on " + std::to_string(*stopped) + " processors");
+}
+
 void raise_interrupts(const Facts& facts, const Voice& voice) {
     const std::string priority = facts.one("interrupts");
     if (priority.empty()) return;

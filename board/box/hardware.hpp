@@ -33,6 +33,8 @@ void tell_missing(const std::vector<Need>& needs, const Voice& voice);
 
 /// The governor of every processor that has one: no change of frequency.
 void set_governor(const Voice& voice);
+/// See init::stop_throttling.
+void stop_throttling(const Voice& voice);
 
 /// The threads of the bound devices' interrupts, which the kernel starts when somebody opens the device.
 void raise_interrupts(const Facts& facts, const Voice& voice);

@@ -105,6 +105,7 @@ private:
             init::pause_for(pause);
         tell_missing(needs, voice_);
         set_governor(voice_);
+        stop_throttling(voice_);
         stage(std::to_string(modules_.loaded()) + " kernel modules and the board's devices");
         if (!may_start_)
             voice_.say("the firmware is not started: without the data partition it has no settings");

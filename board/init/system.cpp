@@ -93,6 +93,26 @@ Done mount_kernel_files() {
     return {};
 }
 
+std::expected<int, std::string> stop_throttling() {
+    if (!write_text("/proc/sys/kernel/sched_rt_runtime_us", "-1"))
+        return failed("write -1 to /proc/sys/kernel/sched_rt_runtime_us");
+    const char* const debug_files = "/sys/kernel/debug";
+    const bool mounted =
+        ::mount("debugfs", debug_files, "debugfs", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0;
+    if (!mounted && errno != EBUSY && errno != ENODEV && errno != ENOENT) // a kernel may have none
+        return failed(std::string("mount ") + debug_files);
+    const std::string servers = std::string(debug_files) + "/sched/fair_server";
+    int stopped = 0;
+    for (const std::string& processor : names_in(servers)) {
+        if (write_text(servers + "/" + processor + "/runtime", "0"))
+            ++stopped;
+        else if (errno != EBUSY) // it is offline
+            return failed("write 0 to " + servers + "/" + processor + "/runtime");
+    }
+    if (stopped == 0 && mounted) ::umount(debug_files); // nobody else needs it
+    return stopped;
+}
+
 std::expected<pid_t, std::string> start(const std::vector<std::string>& words, int output,
                                         const std::string& cure) {
     const pid_t pid = ::fork();

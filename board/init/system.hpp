@@ -33,6 +33,11 @@ bool write_text(const std::string& path, std::string_view text);
 /// The kernel's own file systems, where every program looks for them.
 [[nodiscard]] Done mount_kernel_files();
 
+/// Stops what takes processors from real-time threads: throttling and, since Linux 6.12, the fair server of
+/// each processor, which only debugfs reaches; debugfs stays mounted where there is one. Returns the number
+/// of fair servers stopped.
+[[nodiscard]] std::expected<int, std::string> stop_throttling();
+
 /// A program in a session of its own, its output and errors to `output`. The error: no process was left.
 [[nodiscard]] std::expected<pid_t, std::string> start(const std::vector<std::string>& words, int output,
                                                       const std::string& cure);

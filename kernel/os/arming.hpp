@@ -97,6 +97,10 @@ struct SystemCheck {
     };
     std::string_view name;
     std::string_view looks_at;
+    std::string_view claims; ///< holds on a box that passes
+    /// Kernels on which `tests/bench/probe/arming.cpp` measured the claim on x86-64, as "6.1 6.12". Empty:
+    /// an emulated box cannot show it.
+    std::string_view measured_on;
     Severity severity; ///< of a fault that is not downgraded
     std::string_view cure;
     Verdict (*look)(const ArmingOptions&, const ProcessFacts&) noexcept;

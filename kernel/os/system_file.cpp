@@ -1,6 +1,7 @@
 // Reading and taking apart by read and from_chars.
 #include "kernel/os/system_file.hpp"
 
+#include <cerrno>
 #include <charconv>
 
 #include <fcntl.h>
@@ -11,10 +12,16 @@ namespace tappet::os {
 SystemFile::SystemFile(std::string_view root, const Sentence& path) noexcept {
     const Sentence full{root, path};
     const int file = open(full.characters, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
+    if (file < 0) {
+        error = errno;
+        return;
+    }
     while (length < capacity) {
         const auto got = read(file, characters + length, capacity - length);
-        if (got < 0) break;
+        if (got < 0) {
+            error = errno;
+            break;
+        }
         readable = true;
         if (got == 0) break;
         length += static_cast<std::size_t>(got);

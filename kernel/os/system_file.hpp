@@ -17,6 +17,7 @@ struct SystemFile {
     char characters[capacity] = {};
     std::size_t length = 0;
     bool readable = false;
+    int error = 0; ///< errno of what kept it from being read
 
     /// `root` stands before `path`; empty, or a made-up tree of a test.
     SystemFile(std::string_view root, const Sentence& path) noexcept;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -55,6 +56,10 @@ private:
 
 constexpr std::array plan{1, 4};
 
+std::string fair_server_of(int processor) {
+    return "sys/kernel/debug/sched/fair_server/cpu" + std::to_string(processor) + "/runtime";
+}
+
 struct Situation {
     Box box;
     ArmingOptions options{.root = box.root(), .processors = plan, .highest_priority = 80};
@@ -66,6 +71,11 @@ struct Situation {
                        .timer_slack_ns = 1,
                        .heap_sealed = true,
                        .seal_counts = true};
+
+    void run_on_6_12() const {
+        box.write("proc/sys/kernel/osrelease", "6.12.9-rt\n");
+        for (const int processor : plan) box.write(fair_server_of(processor), "0\n");
+    }
 
     [[nodiscard]] std::unique_ptr<ArmingReport>
     report(std::span<const std::string_view> downgraded = {}) const {
@@ -95,12 +105,14 @@ TEST(Arming, arms_on_a_box_as_it_must_be) {
     EXPECT_TRUE(report->can_arm()) << printed(*report);
     EXPECT_EQ(report->warnings(), 0u);
     EXPECT_EQ(report->findings().size(), system_checks().size());
-    EXPECT_EQ(printed(*report), "can arm: 13 checks made\n");
+    EXPECT_EQ(printed(*report), "can arm: 14 checks made\n");
 }
 
 TEST(Arming, has_a_name_a_subject_and_a_cure_for_each_check) {
     for (const SystemCheck& check : system_checks()) {
-        EXPECT_FALSE(check.name.empty() || check.looks_at.empty() || check.cure.empty()) << check.name;
+        EXPECT_FALSE(check.name.empty() || check.looks_at.empty() || check.claims.empty() ||
+                     check.cure.empty())
+            << check.name;
         EXPECT_EQ(std::count_if(system_checks().begin(), system_checks().end(),
                                 [&](const SystemCheck& other) { return other.name == check.name; }),
                   1);
@@ -120,8 +132,8 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << 
 const Fault faults[] = {
     {"preemptible_kernel", "realtime-kernel", "kernel 6.1.0-rt is not PREEMPT_RT",
      [](Situation& s) { s.box.write("sys/kernel/realtime", "0\n"); s.box.write("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC\n"); }},
-    {"no_kernel_files", "realtime-kernel", "unknown release",
-     [](Situation& s) { s.box.remove("sys/kernel/realtime"); s.box.remove("proc/sys/kernel/version"); s.box.remove("proc/sys/kernel/osrelease"); }},
+    {"no_kernel_files", "realtime-kernel", "kernel 6.1.0-rt is not PREEMPT_RT",
+     [](Situation& s) { s.box.remove("sys/kernel/realtime"); s.box.remove("proc/sys/kernel/version"); }},
     {"slow_clock_source", "clock-source", "hpet; the board accepts tsc arch_sys_counter",
      [](Situation& s) { s.box.write("sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet\n"); }},
     {"no_clock_source", "clock-source", "cannot be read",
@@ -130,6 +142,13 @@ const Fault faults[] = {
     {"no_priority", "fifo-priority", "priority 80 cannot be set", [](Situation& s) { s.facts.fifo_error = EPERM; }},
     {"throttling", "rt-throttling", "stopped after 950000 us", [](Situation& s) { s.box.write("proc/sys/kernel/sched_rt_runtime_us", "950000\n"); }},
     {"throttling_unknown", "rt-throttling", "cannot be read", [](Situation& s) { s.box.remove("proc/sys/kernel/sched_rt_runtime_us"); }},
+    {"fair_server", "rt-throttling", "processor 4 lose 50000000 ns of each period",
+     [](Situation& s) { s.run_on_6_12(); s.box.write(fair_server_of(4), "50000000\n"); }},
+    {"fair_server_unknown", "rt-throttling", "kernel 6.12.9-rt has a fair server, which may stop real-time threads on processor 1: "
+     "/sys/kernel/debug/sched/fair_server/cpu1/runtime cannot be read (No such file or directory)",
+     [](Situation& s) { s.run_on_6_12(); s.box.remove(fair_server_of(1)); }},
+    {"fair_server_of_an_earlier_kernel", "rt-throttling", "processor 1 lose 1 ns",
+     [](Situation& s) { s.box.write(fair_server_of(1), "1\n"); }},
     {"deep_sleep", "cpu-dma-latency", "not held", [](Situation& s) { s.facts.latency_held = false; }},
     {"lock_limit", "memory-lockable", "may lock 64 kB only",
      [](Situation& s) { s.box.write("proc/self/status", "VmLck:\t 64 kB\nCapEff:\t0000000000000800\n"); }},
@@ -180,6 +199,45 @@ TEST(Arming, accepts_a_mainline_kernel_by_its_version) {
     situation.box.remove("sys/kernel/realtime");
     EXPECT_TRUE(situation.report()->can_arm());
 }
+
+TEST(Arming, accepts_a_kernel_whose_fair_servers_are_stopped) {
+    const Situation situation;
+    situation.run_on_6_12();
+    const auto report = situation.report();
+    EXPECT_TRUE(report->can_arm()) << printed(*report);
+    EXPECT_EQ(report->warnings(), 0u) << printed(*report);
+}
+
+TEST(Arming, takes_a_kernel_of_unknown_release_for_one_with_a_fair_server) {
+    const Situation situation;
+    situation.box.remove("proc/sys/kernel/osrelease");
+    EXPECT_NE(printed(*situation.report()).find("refused  rt-throttling: kernel of unknown release"),
+              std::string::npos);
+}
+
+class UntriedKernel : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(UntriedKernel, arms_with_a_warning_that_names_the_kernels_tried) {
+    const Situation situation;
+    situation.run_on_6_12();
+    situation.box.write("proc/sys/kernel/osrelease", GetParam());
+    const auto report = situation.report();
+    EXPECT_TRUE(report->can_arm()) << printed(*report);
+    EXPECT_EQ(report->warnings(), 1u);
+    EXPECT_NE(printed(*report).find("  warning  kernel-tried: no check was tried on kernel " +
+                                    std::string{GetParam()} + "; the kernels tried are 6.1 6.12; cure: "),
+              std::string::npos)
+        << printed(*report);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, UntriedKernel,
+                         ::testing::Values("6.18.44", "6.11.0-rt", "6.13.1", "7.1.0", "5.12.3", "6"),
+                         [](const auto& kernel) {
+                             std::string name = "kernel_" + std::string{kernel.param};
+                             std::replace_if(
+                                 name.begin(), name.end(), [](char c) { return c == '.' || c == '-'; }, '_');
+                             return name;
+                         });
 
 TEST(Arming, accepts_a_clock_source_that_the_board_accepts) {
     Situation situation;

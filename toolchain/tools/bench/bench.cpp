@@ -65,6 +65,9 @@ void pack(const Scenario& scenario, const Architecture& architecture, const fs::
     for (const GpioChip& chip : scenario.gpio) {
         manifest << "gpio " << chip.name << ' ' << chip.lines << '\n';
     }
+    if (scenario.unthrottled) {
+        manifest << "unthrottled\n";
+    }
     for (const Setting& setting : scenario.settings) {
         manifest << "set " << setting.path << ' ' << setting.value << '\n';
     }
@@ -328,8 +331,8 @@ bool wait_for_end(Emulator& emulator, double seconds) {
 void check(const Scenario& scenario, const Architecture& architecture, const fs::path& kernel) {
     if (!fs::exists(kernel / "vmlinux") || !fs::exists(kernel / "modules.order")) {
         throw BenchError("there is no kernel '" + scenario.kernel + "' for " + architecture.name + " at " +
-                         kernel.string() + "; use rt (or plain, on x86-64), and run " + architecture.set_up +
-                         " once as root");
+                         kernel.string() + "; use rt (or rt-6.12 or plain, on x86-64), and run " +
+                         architecture.set_up + " once as root");
     }
     for (const std::string& card : scenario.can_cards) {
         const fs::path driver = kernel / "modules" / (card == "ctucan" ? "ctucanfd.ko" : "kvaser_pci.ko");
@@ -405,7 +408,7 @@ Outcome run_checked(const Scenario& scenario, const Output& output, const Cancel
 void add_board(Scenario& scenario) {
     for (const char* bus : {"can0", "can1", "can2"}) scenario.can.emplace_back(bus);
     for (const char* chip : {"io", "panel"}) scenario.gpio.push_back({chip, 32});
-    scenario.settings.push_back({"/proc/sys/kernel/sched_rt_runtime_us", "-1"});
+    scenario.unthrottled = true;
 }
 
 Outcome run(const Scenario& scenario, const Output& output, const Cancelled& cancelled) {

@@ -33,7 +33,7 @@ struct Setting {
 enum class Clock { instructions, host };
 
 struct Scenario {
-    std::string kernel = "rt"; // or "plain", which has no real-time
+    std::string kernel = "rt"; // or "rt-6.12", a later one, or "plain", which has no real-time
     Clock clock = Clock::instructions;
     unsigned processors = 1; // more than one only under the host's clock
     unsigned memory_mib = 256;
@@ -46,6 +46,7 @@ struct Scenario {
     std::vector<std::string> can_cards;
     std::vector<GpioChip> gpio;
     std::vector<Setting> settings; // written before the first command
+    bool unthrottled = false;      // nothing takes the processor from real-time threads, on any kernel
     // In order; the first that fails ends the scenario. "& " at the end: in the background, terminated at the
     // end of the scenario. "- " in front: its exit code does not count. Steps of the bench itself: "@sleep
     // SECONDS",

@@ -30,9 +30,10 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --can-card sja1000|ctucan   two emulated CAN controllers on one bus, of classical CAN or of CAN FD; Linux names
                          their interfaces, which are down
   --gpio-chip NAME:LINES simulated GPIO: /dev/NAME, its outside at /sim/NAME/sim_gpioN/pull and .../value
-  --set PATH=VALUE       written before the first command, e.g. /proc/sys/kernel/sched_rt_runtime_us=-1
+  --set PATH=VALUE       written before the first command, e.g. /proc/sys/vm/swappiness=0
+  --unthrottled          nothing takes the processor from real-time threads, on any kernel
   --collect GUEST=HOST   a file copied out at the end
-  --kernel rt|plain      with PREEMPT_RT (default) or without real-time
+  --kernel rt|rt-6.12|plain   with PREEMPT_RT (default), a later one with it, or without real-time
   --clock instructions|host   guest time from executed instructions (default; steady) or from the host
   --cpus N               processors of the guest (default 1; more only with --clock host)
   --memory MIB           memory of the guest (default 256)
@@ -126,6 +127,8 @@ Request parse(int count, char** arguments) {
             request.verbose = true;
         } else if (option == "--keep") {
             request.scenario.keep = true;
+        } else if (option == "--unthrottled") {
+            request.scenario.unthrottled = true;
         } else if (option == "--board") {
             add_board(request.scenario);
         } else if (i + 1 >= count) {
