@@ -75,10 +75,13 @@ struct WeftInsertion {
         if (released_ && (!arrived_ || early_)) missed.emit();
     }
     void on_arrival(Time at) noexcept TAPPET_REALTIME {
-        const double angle_deg = angle_at(at);
-        arrival_deg.write(angle_deg, at);
-        // A second pulse of the same weft is none.
-        if (!arrived_) static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg}));
+        // A weft counts also while the shaft is stopped, when nobody knows the angle.
+        if (const auto angle_deg = angle_at(at); angle_deg.given()) {
+            arrival_deg.write(angle_deg.value_or(0.0), at);
+            // A second pulse of the same weft is none.
+            if (!arrived_)
+                static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg.value_or(0.0)}));
+        }
         arrived_ = true;
         if (turning_) cut(true);
     }

@@ -25,7 +25,10 @@ public:
     }
     void step(const MethodCall<Posture(const SixNumbers&)>& posture_of, const FlangeCommand& command,
               const Limits& limits, double h) noexcept TAPPET_REALTIME {
-        const Posture posture = posture_of(SixNumbers{target_});
+        const Answer<Posture> answer = posture_of(SixNumbers{target_});
+        // Nobody says where the flange is: it comes to a standstill.
+        if (!answer.given()) return go(Joints{Joints::Zero()}, limits.acceleration, h);
+        const Posture posture = answer.value_or({});
         auto twist = motion::difference(posture.frame(), command.frame);
         twist.linear = bounded(limits.gain * twist.linear) + command.twist.linear;
         twist.angular = bounded(limits.gain * twist.angular) + command.twist.angular;

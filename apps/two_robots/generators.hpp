@@ -210,7 +210,8 @@ struct Twisting : FrameGenerator {
         step(cycle);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        FlangeCommand command{posture(SixNumbers{follower_.target()}).frame(), wanted_};
+        // Without an answer the follower has none either, and stands still.
+        FlangeCommand command{posture(SixNumbers{follower_.target()}).value_or({}).frame(), wanted_};
         follow(command, cycle);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
@@ -233,13 +234,14 @@ struct BodySimulation : FrameGenerator {
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         begin();
-        centre_ = posture(SixNumbers{positions.get()}).frame();
+        knows_centre_ = false;
         phase_ = 0.0;
         swell_ = 0.0;
         step(cycle);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double h = to_seconds(cycle.period);
+        if (!find_centre()) return put(follower_.target(), Joints::Zero());
         const double turn = 2.0 * std::numbers::pi * frequency.get();
         phase_ += turn * h;
         if (phase_ > 2.0 * std::numbers::pi) phase_ -= 2.0 * std::numbers::pi;
@@ -266,8 +268,17 @@ struct BodySimulation : FrameGenerator {
     }
 
 private:
+    /// False: nobody says where the flange is.
+    [[nodiscard]] bool find_centre() noexcept TAPPET_REALTIME {
+        if (knows_centre_) return true;
+        const Answer<Posture> now = posture(SixNumbers{follower_.target()});
+        centre_ = now.value_or({}).frame();
+        return knows_centre_ = now.given();
+    }
+
     static constexpr double swelling_s = 4.0;
     FlangeFrame centre_{};
+    bool knows_centre_ = false;
     double phase_ = 0.0, swell_ = 0.0;
 };
 

@@ -102,36 +102,42 @@ private:
             end(axis, one, false); // it is jammed, or without power
             return;
         }
+        if (!move(axis, one, now).given()) end(axis, one, false); // the axes were stopped
+    }
+    /// One step of it. The answer is that of the component that moves the axis.
+    [[nodiscard]] Answer<void> move(int axis, Axis& one, double now) noexcept TAPPET_REALTIME {
+        auto moved = Answer<void>{true};
         switch (one.phase) {
         case Phase::idle: break;
         case Phase::begins: one.phase = Phase::leaves; [[fallthrough]];
         case Phase::leaves:
-            turn(axis, -rate.get());
+            moved = turn(axis, -rate.get());
             if (is_active(axis)) break;
             one.phase = Phase::clears;
             one.cleared = now;
             break;
         case Phase::clears: // far enough off the edge to come over it at a creep
-            turn(axis, -rate.get());
+            moved = turn(axis, -rate.get());
             if (one.cleared - now > clearance) one.phase = Phase::finds;
             break;
         case Phase::finds: {
-            turn(axis, creep.get());
+            moved = turn(axis, creep.get());
             if (!is_active(axis)) break;
             const double angle = switch_angles.get()[axis - 1];
-            calibrate(axis, angle);
+            moved = calibrate(axis, angle);
             one.seen = angle;
             one.phase = Phase::goes_to_zero;
             break;
         }
         case Phase::goes_to_zero:
-            turn(axis, std::clamp(-zero_gain * now, -rate.get(), rate.get()));
+            moved = turn(axis, std::clamp(-zero_gain * now, -rate.get(), rate.get()));
             if (std::abs(now) < there) end(axis, one, true);
             break;
         }
+        return moved;
     }
     void end(int axis, Axis& one, bool well) noexcept TAPPET_REALTIME {
-        turn(axis, 0.0);
+        static_cast<void>(turn(axis, 0.0)); // one that is stopped stands
         one = {.is_homed = well};
     }
 

@@ -45,7 +45,7 @@ void Activity::ask_to_stop() noexcept {
     ends_by_ns_.store(to_ns(clock_->now()) + end_within.count(), std::memory_order_relaxed);
     stop_asked_.store(true, std::memory_order_release);
     if (const EnginePart* part = engine_->looping(); part != nullptr && part->type->break_loop != nullptr)
-        part->type->break_loop(part->component);
+        part->type->break_loop(part->component_);
     engine_->waiter().wake();
 }
 
@@ -149,7 +149,7 @@ void Activity::loop(const EnginePart& part) {
                              return at.goes_on();
                          },
                          engine_->now_address()}};
-    part.type->loop(part.component, control);
+    part.type->loop(part.component_, control);
 }
 
 void Activity::park() noexcept TAPPET_REALTIME {

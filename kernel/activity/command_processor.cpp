@@ -3,14 +3,14 @@
 
 namespace tappet {
 
-CommandState CommandProcessor::take_up(CommandSlot& slot, bool receiver_runs) noexcept TAPPET_REALTIME {
+CommandState CommandProcessor::take_up(CommandSlot& slot) noexcept TAPPET_REALTIME {
     const bool planned = slot.route().planned;
     // What a row plans always has a place; of the others there may be too many.
     if (count_ == followed_.size() || (!planned && requests_at_work_ == requests_)) {
         slot.reject();
         return CommandState::rejected;
     }
-    if (!slot.begin(receiver_runs)) return CommandState::rejected;
+    if (!slot.begin()) return CommandState::rejected;
     if (!planned) ++requests_at_work_;
     followed_[count_++] = &slot;
     return CommandState::accepted;

@@ -35,7 +35,7 @@ public:
         });
     }
     /// Runs the action; an accepted command is followed from now on. Returns how it stands.
-    CommandState take_up(CommandSlot& slot, bool receiver_runs) noexcept TAPPET_REALTIME;
+    CommandState take_up(CommandSlot& slot) noexcept TAPPET_REALTIME;
 
     /// Hands each command at work to visit(part, slot), oldest first, which asks slot.follow() and returns
     /// whether it has ended. Returns whether any has.

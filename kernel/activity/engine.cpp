@@ -12,8 +12,8 @@ namespace {
 
 /// work() may block: it is called only in activities that are not real-time, which the table's check
 /// guarantees.
-void work(const EnginePart& part, const Cycle& cycle) noexcept TAPPET_REALTIME {
-    TAPPET_ESCAPE("this activity is not real-time", part.type->work(part.component, cycle));
+void work(const ComponentType& type, void* component, const Cycle& cycle) noexcept TAPPET_REALTIME {
+    TAPPET_ESCAPE("this activity is not real-time", type.work(component, cycle));
 }
 
 } // namespace
@@ -30,7 +30,10 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
                            (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr &&
                            recorder_ == nullptr;
     serves_ = !is_simple ? Serves::everything : plan.behaviours.empty() ? Serves::steps : Serves::behaviours;
-    for (EnginePart& part : plan_.parts) part.step = part.type->step;
+    for (EnginePart& part : plan_.parts) {
+        part.step = part.type->step;
+        close_outputs(part);
+    }
     for (const EngineTimer& each : plan_.timers) each.timer->serve();
 }
 
@@ -53,9 +56,9 @@ Time Engine::earliest_wake() const noexcept TAPPET_REALTIME {
         timing += functions_per_part;
         if (!is_running(part.state)) continue;
         if (part.step != nullptr)
-            part.step(part.component, cycle_);
+            part.step(part.component_, cycle_);
         else if (part.type->work != nullptr)
-            work(part, cycle_);
+            work(*part.type, part.component_, cycle_);
         else
             continue;
         account(step, 1);
@@ -152,7 +155,7 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
         at.release = when;
         note(each.part, when);
         timed(each.part, FunctionKind::timers,
-              [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component, at); });
+              [&]() noexcept TAPPET_REALTIME { each.fire(plan_.parts[each.part].component_, at); });
         acted = true;
     }
     return acted;
@@ -177,7 +180,7 @@ bool Engine::run_commands() noexcept TAPPET_REALTIME {
     if (commands_.pending())
         served = commands_.serve([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
             turn_to(part);
-            note_state(part, commands_.take_up(slot, is_running(plan_.parts[part].state)));
+            note_state(part, commands_.take_up(slot));
         });
     const bool ended = commands_.follow([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
         turn_to(part);

@@ -351,6 +351,9 @@ private:
     void end_parts() noexcept TAPPET_REALTIME;
     void refuse_ending(std::uint32_t part) noexcept TAPPET_REALTIME;
     void end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME;
+    /// What the component writes reaches its readers from now on, or no longer.
+    static void open_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
+    static void close_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;
     void serve_requests() noexcept TAPPET_REALTIME;

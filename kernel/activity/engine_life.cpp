@@ -28,6 +28,27 @@ static_assert(next_on_grid(Time{} + 1ms, 1ms, 0ms) == Time{} + 2ms &&
                   next_on_grid(Time{} + 1700us, 1ms, 200us) == Time{} + 2200us,
               "the next point lies after now, by a period at most");
 
+/// Hands each port of these kinds, with its facet, to visit(facet, port).
+template <class Visit>
+void for_ports(const ComponentType& type, void* component, FacetKind kind, Visit&& visit) noexcept
+    TAPPET_REALTIME {
+    for (const Facet& each : type.facets) {
+        if (each.kind != kind) continue;
+        void* port = nullptr;
+        TAPPET_ESCAPE("computes an address", port = each.at(component, each.index));
+        visit(each, port);
+    }
+}
+
+void close(const ComponentType& type, void* component, DroppedWrites* counter) noexcept TAPPET_REALTIME {
+    for_ports(type, component, FacetKind::output,
+              [&](const Facet& facet, void* port) noexcept
+              TAPPET_REALTIME { facet.port->close(port, counter); });
+    for_ports(type, component, FacetKind::buffer_output,
+              [&](const Facet& facet, void* port) noexcept
+              TAPPET_REALTIME { facet.buffer->close(port, counter); });
+}
+
 } // namespace
 
 Sentence Engine::initialise() {
@@ -36,11 +57,11 @@ Sentence Engine::initialise() {
     for (std::size_t i = 0; i < plan_.parts.size(); ++i) {
         EnginePart& part = plan_.parts[i];
         if (part.type->initialise != nullptr)
-            if (const Sentence refusal = part.type->initialise(part.component); !refusal.empty()) {
+            if (const Sentence refusal = part.type->initialise(part.component_); !refusal.empty()) {
                 part.state.store(ComponentState::failed, std::memory_order_release);
                 while (i-- > 0)
                     if (plan_.parts[i].type->finalise != nullptr)
-                        plan_.parts[i].type->finalise(plan_.parts[i].component);
+                        plan_.parts[i].type->finalise(plan_.parts[i].component_);
                 return Sentence{"component \"", part.name, "\" could not be initialised: ", refusal};
             }
         if (part.state.load(std::memory_order_relaxed) == ComponentState::failed)
@@ -53,7 +74,8 @@ void Engine::finalise() {
     expect_standing();
     const RunsActivity here{plan_.activity, &cycle_.now};
     for (std::size_t i = plan_.parts.size(); i-- > 0;)
-        if (plan_.parts[i].type->finalise != nullptr) plan_.parts[i].type->finalise(plan_.parts[i].component);
+        if (plan_.parts[i].type->finalise != nullptr)
+            plan_.parts[i].type->finalise(plan_.parts[i].component_);
 }
 
 void Engine::start(Time now) noexcept TAPPET_REALTIME {
@@ -155,20 +177,26 @@ void Engine::reject_late() noexcept TAPPET_REALTIME {
 void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     part.state.store(ComponentState::starting, std::memory_order_release);
-    if (part.type->start != nullptr) part.type->start(part.component, cycle_);
+    open_outputs(part);
+    if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     part.state.store(ComponentState::running, std::memory_order_release);
 }
 
 void Engine::end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME {
-    for (const Facet& each : part.type->facets) {
-        if (each.kind != of) continue;
-        void* port = nullptr;
-        TAPPET_ESCAPE("computes an address", port = each.at(part.component, each.index));
-        const bool is_input = of == FacetKind::input;
-        if (!*each.port->places(port, is_input).forced) continue;
-        each.port->release(port, is_input);
+    const bool is_input = of == FacetKind::input;
+    for_ports(*part.type, part.component_, of, [&](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
+        if (!*facet.port->places(port, is_input).forced) return;
+        facet.port->release(port, is_input);
         if (plan_.forced != nullptr) plan_.forced->fetch_sub(1, std::memory_order_relaxed);
-    }
+    });
+}
+
+void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
+    close(*part.type, part.component_, nullptr);
+}
+
+void Engine::close_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
+    close(*part.type, part.component_, &part.dropped_writes);
 }
 
 // A component that failed or stopped before has left its safe values already. Its inputs are released before
@@ -182,8 +210,10 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         return end_forces(part, FacetKind::output);
     part.state.store(ComponentState::stopping, std::memory_order_release);
     commands_.fail(i);
-    if (part.type->stop != nullptr) part.type->stop(part.component, cycle_);
+    open_outputs(part); // it may never have started
+    if (part.type->stop != nullptr) part.type->stop(part.component_, cycle_);
     end_forces(part, FacetKind::output);
+    close_outputs(part);
     for (const EngineTimer& each : plan_.timers)
         if (each.part == i) each.timer->cancel();
     part.state.store(ComponentState::stopped, std::memory_order_release);
@@ -327,7 +357,7 @@ LifeAnswer Engine::begin_anew(Parts running) noexcept TAPPET_REALTIME {
         if ((running >> i & 1) == 0 || !is_running(part.state)) continue;
         if (const LifeAnswer inputs = check_inputs(i, Rule::alone); inputs.refusal != LifeRefusal::none)
             return inputs;
-        if (part.type->start != nullptr) part.type->start(part.component, cycle_);
+        if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     }
     return {.outcome = LifeOutcome::done};
 }

@@ -27,8 +27,12 @@ public:
     using Value = T;
 
     /// Gives the value to every connected reader. False when one of them had no room (its row says what is
-    /// lost).
+    /// lost), or the component does not run.
     bool push(const T& value) noexcept TAPPET_REALTIME {
+        if (dropped_ != nullptr) [[unlikely]] {
+            dropped_->fetch_add(1, std::memory_order_relaxed); // no step: counted for the report
+            return false;
+        }
         bool all = true;
         // Bounds that no push can move: counted loops.
         const std::size_t inside = rings_.inside.size(), across = rings_.across.size();
@@ -42,6 +46,7 @@ private:
     friend struct PortAccess;
     BufferRings<T> rings_{};
     Waker waker_{};
+    DroppedWrites* dropped_ = nullptr;
 };
 
 template <class T>

@@ -65,10 +65,29 @@ struct CommandOperations {
     TypeId results = nullptr;   ///< of an Arguments<...>: what comes back
     std::size_t argument_bytes = 0;
     std::size_t result_bytes = 0; ///< packed after the arguments
-    bool (*begin)(void* component, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
-    CommandProgress (*progress)(void* component, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
+    /// False: it is rejected, or its component does not run.
+    bool (*begin)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
+    CommandProgress (*progress)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
 
     [[nodiscard]] constexpr std::size_t value_bytes() const noexcept { return argument_bytes + result_bytes; }
+};
+
+/// The functions of a component behind its gate: a command is rejected, or fails, when it does not run.
+template <bool (*Begin)(void* component, std::byte* values) noexcept TAPPET_REALTIME,
+          CommandProgress (*Progress)(void* component, std::byte* values) noexcept TAPPET_REALTIME>
+struct GatedCommand {
+    static bool begin(GatedComponent& at, std::byte* values) noexcept TAPPET_REALTIME {
+        bool accepted = false;
+        const bool entered = at.enter(Entry::queued, [&](void* component) noexcept
+                                      TAPPET_REALTIME { accepted = Begin(component, values); });
+        return entered && accepted;
+    }
+    static CommandProgress progress(GatedComponent& at, std::byte* values) noexcept TAPPET_REALTIME {
+        auto progress = CommandProgress::failed;
+        const bool entered = at.enter(Entry::queued, [&](void* component) noexcept
+                                      TAPPET_REALTIME { progress = Progress(component, values); });
+        return entered ? progress : CommandProgress::failed;
+    }
 };
 
 /// One command on its way, whatever its signature: its state and its packed values have one writer at a time,
@@ -78,9 +97,8 @@ public:
     /// Where a slot is sent to and who waits for it; by start-up.
     struct Route {
         const CommandOperations* command = nullptr;
-        void* component = nullptr;
+        GatedComponent* receiver = nullptr;
         std::uint32_t part = 0; ///< of the component in its engine
-        const AtomicComponentState* receiver_state = nullptr;
         CommandInbox* inbox = nullptr;
         std::size_t sender = 0; ///< the sending activity's mailbox there
         std::uint32_t sending_activity = no_activity;
@@ -119,7 +137,7 @@ public:
     void post() noexcept TAPPET_REALTIME {
         // An engine that was stopped serves nobody: its answer is given here.
         const ComponentState receiver =
-            route_.receiver_state->load(std::memory_order_acquire); // command.look
+            route_.receiver->state.load(std::memory_order_acquire); // command.look
         if (receiver >= ComponentState::stopped) {
             state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
             return;
@@ -154,8 +172,8 @@ public:
     // ---- the receiver's side: its engine's thread, real-time
 
     /// Takes the message up: runs the action. Returns whether it is to be followed.
-    [[nodiscard]] bool begin(bool receiver_runs) noexcept TAPPET_REALTIME {
-        const bool accepted = receiver_runs && route_.command->begin(route_.component, values_);
+    [[nodiscard]] bool begin() noexcept TAPPET_REALTIME {
+        const bool accepted = route_.command->begin(*route_.receiver, values_);
         if (accepted)
             state_.store(CommandState::accepted, std::memory_order_release); // command.accept
         else
@@ -164,7 +182,7 @@ public:
     }
     /// Asks the completion condition. Returns how it stands.
     [[nodiscard]] CommandState follow() noexcept TAPPET_REALTIME {
-        switch (route_.command->progress(route_.component, values_)) {
+        switch (route_.command->progress(*route_.receiver, values_)) {
         case CommandProgress::executing:
             state_.store(CommandState::executing, std::memory_order_release); // command.execute
             return CommandState::executing;
@@ -415,8 +433,8 @@ struct CommandOf {
                                                   type_id<typename Begin::Pack::Results>,
                                                   Begin::Pack::input_bytes,
                                                   Begin::Pack::result_bytes,
-                                                  &begin,
-                                                  &progress};
+                                                  &GatedCommand<&begin, &progress>::begin,
+                                                  &GatedCommand<&begin, &progress>::progress};
 };
 
 } // namespace detail

@@ -72,6 +72,17 @@ struct ComponentType {
     Sentence (*accepts)(const void* component, const Proposal&) noexcept TAPPET_REALTIME = nullptr;
     void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
     void (*control)(void* component, const Controlled&) = nullptr; ///< before its properties are set
+
+    /// Asks the component and, when it consents, gives it all values together. The answer says why it does
+    /// not. Where the component runs, or while it stands still. Real-time.
+    Sentence change(void* component, std::span<const ProposedValue> values) const noexcept TAPPET_REALTIME {
+        if (accepts != nullptr)
+            if (const Sentence refusal = accepts(component, Proposal{values}); !refusal.empty())
+                return refusal;
+        for (const ProposedValue& each : values) std::memcpy(each.target, each.value, each.size);
+        if (changed != nullptr) changed(component);
+        return {};
+    }
 };
 
 namespace detail {

@@ -55,6 +55,8 @@ struct PortOperations {
     void (*link_shared)(void* input, const void* output);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
+    /// Of an output: null opens it. In the port's activity.
+    void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
@@ -82,6 +84,7 @@ struct BufferOperations {
     std::size_t ring_align;
     void (*link)(void* output, void* input, std::byte* memory, std::size_t capacity, Overflow, bool across);
     void (*set_waker)(void* output, Waker waker);
+    void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     std::size_t (*lost)(const void* memory, bool across);
     // In the port's activity.
     bool (*push)(void* output, const std::byte* value) noexcept TAPPET_REALTIME;
@@ -104,9 +107,9 @@ struct EventOperations {
 };
 
 struct OperationOperations {
-    const void* call; ///< points at a `void (*const)(void*, A...)`
-    void (*run)(void* component, const std::byte* packed) noexcept TAPPET_REALTIME;
-    const void* enter = nullptr; ///< as `call`, with a GatedComponent in place of the component
+    const void* enter; ///< points at a `void (*const)(void* gated, A...)`: a GatedComponent
+    /// False: the component cannot be reached that way, and nothing ran.
+    bool (*run)(GatedComponent&, Entry, const std::byte* packed) noexcept TAPPET_REALTIME;
 };
 
 struct TimerOperations {
@@ -211,6 +214,12 @@ struct PortAccess {
             [](void* output, Waker waker) {
                 auto& out = *static_cast<Output<T>*>(output);
                 out.waker_ = waker;
+                out.settle();
+            },
+        .close =
+            [](void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME {
+                auto& out = *static_cast<Output<T>*>(output);
+                out.dropped_ = counter;
                 out.settle();
             },
         .set_filter =
@@ -324,6 +333,8 @@ struct PortAccess {
                 }
             },
         .set_waker = [](void* output, Waker waker) { static_cast<BufferOutput<T>*>(output)->waker_ = waker; },
+        .close = [](void* output, DroppedWrites* counter) noexcept
+        TAPPET_REALTIME { static_cast<BufferOutput<T>*>(output)->dropped_ = counter; },
         .lost =
             [](const void* memory, bool across) {
                 return static_cast<std::size_t>(across ? static_cast<const Ring<T>*>(memory)->lost()

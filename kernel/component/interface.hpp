@@ -77,8 +77,7 @@ struct WaitArguments<EventWait<A...>> {
 };
 
 template <auto Method>
-inline constexpr OperationOperations operation_of = {&operation_call<Method>, &OperationCall<Method>::run,
-                                                     &operation_entry<Method>};
+inline constexpr OperationOperations operation_of = {&operation_entry<Method>, &OperationCall<Method>::run};
 
 template <auto Method>
 struct TimerCall {

@@ -45,19 +45,54 @@ inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTI
     return state.load(std::memory_order_acquire) == ComponentState::running;
 }
 
-/// What a synchronous reaction goes through before it enters a component: one that was stopped, or failed, is
-/// not called, which is counted. One whose activity has not begun yet, or stops just now, is. Any thread.
-struct GatedComponent {
-    void* component = nullptr;
-    AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
-    std::atomic<std::uint32_t> dropped{0};
+/// How a call comes to a component.
+enum class Entry : std::uint8_t {
+    at_once,   ///< in the caller's thread: also into a component that has not begun, starts or stops just now
+    queued,    ///< by a message: only while it runs
+    properties ///< always: values are kept, and what the component does of it reaches no output while it
+               ///< stands
+};
 
-    [[nodiscard]] bool is_open() noexcept TAPPET_REALTIME {
+/// The one way into a component for everybody but its engine: reactions, method calls, commands, scripts,
+/// lines and requests of browsers. It asks for the component's state as it runs the call; nothing else has
+/// the address. Any thread; real-time.
+class GatedComponent {
+public:
+    GatedComponent() = default;
+    /// `component` outlives it.
+    explicit GatedComponent(void* component, ComponentState now = ComponentState::inactive) noexcept
+        : state{now}, component_{component} {}
+
+    /// Before anybody enters.
+    void place(void* component) noexcept { component_ = component; }
+
+    [[nodiscard]] bool admits(Entry entry) const noexcept TAPPET_REALTIME {
         const ComponentState now = state.load(std::memory_order_acquire);
-        if (now < ComponentState::stopped) return true;
-        dropped.fetch_add(1, std::memory_order_relaxed);
-        return false;
+        switch (entry) {
+        case Entry::at_once: return now < ComponentState::stopped;
+        case Entry::queued: return now == ComponentState::running;
+        case Entry::properties: break;
+        }
+        return true;
     }
+    /// Runs `call(void* component)`. False: the component cannot be reached, and nothing ran. A call that has
+    /// begun when a stop begins ends as it would.
+    template <class Call>
+    [[nodiscard]] bool enter(Entry entry, Call&& call) noexcept TAPPET_REALTIME {
+        if (!admits(entry)) return false;
+        call(component_);
+        return true;
+    }
+
+    AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
+    std::atomic<std::uint32_t> dropped{0};                ///< synchronous reactions that were not let in
+    std::atomic<std::uint32_t> dropped_writes{0};         ///< to its outputs, while it did not run
+
+private:
+    friend class Engine;
+    friend class Activity;
+    friend class VirtualLoop;
+    void* component_ = nullptr;
 };
 
 enum class LifeChange : std::uint8_t { start, stop, restart };

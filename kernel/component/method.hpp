@@ -11,20 +11,49 @@
 #pragma once
 
 #include "kernel/base/contract.hpp"
+#include "kernel/component/life.hpp"
 #include "kernel/component/signature.hpp"
 
 #include <atomic>
 
 namespace tappet {
 
+/// The answer to a method call: a result, or none when the component that was called does not run. The caller
+/// says what it does then. Real-time.
+template <class R>
+class [[nodiscard("the component that was called may not run: say what happens then")]] Answer {
+public:
+    Answer() = default;
+    Answer(const R& result) noexcept : result_{result}, given_{true} {}
+    /// False: the component does not run, and nothing of it was called.
+    [[nodiscard]] bool given() const noexcept TAPPET_REALTIME { return given_; }
+    [[nodiscard]] R value_or(const R& otherwise) const noexcept TAPPET_REALTIME {
+        return given_ ? result_ : otherwise;
+    }
+
+private:
+    R result_ = default_value<R>();
+    bool given_ = false;
+};
+template <>
+class [[nodiscard("the component that was called may not run: say what happens then")]] Answer<void> {
+public:
+    constexpr explicit Answer(bool given = false) noexcept : given_{given} {}
+    [[nodiscard]] bool given() const noexcept TAPPET_REALTIME { return given_; }
+
+private:
+    bool given_;
+};
+
 /// What a facet knows of the method behind it.
 struct MethodOperations {
-    const void* call = nullptr; ///< points at a `R (*const)(void* component, const A&...)`
+    const void* call = nullptr; ///< points at a `Answer<R> (*const)(GatedComponent&, const A&...)`
     TypeId result = nullptr;    ///< of Arguments<> when it returns nothing
     std::size_t argument_bytes = 0;
     std::size_t result_bytes = 0;
-    /// From packed arguments, for callers that know no C++ type. In the caller's thread; real-time.
-    void (*call_packed)(void* component, const std::byte* arguments, std::byte* result) noexcept
+    /// From packed arguments, for callers that know no C++ type. In the caller's thread; real-time. False:
+    /// the component cannot be reached that way; nothing ran, and there is no result.
+    bool (*call_packed)(GatedComponent&, Entry, const std::byte* arguments, std::byte* result) noexcept
         TAPPET_REALTIME = nullptr;
     bool is_const = false; ///< it only looks at its component
 };
@@ -32,7 +61,7 @@ struct MethodOperations {
 /// Whose method a call runs. `call` is that of its MethodOperations.
 struct MethodGoal {
     const void* call = nullptr;
-    void* component = nullptr;
+    GatedComponent* component = nullptr;
 };
 
 /// What start-up does with the caller's side, and who hands over between components that answer by turns.
@@ -53,14 +82,16 @@ class MethodCall<R(A...)> {
                   "a method returns its result; for several, a struct");
 
 public:
-    using Function = R (*)(void*, const std::remove_cvref_t<A>&...) noexcept TAPPET_REALTIME;
+    using Function = Answer<R> (*)(GatedComponent&, const std::remove_cvref_t<A>&...) noexcept
+        TAPPET_REALTIME;
 
-    /// Calling what no row connects breaks a contract: an optional one is asked first.
-    R operator()(const std::remove_cvref_t<A>&... arguments) const noexcept TAPPET_REALTIME {
+    /// Calling what no row connects breaks a contract: an optional one is asked first. No result is given by
+    /// a component that does not run.
+    Answer<R> operator()(const std::remove_cvref_t<A>&... arguments) const noexcept TAPPET_REALTIME {
         const MethodGoal* const goal = goal_.load(std::memory_order_acquire);
         TAPPET_CONTRACT(goal != nullptr, Contract::precondition, 0);
-        if (goal == nullptr) return R();
-        return (*static_cast<const Function*>(goal->call))(goal->component, arguments...);
+        if (goal == nullptr) return Answer<R>();
+        return (*static_cast<const Function*>(goal->call))(*goal->component, arguments...);
     }
     /// Whether a row connects it. Always true of one that is not optional.
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
@@ -102,9 +133,12 @@ public:
     [[nodiscard]] bool done() const noexcept TAPPET_REALTIME {
         return !asked_.load(std::memory_order_acquire);
     }
+    /// Once done: whether it ran. False: its component did not run then.
+    [[nodiscard]] bool given() const noexcept TAPPET_REALTIME { return given_; }
     /// Before it is posted. `values` has room for arguments and result and outlives the request.
-    void place(const MethodOperations& method, void* component, std::byte* values) noexcept TAPPET_REALTIME {
-        method_ = &method, component_ = component, values_ = values;
+    void place(const MethodOperations& method, GatedComponent& component, std::byte* values) noexcept
+        TAPPET_REALTIME {
+        method_ = &method, component_ = &component, values_ = values;
         asked_.store(true, std::memory_order_relaxed);
     }
     /// It could not be posted.
@@ -113,14 +147,16 @@ public:
     static void run(void* self, const std::byte*) noexcept TAPPET_REALTIME {
         auto& request = *static_cast<MethodRequest*>(self);
         const MethodOperations& method = *request.method_;
-        method.call_packed(request.component_, request.values_, request.values_ + method.argument_bytes);
+        request.given_ = method.call_packed(*request.component_, Entry::queued, request.values_,
+                                            request.values_ + method.argument_bytes);
         request.asked_.store(false, std::memory_order_release);
     }
 
 private:
     const MethodOperations* method_ = nullptr;
-    void* component_ = nullptr;
+    GatedComponent* component_ = nullptr;
     std::byte* values_ = nullptr;
+    bool given_ = false;
     std::atomic<bool> asked_{false};
 };
 
@@ -134,25 +170,40 @@ struct MethodOf {
     using Pack = Packing<A...>;
     using Returned = std::conditional_t<std::is_void_v<R>, Arguments<>, R>;
 
-    static R call(void* component, const std::remove_cvref_t<A>&... arguments) noexcept TAPPET_REALTIME {
+    static R run(void* component, const std::remove_cvref_t<A>&... arguments) noexcept TAPPET_REALTIME {
         if constexpr (blocks)
             TAPPET_ESCAPE("the table's check lets activities only call it that are not real-time",
                           return (static_cast<Component*>(component)->*Method)(arguments...));
         else
             return (static_cast<Component*>(component)->*Method)(arguments...);
     }
+    static Answer<R> call(GatedComponent& at, const std::remove_cvref_t<A>&... arguments) noexcept
+        TAPPET_REALTIME {
+        if constexpr (std::is_void_v<R>) {
+            return Answer<void>{at.enter(Entry::at_once, [&](void* component) noexcept
+                                         TAPPET_REALTIME { run(component, arguments...); })};
+        } else {
+            Answer<R> answer;
+            static_cast<void>( // the answer says it
+                at.enter(Entry::at_once, [&](void* component) noexcept
+                         TAPPET_REALTIME { answer = run(component, arguments...); }));
+            return answer;
+        }
+    }
     template <std::size_t... I>
-    static void unpack_and_call(void* component, const std::byte* packed, std::byte* result,
-                                std::index_sequence<I...>) noexcept TAPPET_REALTIME {
+    static void unpack_and_run(void* component, const std::byte* packed, std::byte* result,
+                               std::index_sequence<I...>) noexcept TAPPET_REALTIME {
         if constexpr (std::is_void_v<R>)
-            call(component, load_packed<std::remove_cvref_t<A>>(packed + Pack::offsets[I])...);
+            run(component, load_packed<std::remove_cvref_t<A>>(packed + Pack::offsets[I])...);
         else
             store_packed(result,
-                         call(component, load_packed<std::remove_cvref_t<A>>(packed + Pack::offsets[I])...));
+                         run(component, load_packed<std::remove_cvref_t<A>>(packed + Pack::offsets[I])...));
     }
-    static void call_packed(void* component, const std::byte* packed, std::byte* result) noexcept
-        TAPPET_REALTIME {
-        unpack_and_call(component, packed, result, std::index_sequence_for<A...>{});
+    static bool call_packed(GatedComponent& at, Entry entry, const std::byte* packed,
+                            std::byte* result) noexcept TAPPET_REALTIME {
+        return at.enter(entry, [&](void* component) noexcept TAPPET_REALTIME {
+            unpack_and_run(component, packed, result, std::index_sequence_for<A...>{});
+        });
     }
     static constexpr typename MethodCall<R(A...)>::Function function = &call;
     static constexpr std::size_t bytes_of_result() {

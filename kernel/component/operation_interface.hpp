@@ -96,8 +96,8 @@ struct ForwardedCommand<Member, CommandCall<P...>> {
                                                   type_id<typename Pack::Results>,
                                                   Pack::input_bytes,
                                                   Pack::result_bytes,
-                                                  &begin,
-                                                  &progress};
+                                                  &GatedCommand<&begin, &progress>::begin,
+                                                  &GatedCommand<&begin, &progress>::progress};
 };
 
 } // namespace detail

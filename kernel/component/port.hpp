@@ -10,6 +10,7 @@
 #include "kernel/exchange/data_object.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -87,7 +88,11 @@ struct PortFilter {
     void (*pass)(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME = nullptr;
 };
 
-/// An output port. Written by its own component only, from its own activity. Real-time.
+/// Not null: the component does not run, and what it writes is dropped and counted here.
+using DroppedWrites = std::atomic<std::uint32_t>;
+
+/// An output port. Written by its own component only, from its own activity. From the end of the component's
+/// stop() to its next start() a write is dropped and counted: what stop() left there stands. Real-time.
 template <class T>
 class Output {
     static_assert(Exchangeable<T>, "what flows between activities is copied word by word");
@@ -114,6 +119,10 @@ private:
     friend struct PortAccess;
 
     [[gnu::noinline]] void write_further(const T& value, Time stamp) noexcept TAPPET_REALTIME {
+        if (dropped_ != nullptr) [[unlikely]] {
+            dropped_->fetch_add(1, std::memory_order_relaxed); // no step: counted for the report
+            return;
+        }
         if constexpr (std::is_arithmetic_v<T>)
             if (filter_ != nullptr) [[unlikely]] {
                 T passed = value; // whoever looks from outside sees what passed only
@@ -132,7 +141,8 @@ private:
     }
     /// After each change of what a write has to look at.
     void settle() noexcept TAPPET_REALTIME {
-        inside_only_ = !forced_ && shared_ == nullptr && waker_.wake == nullptr && filter_ == nullptr;
+        inside_only_ = !forced_ && dropped_ == nullptr && shared_ == nullptr && waker_.wake == nullptr &&
+                       filter_ == nullptr;
     }
     void publish() noexcept TAPPET_REALTIME {
         ++generation_;
@@ -164,6 +174,7 @@ private:
     DataObject<Sample<T>>* shared_ = nullptr;
     Waker waker_{};
     PortFilter* filter_ = nullptr;
+    DroppedWrites* dropped_ = nullptr;
     alignas(place_alignment<T>) T hidden_ =
         default_value<T>(); ///< of a forced port: what its component wrote
 

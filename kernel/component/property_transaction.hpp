@@ -89,15 +89,8 @@ public:
     /// Asks the component and, when it consents, gives it all of them. Only
     /// where the component runs, or while it stands still. Real-time.
     void commit() noexcept TAPPET_REALTIME {
-        State end = State::done;
-        if (type_->accepts != nullptr) refusal_ = type_->accepts(component_, Proposal{values()});
-        if (refusal_.empty()) {
-            for (const ProposedValue& each : values()) std::memcpy(each.target, each.value, each.size);
-            if (type_->changed != nullptr) type_->changed(component_);
-        } else {
-            end = State::refused;
-        }
-        state_.store(end, std::memory_order_release);
+        refusal_ = type_->change(component_, values());
+        state_.store(refusal_.empty() ? State::done : State::refused, std::memory_order_release);
     }
     /// Takes a copy of what the properties are that there is room for, and asks the component whether it
     /// would consent to them: refusal(). Where the component runs, or while it stands still. Real-time.

@@ -87,9 +87,11 @@ struct AsyncReaction {
 
     Inbox* inbox = nullptr;
     Waker waker{};
-    Message::Run run = nullptr; ///< in the receiver: the operation, or the trigger of a behaviour
+    GatedComponent* receiver = nullptr; ///< the component that reacts
+    /// Its operation. Null: `run` with `object` is what reacts in its place, the trigger of a behaviour.
+    bool (*operation)(GatedComponent&, Entry, const std::byte*) noexcept TAPPET_REALTIME = nullptr;
+    Message::Run run = nullptr;
     void* object = nullptr;
-    const AtomicComponentState* receiver = nullptr;  ///< of the component that the operation belongs to
     std::atomic<std::uint64_t>* connected = nullptr; ///< of the event: one bit for each of its rows
     std::uint64_t bit = 0;
     EventLane* lanes = nullptr;
@@ -204,14 +206,16 @@ private:
         if (caught == nullptr) return;
         if (caught->epoch != row.epoch.load(std::memory_order_acquire)) // serve.epoch
             lane.outdated.add();
-        else if (row.receiver != nullptr && !is_running(*row.receiver))
-            lane.dropped.add();
         else {
-            row.has_run = true;
             const std::uint32_t place = lane.latest != nullptr ? lane.latest->place_of_taken() : served;
-            row.run(row.object,
-                    lane.parcels == nullptr ? caught->arguments.data() : row.place_of(lane, place));
+            row.has_run =
+                row.react(lane.parcels == nullptr ? caught->arguments.data() : row.place_of(lane, place));
+            if (!row.has_run) lane.dropped.add();
         }
+    }
+    [[nodiscard]] bool react(const std::byte* packed) noexcept TAPPET_REALTIME {
+        if (operation != nullptr) return operation(*receiver, Entry::queued, packed);
+        return receiver->enter(Entry::queued, [&](void*) noexcept TAPPET_REALTIME { run(object, packed); });
     }
 };
 

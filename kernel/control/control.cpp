@@ -94,7 +94,7 @@ void find_calls(MachineInstance& machine, Turns& turns) {
         for (std::size_t k = 0; k < turns.rows->chains.size(); ++k)
             if ((in >> k & 1) != 0)
                 place->goals[k] = {facet_at(accepted.table, link.to).method->call,
-                                   machine.component(link.to.component)};
+                                   machine.gate_of(link.to.component)};
     }
 }
 

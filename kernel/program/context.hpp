@@ -10,7 +10,7 @@ namespace tappet {
 
 /// The addresses behind a LinkRow; filled when the program is bound, before it runs.
 struct ProgramLink {
-    void* component = nullptr;
+    GatedComponent* component = nullptr;
     void* place = nullptr;       ///< of the facet in the component; the component itself where it has none
     CommandSlot* slot = nullptr; ///< of a command of another activity
     const ComponentType* type = nullptr; ///< of the component: it is asked before its properties change

@@ -87,7 +87,8 @@ inline ActionResult buffer_empty(ProgramContext& context, const Instruction& in,
     return ActionResult::done;
 }
 
-// ---- events, methods, operations: `a` holds the arguments packed, as the facet's type lists them
+// ---- events, methods, operations: `a` holds the arguments packed, as the facet's type lists them. A call of
+// a component that does not run fails the action.
 
 inline ActionResult emit_event(ProgramContext& context, const Instruction& in, std::byte*, const std::byte* a,
                                const std::byte*) noexcept TAPPET_REALTIME {
@@ -96,21 +97,24 @@ inline ActionResult emit_event(ProgramContext& context, const Instruction& in, s
 }
 inline ActionResult call_operation(ProgramContext& context, const Instruction& in, std::byte*,
                                    const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
-    in.facet->operation->run(link_of(context, in).component, a);
-    return ActionResult::done;
+    return in.facet->operation->run(*link_of(context, in).component, Entry::at_once, a)
+               ? ActionResult::done
+               : ActionResult::failed;
 }
 /// `to`: the result, if there is one.
 inline ActionResult call_method(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
-    in.facet->method->call_packed(link_of(context, in).component, a, to);
-    return ActionResult::done;
+    return in.facet->method->call_packed(*link_of(context, in).component, Entry::at_once, a, to)
+               ? ActionResult::done
+               : ActionResult::failed;
 }
 /// Of a method that returns bool, called as a statement: false fails the action (thesis 5.1.1).
 inline ActionResult call_checked(ProgramContext& context, const Instruction& in, std::byte*,
                                  const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     std::byte answer{};
-    in.facet->method->call_packed(link_of(context, in).component, a, &answer);
-    return answer != std::byte{0} ? ActionResult::done : ActionResult::failed;
+    const bool given =
+        in.facet->method->call_packed(*link_of(context, in).component, Entry::at_once, a, &answer);
+    return given && answer != std::byte{0} ? ActionResult::done : ActionResult::failed;
 }
 
 // ---- commands. The own component's run here and now (thesis 5.1.5): `to` of the first and `a` of the second
@@ -119,15 +123,15 @@ inline ActionResult call_checked(ProgramContext& context, const Instruction& in,
 /// A command that is rejected fails the action.
 inline ActionResult begin_command(ProgramContext& context, const Instruction& in, std::byte* to,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
-    return in.facet->command->begin(link_of(context, in).component, to) ? ActionResult::done
-                                                                        : ActionResult::failed;
+    return in.facet->command->begin(*link_of(context, in).component, to) ? ActionResult::done
+                                                                         : ActionResult::failed;
 }
 /// `to`: a boolean, whether it is done; one that failed fails the condition.
 inline ActionResult command_progress(ProgramContext& context, const Instruction& in, std::byte* to,
                                      const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     // The values are the program's own, and the completion writes its results there.
     const CommandProgress progress =
-        in.facet->command->progress(link_of(context, in).component, const_cast<std::byte*>(a));
+        in.facet->command->progress(*link_of(context, in).component, const_cast<std::byte*>(a));
     store_value(to, progress == CommandProgress::done);
     return progress == CommandProgress::failed ? ActionResult::failed : ActionResult::done;
 }
@@ -179,15 +183,14 @@ inline ActionResult write_property(ProgramContext& context, const Instruction& i
                 return ActionResult::failed;
         }
     }
-    if (link.type != nullptr && link.type->accepts != nullptr) {
-        const ProposedValue proposed{static_cast<std::byte*>(link.place), a, in.size,
-                                     static_cast<std::uint32_t>(in.facet - link.type->facets.data())};
-        if (!link.type->accepts(link.component, Proposal{{&proposed, 1}}).empty())
-            return ActionResult::failed;
-    }
-    std::memcpy(link.place, a, in.size);
-    if (link.type != nullptr && link.type->changed != nullptr) link.type->changed(link.component);
-    return ActionResult::done;
+    const ProposedValue proposed{static_cast<std::byte*>(link.place), a, in.size,
+                                 static_cast<std::uint32_t>(in.facet - link.type->facets.data())};
+    bool taken = false;
+    const bool entered =
+        link.component->enter(Entry::properties, [&](void* component) noexcept TAPPET_REALTIME {
+            taken = link.type->change(component, {&proposed, 1}).empty();
+        });
+    return entered && taken ? ActionResult::done : ActionResult::failed;
 }
 
 } // namespace tappet::primitive

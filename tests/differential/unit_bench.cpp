@@ -145,18 +145,18 @@ void UnitBench::bind_links(BenchPart& part) {
     for (const LinkRow& row : part.type->tables.links) {
         const ComponentType& type = *reach()[row.peer].type;
         ProgramLink link;
-        link.component = link.place = components[row.peer];
+        link.component = &gates_[row.peer];
+        link.place = components[row.peer];
         link.type = &type;
         if (row.facet != LinkRow::component_itself) {
             const Facet& facet = type.facets[row.facet];
-            if (facet.at != nullptr) link.place = facet.at(link.component, facet.index);
+            if (facet.at != nullptr) link.place = facet.at(components[row.peer], facet.index);
             if (row.needs_slot) {
                 CommandSlot& slot = slots_.emplace_back();
                 slot_values_.emplace_back(facet.command->value_bytes() + 1);
                 CommandSlot::Route route;
                 route.command = facet.command;
-                route.component = link.component;
-                route.receiver_state = &arm_state_;
+                route.receiver = link.component;
                 route.inbox = &commands_.inbox();
                 slot.place(route, slot_values_.back().data());
                 link.slot = &slot;
@@ -246,7 +246,7 @@ void UnitBench::step() {
 
 void UnitBench::step_arm() {
     commands_.serve([this](std::uint32_t, CommandSlot& slot) noexcept
-                    TAPPET_REALTIME { static_cast<void>(commands_.take_up(slot, true)); });
+                    TAPPET_REALTIME { static_cast<void>(commands_.take_up(slot)); });
     static_cast<void>(commands_.follow([](std::uint32_t, CommandSlot& slot) noexcept
                                        TAPPET_REALTIME { return !in_flight(slot.follow()); }));
 }

@@ -98,7 +98,9 @@ private:
     std::unique_ptr<CommandMailbox> mailbox_;
     std::vector<CommandSlot*> followed_;
     CommandProcessor commands_;
-    AtomicComponentState arm_state_{ComponentState::running};
+    GatedComponent gates_[3]{GatedComponent{&own, ComponentState::running},
+                             GatedComponent{&mate, ComponentState::running},
+                             GatedComponent{&arm, ComponentState::running}};
 };
 
 } // namespace tappet

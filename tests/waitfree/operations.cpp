@@ -83,7 +83,7 @@ bool command_reset(CommandCall<double, int&>& command) noexcept { return command
 bool command_begin(CommandSlot& slot) noexcept { return slot.begin(true); }
 CommandState command_follow(CommandSlot& slot) noexcept { return slot.follow(); }
 CommandState command_take_up(CommandProcessor& processor, CommandSlot& slot) noexcept {
-    return processor.take_up(slot, true);
+    return processor.take_up(slot);
 }
 void command_fail_all(CommandProcessor& processor) noexcept { processor.fail(0); }
 void command_reject_all(CommandProcessor& processor) noexcept { processor.reject_sent(); }

@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 namespace two_robots {
 
@@ -55,9 +56,9 @@ struct Replay {
         }
         if (begins_) began_ = cycle.now;
         begins_ = false;
-        if (leg_ == Leg::none)
-            set_point.write({tool_length.get(), tip_now(), {}});
-        else if (leg_ == Leg::path)
+        if (leg_ == Leg::none) {
+            if (const auto now = tip_now()) set_point.write({tool_length.get(), *now, {}});
+        } else if (leg_ == Leg::path)
             follow_path(to_seconds(cycle.period));
         else
             follow_line(cycle.now);
@@ -73,9 +74,10 @@ struct Replay {
     bool operate() noexcept TAPPET_REALTIME {
         if (!model.good()) return false;
         // Whoever is inside already does not go out again to come in.
-        const BodyTip now = tip_now();
-        const bool is_inside = now.position.z() < -0.5 * depth.get();
-        return go(is_inside ? Leg::to_path : Leg::above, now);
+        const auto now = tip_now();
+        if (!now) return false;
+        const bool is_inside = now->position.z() < -0.5 * depth.get();
+        return go(is_inside ? Leg::to_path : Leg::above, *now);
     }
     CommandProgress operates() noexcept TAPPET_REALTIME {
         if (leg_ == Leg::none) return CommandProgress::failed;
@@ -84,8 +86,8 @@ struct Replay {
     /// Out of the hole.
     bool withdraw() noexcept TAPPET_REALTIME {
         if (!model.good()) return false;
-        const BodyTip now = tip_now();
-        return go(now.position.z() < 0.0 ? Leg::to_axis : Leg::out, now);
+        const auto now = tip_now();
+        return now && go(now->position.z() < 0.0 ? Leg::to_axis : Leg::out, *now);
     }
     CommandProgress is_out() noexcept TAPPET_REALTIME {
         if (leg_ != Leg::none) return CommandProgress::executing;
@@ -117,9 +119,11 @@ private:
     enum class Leg : std::uint8_t { none, above, in, to_path, path, to_axis, out };
     using Line = motion::Path<Body, Tip>;
 
-    [[nodiscard]] BodyTip tip_now() noexcept TAPPET_REALTIME {
-        return inverse(model.get().frame) * posture(SixNumbers{positions.get()}).frame() *
-               tip_of_tool(tool_length.get());
+    /// Nothing: the component that knows the flange's posture does not run.
+    [[nodiscard]] std::optional<BodyTip> tip_now() noexcept TAPPET_REALTIME {
+        const Answer<Posture> flange = posture(SixNumbers{positions.get()});
+        if (!flange.given()) return std::nullopt;
+        return inverse(model.get().frame) * flange.value_or({}).frame() * tip_of_tool(tool_length.get());
     }
     [[nodiscard]] BodyTip on_axis(double z) const noexcept TAPPET_REALTIME {
         BodyTip frame = through_the_hole({0, 0, -1});

@@ -140,7 +140,8 @@ void BehaviourUnit::connect_links() {
             const LinkRow& row = part.type->tables.links[i];
             const std::size_t c = component_of(table, table.components[driven_].name, unit_, row.peer);
             ProgramLink& link = part.links[i];
-            link.component = link.place = machine_->component(c);
+            link.component = machine_->gate_of(c);
+            link.place = machine_->component(c);
             link.type = table.components[c].type;
             if (row.facet == LinkRow::component_itself) continue;
             if (void* place = machine_->place_of({c, row.facet}); place != nullptr) link.place = place;

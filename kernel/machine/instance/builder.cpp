@@ -110,7 +110,7 @@ void MachineBuilder::place_engines() {
             const ComponentRow& component_row = table.components[c];
             const std::uint32_t part = machine_.plan.part_of[c];
             auto* placed = new (parts + part) EnginePart;
-            placed->component = instance_.component(c);
+            placed->place(instance_.component(c));
             placed->type = component_row.type;
             placed->name = component_row.name;
             for (std::size_t f = 0; f < component_row.type->facets.size(); ++f) {

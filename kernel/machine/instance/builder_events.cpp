@@ -102,8 +102,7 @@ void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {
     reaction.waker = instance_.post_waker_of(row.receiver);
     switch (row.kind) {
     case SubscriberKind::operation:
-        reaction.run = facet_at(machine_.table, row.target).operation->run;
-        reaction.object = instance_.component(row.target.component);
+        reaction.operation = facet_at(machine_.table, row.target).operation->run;
         reaction.part = plan.part_of[row.target.component];
         break;
     case SubscriberKind::wait: {
@@ -138,7 +137,7 @@ void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {
         reaction.part = plan.part_of[find_observer(machine_.table)];
         break;
     }
-    reaction.receiver = &receiver.plan().parts[reaction.part].state;
+    reaction.receiver = &receiver.plan().parts[reaction.part];
 }
 
 void MachineBuilder::place_mailboxes() {

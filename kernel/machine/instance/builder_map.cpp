@@ -103,9 +103,11 @@ void MachineBuilder::place_figure(map::Figure& figure) {
     switch (figure.owner) {
     case map::Owner::machine: figure.value_at = machine_.plan.observed_at; break;
     case map::Owner::component: {
-        const std::size_t activity = machine_.index.activity[figure.index];
-        const auto* parts = instance_.at<EnginePart>(machine_.plan.activities[activity].parts_at);
-        figure.value_at = offset_of(&parts[machine_.plan.part_of[figure.index]].state);
+        const GatedComponent& gate = *instance_.gate_of(figure.index);
+        const std::string_view wanted{instance_.at<const char>(figure.name.at), figure.name.length};
+        figure.value_at = wanted == "state"     ? offset_of(&gate.state)
+                          : wanted == "dropped" ? offset_of(&gate.dropped)
+                                                : offset_of(&gate.dropped_writes);
         break;
     }
     case map::Owner::activity: {

@@ -15,7 +15,7 @@ void MachineBuilder::connect_operations() {
         const Facet& requester = facet_at(table, link.from);
         if (requester.method_call != nullptr) {
             requester.method_call->bind(instance_.facet(link.from), {facet_at(table, link.to).method->call,
-                                                                     instance_.component(link.to.component)});
+                                                                     instance_.gate_of(link.to.component)});
             continue;
         }
         const std::size_t sender = sender_of(table, machine_.index, row);

@@ -20,7 +20,7 @@ std::span<std::byte> PlacedMachine::extra_memory(std::size_t section) const noex
     return machine_.memory.subspan(place, machine_.table.extras->at(section)->bytes(machine_.table));
 }
 
-GatedComponent* PlacedMachine::gate_of(std::size_t c) noexcept {
+GatedComponent* PlacedMachine::gate_of(std::size_t c) noexcept TAPPET_REALTIME {
     return &engines()[machine_.index.activity[c]].plan().parts[machine_.plan.part_of[c]];
 }
 

@@ -81,8 +81,8 @@ public:
     }
     /// Of a section of another folder.
     [[nodiscard]] std::span<std::byte> extra_memory(std::size_t section) const noexcept;
-    /// What events look at before they enter a component.
-    [[nodiscard]] GatedComponent* gate_of(std::size_t component) noexcept;
+    /// By which everybody but its engine enters a component. Real-time.
+    [[nodiscard]] GatedComponent* gate_of(std::size_t component) noexcept TAPPET_REALTIME;
     /// What wakes an activity for a value. A periodic one is not woken: it looks at its next period.
     /// Real-time.
     [[nodiscard]] Waker waker_of(std::size_t activity) noexcept TAPPET_REALTIME;

@@ -42,7 +42,7 @@ bool MachineRequests::request_method(End to, MethodRequest& request, std::span<s
     if (facet.kind != FacetKind::method || !request.done() || (facet.may_block && activity.real_time) ||
         values.size() < facet.method->argument_bytes + facet.method->result_bytes)
         return false;
-    request.place(*facet.method, placed_.component(to.component), values.data());
+    request.place(*facet.method, *placed_.gate_of(to.component), values.data());
     Message message;
     message.run = &MethodRequest::run;
     message.object = &request;
@@ -74,9 +74,8 @@ CommandSlot::Route MachineRequests::route_to(End to) noexcept {
     const std::size_t receiver = machine_.index.activity[to.component];
     CommandSlot::Route route;
     route.command = facet_at(machine_.table, to).command;
-    route.component = placed_.component(to.component);
+    route.receiver = placed_.gate_of(to.component);
     route.part = machine_.plan.part_of[to.component];
-    route.receiver_state = &placed_.engines()[receiver].plan().parts[route.part].state;
     route.inbox = &placed_.engines()[receiver].commands().inbox();
     route.wake_receiver = placed_.post_waker_of(receiver);
     route.clock = &placed_.clock();

@@ -292,8 +292,13 @@ constexpr void Cartographer::figure(Owner owner, std::size_t index, std::string_
 
 constexpr void Cartographer::draw_figures() {
     figure(Owner::machine, 0, "forced", "", "ports that are forced now", type_id<std::uint32_t>, nowhere);
-    for (std::size_t c = 0; c < m_.components.size(); ++c)
+    for (std::size_t c = 0; c < m_.components.size(); ++c) {
         figure(Owner::component, c, "state", "", "of the component's life", type_id<ComponentState>, nowhere);
+        figure(Owner::component, c, "dropped", "", "reactions that came while it did not run",
+               type_id<std::uint32_t>, nowhere);
+        figure(Owner::component, c, "dropped_writes", "", "to its outputs while it did not run",
+               type_id<std::uint32_t>, nowhere);
+    }
     for (std::size_t a = 0; a < m_.activities.size(); ++a)
         for (const EngineFigure& each : engine_figures)
             figure(Owner::activity, a, each.name, each.unit, each.doc, each.type, a);

@@ -29,7 +29,7 @@ void VirtualLoop::live() noexcept {
              [](void* self, Duration time) noexcept { return static_cast<VirtualLoop*>(self)->wait(time); },
              [](void* self) noexcept { return static_cast<VirtualLoop*>(self)->serve(); },
              engine_.now_address()}};
-        part_.type->loop(part_.component, control);
+        part_.type->loop(part_.component_, control);
         in_loop_ = false;
         worlds_turn_.wake();
         take_turn(loops_turn_);
@@ -58,7 +58,7 @@ void VirtualLoop::resume(bool woken) noexcept {
 void VirtualLoop::break_off() noexcept {
     if (!in_loop_) return;
     ends_ = true;
-    if (part_.type->break_loop != nullptr) part_.type->break_loop(part_.component);
+    if (part_.type->break_loop != nullptr) part_.type->break_loop(part_.component_);
     for (int n = 0; in_loop_; ++n) {
         TAPPET_CONTRACT(n < most_waits_after_the_end, Contract::step_limit_exceeded, most_waits_after_the_end,
                         n + 1);

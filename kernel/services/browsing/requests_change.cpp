@@ -24,10 +24,12 @@ void step_again(const FacetCall& call) noexcept TAPPET_REALTIME {
     if (!engine.plan().periodic) engine.waiter().wake();
 }
 
-// What a component left behind when it stopped is its safe value: nothing is laid over that.
+// What a component left behind when it stopped is its safe value: nothing is laid over that. An input may be
+// forced before its component runs: it may wait for just that value.
 void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
-    call.refused = call.machine->life().state_of(call.end.component) >= ComponentState::stopping;
+    const Entry entry = is_input(*call.facet) ? Entry::at_once : Entry::queued;
+    call.refused = !call.machine->gate_of(call.end.component)->admits(entry);
     if (call.refused) return;
     // The count is for observers: nobody decides by it, so its sum is not used here.
     if (!is_forced(call)) call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
@@ -44,13 +46,15 @@ void release_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
 
 void run_operation(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
-    call.facet->operation->run(call.place, call.value.data());
+    call.refused = !call.facet->operation->run(*call.machine->gate_of(call.end.component), Entry::queued,
+                                               call.value.data());
 }
 
 void run_method(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
-    call.facet->method->call_packed(call.place, call.value.data(),
-                                    call.value.data() + call.facet->type->size);
+    call.refused =
+        !call.facet->method->call_packed(*call.machine->gate_of(call.end.component), Entry::queued,
+                                         call.value.data(), call.value.data() + call.facet->type->size);
 }
 
 /// Data ports are forced, buffered ones are not: which of its values would stand?
@@ -183,9 +187,6 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
     if (place == nullptr) return no_place();
     auto& values = place->work.emplace<FacetCall>().value;
     if (Verdict read = read_arguments(facet, request, values); !read.good()) return read;
-    if (machine_->life().state_of(end.component) != ComponentState::running)
-        return {Refusal::not_now, Sentence{"component \"", table.components[end.component].name,
-                                           "\" does not run; start it first"}};
     if (facet.method != nullptr && facet.type->size + facet.method->result_bytes > values.size())
         return {Refusal::unsupported, Sentence{"its result is too large to be shown"}};
     const ActivityRow& activity = table.activities[machine_->machine().index.activity[end.component]];
@@ -207,9 +208,10 @@ bool BrowserService::look_at_facet(Pending& place) {
     if (!place.call.is_over()) return false;
     const auto& call = std::get<FacetCall>(place.work);
     if (call.refused)
-        return answer_bad(
-            place, Refusal::not_now,
-            Sentence{"its component is stopped, and what it left behind is safe; start it first"});
+        return answer_bad(place, Refusal::not_now,
+                          Sentence{"component \"",
+                                   machine_->machine().table.components[call.end.component].name,
+                                   "\" does not run; start it first"});
     const MethodOperations* method = call.facet->method;
     if (method == nullptr || method->result_bytes == 0) return answer_good(place);
     if (Client* client = who_waits(place)) {

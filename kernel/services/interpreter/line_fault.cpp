@@ -40,6 +40,10 @@ Sentence why_of(const Instruction& in, const UnitPart& part, std::string_view na
             return range;
         return Sentence{"the component of \"", name, "\" does not consent to this value"};
     }
+    const bool is_call = in.run == &primitive::call_checked || in.run == &primitive::call_method ||
+                         in.run == &primitive::call_operation;
+    if (is_call && !part.links[in.link].component->admits(Entry::at_once))
+        return Sentence{"\"", name, "\" was not called: its component does not run; start it first"};
     if (in.run == &primitive::call_checked)
         return Sentence{"\"", name, "\" says no, or its arguments could not be reckoned"};
     return {};

@@ -247,8 +247,8 @@ private:
                                                       type_id<typename Pack::Results>,
                                                       Pack::input_bytes,
                                                       Pack::result_bytes,
-                                                      &begin,
-                                                      &progress};
+                                                      &GatedCommand<&begin, &progress>::begin,
+                                                      &GatedCommand<&begin, &progress>::progress};
         static constexpr Facet facet{.name = "run",
                                      .doc = "executes it with these parameters, to its end",
                                      .kind = FacetKind::command,

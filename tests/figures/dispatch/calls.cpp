@@ -17,7 +17,7 @@ namespace {
 double sum = 0;
 void method(std::size_t times) {
     const Emitter& emitter = *measured().emitter;
-    for (std::size_t i = 0; i < times; ++i) sum += emitter.scaled(2.0);
+    for (std::size_t i = 0; i < times; ++i) sum += emitter.scaled(2.0).value_or(0.0);
     keep(sum);
 }
 [[gnu::noinline]] double scaled(void* context, double value) noexcept {

@@ -39,7 +39,7 @@ struct RealTime {
     Engine engine;
     RealTime() {
         static_cast<void>(os::prove_processor_counter()); // as it is when the machine arms
-        part.component = &idle;
+        part.place(&idle);
         part.type = &component_type<Idle>;
         EnginePlan plan;
         plan.name = "woken";
@@ -98,7 +98,7 @@ struct Crowd {
           functions(components * functions_per_part),
           engines((components + each - 1) / each) {
         for (std::size_t i = 0; i < components; ++i) {
-            parts[i].component = &idle[i];
+            parts[i].place(&idle[i]);
             parts[i].type = &component_type<Idle>;
         }
         for (std::size_t e = 0; e < engines.size(); ++e) {

@@ -51,8 +51,9 @@ struct World {
     void call_all() {
         Cycle cycle;
         cycle.now = clock.now();
-        for (Engine& engine : instance.engines())
-            for (const EnginePart& part : engine.plan().parts) part.type->step(part.component, cycle);
+        const std::span<const ComponentRow> components = instance.machine().table.components;
+        for (std::size_t c = 0; c < components.size(); ++c)
+            components[c].type->step(instance.component(c), cycle);
     }
 };
 

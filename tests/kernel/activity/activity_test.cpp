@@ -75,7 +75,7 @@ struct AnActivity : testing::Test {
     AnActivity() {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             parts[i].name = "worker";
-            parts[i].component = &workers[i];
+            parts[i].place(&workers[i]);
             parts[i].type = &component_type<Worker>;
         }
         EnginePlan plan;

@@ -57,9 +57,8 @@ public:
     }
     [[nodiscard]] CommandSlot::Route route(std::size_t sender, const os::Clock& clock) {
         return {.command = &Tripler::command,
-                .component = &tripler,
+                .receiver = &gate,
                 .part = 0,
-                .receiver_state = &state,
                 .inbox = &processor.inbox(),
                 .sender = sender,
                 .clock = &clock};
@@ -67,23 +66,23 @@ public:
     /// One cycle of an engine.
     void cycle() noexcept TAPPET_REALTIME {
         processor.serve([this](std::uint32_t, CommandSlot& slot) noexcept
-                        TAPPET_REALTIME { static_cast<void>(processor.take_up(slot, is_running(state))); });
+                        TAPPET_REALTIME { static_cast<void>(processor.take_up(slot)); });
         static_cast<void>(processor.follow([](std::uint32_t, CommandSlot& slot) noexcept
                                            TAPPET_REALTIME { return !in_flight(slot.follow()); }));
     }
     void stop() noexcept {
-        state.store(ComponentState::stopping);
+        gate.state.store(ComponentState::stopping);
         processor.fail(0);
-        state.store(ComponentState::stopped);
+        gate.state.store(ComponentState::stopped);
         processor.reject_sent();
     }
     void start() noexcept {
         processor.reject_sent();
-        state.store(ComponentState::running);
+        gate.state.store(ComponentState::running);
     }
 
     Tripler tripler;
-    AtomicComponentState state{ComponentState::running};
+    GatedComponent gate{&tripler, ComponentState::running};
     CommandProcessor processor;
 
 private:
@@ -282,14 +281,14 @@ TEST(CommandProcessor, a_failed_or_stopped_receiver_rejects_at_once_one_that_nev
     Call call;
     call.slot().place(receiver.route(0, clock), call.values());
     for (const ComponentState state : {ComponentState::stopped, ComponentState::failed}) {
-        receiver.state.store(state);
+        receiver.gate.state.store(state);
         ASSERT_TRUE(call.send(Value::of(4)));
         EXPECT_EQ(call.state(), CommandState::rejected);
     }
-    receiver.state.store(ComponentState::inactive);
+    receiver.gate.state.store(ComponentState::inactive);
     ASSERT_TRUE(call.send(Value::of(8)));
     EXPECT_EQ(call.state(), CommandState::sent);
-    receiver.state.store(ComponentState::running);
+    receiver.gate.state.store(ComponentState::running);
     receiver.cycle();
     EXPECT_NE(call.state(), CommandState::rejected);
 }
@@ -315,7 +314,8 @@ TEST(CommandProcessor, figures_of_sending_and_processing) {
     CommandCall<std::uint64_t> call;
     CommandSlot::Route route = receiver.route(0, clock);
     route.command = &Instant::command;
-    route.component = &instant;
+    GatedComponent gate{&instant, ComponentState::running};
+    route.receiver = &gate;
     call.slot().place(route, call.values());
     std::vector<std::int64_t> send, process, nothing, both_clocks;
     for (std::uint64_t i = 0; i < 50'000; ++i) {

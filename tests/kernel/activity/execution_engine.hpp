@@ -65,7 +65,7 @@ struct ExecutionEngine : testing::Test {
             workers[i].clock = &clock;
             workers[i].name = names[i];
             parts[i].name = names[i];
-            parts[i].component = &workers[i];
+            parts[i].place(&workers[i]);
             parts[i].type = &component_type<Worker>;
             timers[i] = {&workers[i].timer, detail::TimerCall<&Worker::ring>::operations.fire,
                          static_cast<std::uint32_t>(i)};
@@ -101,8 +101,11 @@ struct ExecutionEngine : testing::Test {
     }
     void tell(std::uint32_t part) {
         Message message;
-        message.run = &OperationCall<&Worker::hear>::run;
-        message.object = &workers[part];
+        message.run = [](void* gate, const std::byte* packed) noexcept TAPPET_REALTIME {
+            static_cast<void>(OperationCall<&Worker::hear>::run(*static_cast<GatedComponent*>(gate),
+                                                                Entry::at_once, packed));
+        };
+        message.object = &engine.plan().parts[part];
         message.id = part;
         ASSERT_TRUE(engine.inbox().post(0, message));
     }

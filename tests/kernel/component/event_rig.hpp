@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct EmitterOf {
     static constexpr const EventOperations& operations = PortAccess::event<A...>;
     Event<A...> event;
     std::array<Subscriber<A...>, 8> subscribers{};
+    std::deque<GatedComponent> gates; ///< of the components that are called
     std::size_t rows = 0;
     EmitterOf() { operations.give_storage(&event, subscribers.data()); }
 
@@ -26,7 +28,7 @@ struct EmitterOf {
         return handle;
     }
     EventHandle call(const OperationOperations& operation, void* component) {
-        return subscribe(operation.call, component, nullptr);
+        return subscribe(operation.enter, &gates.emplace_back(component, ComponentState::running), nullptr);
     }
     EventHandle tell(AsyncReaction& row) {
         row.bit = std::uint64_t{1} << rows;
@@ -60,7 +62,10 @@ struct Receiver {
 struct Row {
     Row(Receiver& receiver, const OperationOperations& operation, void* component, std::uint32_t quota,
         bool keeps_latest = false, std::size_t argument_bytes = 0)
-        : lanes(receiver.mailboxes.size()), latest(receiver.mailboxes.size()), lane_of(lanes.size()) {
+        : gate{component, ComponentState::running},
+          lanes(receiver.mailboxes.size()),
+          latest(receiver.mailboxes.size()),
+          lane_of(lanes.size()) {
         const std::size_t bytes = parcel_bytes(argument_bytes);
         const std::uint32_t places = parcel_places(quota, keeps_latest);
         parcels.resize(lanes.size() * places * bytes);
@@ -74,8 +79,8 @@ struct Row {
             lane_of[i] = static_cast<std::uint8_t>(i);
         }
         row.inbox = &receiver.inbox;
-        row.run = operation.run;
-        row.object = component;
+        row.operation = operation.run;
+        row.receiver = &gate;
         row.lanes = lanes.data();
         row.lane_of = lane_of.data();
         row.activities = row.lane_count = static_cast<std::uint32_t>(lanes.size());
@@ -83,6 +88,7 @@ struct Row {
     }
     Row(const Row&) = delete;
     Row& operator=(const Row&) = delete;
+    GatedComponent gate;
     std::vector<EventLane> lanes;
     std::vector<LatestMessage> latest;
     std::vector<std::uint8_t> lane_of;

@@ -123,7 +123,9 @@ TEST_F(AnEvent, of_large_arguments_keeps_those_that_are_handled_while_the_queue_
         Handler handler{large.event, quota};
         Receiver receiver{quota + 1};
         Row row{receiver, hear, &handler, quota, false, sizeof(Large)};
+        row.row.operation = nullptr;
         row.row.run = &Handler::run;
+        row.row.object = &handler;
         large.tell(row.row);
         large.event(Handler::of(1.0));
         while (receiver.inbox.run_all() != 0) {
@@ -140,7 +142,9 @@ TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_tha
     Handler handler{large.event, 3};
     Receiver receiver{2};
     Row row{receiver, hear, &handler, 1, true, sizeof(Large)};
+    row.row.operation = nullptr;
     row.row.run = &Handler::run;
+    row.row.object = &handler;
     large.tell(row.row);
     large.event(Handler::of(1.0));
     while (receiver.inbox.run_all() != 0) {
@@ -346,13 +350,12 @@ TEST_F(AnEvent, counts_as_stray_what_an_activity_emits_to_which_no_row_leads) {
 TEST_F(AnEvent, reaches_no_component_that_does_not_run) {
     Receiver receiver{2};
     Row row{receiver, hear, &first, 2};
-    AtomicComponentState state{ComponentState::stopped};
-    row.row.receiver = &state;
+    row.gate.state.store(ComponentState::stopped);
     emitter.tell(row.row);
     emitter.event(1.0);
     receiver.inbox.run_all();
     EXPECT_EQ(row.row.counts().dropped, 1u);
-    state.store(ComponentState::running);
+    row.gate.state.store(ComponentState::running);
     emitter.event(2.0);
     receiver.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{2.0}));

@@ -137,15 +137,19 @@ TEST(Interface, takes_functions_that_can_be_called_as_those_of_its_life_and_leav
 
 TEST(Operation, runs_on_packed_arguments_of_any_sizes) {
     Probe probe;
+    GatedComponent gate{&probe};
+    const auto run = [&](std::string_view name, const std::byte* arguments) {
+        return facet(name).operation->run(gate, Entry::at_once, arguments);
+    };
     std::array<std::byte, 48> packed{};
     detail::pack(packed.data(), 2.5, -7);
-    facet("move").operation->run(&probe, packed.data());
+    EXPECT_TRUE(run("move", packed.data()));
     EXPECT_EQ(probe.by_, 2.5);
     EXPECT_EQ(probe.mode_, -7);
     detail::pack(packed.data(), std::uint8_t{200}, 0.25, std::int16_t{-1000});
-    facet("mixed").operation->run(&probe, packed.data());
+    EXPECT_TRUE(run("mixed", packed.data()));
     EXPECT_EQ(probe.mixed_, 200 + 0.25 - 1000);
-    facet("home").operation->run(&probe, packed.data());
+    EXPECT_TRUE(run("home", packed.data()));
     EXPECT_TRUE(probe.homed_);
 }
 

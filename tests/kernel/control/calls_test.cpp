@@ -28,7 +28,7 @@ struct Asker {
     MethodCall<std::int64_t()> length;
     std::int64_t got = -1, steps = 0;
     void step(const Cycle&) noexcept TAPPET_REALTIME {
-        got = length();
+        got = length().value_or(-1);
         ++steps;
     }
     static constexpr auto interface() {

@@ -70,12 +70,13 @@ const Facet& facet(std::string_view name) {
 /// An arm, and a program with one link to each of its facets, of the facet's number.
 struct ArmProgram {
     Arm arm{};
+    GatedComponent gate{&arm, ComponentState::running};
     TableBuilder table{};
     std::vector<ProgramLink> links = [this] {
         std::vector<ProgramLink> all;
         for (const Facet& each : component_type<Arm>.facets)
-            all.push_back(
-                {&arm, each.at == nullptr ? &arm : each.at(&arm, each.index), nullptr, &component_type<Arm>});
+            all.push_back({&gate, each.at == nullptr ? &arm : each.at(&arm, each.index), nullptr,
+                           &component_type<Arm>});
         return all;
     }();
     static std::uint16_t link(std::string_view name) {
@@ -264,7 +265,6 @@ struct PeersCommand : ArmProgram {
     std::array<CommandMailbox, 1> boxes{};
     std::array<CommandSlot*, 4> followed{};
     CommandProcessor processor{};
-    AtomicComponentState state{ComponentState::running};
     os::Clock clock{os::Clock::Kind::virtual_time};
 
     PeersCommand() {
@@ -273,8 +273,7 @@ struct PeersCommand : ArmProgram {
         processor.place(boxes, followed, 0);
         CommandSlot::Route route;
         route.command = facet("move_to").command;
-        route.component = &arm;
-        route.receiver_state = &state;
+        route.receiver = &gate;
         route.inbox = &processor.inbox();
         route.clock = &clock;
         slot.place(route, values.data());
@@ -286,7 +285,7 @@ struct PeersCommand : ArmProgram {
     }
     void serve() {
         processor.serve([this](std::uint32_t, CommandSlot& each) noexcept
-                        TAPPET_REALTIME { static_cast<void>(processor.take_up(each, true)); });
+                        TAPPET_REALTIME { static_cast<void>(processor.take_up(each)); });
         processor.follow([](std::uint32_t, CommandSlot& each) noexcept
                          TAPPET_REALTIME { return !in_flight(each.follow()); });
     }
@@ -323,7 +322,7 @@ TEST(A_peers_command, that_is_rejected_or_fails_puts_the_program_in_error) {
     EXPECT_EQ(second->step(at_ms(1)), ProgramStatus::error);
 
     PeersCommand stopped;
-    stopped.state = ComponentState::stopped;
+    stopped.gate.state = ComponentState::stopped;
     EXPECT_EQ(stopped.bind()->run(), ProgramStatus::error) << "its receiver does not run";
 }
 

@@ -40,6 +40,9 @@ struct Slot {
 };
 
 struct Played::Parts {
+    Parts(Cell* own, Cell* robot, Cell* far)
+        : gates{GatedComponent{own, ComponentState::running}, GatedComponent{robot, ComponentState::running},
+                GatedComponent{far, ComponentState::running}} {}
     ScriptBuffer<buffer_sizes> buffer{};
     std::vector<std::vector<std::byte>> memory;
     std::vector<std::vector<ProgramLink>> links;
@@ -54,11 +57,12 @@ struct Played::Parts {
     std::array<CommandMailbox, 1> boxes{};
     std::array<CommandSlot*, 16> followed{};
     CommandProcessor processor{};
-    AtomicComponentState running{ComponentState::running};
+    GatedComponent gates[3];
     os::Clock clock{os::Clock::Kind::virtual_time};
 };
 
-Played::Played(std::string_view text, std::uint32_t statements_per_step) : parts_{std::make_unique<Parts>()} {
+Played::Played(std::string_view text, std::uint32_t statements_per_step)
+    : parts_{std::make_unique<Parts>(&own, &robot, &far)} {
     Parts& p = *parts_;
     Reach reach;
     reach.components = three;
@@ -83,17 +87,16 @@ Played::Played(std::string_view text, std::uint32_t statements_per_step) : parts
         std::memcpy(p.memory[i].data(), instance.image.data(), instance.image.size());
         for (const LinkRow& row : type.tables.links) {
             ProgramLink link;
-            link.component = cells[row.peer];
-            link.place = link.component;
+            link.component = &p.gates[row.peer];
+            link.place = cells[row.peer];
             link.type = three[row.peer].type;
             const Facet& facet = link.type->facets[row.facet];
-            if (facet.at != nullptr) link.place = facet.at(link.component, facet.index);
+            if (facet.at != nullptr) link.place = facet.at(cells[row.peer], facet.index);
             if (row.needs_slot) {
                 p.slots.push_back(std::make_unique<Slot>());
                 CommandSlot::Route route;
                 route.command = facet.command;
-                route.component = link.component;
-                route.receiver_state = &p.running;
+                route.receiver = link.component;
                 route.inbox = &p.processor.inbox();
                 route.clock = &p.clock;
                 p.slots.back()->slot.place(route, p.slots.back()->values.data());
@@ -135,7 +138,7 @@ void Played::step() {
     Parts& p = *parts_;
     now_ += std::chrono::milliseconds{10};
     p.processor.serve([&p](std::uint32_t, CommandSlot& each) noexcept
-                      TAPPET_REALTIME { static_cast<void>(p.processor.take_up(each, true)); });
+                      TAPPET_REALTIME { static_cast<void>(p.processor.take_up(each)); });
     p.processor.follow([](std::uint32_t, CommandSlot& each) noexcept
                        TAPPET_REALTIME { return !in_flight(each.follow()); });
     for (std::size_t i = 0; i < p.programs.size(); ++i) {

@@ -34,7 +34,7 @@ struct Archive {
 struct Clerk {
     MethodCall<int(int)> count;
     int counted = -1;
-    void work(const Cycle&) { counted = count(10); }
+    void work(const Cycle&) { counted = count(10).value_or(0); }
     static constexpr auto interface() { return facets(calls<&Clerk::count>("count", "of the archive")); }
 };
 struct Foreman {

@@ -7,8 +7,7 @@ namespace tappet::press {
 namespace {
 
 constexpr std::size_t motion = 0;
-constexpr std::string_view left_safe =
-    "its component is stopped, and what it left behind is safe; start it first";
+constexpr std::string_view left_safe = R"(does not run; start it first)";
 
 TEST_F(Press, nothing_is_forced_over_what_a_stopped_component_left_behind_while_its_activity_goes_on) {
     Talker talker{path()};

@@ -1,0 +1,261 @@
+// Nothing reaches a component that was stopped, and what it left on its outputs stays: whatever way is tried,
+// and whether it was begun before the stop or after it.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/services/interpreter/command_interpreter.hpp"
+#include "tests/kernel/services/browsing/press_rig.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace tappet {
+namespace {
+
+using press::Talker;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Every way in ends with the coil on.
+struct Valve {
+    Output<bool> coil;
+    BufferOutput<std::int64_t> strokes;
+    Property<double> pressure{1.0};
+    std::int64_t changes = 0;
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME { coil.write(false); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { coil.write(false); }
+    void changed() noexcept TAPPET_REALTIME {
+        ++changes;
+        coil.write(true);
+        static_cast<void>(strokes.push(changes));
+    }
+    void on() noexcept TAPPET_REALTIME { coil.write(true); }
+    bool open() noexcept TAPPET_REALTIME {
+        coil.write(true);
+        return true;
+    }
+    std::int64_t count() noexcept TAPPET_REALTIME {
+        coil.write(true);
+        return 7;
+    }
+    bool go() noexcept TAPPET_REALTIME {
+        coil.write(true);
+        return true;
+    }
+    static constexpr auto interface() {
+        return facets(output<&Valve::coil>("coil", "", "true: it flows"),
+                      output<&Valve::strokes>("strokes", "", "that were made"),
+                      property<&Valve::pressure>("pressure", "bar", "wanted", range(0, 10)),
+                      operation<&Valve::on>("on", "opens it"), method<&Valve::open>("open", "opens it"),
+                      method<&Valve::count>("count", "opens it and counts"),
+                      command<&Valve::go>("go", "opens it"));
+    }
+};
+
+/// Asks the valve in each step once it is told to.
+struct Panel {
+    MethodCall<bool()> open;
+    CommandCall<> go;
+    Event<> called, told;
+    bool asks = false;
+    std::int64_t answers = 0, refusals = 0;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!asks) return;
+        open().given() ? ++answers : ++refusals;
+        called.emit();
+        told.emit();
+        static_cast<void>(go.send());
+    }
+    static constexpr auto interface() {
+        return facets(calls<&Panel::open>("open", "the valve"), sends<&Panel::go>("go", "the valve"),
+                      event<&Panel::called>("called", "at once"),
+                      event<&Panel::told>("told", "by a message"));
+    }
+};
+
+/// The other end of the wire: whether it was ever on.
+struct Wire {
+    Input<bool> level;
+    bool was_on = false;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { was_on |= level.get(); }
+    static constexpr auto interface() { return facets(input<&Wire::level>("level", "", "of the coil")); }
+};
+
+/// A script drives it.
+struct Feeder {
+    Event<> tick;
+    std::int64_t failures = 0;
+    void count_failure() noexcept TAPPET_REALTIME { ++failures; }
+    static constexpr auto interface() {
+        return facets(event<&Feeder::tick>("tick", "of the test"),
+                      method<&Feeder::count_failure>("count_failure", "the script saw a call fail"));
+    }
+};
+
+// clang-format off
+constexpr auto table = machine("plant",
+    components(component<Valve>("valve"), component<Panel>("panel"), component<Feeder>("feeder"), component<Wire>("wire"),
+               component<BrowserService>("browser", set("log", false)), component<CommandInterpreter>("interpreter")),
+    activities(
+        activity("motion",  every(1ms), budget(50us), runs("valve", "panel", "feeder")),
+        activity("io",      every(1ms), budget(50us), runs("wire")),
+        activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser", "interpreter"))),
+    connections(data("valve.coil", "wire.level")),
+    reactions(uses("panel.open", "valve.open"), uses("panel.go", "valve.go"),
+              when("panel.called", call("valve.on")), when("panel.told", tell("valve.on"))),
+    behaviours(behaviour("feeder", slot(nodes(60), data_bytes(512), depth(3), command_slots(2), timers(2), text_bytes(2000),
+                                        peers("valve"), operations("valve.on", "valve.open", "valve.count"), trial(2)), at_most(30))));
+// clang-format on
+
+constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
+
+class AStoppedComponent : public testing::Test {
+protected:
+    std::string directory = testing::TempDir() + "tappet-stopped-" + std::to_string(getpid());
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    std::unique_ptr<Talker> talker;
+
+    void SetUp() override {
+        instance.browse_in(directory);
+        const auto configured = instance.configure({});
+        ASSERT_TRUE(configured) << configured.error().view();
+        world.start();
+        run(50ms);
+        talker = std::make_unique<Talker>(directory + "/plant.socket");
+    }
+    ~AStoppedComponent() override {
+        instance.find<BrowserService>("browser")->finalise();
+        std::filesystem::remove_all(directory);
+    }
+    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+    /// All that comes within the time, after requests that were sent at once.
+    std::string ask(std::initializer_list<std::string_view> requests, Duration time = 60ms) {
+        for (const std::string_view each : requests) EXPECT_TRUE(talker->send(each));
+        run(time);
+        std::string answers;
+        for (std::string each = talker->receive(); !each.empty(); each = talker->receive()) answers += each;
+        return answers;
+    }
+    Valve& valve() { return *instance.find<Valve>("valve"); }
+    Panel& panel() { return *instance.find<Panel>("panel"); }
+    Wire& wire() { return *instance.find<Wire>("wire"); }
+    Feeder& feeder() { return *instance.find<Feeder>("feeder"); }
+    std::uint32_t dropped_writes() {
+        return instance.gate_of(find_component(instance.machine().table, "valve"))->dropped_writes;
+    }
+    /// From here on nothing may put the coil on.
+    void stop_valve() {
+        EXPECT_THAT(ask({"90 stop valve"}), HasSubstr(R"("id": 90, "ok": true)"));
+        expect_safe_from_now();
+    }
+    void expect_safe_from_now() {
+        EXPECT_FALSE(valve().coil.last());
+        wire().was_on = false;
+    }
+    void TearDown() override {
+        run(200ms);
+        EXPECT_FALSE(wire().was_on) << "the coil of a valve that does not run was on";
+        EXPECT_FALSE(valve().coil.last());
+    }
+};
+
+TEST_F(AStoppedComponent, takes_no_call_that_comes_with_the_stop_in_one_cycle) {
+    const std::string answers = ask(
+        {"1 stop valve", "2 call valve.open", "3 call valve.on", "4 call valve.count", "5 send valve.go"});
+    EXPECT_THAT(answers, AllOf(HasSubstr(R"("id": 1, "ok": true)"), HasSubstr(R"("id": 2, "ok": false)"),
+                               HasSubstr(R"("id": 3, "ok": false)"), HasSubstr(R"("id": 4, "ok": false)")))
+        << answers;
+    EXPECT_THAT(answers, HasSubstr(R"(component \"valve\" does not run; start it first)"));
+    EXPECT_THAT(answers, Not(HasSubstr(R"("result")"))) << "nothing ran that could answer";
+    EXPECT_THAT(answers, HasSubstr("rejected"));
+}
+
+TEST_F(AStoppedComponent, gives_no_answer_to_a_method_call_and_runs_no_reaction) {
+    stop_valve();
+    panel().asks = true;
+    run(20ms);
+    EXPECT_EQ(panel().answers, 0);
+    EXPECT_GT(panel().refusals, 10);
+    EXPECT_GT(instance.observation().dropped_messages(), 20u) << "both kinds of reactions are counted";
+    panel().asks = false;
+    EXPECT_THAT(ask({"1 start valve"}), HasSubstr(R"("ok": true)"));
+    panel().asks = true;
+    run(5ms);
+    EXPECT_GT(panel().answers, 3) << "it runs again";
+    panel().asks = false;
+    stop_valve();
+}
+
+TEST_F(AStoppedComponent, fails_a_line_that_was_begun_before_the_stop) {
+    for (const char* line : {"wait(300ms); do valve.open();", "wait(300ms); do valve.on();",
+                             "wait(300ms); var int n = valve.count();", "wait(300ms); do valve.go();"}) {
+        EXPECT_THAT(ask({std::string{"1 execute \""} + line + "\""}), HasSubstr("sent")) << line;
+        stop_valve();
+        EXPECT_THAT(ask({}, 500ms), AllOf(HasSubstr(R"("line": "failed")"), HasSubstr("does not run")))
+            << line;
+        EXPECT_FALSE(wire().was_on) << line;
+        EXPECT_THAT(ask({"2 start valve"}), HasSubstr(R"("ok": true)"));
+    }
+    stop_valve();
+}
+
+TEST_F(AStoppedComponent, fails_the_call_of_a_loaded_script) {
+    BehaviourSlot& slot = *instance.slot_of("feeder");
+    constexpr std::string_view script = R"(StateMachine Feeding {
+    initial state Waits { transition feeder.tick() select Opens }
+    state Opens {
+        entry {
+            try do valve.open(); catch do feeder.count_failure();
+            try do valve.on(); catch do feeder.count_failure();
+            try do valve.count(); catch do feeder.count_failure();
+        }
+        transition feeder.tick() select Waits
+    }
+    final state End {}
+})";
+    std::ranges::copy(script, slot.text().begin());
+    ASSERT_EQ(slot.compile(script.size(), "feeding.osd").view(), "");
+    SlotMoment now;
+    ASSERT_TRUE(slot.parse_moment("now", now).empty());
+    ASSERT_TRUE(slot.ask(BehaviourSlot::Change::take_over, now));
+    ASSERT_TRUE(instance.requests().post_change(slot));
+    run(5ms);
+    stop_valve();
+    feeder().tick.emit();
+    run(5ms);
+    EXPECT_EQ(feeder().failures, 3);
+}
+
+TEST_F(AStoppedComponent, takes_properties_and_drops_and_counts_what_it_writes_for_them) {
+    stop_valve();
+    const std::uint32_t before = dropped_writes();
+    const std::int64_t told = valve().changes;
+    EXPECT_THAT(ask({"1 set valve.pressure 3"}), HasSubstr(R"("ok": true)"));
+    EXPECT_EQ(valve().pressure.get(), 3.0);
+    EXPECT_EQ(valve().changes - told, 1) << "it is told";
+    EXPECT_EQ(dropped_writes() - before, 2u) << "of the coil and of the buffered output";
+    EXPECT_THAT(ask({"2 execute \"set valve.pressure = 4.0\""}), HasSubstr("sent"));
+    EXPECT_EQ(valve().pressure.get(), 4.0);
+    EXPECT_EQ(dropped_writes() - before, 4u);
+}
+
+TEST_F(AStoppedComponent, lets_nobody_force_its_outputs) {
+    EXPECT_THAT(ask({"1 stop valve", "2 force valve.coil true"}),
+                HasSubstr(R"(component \"valve\" does not run; start it first)"));
+    EXPECT_THAT(ask({"3 force valve.coil true"}), HasSubstr("does not run"));
+}
+
+TEST_F(AStoppedComponent, whose_activity_was_stopped_is_reached_by_nobody_either) {
+    panel().asks = true;
+    EXPECT_THAT(ask({"1 stop motion"}), HasSubstr(R"("ok": true)"));
+    expect_safe_from_now();
+    ask({"2 call valve.open", "3 call valve.on", "4 send valve.go", "5 set valve.pressure 9",
+         "6 execute \"do valve.open();\"", "7 force valve.coil true"});
+}
+
+} // namespace
+} // namespace tappet
