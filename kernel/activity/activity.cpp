@@ -1,4 +1,4 @@
-// The life of an activity's thread: initialised on the starter's, cycles on its own, a stop that waits.
+// The life of an activity's thread: start, cycles and stop of its engine, from one request to the next.
 #include "kernel/activity/activity.hpp"
 
 #include "kernel/os/memory.hpp"
@@ -24,34 +24,30 @@ std::expected<void, Sentence> Activity::create(Engine& engine, const os::Clock& 
 }
 
 bool Activity::wait_for(State wanted, int milliseconds) const noexcept {
-    for (int waited = 0; state() < wanted; ++waited) {
-        if (waited >= milliseconds) return false;
+    for (const Time end = os::Clock::monotonic() + milliseconds * 1ms; state() < wanted;) {
+        if (os::Clock::monotonic() >= end) return false;
         os::sleep_for(1ms);
     }
     return true;
 }
 
-bool Activity::start(int milliseconds) noexcept {
+void Activity::start() noexcept {
     stop_asked_.store(false, std::memory_order_relaxed);
     engine_stop_claimed_.store(false, std::memory_order_relaxed);
     state_.store(State::starting, std::memory_order_relaxed);
     released_.store(true, std::memory_order_release);
     engine_->waiter().wake();
-    return wait_for(State::waiting, milliseconds);
 }
 
-void Activity::ask_to_stop() noexcept {
+void Activity::ask_to_stop(Time ends_by) noexcept {
     if (state() == State::inactive || state() == State::stopped) return;
-    ends_by_ns_.store(to_ns(clock_->now()) + end_within.count(), std::memory_order_relaxed);
+    ends_by_ns_.store(to_ns(ends_by), std::memory_order_relaxed);
     stop_asked_.store(true, std::memory_order_release);
-    if (const EnginePart* part = engine_->looping(); part != nullptr && part->type->break_loop != nullptr)
-        part->type->break_loop(part->component_);
     engine_->waiter().wake();
 }
 
 bool Activity::is_stopped_within(int milliseconds) const noexcept {
-    if (state() == State::inactive) return true;
-    return wait_for(State::stopped, milliseconds) && state() == State::stopped;
+    return state() == State::inactive || wait_for(State::stopped, milliseconds);
 }
 
 bool Activity::end(int milliseconds) noexcept {
@@ -122,8 +118,7 @@ void Activity::cycles() noexcept TAPPET_REALTIME {
     }
 }
 
-// Before the stop is claimed: who hangs here is stopped by the supervisor. One that comes so late that the
-// supervisor may lose its patience ends without further cycles.
+// One that comes so late that the supervisor may lose its patience ends without further cycles.
 void Activity::end() noexcept TAPPET_REALTIME {
     const Time until = at_ns(ends_by_ns_.load(std::memory_order_relaxed));
     if (clock_->now() >= until) return;
@@ -152,8 +147,17 @@ void Activity::loop(const EnginePart& part) {
     part.type->loop(part.component_, control);
 }
 
+// Its own thread leaves the safe values, upon what broke the contract, which runs no more. A contract that
+// its stop breaks finds the stop claimed.
 void Activity::park() noexcept TAPPET_REALTIME {
+    is_lost_.store(true, std::memory_order_release);
     state_.store(State::parked, std::memory_order_release);
+    while (goes_on()) TAPPET_ESCAPE("this thread must not go on: its contract is broken", os::sleep_for(1ms));
+    if (claim_engine_stop()) {
+        engine_->stop(clock_->now());
+        engine_->mark_failed();
+        state_.store(State::stopped, std::memory_order_release);
+    }
     sleep_for_ever();
 }
 

@@ -91,7 +91,9 @@ enum class StopReason : std::uint8_t {
     broken_contract,
     requested,
     behaviour,
-    section ///< a row of a section of another folder
+    section,        ///< a row of a section of another folder
+    activity_hangs, ///< it was to be started or stopped alone, and was not in time
+    not_started     ///< an activity, while the machine was started
 };
 
 struct EnginePlan {
@@ -169,10 +171,10 @@ public:
         if (recorder != nullptr) serves_ = Serves::everything;
     }
 
-    /// On the starter's thread, while it stands: initialises the components; those that had
+    /// On the makers' thread, while it stands: initialises the components; those that had
     /// been before one refused are finalised again. Empty: all are ready. Not real-time.
     [[nodiscard]] Sentence initialise();
-    /// On the stopper's thread, after stop(): the last one initialised comes first. Not real-time.
+    /// On the makers' thread, after stop(): the last one initialised comes first. Not real-time.
     void finalise();
 
     /// In its own thread, before the first cycle: components, then behaviours start. A component whose
@@ -192,9 +194,9 @@ public:
     void begin_end(Time now, Time until = never) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool has_ended(Time now) const noexcept TAPPET_REALTIME;
     [[nodiscard]] Time ends_at() const noexcept TAPPET_REALTIME { return ends_at_; }
-    /// In its own thread, or after that thread is no more: components leave safe values, in data-flow order,
-    /// so that what a source writes last reaches the driver after it. Behaviours that were not asked to end
-    /// are asked now, and get what one step does.
+    /// In its own thread: components leave safe values, in data-flow order, so that what a source writes last
+    /// reaches the driver after it. Behaviours that were not asked to end are asked now, and get what one
+    /// step does.
     void stop(Time now) noexcept TAPPET_REALTIME;
     /// In the thread that stopped it, when it is woken before the next start: the sender of a command that
     /// looked before the stop and posted after it gets its answer.
@@ -226,7 +228,7 @@ public:
     [[nodiscard]] LifeAnswer begin_anew(Parts running) noexcept TAPPET_REALTIME;
     /// Likewise: they stop, and wait. Real-time.
     void leave(Parts leaving) noexcept TAPPET_REALTIME;
-    /// Its thread hangs or broke a contract, and its stop was run in its place: its components are failed.
+    /// Its thread hangs or broke a contract: its components are failed.
     void mark_failed() noexcept TAPPET_REALTIME;
     /// The component that decides itself when it runs, which is then the only one; null: none does.
     [[nodiscard]] const EnginePart* looping() const noexcept TAPPET_REALTIME {
@@ -320,11 +322,11 @@ private:
         return is_running(plan_.parts[timer.part].state) ? timer.timer->when() : never;
     }
     /// What observers read changes from here to end_change(), which is given what this returns: a
-    /// cycle, a start, a stop. is_changing: when the stop runs in place of a thread that hangs in its cycle.
+    /// cycle, a start, a stop. is_changing: when a thread whose contract broke in its cycle stops upon it.
     static constexpr std::uint64_t is_changing = 0;
     [[nodiscard]] std::uint64_t begin_change() noexcept TAPPET_REALTIME {
         // The engine alone writes its generation, so this needs no operation that reads and writes at once;
-        // who runs the stop in place of a thread that hangs finds it odd and leaves it.
+        // a stop upon a cycle whose contract broke finds it odd and leaves it.
         const std::uint64_t before =
             generation_.load(std::memory_order_relaxed); // no step: nobody else writes it
         if (before % 2 != 0) return is_changing;

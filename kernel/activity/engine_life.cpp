@@ -151,18 +151,18 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     stamps_.renew();
     cycle_.now = cycle_.release = lap_ = now;
     // What others asked before the stop is done, and what the own behaviours ask at their end: a valve that
-    // somebody told to close closes. A thread that hangs in its cycle may hang in its mailbox: that is left
-    // alone.
-    const bool hangs = generation == is_changing;
-    if (!hangs) static_cast<void>(run_messages());
+    // somebody told to close closes. A contract that broke in the cycle may have broken in the mailbox: that
+    // is left alone.
+    const bool broke = generation == is_changing;
+    if (!broke) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if (ends_at_ == never) stop_behaviours(i);
         refuse_ending(i);
     }
     ends_at_ = never;
-    if (!hangs) static_cast<void>(run_messages());
+    if (!broke) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
-    if (recorder_ != nullptr && !hangs) recorder_->record(*recorder_, cycle_, false);
+    if (recorder_ != nullptr && !broke) recorder_->record(*recorder_, cycle_, false);
     commands_.reject_sent();
     awaiting_ = 0;
     was_stopped_ = true;

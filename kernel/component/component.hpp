@@ -23,16 +23,16 @@ struct LineFunctions; ///< kernel/machine/instance/line_functions.hpp
 /// A component is a plain struct. What it has of the following is used, in this order of its life; a member
 /// of such a name, or nearly, that is spelled otherwise is refused by the table's check:
 ///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty sentence is consent
-///     Sentence initialise()                               before each start of its activity, on the starter's thread; not real-time
+///     Sentence initialise()                               before each start of its activity, on the makers' thread; not real-time
 ///     void start(const Cycle&) noexcept TAPPET_REALTIME   in its activity, before the first step; again after each stop
 ///     void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity
 ///     void work(const Cycle&)                             instead of step: may block; for activities that are not_real_time
 ///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME   before properties change, together; an empty sentence is consent
 ///     void changed() noexcept TAPPET_REALTIME             after they did, between two steps
 ///     void loop(LoopControl&)                             instead of step: decides itself when it runs; alone in its activity
-///     void break_loop()                                   lets loop() return although it blocks; on the stopper's thread
+///     void break_loop()                                   lets loop() return although it blocks; on a thread for that alone
 ///     void stop(const Cycle&) noexcept TAPPET_REALTIME    leaves safe values behind; also when an input kept it from its start
-///     void finalise()                                     after its activity stopped, on the stopper's thread; not real-time
+///     void finalise()                                     after its activity stopped, on the makers' thread; not real-time
 // clang-format on
 struct ComponentType {
     /// What a component that its row makes the master of another one controls there.

@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// Written by the component's engine alone, or by whoever runs that engine's stop in its place; read by any
+/// Written by the component's engine alone, or by the supervisor once it has given up its thread; read by any
 /// thread.
 enum class ComponentState : std::uint8_t {
     inactive, ///< constructed, perhaps configured; its activity never ran

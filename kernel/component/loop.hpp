@@ -8,7 +8,7 @@ namespace tappet {
 /// Given to `void loop(LoopControl&)` of a component that blocks: it runs in an activity of its own, which is
 /// not_real_time, from the start of that activity and again upon each wake after it returned. It returns when
 /// wait() or serve() says so. One that blocks anywhere else has `void break_loop()` too, which is called on
-/// the stopper's thread and lets loop() return soon (by a pipe, a shutdown of its socket). Under virtual time
+/// a thread of its own and lets loop() return soon (by a pipe, a shutdown of its socket). Under virtual time
 /// it blocks in wait() only: elsewhere the whole world would wait for it. In real time there is none: a
 /// thread waits in its activity only, so that what lies between two waits is timed and analysed as a step.
 /// What would be a loop there is on_device(...), a Timer that is armed anew, or a program.

@@ -8,7 +8,7 @@
 namespace tappet {
 
 /// The first activity that uses it is its owner from then on. A thread that runs none is let through: a
-/// start-up, the supervisor at the end, a test.
+/// start-up, that of the makers, a test.
 class OneActivity {
 public:
     /// Another activity than the owner breaks contract 109. Real-time.

@@ -2,6 +2,8 @@
 // it takes.
 #include "kernel/machine/plan_text.hpp"
 
+#include "kernel/machine/check/stop.hpp"
+#include "kernel/machine/check/time.hpp"
 #include "kernel/machine/check/units.hpp"
 
 namespace tappet {
@@ -78,6 +80,18 @@ struct Writer {
                          " (", checks::in_unit(into), ")"});
     }
 
+    void stop() const {
+        const Board& board = *machine.board;
+        const auto responses =
+            checks::worst_responses_ns(machine.table, board, *machine.binding, machine.index);
+        const checks::StopPromise promise =
+            checks::promised_stop(machine.table, board, machine.index.activity, responses);
+        say(Sentence{"stop: every output is safe within ", board.stop_within / 1ms,
+                     " ms, by the guardian where the machine has not done it; it begins within ",
+                     promise.begins / 1ms, " ms and takes ", (promise.sum() - promise.begins) / 1ms,
+                     " ms by what the table claims"});
+    }
+
     void memory() const {
         const auto kib = [](std::size_t bytes) { return (bytes + 1023) / 1024; };
         std::size_t components = 0, behaviours = 0, stacks = 0;
@@ -98,6 +112,7 @@ void describe_plan(const AcceptedMachine& machine, void* to, void (*line)(void* 
     writer.activities();
     writer.mailboxes();
     writer.connections();
+    writer.stop();
     writer.memory();
 }
 

@@ -123,6 +123,11 @@ void Guard::end(Outputs outputs, const Sentence& fault) noexcept {
     if (block_ == nullptr) return;
     block_->fault = fault;
     block_->ended_well.store(outputs == Outputs::safe, std::memory_order_release);
+    block_->is_left.store(outputs == Outputs::unsafe, std::memory_order_release);
+    block_->has_stopped.store(true, std::memory_order_release);
+    // Nothing of the machine's runs until the guardian has ended it.
+    for (int waited = 0; outputs == Outputs::unsafe && waited < 1000 && !guardian_is_lost(); ++waited)
+        sleep_for(1ms);
 }
 
 bool Guard::guardian_is_lost() noexcept {

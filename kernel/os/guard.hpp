@@ -26,6 +26,8 @@ struct GuardBlock {
         0}; ///< the machine's supervisor shows life before; 0: nobody waits for it
     std::atomic<bool> activities_run{false}; ///< from before the first start to the beginning of the stop
     std::atomic<bool> ended_well{false};     ///< what comes is an exit with every output safe
+    std::atomic<bool> has_stopped{false};    ///< the machine has done what it can do for its outputs
+    std::atomic<bool> is_left{false};        ///< which is not enough: nobody waits for its end
     std::atomic<bool> is_ready{false};       ///< the guardian could act now
     std::atomic<bool> is_spared{false};      ///< the guardian, when the kernel is short of memory
     std::atomic<bool> has_refused{false};    ///< it never can; `refusal` says why
@@ -68,7 +70,9 @@ public:
     /// The supervisor shows life, and will again within `time`; at each call anew.
     void be_back_within(Duration time) noexcept;
     void let_activities_be_watched(bool watched) noexcept;
-    enum class Outputs : std::uint8_t { safe, not_sure };
+    /// not_sure: safe as far as is known; the guardian makes sure when the process has ended. unsafe: it ends
+    /// the process at once.
+    enum class Outputs : std::uint8_t { safe, not_sure, unsafe };
     /// It ends now. `fault`: what stopped the machine, though nobody asked for it; empty: somebody did.
     void end(Outputs outputs, const Sentence& fault) noexcept;
     /// It ended, or looked at nothing for so long in three calls one after the other: after a box was frozen

@@ -27,11 +27,10 @@ constinit os::Clock machine_clock{os::Clock::Kind::real};
 std::array<char, 48 * 1024> summary_text;
 constexpr std::size_t most_own_words = 8;
 
-// How long the supervisor may be away from its guardian. What the machine's makers wrote (initialise,
-// finalise, hooks) and what is saved may take what it likes, within reason.
+// How long the supervisor may be away from its guardian. When all is safe, the machine's hook and what is
+// saved may take what it likes, within reason.
 constexpr Duration away_while_running = 2s;
-constexpr Duration away_with_the_makers = 30s;
-constexpr Duration away_while_stopping = 10s;
+constexpr Duration away_when_safe = 30s;
 
 struct Options {
     const char* summary = nullptr;
@@ -180,12 +179,11 @@ private:
             return Ending::refused_to_arm;
         }
         const Duration start_to_armed = machine_clock.now() - begun;
-        guard_.be_back_within(away_with_the_makers);
+        world.show_life_by(
+            &guard_, [](void* guard) { static_cast<os::Guard*>(guard)->be_back_within(away_while_running); });
+        guard_.be_back_within(away_while_running);
         guard_.let_activities_be_watched(true);
-        if (!world.start(*armed)) {
-            guard_.end(outputs_of(world), world.refusal()); // it was stopped again
-            return fail(Ending::stopped_by_fault, world.refusal());
-        }
+        if (!world.start(*armed)) return end(instance, world, properties, start_to_armed, false);
         say("armed on board \"", board.name, "\", ", static_cast<std::int64_t>(arming.warnings()),
             " warnings, ", start_to_armed.count() / 1000, " us after its start");
         os::notify_starter("READY=1");
@@ -205,16 +203,16 @@ private:
             report.passed("guardian", Sentence{"it could act now"});
     }
 
-    /// Of one with a thread that hangs, or was parked, the guardian makes sure.
+    /// Of a thread that broke a contract the guardian makes sure; one that hangs it ends, and the process
+    /// with it.
     static os::Guard::Outputs outputs_of(const RealWorld& world) {
-        return world.hung() == 0 ? os::Guard::Outputs::safe : os::Guard::Outputs::not_sure;
+        return world.hung() != 0   ? os::Guard::Outputs::unsafe
+               : world.lost() != 0 ? os::Guard::Outputs::not_sure
+                                   : os::Guard::Outputs::safe;
     }
 
     /// True when it ended because its time was over.
     bool supervise(MachineInstance& instance, RealWorld& world) {
-        world.before_changes(&guard_, [](void* guard) {
-            static_cast<os::Guard*>(guard)->be_back_within(away_with_the_makers);
-        });
         const Time begin = machine_clock.now();
         ReasonTeller reasons;
         bool judged = false;
@@ -267,25 +265,33 @@ private:
     Ending end(MachineInstance& instance, RealWorld& world, PropertyFiles& properties,
                Duration start_to_armed, bool time_is_over) {
         const bool unguarded = guard_.guardian_is_lost();
+        instance.ask_stop(StopReason::requested, 0, nullptr); // where nobody asked: its bound holds from here
         guard_.let_activities_be_watched(false);
-        guard_.be_back_within(away_while_stopping);
-        static_cast<void>(world.stop());
+        guard_.be_back_within(std::max(away_while_running, instance.machine().board->stop_within));
+        static_cast<void>(world.make_safe());
         const Sentence reason = unguarded ? Sentence{"its guardian is gone, or hangs"}
                                 : !world.broken_contract().empty() ? world.broken_contract()
+                                : !world.refusal().empty()         ? world.refusal()
                                 : time_is_over                     ? Sentence{"its time is over"}
                                                                    : instance.describe_stop();
         const bool as_asked = !unguarded &&
                               (time_is_over || instance.stop_request().reason == StopReason::requested) &&
                               world.breaches() == 0;
-        guard_.end(outputs_of(world), as_asked ? Sentence{} : reason);
-        guard_.be_back_within(away_with_the_makers); // finalised, saved, summed up
-        say("stopped: ", reason);
+        const Sentence fault =
+            world.hung() == 0 ? reason
+                              : Sentence{reason, "; activity \"", world.first_hung(), "\" does not stop"};
+        say("stopped: ", fault);
+        guard_.end(outputs_of(world), as_asked && world.hung() == 0 ? Sentence{} : fault);
+        static_cast<void>(world.stop()); // finalises
+        if (!world.unfinished().empty()) say(world.unfinished());
+        if (!world.refusal().empty()) return fail(Ending::stopped_by_fault, world.refusal());
+        guard_.be_back_within(away_when_safe); // saved, summed up
         for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
             say("then: ", world.describe_breach(i));
         tell_overruns(instance, name_);
         if (properties.keeps())
-            if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
-                say(fault);
+            if (const Sentence unsaved = instance.save_properties(instance.standing()); !unsaved.empty())
+                say(unsaved);
         if (hooks_.ended != nullptr) hooks_.ended(instance, world);
         if (options_.summary != nullptr)
             if (const Ending written = write(instance, world, reason, start_to_armed);

@@ -65,6 +65,7 @@ public:
     }
 
     int live() {
+        looked_ = os::Clock::monotonic();
         for (;;) {
             const Look look = watch();
             if (look.must_act) {
@@ -104,8 +105,11 @@ private:
 
     Look watch() {
         const os::GuardBlock& block = guard_.block();
-        const bool runs = block.activities_run.load(std::memory_order_acquire);
-        const auto seen = guard_.look(runs ? look_every : 50ms);
+        const auto stops = [&] {
+            return instance_.stop_asked() && !block.has_stopped.load(std::memory_order_acquire);
+        };
+        const auto runs = [&] { return block.activities_run.load(std::memory_order_acquire); };
+        const auto seen = guard_.look(runs() || stops() ? look_every : 50ms);
         if (seen == os::Guard::Seen::crash) return {true, false, {}};
         if (seen == os::Guard::Seen::dying || seen == os::Guard::Seen::end)
             return {!block.ended_well.load(std::memory_order_acquire), seen == os::Guard::Seen::end, {}};
@@ -115,7 +119,20 @@ private:
         const std::int64_t back_by = block.back_by_ns.load(std::memory_order_acquire);
         if (back_by != 0 && to_ns(now) > back_by && now > forgiven_until_)
             return {true, false, Sentence{"its supervisor shows no life"}};
-        if (!block.activities_run.load(std::memory_order_acquire)) return {};
+        if (block.is_left.load(std::memory_order_acquire)) return {true, false, {}};
+        // Whatever keeps the supervisor, or a component its thread: the bound is the board's.
+        if (back_by == 0) moves_since_ = now; // it only arms
+        if (stops() && now > forgiven_until_) {
+            const Board& board = *instance_.machine().board;
+            const Time asked = std::max(instance_.stop_asked_at(), moves_since_);
+            if (now > asked + board.stop_within)
+                return {true, false,
+                        Sentence{"its stop did not come to its end within ", board.stop_within / 1ms, " ms"}};
+            if (runs() && now > asked + board.stop_begins_within())
+                return {true, false,
+                        Sentence{"its stop did not begin within ", board.stop_begins_within() / 1ms, " ms"}};
+        }
+        if (!runs()) return {};
         if (const std::size_t a = watch_.look(now); a != LifeWatch::all_live)
             return {true, false,
                     Sentence{"activity \"", instance_.machine().table.activities[a].name,
@@ -130,8 +147,7 @@ private:
     }
     Sentence why_it_ended() const {
         const int code = guard_.exit_code();
-        if (const Sentence& fault = guard_.block().fault; !fault.empty())
-            return Sentence{fault, "; a thread of it did not stop by itself"};
+        if (const Sentence& fault = guard_.block().fault; !fault.empty()) return fault;
         return code > 128 ? Sentence{os::signal_name(code - 128), " ended it (signal ", code - 128, ")"}
                           : Sentence{"it ended with code ", code, " in the middle of its work"};
     }
@@ -205,6 +221,7 @@ private:
     os::Watchdog watchdog_{outputs_};
     Time looked_{};
     Time forgiven_until_{};
+    Time moves_since_{};
     os::Guard& guard_;
     GuardedProcess process_{guard_};
     GuardedDevices& devices_;

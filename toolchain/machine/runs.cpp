@@ -80,7 +80,7 @@ std::expected<void, Sentence> RealRun::start(int file) {
     plant_plan_ = {"plant", plant_priority, -1, plant_stack_, &RealRun::live, this};
     if (auto started = plant_thread_.start(plant_plan_); !started) return started;
     running_ = true;
-    if (!world_.start(*armed)) return std::unexpected(world_.refusal());
+    if (!world_.start(*armed) && !world_.refusal().empty()) return std::unexpected(world_.refusal());
     return {};
 }
 

@@ -9,6 +9,7 @@
 #include "kernel/machine/check/operations.hpp"
 #include "kernel/machine/check/reach.hpp"
 #include "kernel/machine/check/reactions.hpp"
+#include "kernel/machine/check/stop.hpp"
 #include "kernel/machine/check/time.hpp"
 #include "kernel/machine/check/traffic.hpp"
 #include "kernel/machine/check/wakes.hpp"
@@ -35,6 +36,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, const Binding
         if (Sentence fault = checks::check_wakes(m, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_devices(m, board, binding); !fault.empty()) return fault;
         if (Sentence fault = checks::check_schedulability(m, board, binding, r); !fault.empty()) return fault;
+        if (Sentence fault = checks::check_stop(m, board, r); !fault.empty()) return fault;
         if (Sentence fault = checks::check_traffic(m, board, binding, r); !fault.empty()) return fault;
         for (std::size_t e = 0; e < m.extras->size(); ++e) {
             const std::string_view once = m.extras->at(e)->stands_once();

@@ -19,6 +19,7 @@ void MachineInstance::ask_stop(StopReason reason, std::uint64_t detail, const En
     int free = 0;
     if (!stop_->asked.compare_exchange_strong(free, 1, std::memory_order_acq_rel)) return;
     stop_->request = {reason, detail, from};
+    stop_->at = clock().now();
     stop_->asked.store(2, std::memory_order_release);
     supervisor_.wake();
 }
@@ -57,6 +58,9 @@ Sentence MachineInstance::describe_stop() const {
                         row.max_age.count() / 1000,
                         " us"};
     }
+    case StopReason::activity_hangs:
+        return Sentence{"activity \"", who, "\" neither starts nor stops: its thread hangs"};
+    case StopReason::not_started: return Sentence{"activity \"", who, "\" could not be started"};
     case StopReason::section:
         return machine().table.extras->at(stop.detail >> 32)->describe_stop(stop.detail & 0xFFFFFFFF);
     }

@@ -78,6 +78,7 @@ public:
         auto* kept = reinterpret_cast<KeptStop*>(shared.data());
         if (stop_asked() && kept->asked.load(std::memory_order_acquire) == 0) {
             kept->request = stop_request();
+            kept->at = stop_asked_at();
             kept->asked.store(2, std::memory_order_release);
         }
         stop_ = kept;
@@ -92,6 +93,10 @@ public:
         return stop_->asked.load(std::memory_order_acquire) == 2;
     }
     [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_->request; }
+    /// By the machine's clock; of a stop that was asked for.
+    [[nodiscard]] Time stop_asked_at() const noexcept { return stop_->at; }
+    /// When the outputs are to be safe, or the guardian makes them so.
+    [[nodiscard]] Time stop_due() const noexcept { return stop_asked_at() + machine().board->stop_within; }
     /// What a stop request says, as a sentence.
     [[nodiscard]] Sentence describe_stop() const;
     /// Woken when a stop is asked for.
@@ -114,6 +119,7 @@ private:
     struct KeptStop {
         std::atomic<int> asked{0}; ///< 1: somebody is writing the request, 2: it is written
         StopRequest request{};
+        Time at{};
     };
     static_assert(sizeof(KeptStop) <= stop_request_bytes && static_cast<int>(StopReason::none) == 0);
 

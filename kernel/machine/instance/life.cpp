@@ -1,12 +1,12 @@
 // Starting and stopping parts of a running machine (thesis 3.1.3, 4.2.2): components by their engines,
-// activities by the supervisor.
+// activities by the supervisor, what makers wrote for it by a thread of its own.
 #include "kernel/machine/instance/life.hpp"
 
 namespace tappet {
 
 LifeTicket MachineLife::ask_component(std::size_t c, LifeChange change) noexcept TAPPET_REALTIME {
     const std::size_t a = machine_.index.activity[c];
-    // A loop that blocks is broken off by the supervisor only: it is alone in its activity.
+    // A loop that blocks is broken off with its activity only: it is alone there.
     if (machine_.table.components[c].type->loop != nullptr) return ask_activity(a, change);
     return placed_.engines()[a].ask(machine_.plan.part_of[c], change);
 }
@@ -79,70 +79,165 @@ Sentence MachineLife::describe(std::size_t activity, LifeAnswer answer) const {
     return text;
 }
 
-Sentence MachineLife::initialise_and_start(std::size_t a, const ActivityControl& control,
-                                           LifeAnswer& answer) {
-    Engine& engine = placed_.engines()[a];
-    if (Sentence refusal = engine.initialise(); !refusal.empty()) {
-        answer = {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::not_initialised};
-        for (std::size_t i = 0; i < engine.plan().parts.size(); ++i)
-            if (engine.plan().parts[i].state.load(std::memory_order_relaxed) == ComponentState::failed)
-                answer.part = static_cast<std::uint8_t>(i);
-        return refusal;
-    }
-    if (control.start(control.world, a)) return {};
-    thread_lost_[a] = !control.stop(control.world, a);
-    if (!thread_lost_[a]) engine.finalise();
-    answer = {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::thread_lost};
-    return describe(a, answer);
+void MachineLife::begin_change(std::size_t a, LifeChange wanted, Begin how, const ActivityControl& control) {
+    changes_[a] = {.wanted = wanted, .begin = how};
+    begin(a, control);
 }
 
-Sentence MachineLife::start_activities(const ActivityControl& control) {
-    for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
-        LifeAnswer answer;
-        if (Sentence refusal = initialise_and_start(a, control, answer); !refusal.empty()) return refusal;
-    }
-    return {};
-}
-
-Sentence MachineLife::change_activity(std::size_t a, LifeChange change, const ActivityControl& control,
-                                      LifeAnswer& answer) {
-    Engine& engine = placed_.engines()[a];
-    answer = {.outcome = LifeOutcome::done};
-    if (!thread_lost_[a] && change != LifeChange::start && engine.is_active()) {
-        if (control.stop(control.world, a))
-            engine.finalise();
-        else
-            thread_lost_[a] = true;
-    }
+void MachineLife::begin(std::size_t a, const ActivityControl& control) {
+    const Engine& engine = placed_.engines()[a];
+    Change& change = changes_[a];
+    is_given_up_.store(false, std::memory_order_relaxed);
     if (thread_lost_[a]) {
-        answer = {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::thread_lost};
-        return describe(a, answer);
+        end_refused(a, {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::thread_lost});
+    } else if (change.wanted != LifeChange::start && engine.is_active()) {
+        change.phase = Phase::stopping;
+        control.stop(control.world, a);
+    } else if (change.wanted == LifeChange::stop || engine.is_active()) {
+        end_change(a, {});
+    } else {
+        change.phase = Phase::waiting_for_makers;
     }
-    if (change == LifeChange::stop || engine.is_active()) return {};
-    if (const LifeAnswer ready = engine.readiness(placed_.clock().now());
-        ready.outcome == LifeOutcome::refused) {
-        answer = ready;
-        return describe(a, answer);
-    }
-    return initialise_and_start(a, control, answer);
+    progress(control);
 }
 
-bool MachineLife::stands() const noexcept {
-    for (std::size_t a = 0; a < machine_.table.activities.size(); ++a)
-        if (thread_lost_[a] || placed_.engines()[a].is_active()) return false;
+bool MachineLife::begin_finalising(std::size_t a, const ActivityControl& control) {
+    if (thread_lost_[a] || !is_initialised_[a]) return false;
+    changes_[a] = {.wanted = LifeChange::stop, .phase = Phase::waiting_for_makers};
+    progress(control);
     return true;
 }
 
+void MachineLife::let_makers_work(const ActivityControl& control) {
+    if (makers_at_work()) return;
+    for (const Change& each : changes_)
+        if (each.phase == Phase::makers) return; // what they answered is to be read yet
+    for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
+        if (changes_[a].phase != Phase::waiting_for_makers) continue;
+        changes_[a].phase = Phase::makers;
+        makers_of_ = a;
+        makers_at_work_.store(true, std::memory_order_release);
+        control.run_makers_functions(control.world);
+        return;
+    }
+}
+
+void MachineLife::run_makers_functions() {
+    if (!makers_at_work()) return;
+    const std::size_t a = makers_of_;
+    Engine& engine = placed_.engines()[a];
+    makers_answer_ = {.outcome = LifeOutcome::done};
+    makers_refusal_ = {};
+    if (is_initialised_[a]) engine.finalise();
+    is_initialised_[a] = false;
+    const Change& change = changes_[a];
+    if (change.wanted != LifeChange::stop && !is_given_up_.load(std::memory_order_relaxed)) {
+        if (change.begin == Begin::alone) makers_answer_ = engine.readiness(placed_.clock().now());
+        if (makers_answer_.outcome == LifeOutcome::refused) {
+            makers_refusal_ = describe(a, makers_answer_);
+        } else if (makers_refusal_ = engine.initialise(); !makers_refusal_.empty()) {
+            makers_answer_ = {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::not_initialised};
+            for (std::size_t i = 0; i < engine.plan().parts.size(); ++i)
+                if (engine.plan().parts[i].state.load(std::memory_order_relaxed) == ComponentState::failed)
+                    makers_answer_.part = static_cast<std::uint8_t>(i);
+        } else {
+            is_initialised_[a] = true;
+        }
+    }
+    makers_at_work_.store(false, std::memory_order_release);
+    supervisor_.wake();
+}
+
+void MachineLife::end_change(std::size_t a, const Sentence& refusal) {
+    Change& change = changes_[a];
+    change.phase = Phase::none;
+    if (change.was_asked)
+        activity_requests_[a].answer(change.ticket, change.answer);
+    else
+        refusal_ = refusal;
+}
+
+void MachineLife::progress(const ActivityControl& control) {
+    bool moved = true;
+    while (moved) { // the end of one lets the makers work for the next
+        moved = false;
+        for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
+            const Phase before = changes_[a].phase;
+            if (before != Phase::none) progress(a, control);
+            moved |= changes_[a].phase != before;
+        }
+    }
+}
+
+void MachineLife::progress(std::size_t a, const ActivityControl& control) {
+    using Progress = ActivityControl::Progress;
+    Change& change = changes_[a];
+    for (;;) {
+        auto result = Progress::done;
+        switch (change.phase) {
+        case Phase::none: return;
+        case Phase::stopping: result = control.stopped(control.world, a); break;
+        case Phase::waiting_for_makers:
+            let_makers_work(control);
+            if (change.phase != Phase::makers) return;
+            [[fallthrough]];
+        case Phase::makers:
+            if (makers_at_work()) return;
+            break;
+        case Phase::starting: result = control.started(control.world, a); break;
+        }
+        if (result == Progress::pending) return;
+        if (result == Progress::lost) {
+            lose(a);
+            end_refused(a, {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::thread_lost});
+        } else if (change.phase == Phase::stopping) {
+            change.phase = Phase::waiting_for_makers;
+        } else if (change.phase == Phase::starting || change.wanted == LifeChange::stop) {
+            end_change(a, {});
+        } else if (makers_answer_.outcome == LifeOutcome::refused) {
+            change.answer = makers_answer_;
+            end_change(a, makers_refusal_);
+        } else {
+            change.phase = Phase::starting;
+            control.start(control.world, a);
+        }
+    }
+}
+
+bool MachineLife::changes() const noexcept {
+    for (const Change& each : changes_)
+        if (each.phase != Phase::none) return true;
+    return false;
+}
+
 void MachineLife::serve_activity_requests(const ActivityControl& control) {
+    progress(control);
     for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
         LifeTicket ticket;
-        LifeChange change{};
-        if (!activity_requests_[a].take(ticket, change)) continue;
-        if (control.begins != nullptr) control.begins(control.world);
-        LifeAnswer answer;
-        static_cast<void>(change_activity(a, change, control, answer));
-        activity_requests_[a].answer(ticket, answer);
+        LifeChange wanted{};
+        if (changes(a) || !activity_requests_[a].take(ticket, wanted)) continue;
+        changes_[a] = {.wanted = wanted, .begin = Begin::alone, .was_asked = true, .ticket = ticket};
+        begin(a, control);
     }
+}
+
+// What runs of the components' functions runs to its end: whoever finalises waits for that.
+void MachineLife::give_up_changes() {
+    is_given_up_.store(true, std::memory_order_relaxed);
+    for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
+        if (!changes(a)) continue;
+        if (changes_[a].was_asked)
+            activity_requests_[a].answer(changes_[a].ticket, {.outcome = LifeOutcome::refused,
+                                                              .refusal = LifeRefusal::activity_stopped});
+        changes_[a].phase = Phase::none;
+    }
+}
+
+bool MachineLife::stands() const noexcept {
+    if (makers_at_work()) return false;
+    for (std::size_t a = 0; a < machine_.table.activities.size(); ++a)
+        if (thread_lost_[a] || placed_.engines()[a].is_active()) return false;
+    return true;
 }
 
 } // namespace tappet

@@ -4,17 +4,22 @@
 #include "kernel/machine/instance/placed.hpp"
 
 #include <array>
+#include <atomic>
 
 namespace tappet {
 
-/// How a world lets the engine of an activity start and stop. Called by the supervisor's thread.
+/// How a world lets the engine of an activity start and stop. Called by the supervisor's thread, which none
+/// of these keeps waiting for a function of a component.
 struct ActivityControl {
+    /// lost: its thread hangs, or broke a contract.
+    enum class Progress : std::uint8_t { pending, done, lost };
     void* world = nullptr;
-    bool (*start)(void* world, std::size_t activity) = nullptr; ///< false: its thread did not come up
-    /// False: its thread hangs; the engine's stop was run in its place.
-    bool (*stop)(void* world, std::size_t activity) = nullptr;
-    /// Before each change that somebody asked for: initialise and finalise may take their time.
-    void (*begins)(void* world) = nullptr;
+    void (*start)(void* world, std::size_t activity) = nullptr;
+    Progress (*started)(void* world, std::size_t activity) = nullptr;
+    void (*stop)(void* world, std::size_t activity) = nullptr;
+    Progress (*stopped)(void* world, std::size_t activity) = nullptr;
+    /// Lets MachineLife::run_makers_functions run, on a thread that nobody waits for.
+    void (*run_makers_functions)(void* world) = nullptr;
 };
 
 /// The life of components and activities. Asking is real-time, on any thread.
@@ -29,38 +34,82 @@ public:
     [[nodiscard]] LifeAnswer answer_of_component(std::size_t index, LifeTicket ticket) noexcept
         TAPPET_REALTIME;
     [[nodiscard]] ComponentState state_of(std::size_t component) noexcept TAPPET_REALTIME;
-    /// The same for a whole activity, with initialise and finalise of its components: the supervisor does it.
+    /// The same for a whole activity, with initialise and finalise of its components.
     LifeTicket ask_activity(std::size_t index, LifeChange change) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer answer_of_activity(std::size_t index, LifeTicket ticket) const noexcept
         TAPPET_REALTIME;
     /// What a refusal says, with its cure; empty when nothing was refused. Not real-time.
     [[nodiscard]] Sentence describe(std::size_t activity, LifeAnswer answer) const;
 
-    // ---- for worlds, on the supervisor's thread; not real-time
+    // ---- for worlds, on the supervisor's thread; not real-time. Each activity may change beside the others,
+    // step by step: stop, finalise, initialise, start. Only finalise and initialise wait for those of others.
 
-    /// In the table's order; the first refusal ends it.
-    [[nodiscard]] Sentence start_activities(const ActivityControl& control);
-    /// Empty: done. To start, what its components read from other activities must be valid.
-    [[nodiscard]] Sentence change_activity(std::size_t index, LifeChange change,
-                                           const ActivityControl& control) {
-        LifeAnswer answer;
-        return change_activity(index, change, control, answer);
+    enum class Begin : std::uint8_t {
+        with_the_machine, ///< whatever its components read from other activities
+        alone             ///< that must be valid
+    };
+    /// It does not change yet.
+    void begin_change(std::size_t index, LifeChange change, Begin begin, const ActivityControl& control);
+    /// Begins the last of an activity that is stopped, when no other changes; false: nothing is to be
+    /// finalised.
+    [[nodiscard]] bool begin_finalising(std::size_t index, const ActivityControl& control);
+    /// As far as all changes get without waiting.
+    void progress(const ActivityControl& control);
+    [[nodiscard]] bool changes(std::size_t index) const noexcept {
+        return changes_[index].phase != Phase::none;
     }
+    /// Some activity does.
+    [[nodiscard]] bool changes() const noexcept;
+    /// Begins what somebody asked for.
     void serve_activity_requests(const ActivityControl& control);
-    /// No activity runs, and no thread of one was given up while it hung.
+    /// The machine stops: what changes goes no further, and who asked for it is refused.
+    void give_up_changes();
+    /// Of the last change that nobody asked for from outside; empty: it was done.
+    [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
+    /// Initialise or finalise of a component runs, or is about to; of makers_of().
+    [[nodiscard]] bool makers_at_work() const noexcept {
+        return makers_at_work_.load(std::memory_order_acquire);
+    }
+    [[nodiscard]] std::size_t makers_of() const noexcept { return makers_of_; }
+    /// What changes need of initialise and finalise now; mostly nothing. On one thread.
+    void run_makers_functions();
+    /// Its thread was given up.
+    void lose(std::size_t activity) noexcept { thread_lost_[activity] = true; }
+    /// No activity runs, no thread of one was given up while it hung, and nobody initialises or finalises.
     [[nodiscard]] bool stands() const noexcept;
 
 private:
-    [[nodiscard]] Sentence change_activity(std::size_t index, LifeChange change,
-                                           const ActivityControl& control, LifeAnswer& answer);
-    [[nodiscard]] Sentence initialise_and_start(std::size_t index, const ActivityControl& control,
-                                                LifeAnswer& answer);
+    enum class Phase : std::uint8_t { none, stopping, waiting_for_makers, makers, starting };
+    struct Change {
+        LifeChange wanted{};
+        Begin begin{};
+        Phase phase = Phase::none;
+        bool was_asked = false;
+        LifeTicket ticket{};
+        LifeAnswer answer{.outcome = LifeOutcome::done};
+    };
+    void begin(std::size_t index, const ActivityControl& control);
+    void progress(std::size_t index, const ActivityControl& control);
+    void let_makers_work(const ActivityControl& control);
+    void end_change(std::size_t index, const Sentence& refusal);
+    void end_refused(std::size_t index, LifeAnswer answer) {
+        changes_[index].answer = answer;
+        end_change(index, describe(index, answer));
+    }
 
     PlacedMachine& placed_;
     const AcceptedMachine& machine_;
     os::Waiter& supervisor_;
     std::array<LifeRequests, max_activities> activity_requests_{};
     std::array<bool, max_activities> thread_lost_{};
+    std::array<bool, max_activities> is_initialised_{}; ///< whoever runs the makers' functions writes it
+    std::array<Change, max_activities> changes_{};
+    Sentence refusal_{};
+    std::size_t makers_of_ = 0;
+    Sentence makers_refusal_{}; ///< what they write; read when they are not at work
+    LifeAnswer makers_answer_{};
+    std::atomic<bool> makers_at_work_{false};
+    std::atomic<bool> is_given_up_{false};
 };
 
 } // namespace tappet

@@ -111,6 +111,14 @@ struct Board {
     /// A real-time activity that is due, or in a cycle, and gets no further for so long, ends the machine:
     /// see kernel/machine/worlds/life_watch.hpp. Longer than any deadline.
     Duration life_sign_within = 200ms;
+    /// A stop that was asked for leaves every output safe within so long, whatever a component does: what the
+    /// machine has not done by then its guardian does. At least what the table promises: see check/stop.hpp.
+    Duration stop_within = 1s;
+    /// A stop that has not begun by then the guardian does not wait for.
+    [[nodiscard]] constexpr Duration stop_begins_within() const noexcept { return stop_within / 4; }
+    /// How long all activities that are not real-time, together, may hold up the stop of those that are: they
+    /// may block. Who is not stopped by then is waited for when the others stand.
+    static constexpr Duration stop_grace = 20ms;
 };
 
 namespace detail {

@@ -17,8 +17,6 @@ namespace {
 
 // A contract handler and a signal handler have no argument of ours: they find the world here.
 std::atomic<RealWorld*> current_world{nullptr};
-std::atomic<os::Waiter*> signal_waiter{nullptr};
-std::atomic<bool> signal_came{false};
 thread_local bool supervises = false;
 
 } // namespace
@@ -26,8 +24,6 @@ thread_local bool supervises = false;
 RealWorld::RealWorld(MachineInstance& instance) noexcept : instance_{instance} {
     supervises = true;
     current_world.store(this, std::memory_order_release);
-    signal_waiter.store(&instance.supervisor(), std::memory_order_release);
-    signal_came.store(false);
     install_contract_handler(&RealWorld::on_breach);
     os::on_termination(&RealWorld::on_signal);
 }
@@ -36,14 +32,14 @@ RealWorld::~RealWorld() {
     static_cast<void>(stop());
     install_contract_handler(nullptr);
     os::on_termination(nullptr);
-    signal_waiter.store(nullptr);
     current_world.store(nullptr);
     supervises = false;
 }
 
+// Asked at once, so that the guardian knows since when, should the supervisor not come.
 void RealWorld::on_signal(int) noexcept {
-    signal_came.store(true, std::memory_order_release);
-    if (os::Waiter* waiter = signal_waiter.load(std::memory_order_acquire)) waiter->wake();
+    if (RealWorld* world = current_world.load(std::memory_order_acquire))
+        world->instance_.ask_stop(StopReason::requested, 0, nullptr);
 }
 
 void RealWorld::on_breach(const ContractViolation& breach) noexcept TAPPET_REALTIME {
@@ -56,12 +52,13 @@ void RealWorld::on_breach(const ContractViolation& breach) noexcept TAPPET_REALT
     const ContractText* text = find_text(breach.id);
     if (text != nullptr && text->after == AfterViolation::thread_goes_on) return;
     if (activity != nullptr) activity->park();
+    MakersThread::note_breach();
     bool is_supervisor = false;
     TAPPET_ESCAPE("thread-local memory of the main program", is_supervisor = supervises);
     if (!is_supervisor) Activity::sleep_for_ever(); // the supervisor stops the machine
     // Nobody else would stop the machine: it is done here, and the process ends when it stands.
     // It says why without waiting for who reads it.
-    TAPPET_ESCAPE("the supervisor's thread is not real-time", static_cast<void>(world->stop());
+    TAPPET_ESCAPE("the supervisor's thread is not real-time", static_cast<void>(world->make_safe());
                   static_cast<void>(os::write_all(2, describe(breach).add("\n").view())); std::abort());
 }
 
@@ -95,6 +92,16 @@ std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
         if (plan.priority > highest) highest = plan.priority;
         static_cast<void>(processors.push(plan.processor));
     }
+    is_armed_ = true;
+    for (const auto& created :
+         {makers_.create(
+              "makers", makers_stack_,
+              [](void* self) { static_cast<RealWorld*>(self)->instance_.life().run_makers_functions(); },
+              this),
+          breaker_.create(
+              "loop-breaker", breakers_stack_,
+              [](void* self) { static_cast<RealWorld*>(self)->break_loops(); }, this)})
+        if (!created) report.fault("threads", created.error(), Sentence{"see the reason"});
     if (const auto locked = os::lock_memory(); !locked)
         report.fault("memory-lock", locked.error(), Sentence{"see the reason"});
     if (auto held = os::hold_cpu_dma_latency(); held) latency_ = std::move(*held);
@@ -114,75 +121,201 @@ std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
 ActivityControl RealWorld::control() noexcept {
     return {this,
             [](void* self, std::size_t a) {
-                return static_cast<RealWorld*>(self)->activities_[a].start(patience_ms);
+                auto& world = *static_cast<RealWorld*>(self);
+                world.began_[a] = os::Clock::monotonic();
+                world.activities_[a].start();
             },
-            [](void* self, std::size_t a) { return static_cast<RealWorld*>(self)->stop_engine(a); },
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<RealWorld*>(self);
+                return world.progress_of(a, world.activities_[a].is_started_within(0), patience_ms);
+            },
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<RealWorld*>(self);
+                world.began_[a] = os::Clock::monotonic();
+                world.ask_to_stop(a, patience_ms);
+            },
+            [](void* self, std::size_t a) {
+                auto& world = *static_cast<RealWorld*>(self);
+                const bool is_told = (world.loops_to_break_.load(std::memory_order_acquire) >> a & 1) == 0;
+                return world.progress_of(a, is_told && world.activities_[a].is_stopped_within(0),
+                                         world.instance_.engines()[a].plan().real_time ? patience_ms
+                                                                                       : patience_beside_ms);
+            },
             [](void* self) {
-                const auto& world = *static_cast<RealWorld*>(self);
-                if (world.before_change_ != nullptr) world.before_change_(world.before_context_);
+                auto& world = *static_cast<RealWorld*>(self);
+                world.makers_began_ = os::Clock::monotonic();
+                world.makers_.wake();
             }};
 }
 
+// Of a thread that hangs nobody knows what it will write: the machine stops, and its guardian ends it.
+ActivityControl::Progress RealWorld::progress_of(std::size_t a, bool is_there, int patience) {
+    using Progress = ActivityControl::Progress;
+    if (activities_[a].is_lost()) return Progress::lost;
+    if (is_there) return Progress::done;
+    if (os::Clock::monotonic() - began_[a] < patience * 1ms) return Progress::pending;
+    instance_.ask_stop(StopReason::activity_hangs, 0, &instance_.engines()[a]);
+    return Progress::lost;
+}
+
+void RealWorld::ask_to_stop(std::size_t a, int patience) noexcept {
+    const Duration end_within = std::min<Duration>(Activity::end_within, patience * 600us);
+    activities_[a].ask_to_stop(instance_.clock().now() + end_within);
+    if (!activities_[a].has_loop_to_break()) return;
+    loops_to_break_.fetch_or(std::uint64_t{1} << a, std::memory_order_acq_rel);
+    breaker_.wake();
+}
+
+// A bit stays until its loop was told: one that began anew must not hear what was meant for the one before
+// it.
+void RealWorld::break_loops() noexcept {
+    const std::uint64_t loops = loops_to_break_.load(std::memory_order_acquire);
+    for (std::size_t a = 0; a < instance_.engines().size(); ++a) {
+        if ((loops >> a & 1) == 0) continue;
+        activities_[a].break_loop();
+        loops_to_break_.fetch_and(~(std::uint64_t{1} << a), std::memory_order_acq_rel);
+    }
+}
+
+void RealWorld::wait_for_change(Time end) {
+    if (show_life_ != nullptr) show_life_(life_context_);
+    // Whose start or stop is awaited wakes nobody.
+    const Duration look = instance_.life().makers_at_work() ? 5ms : 1ms;
+    static_cast<void>(instance_.supervisor().wait(std::min(end, instance_.clock().now() + look)));
+}
+
+bool RealWorld::complete_change(std::size_t a, Duration makers_time) {
+    while (instance_.life().changes(a)) {
+        instance_.life().serve_activity_requests(control());
+        if (!instance_.life().changes(a)) break;
+        if (instance_.stop_asked() || makers_took(makers_time)) return false;
+        wait_for_change(never);
+    }
+    return true;
+}
+
 bool RealWorld::start(Armed) {
-    refusal_ = instance_.life().start_activities(control());
-    if (!refusal_.empty()) static_cast<void>(stop());
-    return refusal_.empty();
+    is_safe_ = false;
+    MachineLife& life = instance_.life();
+    for (std::size_t a = 0; a < instance_.engines().size() && !instance_.stop_asked(); ++a) {
+        life.begin_change(a, LifeChange::start, MachineLife::Begin::with_the_machine, control());
+        const bool completed = complete_change(a, makers_within);
+        if (!completed && !instance_.stop_asked()) refusal_ = makers_too_long();
+        if (completed) refusal_ = life.refusal();
+        if (!refusal_.empty()) instance_.ask_stop(StopReason::not_started, 0, &instance_.engines()[a]);
+    }
+    return !instance_.stop_asked();
 }
 
-Sentence RealWorld::change_activity(std::size_t activity, LifeChange change) {
-    return instance_.life().change_activity(activity, change, control());
-}
-
-bool RealWorld::stop_engine(std::size_t a) noexcept {
-    if (activities_[a].stop(patience_ms)) return true;
-    // Parked by a broken contract, or hung: its components still leave their safe values.
-    if (activities_[a].claim_engine_stop()) activities_[a].engine().stop(instance_.clock().now());
-    activities_[a].engine().mark_failed();
-    activities_[a].abandon(); // the process must end although this thread never does
-    return false;
+Sentence RealWorld::change_activity(std::size_t a, LifeChange change) {
+    MachineLife& life = instance_.life();
+    bool completed = complete_change(a, Duration::max()); // one that somebody asked for
+    if (completed) {
+        life.begin_change(a, change, MachineLife::Begin::alone, control());
+        completed = complete_change(a, Duration::max());
+    }
+    return completed ? life.refusal() : Sentence{"the machine stops: ", instance_.describe_stop()};
 }
 
 bool RealWorld::supervise(Duration time) {
     const Time end = instance_.clock().now() + time;
     while (!instance_.stop_asked()) {
         instance_.life().serve_activity_requests(control());
-        if (signal_came.load(std::memory_order_acquire)) {
-            instance_.ask_stop(StopReason::requested, 0, nullptr);
-            return false;
-        }
+        if (instance_.stop_asked()) break;
         if (instance_.clock().now() >= end) return true;
-        static_cast<void>(instance_.supervisor().wait(end));
+        if (instance_.life().changes())
+            wait_for_change(end);
+        else
+            static_cast<void>(instance_.supervisor().wait(end));
     }
     return false;
 }
 
-int RealWorld::stop() {
-    const auto stop_now = [this](std::size_t a) {
-        return instance_.life().change_activity(a, LifeChange::stop, control()).empty() ? 0 : 1;
+void RealWorld::give_up(std::size_t a) noexcept {
+    if (hung_++ == 0) first_hung_ = instance_.engines()[a].name();
+    instance_.engines()[a].mark_failed();
+    instance_.life().lose(a);
+    activities_[a].give_up();
+}
+
+int RealWorld::make_safe() {
+    if (is_safe_ || !is_armed_) return hung_;
+    is_safe_ = true;
+    hung_ = 0;
+    instance_.life().give_up_changes();
+    const auto now = [this] { return instance_.clock().now(); };
+    const Time due =
+        instance_.stop_asked() ? instance_.stop_due() : now() + instance_.machine().board->stop_within;
+    const auto patience = [&] {
+        const auto half_of_the_rest = static_cast<int>((due - now()) / 2ms);
+        return std::clamp(half_of_the_rest, least_patience_ms, patience_ms);
     };
-    int hung = 0;
-    const Time grace = os::Clock::monotonic() + grace_ms * 1ms;
+    const Time grace = now() + Board::stop_grace;
     Bounded<std::size_t, max_activities> asked;
     for (std::size_t a = instance_.engines().size(); a-- > 0;) {
-        const Engine& engine = instance_.engines()[a];
-        if (engine.plan().real_time || !engine.is_active() || !asked.push(a)) {
-            hung += stop_now(a);
+        if (activities_[a].is_stopped_within(0)) continue;
+        const int time = patience();
+        ask_to_stop(a, time);
+        if (instance_.engines()[a].plan().real_time) {
+            if (!activities_[a].is_stopped_within(time)) give_up(a);
             continue;
         }
-        activities_[a].ask_to_stop();
-        const Duration left = std::max(grace - os::Clock::monotonic(), Duration::zero());
+        static_cast<void>(asked.push(a));
+        const Duration left = std::max(grace - now(), Duration::zero());
         static_cast<void>(activities_[a].is_stopped_within(static_cast<int>(left / 1ms)));
     }
-    // What they do on this thread at their end may block, too: the others stand by now.
     for (const std::size_t a : asked)
-        if (activities_[a].is_stopped_within(patience_ms))
-            instance_.engines()[a].finalise();
-        else
-            hung += stop_now(a);
+        if (!activities_[a].is_stopped_within(patience())) give_up(a);
+    for (std::size_t a = 0; a < instance_.engines().size(); ++a)
+        if (activities_[a].is_lost()) instance_.life().lose(a);
+    return hung_;
+}
+
+int RealWorld::lost() const noexcept {
+    int lost = 0;
+    for (const Activity& each : activities_) lost += each.is_lost();
+    return lost;
+}
+
+bool RealWorld::makers_took(Duration time) const {
+    return instance_.life().makers_at_work() && os::Clock::monotonic() - makers_began_ > time;
+}
+
+bool RealWorld::await_makers() {
+    for (;;) {
+        instance_.life().progress(control());
+        if (!instance_.life().changes() && !instance_.life().makers_at_work()) return true;
+        if (makers_.is_lost() || makers_took(makers_within)) {
+            unfinished_ = makers_too_long();
+            return false;
+        }
+        wait_for_change(never);
+    }
+}
+
+Sentence RealWorld::makers_too_long() const {
+    const std::string_view name = instance_.engines()[instance_.life().makers_of()].name();
+    if (makers_.is_lost())
+        return Sentence{"activity \"", name,
+                        "\": its initialise() or finalise() broke a contract, and nothing is finalised any "
+                        "more; see there"};
+    return Sentence{"activity \"", name, "\": its initialise() or finalise() did not return within ",
+                    makers_within / 1s, " s; let it wait for nothing, or limit how long"};
+}
+
+int RealWorld::stop() {
+    static_cast<void>(make_safe());
+    if (!is_armed_) return hung_;
+    is_armed_ = false;
+    bool awaited = await_makers();
+    for (std::size_t a = instance_.engines().size(); awaited && a-- > 0;)
+        if (instance_.life().begin_finalising(a, control())) awaited = await_makers();
     for (std::size_t a = instance_.engines().size(); a-- > 0;)
-        if (!activities_[a].end(patience_ms)) activities_[a].abandon();
+        if (activities_[a].is_lost() || !activities_[a].end(patience_ms)) activities_[a].abandon();
+    makers_.end(awaited ? patience_ms : 0);
+    breaker_.end(patience_ms);
     os::heap::release();
-    return hung_ = hung;
+    return hung_;
 }
 
 std::uint64_t RealWorld::page_faults_in_real_time_threads() const noexcept {

@@ -1,10 +1,11 @@
 // The real world: every activity in a thread of its own, armed only when the box is fit for it, supervised,
-// and stopped in a stated order.
+// and stopped in a stated order by a thread that runs no function of a component.
 #pragma once
 
 #include "kernel/activity/activity.hpp"
 #include "kernel/base/contract.hpp"
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/machine/worlds/makers_thread.hpp"
 #include "kernel/os/arming.hpp"
 #include "kernel/os/latency.hpp"
 
@@ -19,12 +20,12 @@ namespace tappet {
 /// the supervisor's; not real-time.
 class RealWorld {
 public:
-    /// How long an activity may take to start or to stop before its thread counts as hung.
-    static constexpr int patience_ms = 500;
+    /// How long a thread may take to start or to stop before it counts as hung. One that may block, and is
+    /// stopped alone, has more; when the machine stops, each that hangs has half of the time that is left.
+    static constexpr int patience_ms = 500, least_patience_ms = 100, patience_beside_ms = 10'000;
     static_assert(Activity::end_within < patience_ms * 1ms, "who comes to an end does not hang");
-    /// How long all activities that are not real-time, together, may hold up the stop of those that are: they
-    /// may block. Who is not stopped by then is waited for when the others stand.
-    static constexpr int grace_ms = 20;
+    /// How long initialise and finalise of one activity may hold up the start and the end of the machine.
+    static constexpr Duration makers_within = 30s;
     static constexpr std::size_t max_breaches = 8;
 
     /// Its clock is real; it is configured before it is armed.
@@ -38,30 +39,43 @@ public:
     /// moved.
     [[nodiscard]] std::optional<Armed> arm(os::ArmingReport& report, int file);
 
-    /// Activities start in the table's order, each initialised on this thread. False: one did not, refusal()
-    /// says why; the machine is stopped again.
+    /// Activities start in the table's order, each initialised on the makers' thread. False: one did not,
+    /// refusal() says why; or a stop was asked for meanwhile, and refusal() is empty. What has started runs
+    /// until make_safe().
     [[nodiscard]] bool start(Armed);
     [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
 
     /// Starts, stops or restarts one activity while the others run; initialise and finalise of its components
-    /// run on this thread, its own thread is kept. Empty: done; else why not.
+    /// run on the makers' thread, its own thread is kept. Empty: done; else why not. A stop that is asked for
+    /// meanwhile ends the change where it is.
     [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
 
-    /// Sleeps until a stop is asked for, a signal that asks to end (see on_termination) came, or `time`
-    /// passed; serves the requests to activities meanwhile. True while the machine runs.
+    /// Sleeps until a stop is asked for, by a signal that asks to end (see on_termination) too, or `time`
+    /// passed; serves the requests to activities meanwhile, and waits for none of their functions. True while
+    /// the machine runs.
     bool supervise(Duration time);
 
-    /// Activities stop from the last row of the table to the first: list drivers first, so that the safe
-    /// values of the others still reach the wires; who is not real-time and blocks holds nobody up for long.
-    /// Returns how many threads hung; their components were stopped in their place.
+    /// Activities stop from the last row of the table to the first, each on its own thread: list drivers
+    /// first, so that the safe values of the others still reach the wires. No function of a component is
+    /// waited for longer than the board's stop_within, as far as the threads get their processors. Returns
+    /// how many threads hung: the outputs of their components are as they were, and only the end of the
+    /// process and a guardian make them safe.
+    int make_safe();
+    /// The same, then finalises what was initialised, and ends the threads.
     int stop();
 
-    /// Of the last stop(), the one of a refused start included.
+    /// Of the last make_safe().
     [[nodiscard]] int hung() const noexcept { return hung_; }
-    /// Called on the supervisor's thread before each change of an activity that somebody asked for.
-    void before_changes(void* context, void (*call)(void* context)) noexcept {
-        before_context_ = context;
-        before_change_ = call;
+    /// How many threads broke a contract; each left its safe values all the same, or hung.
+    [[nodiscard]] int lost() const noexcept;
+    /// Whose thread hung first; empty: none did.
+    [[nodiscard]] std::string_view first_hung() const noexcept { return first_hung_; }
+    /// After stop(): why not all is finalised; empty: it is.
+    [[nodiscard]] const Sentence& unfinished() const noexcept { return unfinished_; }
+    /// Called on the supervisor's thread while it waits for what others do, again and again.
+    void show_life_by(void* context, void (*call)(void* context)) noexcept {
+        life_context_ = context;
+        show_life_ = call;
     }
 
     [[nodiscard]] const Activity& activity(std::size_t index) const noexcept { return activities_[index]; }
@@ -79,7 +93,18 @@ private:
     void keep(const ContractViolation& breach) noexcept TAPPET_REALTIME;
     static void on_signal(int) noexcept;
     [[nodiscard]] ActivityControl control() noexcept;
-    [[nodiscard]] bool stop_engine(std::size_t activity) noexcept;
+    [[nodiscard]] ActivityControl::Progress progress_of(std::size_t activity, bool is_there, int patience);
+    void ask_to_stop(std::size_t activity, int patience) noexcept;
+    void break_loops() noexcept;
+    /// Sleeps until there may be progress of a change, until `end` at most.
+    void wait_for_change(Time end);
+    /// False: a stop was asked for, or makers' functions take too long.
+    [[nodiscard]] bool complete_change(std::size_t activity, Duration makers_time);
+    [[nodiscard]] bool makers_took(Duration time) const;
+    /// While nothing else is left to do; false: they take too long.
+    [[nodiscard]] bool await_makers();
+    [[nodiscard]] Sentence makers_too_long() const;
+    void give_up(std::size_t activity) noexcept;
 
     MachineInstance& instance_;
     std::array<Activity, max_activities> activities_{};
@@ -91,9 +116,21 @@ private:
     std::array<KeptBreach, max_breaches> kept_breaches_{};
     std::atomic<std::size_t> breaches_{0};
     Sentence refusal_{};
+    MakersThread makers_{};  ///< initialise and finalise
+    MakersThread breaker_{}; ///< break_loop
+    alignas(4096) std::array<std::byte, 256 * 1024> makers_stack_{};
+    alignas(4096) std::array<std::byte, 64 * 1024> breakers_stack_{};
+    static_assert(max_activities <= 64);
+    std::atomic<std::uint64_t> loops_to_break_{0}; ///< a bit for each activity
+    std::array<Time, max_activities> began_{};     ///< what is waited for of its change
+    Time makers_began_{};
     int hung_ = 0;
-    void (*before_change_)(void*) = nullptr;
-    void* before_context_ = nullptr;
+    std::string_view first_hung_{};
+    Sentence unfinished_{};
+    bool is_armed_ = false; ///< its threads are there
+    bool is_safe_ = false;  ///< nothing started since the last stop
+    void (*show_life_)(void*) = nullptr;
+    void* life_context_ = nullptr;
 };
 
 } // namespace tappet

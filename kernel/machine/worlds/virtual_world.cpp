@@ -4,6 +4,7 @@
 #include "kernel/base/contract.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tappet {
 
@@ -15,6 +16,7 @@ VirtualWorld::VirtualWorld(MachineInstance& instance) noexcept : instance_{insta
 }
 
 ActivityControl VirtualWorld::control() noexcept {
+    constexpr auto at_once = [](void*, std::size_t) { return ActivityControl::Progress::done; };
     return {this,
             [](void* self, std::size_t a) {
                 auto& world = *static_cast<VirtualWorld*>(self);
@@ -22,32 +24,61 @@ ActivityControl VirtualWorld::control() noexcept {
                 engine.start(world.instance_.clock().now());
                 world.sleep_until(a, engine.looping() == nullptr ? engine.next_wake()
                                                                  : world.instance_.clock().now());
-                return true;
             },
+            at_once,
             [](void* self, std::size_t a) {
                 auto& world = *static_cast<VirtualWorld*>(self);
                 if (world.loops_[a]) world.loops_[a]->break_off();
                 world.end(a);
                 world.jobs_[a].is_there = false;
                 world.instance_.engines()[a].stop(world.instance_.clock().now());
-                return true;
+            },
+            at_once,
+            [](void* self) {
+                auto& world = *static_cast<VirtualWorld*>(self);
+                if (world.makers_take_ > Duration::zero())
+                    world.makers_until_ = world.instance_.clock().now() + world.makers_take_;
+                else
+                    world.instance_.life().run_makers_functions();
             }};
 }
 
+bool VirtualWorld::complete_change(std::size_t a) {
+    while (instance_.life().changes(a)) {
+        instance_.life().serve_activity_requests(control());
+        if (!instance_.life().changes(a)) break;
+        if (instance_.stop_asked()) return false;
+        end_ = makers_until_;
+        run_instant(std::max(next_time(), instance_.clock().now()));
+    }
+    return true;
+}
+
 Sentence VirtualWorld::start() {
-    const Sentence refusal = instance_.life().start_activities(control());
+    MachineLife& life = instance_.life();
+    Sentence refusal;
+    for (std::size_t a = 0; a < instance_.engines().size() && refusal.empty(); ++a) {
+        life.begin_change(a, LifeChange::start, MachineLife::Begin::with_the_machine, control());
+        refusal = complete_change(a) ? life.refusal() : instance_.describe_stop();
+    }
     if (!refusal.empty()) stop();
     return refusal;
 }
 
-Sentence VirtualWorld::change_activity(std::size_t activity, LifeChange change) {
-    return instance_.life().change_activity(activity, change, control());
+Sentence VirtualWorld::change_activity(std::size_t a, LifeChange change) {
+    MachineLife& life = instance_.life();
+    bool completed = complete_change(a); // one that somebody asked for
+    if (completed) {
+        life.begin_change(a, change, MachineLife::Begin::alone, control());
+        completed = complete_change(a);
+    }
+    return completed ? life.refusal() : Sentence{"the machine stops: ", instance_.describe_stop()};
 }
 
 Time VirtualWorld::quiet_until(const void* process) const { return quiet(process, end_); }
 
 Time VirtualWorld::quiet(const void* but, Time end) const {
-    Time next = end;
+    Time next = std::min(end, makers_until_);
     for (const VirtualProcess& process : processes_)
         if (process.self != but) next = std::min(next, process.next(process.self));
     const auto engines = instance_.engines();
@@ -166,6 +197,10 @@ bool VirtualWorld::run_until(Time end) {
 
 void VirtualWorld::run_instant(Time now) {
     instance_.clock().advance_to(now);
+    if (makers_until_ <= now) {
+        makers_until_ = never;
+        instance_.life().run_makers_functions();
+    }
     for (const VirtualProcess& process : processes_)
         if (process.next(process.self) <= now) process.run(process.self, now);
     run_engines(now);
@@ -185,8 +220,16 @@ void VirtualWorld::end(std::size_t a) {
 }
 
 void VirtualWorld::stop() {
+    MachineLife& life = instance_.life();
+    life.give_up_changes();
     for (std::size_t a = instance_.engines().size(); a-- > 0;)
-        static_cast<void>(change_activity(a, LifeChange::stop));
+        if (instance_.engines()[a].is_active()) control().stop(this, a);
+    const Duration takes = std::exchange(makers_take_, {}); // nobody waits for them any more
+    makers_until_ = never;
+    life.run_makers_functions(); // of a change that was given up
+    for (std::size_t a = instance_.engines().size(); a-- > 0;)
+        static_cast<void>(life.begin_finalising(a, control()));
+    makers_take_ = takes;
 }
 
 } // namespace tappet

@@ -45,19 +45,23 @@ public:
         return jobs_[activity].longest;
     }
 
+    /// From now on what a change of an activity runs of its components' functions (initialise, finalise)
+    /// takes so long; the others go on meanwhile, and no stop waits for it. Nought: no time.
+    void makers_take(Duration time) noexcept { makers_take_ = time; }
+
     /// Activities start in the table's order. Empty: all did; else the first refusal, and all are stopped.
     Sentence start();
-    /// As RealWorld's.
+    /// As RealWorld's; the others go on while it takes time.
     [[nodiscard]] Sentence change_activity(std::size_t activity, LifeChange change);
     /// Its thread does not come: the activity runs no cycle before `until`, whatever wakes it. A stop is done
-    /// in its place, as RealWorld does it. For tests of what a hang does to the others.
+    /// all the same, as if its guardian wrote the safe values. For tests of what a hang does to the others.
     void hang(std::size_t activity, Time until) noexcept {
         hangs_until_[activity] = until;
         jobs_[activity].release = std::max(jobs_[activity].release, until); // a hang is no response
     }
     /// Runs to `end`, or until a stop is asked for: then false.
     bool run_until(Time end);
-    /// Engines stop, the last row of the table first.
+    /// Engines stop, the last row of the table first; when all have, their components are finalised.
     void stop();
 
     /// Before this time no engine runs, no other process wants to, and run_until() does not return: for a
@@ -93,6 +97,8 @@ private:
     void run_engines(Time now);
     /// Processes and engines of an instant.
     void run_instant(Time now);
+    /// False: a stop was asked for.
+    [[nodiscard]] bool complete_change(std::size_t activity);
     /// The others go on while the behaviours of one activity come to their ends.
     void end(std::size_t activity);
 
@@ -108,7 +114,9 @@ private:
     std::array<Job, max_activities> jobs_{};
     Time worked_until_{};
     std::array<std::optional<VirtualLoop>, max_activities> loops_{};
-    Time end_{}; ///< of the run
+    Duration makers_take_{};
+    Time makers_until_ = never; ///< their functions are done then
+    Time end_{};                ///< of the run
     std::uint64_t steps_ = 0;
     bool is_ending_ = false; ///< engines run although a stop was asked for
 };

@@ -155,6 +155,8 @@ constexpr Fault schedule_faults[] = {
                         runs("weft", "lamps")));
      },
      R"(loom: activity "logic" is not schedulable on processor 1 of board "bench": its worst response is 350 us, its deadline 340 us; lower the budget of it or of a more urgent activity, lengthen its deadline, or place it elsewhere)"},
+    {"board_stop_too_short", [](Table& m) { m.board.stop_within = 50ms; },
+     R"(loom: board "bench": stop_within is 50 ms, but a stop may take 137 ms: 13 ms until it begins, 5 ms for two responses of each real-time activity, 100 ms for the ends of behaviours, 20 ms for what may block; write stop_within = 167ms into the board, or shorten deadlines)"},
 };
 INSTANTIATE_TEST_SUITE_P(schedules, Refusal, testing::ValuesIn(planted_into(small_loom, schedule_faults)),
                          name_of);

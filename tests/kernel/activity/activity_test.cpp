@@ -89,10 +89,15 @@ struct AnActivity : testing::Test {
     void create() { ASSERT_TRUE(activity.create(engine, clock, 0, -1, stack)); }
     void start() {
         ASSERT_TRUE(engine.initialise().empty());
-        ASSERT_TRUE(activity.start(patience_ms));
+        activity.start();
+        ASSERT_TRUE(activity.is_started_within(patience_ms));
+    }
+    [[nodiscard]] bool stops_within(int milliseconds) {
+        activity.ask_to_stop(clock.now() + Activity::end_within);
+        return activity.is_stopped_within(milliseconds);
     }
     void stop() {
-        ASSERT_TRUE(activity.stop(patience_ms));
+        ASSERT_TRUE(stops_within(patience_ms));
         engine.finalise();
     }
     void wait_for_steps(int n) {
@@ -112,7 +117,7 @@ TEST_F(AnActivity, is_inactive_upon_its_creation_and_runs_nothing) {
     EXPECT_TRUE(activity.end(patience_ms));
 }
 
-TEST_F(AnActivity, initialises_and_finalises_on_the_callers_thread_and_lives_on_its_own) {
+TEST_F(AnActivity, runs_start_cycles_and_stop_on_its_own_thread_and_nothing_else) {
     create();
     start();
     wait_for_steps(3);
@@ -154,11 +159,11 @@ TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has)
 
 TEST_F(AnActivity, a_stop_before_any_start_and_a_second_stop_do_nothing) {
     create();
-    EXPECT_TRUE(activity.stop(patience_ms));
+    EXPECT_TRUE(stops_within(patience_ms));
     start();
     wait_for_steps(1);
     stop();
-    EXPECT_TRUE(activity.stop(patience_ms));
+    EXPECT_TRUE(stops_within(patience_ms));
     EXPECT_TRUE(activity.end(patience_ms));
     EXPECT_EQ(workers[0].stopped, 1);
 }
@@ -179,17 +184,17 @@ TEST_F(AnActivity, is_not_started_when_a_component_refuses_and_those_before_it_a
     EXPECT_TRUE(activity.end(patience_ms));
 }
 
-TEST_F(AnActivity, a_stop_of_a_thread_that_hangs_says_so_and_the_engine_can_be_stopped_in_its_place_once) {
+TEST_F(AnActivity, that_hangs_does_not_stop_and_one_that_was_given_up_runs_no_stop_when_it_comes_back) {
     create();
     start();
     wait_for_steps(1);
     workers[0].hang = true;
     os::sleep_for(5ms);
-    EXPECT_FALSE(activity.stop(50));
-    EXPECT_TRUE(activity.claim_engine_stop());
-    EXPECT_FALSE(activity.claim_engine_stop());
-    workers[0].hang = false; // it comes back: the stop is not its own any more
-    EXPECT_TRUE(activity.stop(patience_ms));
+    EXPECT_FALSE(stops_within(50));
+    activity.give_up();
+    EXPECT_FALSE(activity.is_stopped_within(0));
+    workers[0].hang = false;
+    EXPECT_TRUE(activity.is_stopped_within(patience_ms));
     EXPECT_EQ(workers[0].stopped, 0);
     EXPECT_TRUE(activity.end(patience_ms));
 }

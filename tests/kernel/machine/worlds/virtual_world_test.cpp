@@ -92,6 +92,43 @@ TEST(VirtualWorld, stops_the_last_row_first) {
     EXPECT_EQ(rig.worker("driver").level.last(), 0);
 }
 
+/// What a restart runs of the components' functions takes seconds.
+TEST(VirtualWorld, lets_makers_functions_take_time_while_the_others_go_on) {
+    Rig<watched::table> rig;
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 1s));
+    const auto logic = rig.worker("logic").cycles, middle = rig.worker("middle").cycles;
+    rig.world.makers_take(7s);
+    const LifeTicket ticket = rig.instance.life().ask_activity(watched::logic, LifeChange::restart);
+    const auto outcome = [&] {
+        return rig.instance.life().answer_of_activity(watched::logic, ticket).outcome;
+    };
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 7999ms));
+    EXPECT_EQ(outcome(), LifeOutcome::pending);
+    EXPECT_EQ(rig.worker("logic").level.last(), 0) << "safe, since it stands";
+    EXPECT_NEAR(static_cast<double>(rig.worker("logic").cycles), static_cast<double>(logic), 1.0);
+    EXPECT_NEAR(static_cast<double>(rig.worker("middle").cycles - middle), 6999.0, 2.0);
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 9s));
+    EXPECT_EQ(outcome(), LifeOutcome::done);
+    EXPECT_NEAR(static_cast<double>(rig.worker("logic").cycles - logic), 200.0, 2.0);
+}
+
+TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_no_change_goes_on) {
+    Rig<watched::strict_table> rig;
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 20ms));
+    rig.world.makers_take(7s);
+    const LifeTicket ticket = rig.instance.life().ask_activity(watched::logic, LifeChange::restart);
+    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 40ms));
+    rig.worker("right").order = Order::overrun;
+    EXPECT_FALSE(rig.world.run_until(at_ns(0) + 30s));
+    rig.world.stop();
+    EXPECT_LT(rig.clock.now() - rig.instance.stop_asked_at(), watched::board.stop_within);
+    for (const char* name : {"driver", "left", "middle", "right", "logic"})
+        EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
+    EXPECT_EQ(rig.instance.life().answer_of_activity(watched::logic, ticket).refusal,
+              LifeRefusal::activity_stopped);
+    EXPECT_TRUE(rig.instance.standing());
+}
+
 TEST(VirtualWorldDeathTest, does_nothing_to_an_engine_that_runs_that_is_for_one_that_stands) {
     Rig<watched::table> rig;
     Engine& engine = rig.instance.engines()[0];

@@ -263,7 +263,7 @@ TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew
 
 TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
     Engine& engine = instance.engines()[motion];
-    engine.stop(clock.now()); // as the supervisor does in the place of a hung thread
+    engine.stop(clock.now()); // as a thread does whose contract is broken
     engine.mark_failed();
     run(100ms);
     EXPECT_EQ(office.silences.size(), 1u);
@@ -338,7 +338,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_th
     EXPECT_TRUE(world.run_until(clock.now() + 1s));
     EXPECT_THAT(rouser.silences, IsEmpty()) << "it rests, and when it was woken it came";
     Engine& sleeping = instance.engines()[2];
-    sleeping.stop(clock.now()); // as the supervisor does in the place of a hung thread
+    sleeping.stop(clock.now()); // as a thread does whose contract is broken
     sleeping.mark_failed();
     sleeping.waiter().wake();
     EXPECT_TRUE(world.run_until(clock.now() + 100ms));

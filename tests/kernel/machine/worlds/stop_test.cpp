@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever a maker's function does for seconds, a stop that is asked for meanwhile leaves the outputs safe
+// within the board's bound: for each cause of a stop, in each such situation.
+#include "kernel/component/loop.hpp"
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/real_world.hpp"
+#include "kernel/os/sleep.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+/// What happened in which order; filled by any thread that is not real-time, or stops.
+struct Log {
+    std::mutex mutex;
+    std::vector<std::string> lines;
+    void add(std::string_view who, std::string_view what) {
+        const std::lock_guard lock{mutex};
+        lines.push_back(std::string{who} + " " + std::string{what});
+    }
+};
+Log& history() {
+    static Log log;
+    return log;
+}
+
+/// Its output stands for a wire: 1 while it runs, 0 is safe.
+struct Valve {
+    Input<std::int64_t> beat;
+    std::atomic<std::int64_t> at_wire{0}, safe_since{0};
+    std::atomic<bool> hears{false}, breaks_contract{false}, takes_long{false};
+    os::Clock* clock = nullptr;
+    Sentence configure(Setup& setup) {
+        clock = setup.clock;
+        return {};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME { at_wire = 1; }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_CONTRACT(!breaks_contract.load(), Contract::precondition, 7);
+        if (beat.good()) hears = true;
+        if (takes_long.exchange(false)) clock->consume(40ms);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        at_wire = 0;
+        safe_since = to_ns(clock->now());
+        TAPPET_ESCAPE("a test's note", history().add("valve", "stop"));
+    }
+    static constexpr auto interface() { return facets(input<&Valve::beat>("beat", "", "of the pulse")); }
+};
+
+struct Pulse {
+    Output<std::int64_t> beat;
+    std::atomic<bool> silent{false}, hangs{false}, hangs_in_stop{false};
+    std::atomic<int> stopped{0};
+    /// Others have its processor meanwhile.
+    static void hang(const std::atomic<bool>& while_so) noexcept TAPPET_REALTIME {
+        while (while_so) TAPPET_ESCAPE("it shall hang", os::sleep_for(1ms));
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!silent) beat.write(beat.last() + 1);
+        hang(hangs);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        hang(hangs_in_stop);
+        ++stopped;
+    }
+    static constexpr auto interface() { return facets(output<&Pulse::beat>("beat", "", "counts")); }
+};
+
+enum class Function : int { none, initialise, finalise, start, work, stop, loop, break_loop };
+constexpr auto for_seconds = 4s;
+
+/// One function of it takes seconds, or until the test lets go of it.
+struct Slow {
+    std::atomic<Function> slow{Function::none}, at{Function::none};
+    std::atomic<bool> let_go{false}, breaks_contract{false};
+    std::atomic<int> initialised{0}, finalised{0}, stopped{0};
+
+    void take(Function function) noexcept {
+        if (slow != function) return;
+        at = function;
+        for (int n = 0; n < for_seconds / 1ms && !let_go; ++n) os::sleep_for(1ms);
+    }
+    Sentence initialise() {
+        take(Function::initialise);
+        TAPPET_CONTRACT(!breaks_contract.load(), Contract::precondition, 9);
+        ++initialised;
+        return {};
+    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("it shall block", take(Function::start));
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("it shall block", take(Function::stop); history().add("slow", "stop"));
+        ++stopped;
+    }
+    void finalise() {
+        take(Function::finalise);
+        ++finalised;
+        history().add("slow", "finalise");
+    }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+struct Camera : Slow {
+    void work(const Cycle&) { take(Function::work); }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+struct Receiver : Slow {
+    void loop(LoopControl& control) {
+        take(Function::loop);
+        while (control.wait(1h)) {
+        }
+    }
+    void break_loop() { take(Function::break_loop); }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+// clang-format off
+constexpr auto table = machine("stopping",
+    components(component<Valve>("valve"), component<Pulse>("pulse"), component<Pulse>("spare"), component<Receiver>("receiver"), component<Camera>("camera")),
+    activities(
+        activity("drivers", every(20ms), runs("valve"), budget(50us), stack(256 * 1024), stop_when_late),
+        activity("logic",   every(5ms),  runs("pulse"), budget(50us), stack(256 * 1024)),
+        activity("spare",   every(5ms),  runs("spare"), budget(50us), stack(256 * 1024)),
+        activity("receive", on_work(),   not_real_time, runs("receiver"), stack(256 * 1024)),
+        activity("look",    every(10ms), not_real_time, runs("camera"),   stack(256 * 1024))),
+    connections(data("pulse.beat", "valve.beat", stale_after(200ms), stop_machine)),
+    reactions(), behaviours());
+constexpr Board board{
+    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
+    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
+constexpr std::size_t drivers = 0, spare = 2, receive = 3, look = 4;
+// clang-format on
+
+enum class Cause { stale_row, contract, missed_deadline, termination, one_that_asks };
+enum class Situation {
+    initialises, ///< a restart of the camera
+    finalises,
+    starts,
+    works, ///< it blocks
+    stops, ///< when the machine does
+    loops, ///< and does not come back
+    breaks_loop,
+    machine_starts ///< and initialises the camera
+};
+constexpr std::array causes{Cause::stale_row, Cause::missed_deadline, Cause::termination,
+                            Cause::one_that_asks};
+
+template <const auto& of_table> struct Rig {
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{Firmware<of_table, board>::machine(), clock};
+    RealWorld world{instance};
+    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
+    Valve* valve = nullptr;
+    Pulse *pulse = nullptr, *spare = nullptr;
+    Camera* camera = nullptr;
+    Receiver* receiver = nullptr;
+    std::optional<Armed> armed;
+
+    Rig() {
+        history().lines.clear();
+        EXPECT_TRUE(instance.configure({}));
+        valve = instance.template find<Valve>("valve");
+        pulse = instance.template find<Pulse>("pulse");
+        spare = instance.template find<Pulse>("spare");
+        camera = instance.template find<Camera>("camera");
+        receiver = instance.template find<Receiver>("receiver");
+        const int nowhere_to_print = open("/dev/null", O_WRONLY);
+        armed = world.arm(report, nowhere_to_print);
+        close(nowhere_to_print);
+        EXPECT_TRUE(armed);
+    }
+    /// All is under way: a value that was never good does not grow stale.
+    bool start() {
+        return armed && world.start(*armed) && comes_true([this] { return valve->hears.load(); });
+    }
+    /// Supervises until it is true.
+    template <class Condition> [[nodiscard]] bool comes_true(Condition&& condition) {
+        for (const Time end = clock.now() + 20s; !condition() && clock.now() < end;)
+            static_cast<void>(world.supervise(1ms));
+        return condition();
+    }
+    void cause(Cause by) {
+        switch (by) {
+        case Cause::stale_row: pulse->silent = true; break;
+        case Cause::contract: valve->breaks_contract = true; break;
+        case Cause::missed_deadline: valve->takes_long = true; break;
+        case Cause::termination: raise(SIGTERM); break;
+        case Cause::one_that_asks: instance.ask_stop(StopReason::requested, 0, nullptr); break;
+        }
+    }
+    /// From here on one function of the camera, or of the receiver, is under way for seconds.
+    void enter(Situation situation) {
+        const auto enter = [this](Slow& slow, std::size_t activity, Function function) {
+            slow.slow = function;
+            if (function != Function::work && function != Function::loop)
+                static_cast<void>(instance.life().ask_activity(activity, LifeChange::restart));
+            ASSERT_TRUE(comes_true([&] { return slow.at == function; }));
+        };
+        switch (situation) {
+        case Situation::initialises: return enter(*camera, look, Function::initialise);
+        case Situation::finalises: return enter(*camera, look, Function::finalise);
+        case Situation::starts: return enter(*camera, look, Function::start);
+        case Situation::works: return enter(*camera, look, Function::work);
+        case Situation::stops: camera->slow = Function::stop; return;
+        case Situation::loops: receiver->slow = Function::loop; return;
+        case Situation::breaks_loop: return enter(*receiver, receive, Function::break_loop);
+        case Situation::machine_starts: return;
+        }
+    }
+    [[nodiscard]] Duration until_safe() const { return at_ns(valve->safe_since) - instance.stop_asked_at(); }
+};
+
+class AStop : public testing::TestWithParam<Situation> {
+protected:
+    void SetUp() override {
+        if (os::observe_process(board.highest_priority).fifo_error != 0)
+            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+    }
+};
+
+std::ptrdiff_t threads() { return std::distance(std::filesystem::directory_iterator{"/proc/self/task"}, {}); }
+
+/// A thread that hung comes back when all is over: what it looks at then stays, and the next machine has its
+/// memory when it has ended. One whose contract broke stays for ever, in memory of its own.
+template <const auto& of_table> class LastingRig {
+public:
+    ~LastingRig() { end(); }
+    Rig<of_table>* operator->() const { return &rig_; }
+    void end() const {
+        rig_.camera->let_go = rig_.receiver->let_go = true;
+        for (Pulse* each : {rig_.pulse, rig_.spare}) each->hangs = each->hangs_in_stop = false;
+        static_cast<void>(rig_.world.stop());
+        if (rig_.world.breaches() != 0) return;
+        for (int n = 0; n < 20'000 && threads() > before_; ++n) os::sleep_for(1ms);
+        EXPECT_EQ(threads(), before_);
+    }
+
+private:
+    static Rig<of_table>& made() {
+        static std::vector<Rig<of_table>*> rigs;
+        return *rigs.emplace_back(new Rig<of_table>);
+    }
+    std::ptrdiff_t before_ = threads();
+    Rig<of_table>& rig_ = made();
+};
+constexpr auto broken_table = table, broken_beside_table = table;
+
+TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_it) {
+    static_assert(for_seconds > 2 * board.stop_within, "who waited for it would be late");
+    for (const Cause by : causes) {
+        SCOPED_TRACE(static_cast<int>(by));
+        const LastingRig<table> rig;
+        ASSERT_TRUE(rig->armed);
+        if (GetParam() == Situation::machine_starts) {
+            rig->camera->slow = Function::initialise;
+            std::thread other{[&] {
+                while (rig->camera->at != Function::initialise) os::sleep_for(1ms);
+                rig->cause(by);
+            }};
+            EXPECT_FALSE(rig->start());
+            other.join();
+            EXPECT_EQ(rig->world.refusal().view(), "");
+        } else {
+            if (GetParam() == Situation::loops) rig->receiver->slow = Function::loop;
+            ASSERT_TRUE(rig->start());
+            ASSERT_NO_FATAL_FAILURE(rig->enter(GetParam()));
+            rig->cause(by);
+            ASSERT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); }));
+        }
+        static_cast<void>(rig->world.make_safe());
+        EXPECT_EQ(rig->valve->at_wire, 0);
+        EXPECT_LT(rig->until_safe(), board.stop_within);
+        rig.end();
+        EXPECT_EQ(rig->world.unfinished().view(), "");
+        EXPECT_EQ(rig->camera->finalised,
+                  rig->camera->initialised - (rig->world.hung() != 0 && rig->world.first_hung() == "look"));
+    }
+}
+
+std::string name_of(const testing::TestParamInfo<Situation>& situation) {
+    constexpr std::array names{"the_camera_initialises", "the_camera_finalises", "the_camera_starts",
+                               "the_camera_works",       "the_camera_stops",     "the_receiver_loops",
+                               "its_loop_is_broken_off", "the_machine_starts"};
+    return names[static_cast<std::size_t>(situation.param)];
+}
+INSTANTIATE_TEST_SUITE_P(While, AStop,
+                         testing::Values(Situation::initialises, Situation::finalises, Situation::starts,
+                                         Situation::works, Situation::stops, Situation::loops,
+                                         Situation::breaks_loop, Situation::machine_starts),
+                         name_of);
+
+using TheMachine = AStop;
+
+TEST_F(TheMachine, stops_all_its_activities_before_it_finalises_one) {
+    const LastingRig<table> rig;
+    ASSERT_TRUE(rig->start());
+    rig->camera->slow = Function::finalise;
+    const Time begin = rig->clock.now();
+    EXPECT_EQ(rig->world.stop(), 0);
+    EXPECT_LT(at_ns(rig->valve->safe_since) - begin, board.stop_within);
+    EXPECT_THAT(history().lines, testing::ElementsAre("slow stop", "slow stop", "valve stop", "slow finalise",
+                                                      "slow finalise"));
+}
+
+TEST_F(TheMachine, stops_one_activity_at_once_while_another_one_is_initialised) {
+    const LastingRig<table> rig;
+    ASSERT_TRUE(rig->start());
+    ASSERT_NO_FATAL_FAILURE(rig->enter(Situation::initialises));
+    const Time begin = rig->clock.now();
+    const LifeTicket ticket = rig->instance.life().ask_activity(drivers, LifeChange::stop);
+    ASSERT_TRUE(rig->comes_true([&] { return rig->valve->safe_since != 0; }));
+    EXPECT_LT(at_ns(rig->valve->safe_since) - begin, board.stop_within);
+    rig->camera->let_go = true;
+    EXPECT_TRUE(rig->comes_true([&] {
+        return rig->instance.life().answer_of_activity(drivers, ticket).outcome == LifeOutcome::done;
+    }));
+    EXPECT_FALSE(rig->instance.stop_asked());
+    EXPECT_EQ(rig->world.stop(), 0);
+}
+
+TEST_F(TheMachine, stops_the_others_in_time_when_a_real_time_activity_hangs_and_runs_no_stop_of_it) {
+    const LastingRig<table> rig;
+    ASSERT_TRUE(rig->start());
+    rig->pulse->hangs = true;
+    ASSERT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); })) << "its row is stale";
+    EXPECT_EQ(rig->world.make_safe(), 1);
+    EXPECT_EQ(rig->world.first_hung(), "logic");
+    EXPECT_EQ(rig->valve->at_wire, 0);
+    EXPECT_LT(rig->until_safe(), board.stop_within);
+    rig.end();
+    EXPECT_EQ(rig->pulse->stopped, 0) << "neither the supervisor's thread nor its own, which was given up";
+    EXPECT_FALSE(rig->instance.standing());
+}
+
+TEST_F(TheMachine, stops_when_an_activity_that_was_to_be_stopped_alone_hangs) {
+    const LastingRig<table> rig;
+    ASSERT_TRUE(rig->start());
+    rig->spare->hangs_in_stop = true;
+    const LifeTicket ticket = rig->instance.life().ask_activity(spare, LifeChange::restart);
+    ASSERT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); }));
+    EXPECT_EQ(rig->instance.stop_request().reason, StopReason::activity_hangs);
+    EXPECT_EQ(rig->instance.describe_stop().view(),
+              "activity \"spare\" neither starts nor stops: its thread hangs");
+    EXPECT_EQ(rig->instance.life().answer_of_activity(spare, ticket).refusal, LifeRefusal::thread_lost);
+    EXPECT_EQ(rig->world.make_safe(), 1);
+    EXPECT_EQ(rig->valve->at_wire, 0);
+    EXPECT_LT(rig->until_safe(), board.stop_within);
+    rig.end();
+}
+
+TEST_F(TheMachine, stops_in_time_for_a_broken_contract_while_another_activity_is_initialised) {
+    const LastingRig<broken_beside_table> rig;
+    ASSERT_TRUE(rig->start());
+    ASSERT_NO_FATAL_FAILURE(rig->enter(Situation::initialises));
+    rig->cause(Cause::contract);
+    ASSERT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); }));
+    EXPECT_EQ(rig->world.make_safe(), 0);
+    EXPECT_EQ(rig->instance.stop_request().reason, StopReason::broken_contract);
+    EXPECT_EQ(rig->valve->at_wire, 0);
+    EXPECT_LT(rig->until_safe(), board.stop_within);
+    EXPECT_EQ(rig->world.lost(), 1);
+}
+
+TEST_F(TheMachine, stops_when_a_contract_breaks_in_what_initialises_it_and_waits_for_that_no_more) {
+    const LastingRig<broken_table> rig;
+    rig->camera->breaks_contract = true;
+    EXPECT_FALSE(rig->start());
+    EXPECT_EQ(rig->instance.stop_request().reason, StopReason::broken_contract);
+    EXPECT_EQ(rig->world.stop(), 0);
+    EXPECT_EQ(rig->valve->at_wire, 0);
+    EXPECT_LT(rig->until_safe(), board.stop_within);
+    EXPECT_THAT(std::string{rig->world.unfinished().view()},
+                testing::StartsWith("activity \"look\": its initialise() or finalise() broke a contract"));
+    EXPECT_FALSE(rig->instance.standing());
+}
+
+} // namespace
+} // namespace tappet

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// A firmware in its two processes, on this host: a stop that is asked for is complete within the board's
+// bound, by the machine or, where something of it hangs, by its guardian.
+#include "kernel/machine/firmware.hpp"
+#include "kernel/os/arming.hpp"
+#include "kernel/os/sleep.hpp"
+#include "toolchain/machine/firmware.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <new>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+enum class Ill : int {
+    nothing,
+    initialises_long,
+    works_for_ever,
+    finalises_long,
+    supervisor_sleeps,
+    supervisor_sleeps_in_stop
+};
+
+/// Memory of the test, the machine and its guardian. The wire stands for all outputs: 1 is not safe.
+struct Page {
+    std::atomic<std::int64_t> wire{0}, safe_since{0}, asked{0};
+    std::atomic<int> by_guardian{0};
+    std::atomic<bool> runs{false}, is_ill{false};
+    std::atomic<Ill> ill{Ill::nothing};
+    void be_safe() {
+        if (wire.exchange(0) != 0) safe_since = to_ns(os::Clock::monotonic());
+    }
+};
+Page* page = nullptr;
+MachineInstance* the_instance = nullptr;
+constexpr auto long_time = 1700ms; // of a supervisor that sleeps: its life is missed after 2 s
+
+void sleep_long() { os::sleep_for(long_time); }
+/// In the main thread, wherever it is.
+void put_supervisor_to_sleep() { ::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGRTMIN); }
+
+/// First row: it stops last.
+struct Valve {
+    Property<std::int64_t> unused{0};
+    void start(const Cycle&) noexcept TAPPET_REALTIME { page->wire = 1; }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { TAPPET_ESCAPE("a test's note", page->be_safe()); }
+    static constexpr auto interface() {
+        return facets(property<&Valve::unused>("unused", "", "a component has a facet", range(0, 0)));
+    }
+};
+
+/// May block, and keeps the wire unsafe itself while it does.
+struct Heater {
+    Property<std::int64_t> unused{0};
+    Sentence initialise() {
+        if (page->ill == Ill::initialises_long) {
+            page->runs = true;
+            os::sleep_for(5s);
+        }
+        return {};
+    }
+    void work(const Cycle&) {
+        page->runs = true;
+        switch (page->ill) {
+        case Ill::works_for_ever:
+            page->is_ill = true;
+            for (;;) {
+                os::sleep_for(1ms);
+                page->wire = 1;
+            }
+        case Ill::supervisor_sleeps:
+            if (page->is_ill.exchange(true)) break;
+            put_supervisor_to_sleep();
+            os::sleep_for(50ms);
+            the_instance->ask_stop(StopReason::requested, 0, nullptr);
+            break;
+        default: break;
+        }
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        if (page->ill == Ill::supervisor_sleeps_in_stop)
+            TAPPET_ESCAPE("this activity is not real-time", put_supervisor_to_sleep(); os::sleep_for(50ms));
+    }
+    void finalise() {
+        if (page->ill == Ill::finalises_long) os::sleep_for(3s);
+    }
+    static constexpr auto interface() {
+        return facets(property<&Heater::unused>("unused", "", "a component has a facet", range(0, 0)));
+    }
+};
+
+// clang-format off
+constexpr auto table = machine("guarded",
+    components(component<Valve>("valve"), component<Heater>("heater")),
+    activities(
+        activity("drivers", every(5ms),  runs("valve"),  budget(50us)),
+        activity("heat",    every(10ms), runs("heater"), not_real_time)),
+    connections(), reactions(), behaviours());
+constexpr Board board{
+    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .heap_bytes = 256 * 1024, .highest_priority = 40,
+    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
+// clang-format on
+
+class Wires : public GuardedDevices {
+public:
+    std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
+    [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return {}; }
+    void report(os::ArmingReport&) override {}
+    [[nodiscard]] WireCounters counters() const noexcept override { return {}; }
+    [[nodiscard]] Bounded<int, 16> kept_by_guardian() const noexcept override { return {}; }
+    std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
+    std::size_t write_safe_lines() noexcept override {
+        ++page->by_guardian;
+        page->be_safe();
+        return 0;
+    }
+    std::size_t send_safe_frames(Duration) noexcept override { return 0; }
+    std::size_t write_safe_registers() noexcept override { return 0; }
+};
+
+struct AFirmware : testing::Test {
+    pid_t guardian = -1;
+
+    void SetUp() override {
+        if (os::observe_process(board.highest_priority).fifo_error != 0)
+            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+        page = new (::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))
+            Page;
+    }
+    void run(Ill ill) {
+        page->ill = ill;
+        guardian = ::fork();
+        if (guardian == 0) {
+            const int nowhere = ::open("/dev/null", O_WRONLY);
+            ::dup2(nowhere, 1);
+            if (::getenv("SHOW_FIRMWARE") == nullptr) ::dup2(nowhere, 2);
+            static Wires wires;
+            char name[] = "guarded";
+            char* words[] = {name};
+            const FirmwareHooks hooks{.configured = [](MachineInstance& instance) {
+                the_instance = &instance;
+                ::signal(SIGRTMIN, [](int) { sleep_long(); }); // instead of asking for the stop
+            }};
+            std::_Exit(run_firmware(Firmware<table, board>::machine(), wires, 1, words, hooks));
+        }
+        ASSERT_TRUE(becomes([] { return page->runs && page->wire == 1; }));
+    }
+    template <class Condition> static bool becomes(Condition condition) {
+        for (int n = 0; n < 20'000 && !condition(); ++n) os::sleep_for(1ms);
+        return condition();
+    }
+    void ask() {
+        page->asked = to_ns(os::Clock::monotonic());
+        ::kill(guardian, SIGTERM); // which hands it on
+    }
+    /// From the request on.
+    [[nodiscard]] Duration until_safe() {
+        EXPECT_TRUE(becomes([] { return page->wire == 0; }));
+        return at_ns(page->safe_since) - at_ns(page->asked);
+    }
+    int exit_code() const {
+        int status = 0;
+        ::waitpid(guardian, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    /// The bound, and the way of a request and of the guardian's looks on a busy host.
+    static constexpr Duration bound = board.stop_within + 200ms;
+    static_assert(bound < long_time, "who waits for a supervisor that sleeps is late");
+};
+
+TEST_F(AFirmware, that_is_asked_to_stop_does_so_itself_and_ends_well) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::nothing));
+    ask();
+    EXPECT_LT(until_safe(), bound);
+    EXPECT_EQ(exit_code(), 0);
+    EXPECT_EQ(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, that_is_asked_to_stop_while_it_starts_is_safe_before_the_initialising_has_come_to_its_end) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::initialises_long));
+    ask();
+    EXPECT_LT(until_safe(), bound);
+    EXPECT_EQ(exit_code(), 0);
+    EXPECT_EQ(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, whose_finalising_takes_long_is_safe_before_it) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::finalises_long));
+    ask();
+    EXPECT_LT(until_safe(), bound);
+    EXPECT_EQ(exit_code(), 0);
+    EXPECT_EQ(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, of_which_an_activity_hangs_is_ended_by_its_guardian_and_stays_safe) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::works_for_ever));
+    ASSERT_TRUE(becomes([] { return page->is_ill.load(); }));
+    ask();
+    EXPECT_TRUE(becomes([] { return page->by_guardian > 0; }));
+    EXPECT_LT(until_safe(), bound);
+    EXPECT_EQ(exit_code(), 128 + SIGKILL);
+    EXPECT_EQ(page->wire, 0) << "who would have written it is no more";
+}
+
+TEST_F(AFirmware, whose_supervisor_does_not_begin_a_stop_that_was_asked_for_is_made_safe_by_its_guardian) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::supervisor_sleeps));
+    ASSERT_TRUE(becomes([] { return page->is_ill.load(); }));
+    page->asked = to_ns(os::Clock::monotonic());
+    EXPECT_LT(until_safe(), board.stop_begins_within() + 250ms);
+    EXPECT_EQ(exit_code(), 128 + SIGKILL);
+    EXPECT_GT(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, whose_supervisor_does_not_come_to_the_end_of_a_stop_is_made_safe_by_its_guardian) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::supervisor_sleeps_in_stop));
+    ask();
+    EXPECT_LT(until_safe(), bound);
+    EXPECT_EQ(exit_code(), 128 + SIGKILL);
+    EXPECT_GT(page->by_guardian, 0);
+}
+
+} // namespace
+} // namespace tappet
