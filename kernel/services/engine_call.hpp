@@ -7,8 +7,9 @@
 
 namespace tappet {
 
-/// Whether an engine comes to what it is asked: anything of it has not stopped.
+/// Whether an engine comes to what it is asked: its activity runs, or anything of it has not stopped.
 inline bool is_alive(MachineInstance& machine, std::size_t activity) noexcept {
+    if (machine.engines()[activity].is_active()) return true;
     for (const EnginePart& each : machine.engines()[activity].plan().parts)
         if (each.state.load(std::memory_order_acquire) != ComponentState::stopped) return true;
     return false;
