@@ -17,10 +17,12 @@ public:
     EndedProcess() = default;
     EndedProcess(const EndedProcess&) = delete;
     EndedProcess& operator=(const EndedProcess&) = delete;
-    virtual ~EndedProcess() = default;
     virtual void kill() noexcept = 0;
     /// Whether it has ended, or ends within `time`.
     [[nodiscard]] virtual bool await_end(Duration time) noexcept = 0;
+
+protected:
+    ~EndedProcess() = default;
 };
 
 /// What came of it.
