@@ -94,10 +94,10 @@ TEST(SizeRule, counts_what_lies_below_and_no_text) {
     const Tree two{file("kernel/os/a.hpp", "// A.\n// B.\n"), file("kernel/os/deep/b.cpp", "// C.\n"),
                    file("kernel/os/README.md", "Much.\nText.\n")};
     EXPECT_EQ(lines_under(two, "kernel/os"), 3u);
-    EXPECT_EQ(grown(two, {{"kernel/os", 3875}}).size(), 1u);
-    EXPECT_TRUE(grown(two, {{"kernel/os", 3875}}).empty());
-    EXPECT_EQ(slack(two, {{"kernel/os", 3875}}).size(), 1u);
-    EXPECT_TRUE(slack(two, {{"kernel/os", 3875}}).empty());
+    EXPECT_EQ(grown(two, {{"kernel/os", 2}}).size(), 1u);
+    EXPECT_TRUE(grown(two, {{"kernel/os", 3}}).empty());
+    EXPECT_EQ(slack(two, {{"kernel/os", 60}}).size(), 1u);
+    EXPECT_TRUE(slack(two, {{"kernel/os", 50}}).empty());
 }
 
 } // namespace
