@@ -23,14 +23,15 @@ struct LinkFacets {
     using Rows = typename Link::Rows;
     static constexpr std::size_t row_count = Rows::row_count;
 
+    template <std::size_t i>
+    using Call = GatedCommand<&Link::template begin_call<i>, &Link::template call_progress<i>>;
     template <std::size_t... i>
     static constexpr auto command_operations(std::index_sequence<i...>) {
-        return std::array<CommandOperations, sizeof...(i)>{
-            CommandOperations{Rows::is_command(i) ? Rows::command(i).arguments : nullptr,
-                              Rows::is_command(i) ? Rows::command(i).results : nullptr,
-                              Rows::is_command(i) ? Rows::command(i).argument_bytes : 0,
-                              Rows::is_command(i) ? Rows::command(i).result_bytes : 0,
-                              &Link::template begin_call<i>, &Link::template call_progress<i>}...};
+        return std::array<CommandOperations, sizeof...(i)>{CommandOperations{
+            Rows::is_command(i) ? Rows::command(i).arguments : nullptr,
+            Rows::is_command(i) ? Rows::command(i).results : nullptr,
+            Rows::is_command(i) ? Rows::command(i).argument_bytes : 0,
+            Rows::is_command(i) ? Rows::command(i).result_bytes : 0, &Call<i>::begin, &Call<i>::progress}...};
     }
     static constexpr auto commands = command_operations(std::make_index_sequence<row_count>{});
 

@@ -51,7 +51,7 @@ struct Valve {
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(!breaks_contract.load(), Contract::precondition, 7);
         if (beat.good()) hears = true;
-        if (takes_long.exchange(false)) clock->consume(40ms);
+        if (takes_long.exchange(false)) clock->consume(150ms);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         at_wire = 0;
@@ -132,12 +132,12 @@ struct Receiver : Slow {
 constexpr auto table = machine("stopping",
     components(component<Valve>("valve"), component<Pulse>("pulse"), component<Pulse>("spare"), component<Receiver>("receiver"), component<Camera>("camera")),
     activities(
-        activity("drivers", every(20ms), runs("valve"), budget(50us), stack(256 * 1024), stop_when_late),
+        activity("drivers", every(100ms), runs("valve"), budget(50us), stack(256 * 1024), stop_when_late),
         activity("logic",   every(5ms),  runs("pulse"), budget(50us), stack(256 * 1024)),
         activity("spare",   every(5ms),  runs("spare"), budget(50us), stack(256 * 1024)),
         activity("receive", on_work(),   not_real_time, runs("receiver"), stack(256 * 1024)),
         activity("look",    every(10ms), not_real_time, runs("camera"),   stack(256 * 1024))),
-    connections(data("pulse.beat", "valve.beat", stale_after(200ms), stop_machine)),
+    connections(data("pulse.beat", "valve.beat", stale_after(500ms), stop_machine)),
     reactions(), behaviours());
 constexpr Board board{
     .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
@@ -202,24 +202,27 @@ template <const auto& of_table> struct Rig {
         case Cause::one_that_asks: instance.ask_stop(StopReason::requested, 0, nullptr); break;
         }
     }
-    /// From here on one function of the camera, or of the receiver, is under way for seconds.
-    void enter(Situation situation) {
-        const auto enter = [this](Slow& slow, std::size_t activity, Function function) {
-            slow.slow = function;
-            if (function != Function::work && function != Function::loop)
-                static_cast<void>(instance.life().ask_activity(activity, LifeChange::restart));
-            ASSERT_TRUE(comes_true([&] { return slow.at == function; }));
-        };
+    /// One function of the camera, or of the receiver, is to take seconds, at once or when it comes to it.
+    void prepare(Situation situation) {
         switch (situation) {
-        case Situation::initialises: return enter(*camera, look, Function::initialise);
-        case Situation::finalises: return enter(*camera, look, Function::finalise);
-        case Situation::starts: return enter(*camera, look, Function::start);
-        case Situation::works: return enter(*camera, look, Function::work);
-        case Situation::stops: camera->slow = Function::stop; return;
-        case Situation::loops: receiver->slow = Function::loop; return;
-        case Situation::breaks_loop: return enter(*receiver, receive, Function::break_loop);
-        case Situation::machine_starts: return;
+        case Situation::initialises:
+        case Situation::machine_starts: camera->slow = Function::initialise; break;
+        case Situation::finalises: camera->slow = Function::finalise; break;
+        case Situation::starts: camera->slow = Function::start; break;
+        case Situation::works: camera->slow = Function::work; break;
+        case Situation::stops: camera->slow = Function::stop; break;
+        case Situation::loops: receiver->slow = Function::loop; break;
+        case Situation::breaks_loop: receiver->slow = Function::break_loop; break;
         }
+    }
+    void await_slow() const {
+        while (camera->at == Function::none && receiver->at == Function::none) os::sleep_for(1ms);
+    }
+    /// The camera is restarted, and initialised for seconds.
+    void initialise_camera() {
+        prepare(Situation::initialises);
+        static_cast<void>(instance.life().ask_activity(look, LifeChange::restart));
+        EXPECT_TRUE(comes_true([&] { return camera->at == Function::initialise; }));
     }
     [[nodiscard]] Duration until_safe() const { return at_ns(valve->safe_since) - instance.stop_asked_at(); }
 };
@@ -265,22 +268,29 @@ TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_
         SCOPED_TRACE(static_cast<int>(by));
         const LastingRig<table> rig;
         ASSERT_TRUE(rig->armed);
-        if (GetParam() == Situation::machine_starts) {
-            rig->camera->slow = Function::initialise;
-            std::thread other{[&] {
-                while (rig->camera->at != Function::initialise) os::sleep_for(1ms);
-                rig->cause(by);
-            }};
-            EXPECT_FALSE(rig->start());
-            other.join();
+        const Situation situation = GetParam();
+        const bool from_the_start = situation == Situation::machine_starts || situation == Situation::loops;
+        if (from_the_start) rig->prepare(situation);
+        if (situation != Situation::machine_starts) {
+            ASSERT_TRUE(rig->start());
+        }
+        if (!from_the_start) rig->prepare(situation);
+        if (situation == Situation::breaks_loop)
+            static_cast<void>(rig->instance.life().ask_activity(receive, LifeChange::restart));
+        else if (!from_the_start && situation != Situation::works && situation != Situation::stops)
+            static_cast<void>(rig->instance.life().ask_activity(look, LifeChange::restart));
+        std::thread other{[&] { // whatever keeps the supervisor
+            if (situation != Situation::stops) rig->await_slow();
+            while (!rig->valve->hears) os::sleep_for(1ms); // else nothing grows stale
+            rig->cause(by);
+        }};
+        if (situation == Situation::machine_starts) {
+            EXPECT_FALSE(rig->armed && rig->world.start(*rig->armed));
             EXPECT_EQ(rig->world.refusal().view(), "");
         } else {
-            if (GetParam() == Situation::loops) rig->receiver->slow = Function::loop;
-            ASSERT_TRUE(rig->start());
-            ASSERT_NO_FATAL_FAILURE(rig->enter(GetParam()));
-            rig->cause(by);
-            ASSERT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); }));
+            EXPECT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); }));
         }
+        other.join();
         static_cast<void>(rig->world.make_safe());
         EXPECT_EQ(rig->valve->at_wire, 0);
         EXPECT_LT(rig->until_safe(), board.stop_within);
@@ -319,7 +329,7 @@ TEST_F(TheMachine, stops_all_its_activities_before_it_finalises_one) {
 TEST_F(TheMachine, stops_one_activity_at_once_while_another_one_is_initialised) {
     const LastingRig<table> rig;
     ASSERT_TRUE(rig->start());
-    ASSERT_NO_FATAL_FAILURE(rig->enter(Situation::initialises));
+    rig->initialise_camera();
     const Time begin = rig->clock.now();
     const LifeTicket ticket = rig->instance.life().ask_activity(drivers, LifeChange::stop);
     ASSERT_TRUE(rig->comes_true([&] { return rig->valve->safe_since != 0; }));
@@ -365,7 +375,7 @@ TEST_F(TheMachine, stops_when_an_activity_that_was_to_be_stopped_alone_hangs) {
 TEST_F(TheMachine, stops_in_time_for_a_broken_contract_while_another_activity_is_initialised) {
     const LastingRig<broken_beside_table> rig;
     ASSERT_TRUE(rig->start());
-    ASSERT_NO_FATAL_FAILURE(rig->enter(Situation::initialises));
+    rig->initialise_camera();
     rig->cause(Cause::contract);
     ASSERT_TRUE(rig->comes_true([&] { return rig->instance.stop_asked(); }));
     EXPECT_EQ(rig->world.make_safe(), 0);
